@@ -1,0 +1,40 @@
+# How everything is compiled: warnings, the host's baseline and floating point that means what it says.
+find_program(RTSL_CCACHE ccache)
+if(RTSL_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER "${RTSL_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${RTSL_CCACHE}")
+endif()
+
+# Optimised lightly, with assertions and line tables: tests run fast and a crash still has a backtrace.
+set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g1")
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+
+# Contraction would make the bits of a picture depend on the compiler; x86-64-v3 has the fused operations that
+# correctly rounded functions ask for by name.
+add_compile_options(-ffp-contract=off -march=x86-64-v3 -ffunction-sections -fdata-sections)
+
+# lld links the static LLVM components in seconds.
+if(EXISTS /usr/lib/llvm-22/bin/ld.lld)
+  add_link_options(-B/usr/lib/llvm-22/bin -fuse-ld=lld)
+endif()
+add_link_options(-Wl,--gc-sections)
+
+if(RTSL_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize=vptr)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+# Warnings for code of ours (not for generated parsers).
+function(rtsl_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter)
+endfunction()
+
+# rtsl_library(name SOURCES... [LINK libraries...]): a static library of this tree. Includes are written from the root
+# of the tree, or of the build tree for generated files.
+function(rtsl_library name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
+  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}")
+  target_link_libraries(${name} PUBLIC ${ARG_LINK})
+  rtsl_warnings(${name})
+endfunction()

@@ -1,0 +1,111 @@
+//===- Diagnostics.h - messages to the author of a shader or scene --------===//
+//
+// All messages are declared in one table, DiagnosticCodes.def. A message has a range (shown with a caret),
+// labels at related places, notes, and fixes as data that a tool can apply. Messages are lower case, active,
+// without a full stop, with `backticks` round code.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "frontend/Source.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl {
+
+enum class Severity : std::uint8_t { Warning, Error };
+
+/// One enumerator a row of DiagnosticCodes.def.
+enum class Code : std::uint16_t {
+#define RTSL_DIAGNOSTIC(id, number, severity, message) id,
+#include "frontend/DiagnosticCodes.def"
+};
+
+/// The row of the table for a code.
+struct CodeInfo {
+  const char *name;    // "unknownName"
+  const char *number;  // "E0201"
+  Severity severity;
+  const char *message; // fmt format string
+};
+const CodeInfo &info(Code code);
+
+/// A second place that helps to understand the message.
+struct Label {
+  SourceRange range;
+  std::string text;
+};
+
+/// An edit that mends the mistake. `sure` fixes are applied by `rtslc check --fix`.
+struct Fix {
+  SourceRange range; // empty range: insertion
+  std::string replacement;
+  bool sure = false;
+};
+
+struct Diagnostic {
+  Code code;
+  Severity severity;
+  std::string message;
+  SourceRange range;
+  std::vector<Label> labels;
+  std::vector<std::string> notes;
+  std::vector<Fix> fixes;
+
+  Diagnostic &label(SourceRange where, std::string text) {
+    labels.push_back({where, std::move(text)});
+    return *this;
+  }
+  Diagnostic &note(std::string text) {
+    notes.push_back(std::move(text));
+    return *this;
+  }
+  Diagnostic &fix(SourceRange where, std::string replacement, bool sure = false) {
+    fixes.push_back({where, std::move(replacement), sure});
+    return *this;
+  }
+};
+
+/// Collects the messages of a run in the order in which they were found.
+class Diagnostics {
+public:
+  explicit Diagnostics(const SourceManager &sources) : sourceManager(sources) {}
+
+  /// Formats the message of `code` with `args` and records it at `range`. The returned message may be extended
+  /// until the next report. The same code at the same range is recorded once.
+  template <typename... Args>
+  Diagnostic &report(Code code, SourceRange range, const Args &...args) {
+    return add(code, range, fmt::format(fmt::runtime(info(code).message), args...));
+  }
+
+  bool hasErrors() const { return numErrors != 0; }
+  std::size_t errorCount() const { return numErrors; }
+  /// True once `errorLimit` errors were recorded: later errors are counted but not shown.
+  bool limitReached() const { return errorLimit != 0 && numErrors >= errorLimit; }
+
+  const std::vector<Diagnostic> &all() const { return diagnostics; }
+  const SourceManager &sources() const { return sourceManager; }
+
+  std::size_t errorLimit = 20; // 0: no limit
+  bool warningsAreErrors = false;
+
+private:
+  Diagnostic &add(Code code, SourceRange range, std::string message);
+
+  const SourceManager &sourceManager;
+  std::vector<Diagnostic> diagnostics;
+  Diagnostic dropped{}; // takes what is reported beyond the limit
+  std::size_t numErrors = 0;
+};
+
+/// Text for people: file:line:column, the source line, a caret, labels, notes and fixes. ANSI colour if asked.
+std::string renderText(const Diagnostics &diagnostics, bool colour);
+
+/// One JSON document for scripts: {"version": 1, "diagnostics": [...]}.
+std::string renderJson(const Diagnostics &diagnostics);
+
+} // namespace rtsl

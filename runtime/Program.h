@@ -1,0 +1,77 @@
+//===- Program.h - compiled shaders as the runtime sees them --------------===//
+//
+// A program is code plus a description of its classes. It may come from the compiler in process or be linked in ahead of
+// time; the runtime does not know which.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// The types that a scene can set. A vector has `rows` components, a matrix `columns` x `rows`, stored by columns.
+struct ValueType {
+  enum class Kind : std::uint8_t { Float, Int, UInt, Bool, Color, Reference, Struct };
+  Kind kind = Kind::Float;
+  std::uint8_t rows = 1;
+  std::uint8_t columns = 1;
+  std::uint8_t bufferRank = 0;              // 1 to 3: an unsized array of the above, an RtslBuffer in the record
+  std::vector<std::uint32_t> arraySizes;    // fixed-length dimensions, outermost first
+  std::string className;                    // Reference: the base or class that is asked for
+  std::string name;                         // as the author spells it, for messages: "vec3", "float[4]"
+  std::uint32_t size = 4;                   // bytes of the whole
+};
+
+struct MemberInfo {
+  std::string name;
+  ValueType type;
+  std::uint32_t offset = 0; // bytes from the start of the record (members) or of the packed arguments (parameters)
+  bool isPublic = false;    // the scene may set it
+  bool hasDefault = false;
+};
+
+struct ClassInfo {
+  std::string name;
+  std::string base;                     // "rt_Primitive", or another class of the user's
+  std::string root;                     // the rt_ class at the end of the chain
+  std::uint32_t id = 0;                 // first word of a record; from 1
+  std::uint32_t recordSize = 4;         // bytes, multiple of 4
+  std::vector<MemberInfo> members;      // inherited ones first
+  bool hasConstructor = false;
+  std::vector<MemberInfo> parameters;   // of the constructor
+  std::uint32_t parameterSize = 0;      // bytes of the packed arguments
+  std::vector<std::string> methods;     // defined or inherited
+  /// Writes member defaults into the record at `object`. Null: there are none.
+  void (*initialize)(RtslState *state, RtslRef object) = nullptr;
+  /// Runs the constructor on the record at `object`. Null: there is none.
+  void (*construct)(RtslState *state, RtslRef object, const void *arguments) = nullptr;
+};
+
+struct Program {
+  std::vector<ClassInfo> classes;
+  std::uint32_t colorComponents = 3;
+
+  /// Entries of Slots.def; a slot that no class of the scene fills may be null.
+  struct Slots {
+#define RTSL_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
+#include "runtime/device/Slots.def"
+  } slots;
+  void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample, float *color) = nullptr;
+
+  std::shared_ptr<void> code; // keeps the code alive
+
+  const ClassInfo *find(const std::string &name) const {
+    for (const ClassInfo &info : classes)
+      if (info.name == name)
+        return &info;
+    return nullptr;
+  }
+};
+
+} // namespace rtsl::runtime

@@ -1,0 +1,146 @@
+//===- Abi.h - what compiled shaders and the runtime agree on -------------===//
+//
+// Plain C layouts, the same for the host and the GPU, included by the runtime, by the code that runs beside shaders and
+// by the compiler, which takes every offset from here with offsetof. A vecN is N floats with alignment 4, a matrix its
+// columns one after the other, a color up to RTSL_MAX_COLOR floats of which the first N count, a bool a 32-bit 0 or 1.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define RTSL_MAX_COLOR 16
+#define RTSL_MAX_ATTRIBUTE_WORDS 32
+
+/// A reference to an object of the scene: byte offset of its record from RtslLaunch::records. 0 is "none".
+typedef uint32_t RtslRef;
+
+/// A buffer member (`public vec3 vertices[];`) as it lies in a record. Elements are packed with alignment 4.
+/// Rank 1 uses size[0] alone; the first index of the source is the slowest.
+typedef struct RtslBuffer {
+  uint32_t addressLow, addressHigh; // of element 0
+  uint32_t size[3];
+} RtslBuffer;
+
+/// One thing to be hit: a geometry with a material. `primitive` is an RTSL object, or 0 for a triangle mesh.
+typedef struct RtslInstance {
+  RtslRef primitive;
+  RtslRef material;
+  uint32_t mesh; // index into RtslLaunch::meshes when primitive is 0
+  uint32_t firstPrimitive; // global id of its first primitive, for stable ordering
+} RtslInstance;
+
+/// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
+typedef struct RtslMesh {
+  const float *positions;   // 3 a vertex
+  const float *normals;     // 3 a vertex
+  const float *uvs;         // 2 a vertex
+  const uint32_t *indices;  // 3 a triangle
+  uint32_t vertexCount, triangleCount;
+} RtslMesh;
+
+/// A node of the plain binary tree: bounds of both children. `child` >= 0 is an inner node; otherwise ~child is the
+/// first of `count` leaf items.
+typedef struct RtslBvhNode {
+  float lower[2][3], upper[2][3];
+  int32_t child[2];
+  uint32_t count[2];
+} RtslBvhNode;
+
+/// What a leaf holds: primitive `primitive` of instance `instance`.
+typedef struct RtslLeafItem {
+  uint32_t instance, primitive;
+} RtslLeafItem;
+
+/// What is the same for all rays of a launch.
+typedef struct RtslLaunch {
+  uint8_t *records;             // object records; the first 4 bytes of each are its class id
+  const RtslInstance *instances;
+  const RtslMesh *meshes;
+  const RtslRef *lights;
+  RtslRef camera;
+  RtslRef background;           // an rt_Miss object; 0: backgroundColor
+  float backgroundColor[RTSL_MAX_COLOR];
+  float ambient[RTSL_MAX_COLOR];
+  uint32_t instanceCount, meshCount, lightCount;
+  uint32_t colorComponents;
+  uint32_t maxDepth;            // 0: camera rays only
+  uint32_t width, height;
+  uint32_t seed;
+  const RtslBvhNode *nodes;     // device traversal; null if the host's own is used
+  const RtslLeafItem *leafItems;
+  uint32_t rootIsLeaf, nodeCount;
+  const void *host;             // the host's own (for example its Embree scene); never read by device code
+} RtslLaunch;
+
+/// The state of one ray. Parent and child ray have one each.
+typedef struct RtslState {
+  const RtslLaunch *launch;
+
+  // The hit so far (committed), and what is being tested (candidate).
+  uint32_t instance, primitive;           // of the hit so far; RTSL_NO_HIT: none
+  uint32_t candidateInstance, candidatePrimitive;
+  float u, v;                             // barycentrics of vertices 1 and 2 of a triangle hit
+
+  // Counter-based random numbers: (pixel, sample) make the key, `dimension` counts what was drawn.
+  uint32_t randomKey[2];
+  uint32_t dimension;
+
+#define RTSL_TYPE_float(n) float n
+#define RTSL_TYPE_int(n) int32_t n
+#define RTSL_TYPE_uint2(n) uint32_t n[2]
+#define RTSL_TYPE_vec2(n) float n[2]
+#define RTSL_TYPE_vec3(n) float n[3]
+#define RTSL_TYPE_mat4(n) float n[16]
+#define RTSL_TYPE_color(n) float n[RTSL_MAX_COLOR]
+#define RTSL_STATE_VARIABLE(name, type) RTSL_TYPE_##type(name);
+#include "runtime/device/StateVariables.def"
+
+  // What `intersect` wrote to scratch members for the hit so far.
+  uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
+} RtslState;
+
+#define RTSL_NO_HIT 0xffffffffu
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+//===----------------------------------------------------------------------===//
+// Defined by the compiled program: one entry a method slot, a switch over the classes that the scene uses (one class: a
+// direct call). `object` must be of a class derived from the slot's base. A class that does not define the method does
+// nothing there.
+//===----------------------------------------------------------------------===//
+#define RTSL_SLOT(base, method) void rtsl_##base##_##method(RtslState *state, RtslRef object);
+#include "runtime/device/Slots.def"
+
+//===----------------------------------------------------------------------===//
+// Defined by the runtime, called by compiled programs.
+//===----------------------------------------------------------------------===//
+
+/// Finds the nearest hit with Epsilon < t < HitDistance along state's ray and commits it (HitDistance, instance,
+/// primitive, u, v, attributes). With anyHit it may stop at the first. Returns 1 if there is one.
+uint32_t rtsl_traverse(RtslState *state, uint32_t anyHit);
+
+/// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 and commits t if the candidate wins.
+uint32_t rtsl_hit(RtslState *state, float t);
+
+/// `trace(origin, direction)`: the color that arrives at `origin` against `direction`. Writes colorComponents floats.
+void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float *color);
+
+/// One step of `illuminance (P [, N, angle])`: light number `index`. Writes LightDirection, LightDistance and LightColor
+/// of `state`; returns 1 if light arrives (in the cone, not black, not in shadow) so that the body is to run.
+/// Without a cone pass cosAngle = -2.
+uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx, float ny, float nz,
+                          float cosAngle);
+
+/// `rand()`: uniform in [0, 1).
+float rtsl_rand(RtslState *state);
+
+/// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents floats.
+void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
+
+#ifdef __cplusplus
+}
+#endif
