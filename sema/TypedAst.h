@@ -1,0 +1,327 @@
+//===- TypedAst.h - the program after checking ----------------------------===//
+//
+// Every name is resolved, every expression has a type, every implicit conversion is a node, every constant expression is
+// folded where a constant is required. Lowering needs no further look at the source; printers keep the author's names.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "frontend/Ast.h"
+#include "sema/Type.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rtsl::typed {
+
+struct Expr;
+struct Stmt;
+struct Function;
+struct Class;
+using ExprPtr = std::unique_ptr<Expr>;
+using StmtPtr = std::unique_ptr<Stmt>;
+
+enum class Builtin : std::uint8_t {
+#define RTSL_BUILTIN(id, name) id,
+#include "sema/Builtins.def"
+};
+const char *name(Builtin builtin);
+
+/// The rt_ variables; `RayOrigin` is rt_RayOrigin.
+enum class StateVariable : std::uint8_t {
+#define RTSL_STATE_VARIABLE(name, type) name,
+#include "runtime/device/StateVariables.def"
+};
+const char *name(StateVariable variable); // without rt_
+
+/// A value known at compile time: the scalars of its type in order (vectors by component, matrices by column, structs
+/// and arrays by element; color one value, or three for an RGB triple).
+struct Constant {
+  union Scalar {
+    float f;
+    std::int32_t i;
+    std::uint32_t u;
+    bool b;
+  };
+  std::vector<Scalar> scalars;
+};
+
+//===----------------------------------------------------------------------===//
+// Things that have a name
+//===----------------------------------------------------------------------===//
+
+/// A local variable, a parameter or a constant at file level.
+struct Variable {
+  enum class Kind : std::uint8_t { Local, Parameter, Global };
+  Kind kind = Kind::Local;
+  std::string name; // empty: an unnamed parameter
+  const Type *type = nullptr;
+  bool isConst = false;
+  ast::Direction direction = ast::Direction::In; // parameters
+  std::unique_ptr<Constant> constant;            // const with a constant initialiser: uses are folded to literals
+  ExprPtr init;                                  // globals: always a constant expression
+  SourceRange range;                             // of the name
+  std::string comment;
+};
+
+struct Field {
+  std::string name;
+  const Type *type = nullptr;
+  SourceRange range;
+  std::string comment;
+};
+
+struct Struct {
+  std::string name;
+  std::vector<Field> fields;
+  SourceRange range; // of the name
+  std::string comment;
+};
+
+struct Member {
+  ast::Access access = ast::Access::Private; // Public, Private, Scratch, or None for const
+  std::string name;
+  const Type *type = nullptr;
+  bool isConst = false;
+  std::unique_ptr<Constant> constant; // const members
+  ExprPtr init;                       // default of a public or private member; null: none (zero)
+  const Class *owner = nullptr;
+  SourceRange range;
+  std::string comment;
+};
+
+struct Function {
+  std::string name;
+  const Type *returnType = nullptr;
+  std::vector<std::unique_ptr<Variable>> parameters;
+  std::vector<std::unique_ptr<Variable>> locals; // all locals of the body, in order of declaration
+  StmtPtr body;                                  // a CompoundStmt
+  const Class *owner = nullptr;                  // methods
+  bool isConstructor = false;
+  bool isStateMethod = false; // one of its base class's table: intersect, shade, ...
+  bool mayTrace = false;      // itself or through what it calls
+  SourceRange range;          // of the name
+  std::string comment;
+};
+
+struct Class {
+  std::string name;
+  const Class *base = nullptr; // another class of the user's; null: derives from `root` directly
+  std::string root;            // "rt_Primitive"
+  std::vector<std::unique_ptr<Member>> members;     // its own
+  std::vector<std::unique_ptr<Function>> functions; // its own: methods, constructor, helpers
+  SourceRange range;
+  std::string comment;
+
+  /// The definition that an object of this class uses, looking along the bases; null if there is none.
+  const Function *findMethod(const std::string &name) const;
+  bool derivesFrom(const Class *other) const; // or is it
+};
+
+//===----------------------------------------------------------------------===//
+// Expressions
+//===----------------------------------------------------------------------===//
+
+enum class ExprKind : std::uint8_t {
+  Literal, Variable, State, Member, Field, Swizzle, Index, Length, Unary, IncDec, Binary, Assign, Conditional, Comma,
+  Convert, Construct, Builtin, Call, MethodCall, String
+};
+
+struct Expr {
+  const ExprKind kind;
+  const Type *type = nullptr;
+  SourceRange range;
+  virtual ~Expr() = default;
+
+protected:
+  explicit Expr(ExprKind kind) : kind(kind) {}
+};
+template <ExprKind K>
+struct ExprOf : Expr {
+  static constexpr ExprKind Kind = K;
+  ExprOf() : Expr(K) {}
+};
+
+/// A constant of any type but references. For numbers that the author wrote, `spelling` keeps how.
+struct LiteralExpr : ExprOf<ExprKind::Literal> {
+  Constant value;
+  std::string spelling;
+};
+struct VariableExpr : ExprOf<ExprKind::Variable> {
+  const Variable *variable = nullptr;
+};
+struct StateExpr : ExprOf<ExprKind::State> {
+  StateVariable variable{};
+};
+/// A member of the object that the method runs on.
+struct MemberExpr : ExprOf<ExprKind::Member> {
+  const Member *member = nullptr;
+};
+struct FieldExpr : ExprOf<ExprKind::Field> {
+  ExprPtr base;
+  std::uint32_t field = 0;
+};
+/// One component gives a scalar, several a vector. As an lvalue the components are distinct.
+struct SwizzleExpr : ExprOf<ExprKind::Swizzle> {
+  ExprPtr base;
+  std::vector<std::uint8_t> components; // 0 to 3
+};
+/// Of an array, a vector, a matrix (a column) or a buffer (of rank 1: an element; otherwise a buffer of rank - 1).
+struct IndexExpr : ExprOf<ExprKind::Index> {
+  ExprPtr base, index; // index: int or uint
+};
+/// `.length()` of a buffer; of an array it is folded.
+struct LengthExpr : ExprOf<ExprKind::Length> {
+  ExprPtr base;
+};
+enum class UnaryOp : std::uint8_t { Minus, Not, BitNot };
+struct UnaryExpr : ExprOf<ExprKind::Unary> {
+  UnaryOp op{};
+  ExprPtr operand;
+};
+struct IncDecExpr : ExprOf<ExprKind::IncDec> {
+  bool increment = true, prefix = true;
+  ExprPtr target;
+};
+/// Both operands have the same scalar type (shifts excepted). Shapes: equal; scalar with vector, matrix or color
+/// (broadcast); for Mul also matrix*vector, vector*matrix, matrix*matrix in the sense of linear algebra. Equal and
+/// NotEqual compare whole values and give one bool. LogicalAnd and LogicalOr evaluate the right side only if needed.
+struct BinaryExpr : ExprOf<ExprKind::Binary> {
+  ast::BinaryOp op{};
+  ExprPtr left, right;
+};
+/// Value of the target after the store. Compound: target = target op value, the target's address evaluated once, and
+/// `value` as the right operand of a BinaryExpr would be.
+struct AssignExpr : ExprOf<ExprKind::Assign> {
+  bool compound = false;
+  ast::BinaryOp op{};
+  ExprPtr target, value;
+};
+struct ConditionalExpr : ExprOf<ExprKind::Conditional> {
+  ExprPtr condition, whenTrue, whenFalse;
+};
+struct CommaExpr : ExprOf<ExprKind::Comma> {
+  ExprPtr left, right;
+};
+/// Change of scalar type, shape kept: int to float, bvec3 to vec3, ... ; or a reference to one of a base class.
+struct ConvertExpr : ExprOf<ExprKind::Convert> {
+  bool isImplicit = true;
+  ExprPtr operand;
+};
+/// Vector: one scalar (all components) or pieces whose scalars, taken in order, fill it (the last piece may have more).
+/// Matrix: one scalar (diagonal), one matrix (overlap, rest identity), or pieces by column. Struct: fields. Array:
+/// elements. Color: one float, or three floats that mean RGB. Scalar: the first component of the argument. The scalar
+/// types of arguments already are those of the result.
+struct ConstructExpr : ExprOf<ExprKind::Construct> {
+  std::vector<ExprPtr> args;
+};
+/// Arguments are converted to the overload's types; those of `out` parameters (modf, frexp, uaddCarry, payloads) are
+/// lvalues. Scalar operands beside vectors (`min(v, s)`, `mix(v, w, s)`, `mod(v, s)`, `step(s, v)`, ...) stay scalar.
+struct BuiltinExpr : ExprOf<ExprKind::Builtin> {
+  Builtin builtin{};
+  std::vector<ExprPtr> args;
+};
+/// A free function, or a method of the object itself (`onSelf`: the most derived definition runs).
+struct CallExpr : ExprOf<ExprKind::Call> {
+  const Function *function = nullptr;
+  bool onSelf = false;
+  std::vector<ExprPtr> args; // of out and inout parameters: lvalues of exactly the parameter's type
+};
+/// `reference.method(args)`, dispatched on the object's class. `lookup()` gives TextureColor (a color) and
+/// `lookupFloat()` FloatTextureValue (a float): both call the texture's `lookup`.
+struct MethodCallExpr : ExprOf<ExprKind::MethodCall> {
+  ExprPtr receiver;
+  std::string method;              // "lookup", "lookupFloat", or a function of the user's
+  const Function *function = nullptr; // a user function as the static type sees it; null for the methods of the table
+  std::vector<ExprPtr> args;
+};
+/// Only as an argument of print.
+struct StringExpr : ExprOf<ExprKind::String> {
+  std::string value;
+};
+
+//===----------------------------------------------------------------------===//
+// Statements
+//===----------------------------------------------------------------------===//
+
+struct Stmt {
+  const ast::StmtKind kind;
+  SourceRange range;
+  std::string comment;
+  virtual ~Stmt() = default;
+
+protected:
+  explicit Stmt(ast::StmtKind kind) : kind(kind) {}
+};
+template <ast::StmtKind K>
+struct StmtOf : Stmt {
+  static constexpr ast::StmtKind Kind = K;
+  StmtOf() : Stmt(K) {}
+};
+
+struct CompoundStmt : StmtOf<ast::StmtKind::Compound> {
+  std::vector<StmtPtr> body;
+};
+/// Variables belong to the function; `Variable::init` holds the initialiser.
+struct DeclarationStmt : StmtOf<ast::StmtKind::Declaration> {
+  std::vector<const Variable *> variables;
+};
+struct ExpressionStmt : StmtOf<ast::StmtKind::Expression> {
+  ExprPtr expr;
+};
+struct IfStmt : StmtOf<ast::StmtKind::If> {
+  ExprPtr condition;
+  StmtPtr thenStmt, elseStmt;
+};
+struct ForStmt : StmtOf<ast::StmtKind::For> {
+  StmtPtr init; // may be null
+  ExprPtr condition, step; // may be null
+  StmtPtr body;
+};
+struct WhileStmt : StmtOf<ast::StmtKind::While> {
+  ExprPtr condition;
+  StmtPtr body;
+};
+struct DoWhileStmt : StmtOf<ast::StmtKind::DoWhile> {
+  StmtPtr body;
+  ExprPtr condition;
+};
+/// The arms in source order; control falls from one into the next unless it breaks.
+struct SwitchStmt : StmtOf<ast::StmtKind::Switch> {
+  struct Arm {
+    std::vector<std::int64_t> values; // labels in front of this arm
+    bool isDefault = false;           // `default` is among them
+    std::vector<StmtPtr> body;
+    SourceRange range;
+  };
+  ExprPtr value; // int or uint
+  std::vector<Arm> arms;
+};
+struct BreakStmt : StmtOf<ast::StmtKind::Break> {};
+struct ContinueStmt : StmtOf<ast::StmtKind::Continue> {};
+struct ReturnStmt : StmtOf<ast::StmtKind::Return> {
+  ExprPtr value;
+};
+/// The body runs for each light that reaches `point`; with normal and angle only those within `angle` of the normal.
+struct IlluminanceStmt : StmtOf<ast::StmtKind::Illuminance> {
+  ExprPtr point, normal, angle; // normal and angle may be null
+  StmtPtr body;
+};
+
+//===----------------------------------------------------------------------===//
+// The whole
+//===----------------------------------------------------------------------===//
+
+/// All files of a compilation, checked together.
+struct Module {
+  TypeContext types;
+  std::vector<std::unique_ptr<Struct>> structs;       // a struct stands behind those that it contains
+  std::vector<std::unique_ptr<Variable>> constants;
+  std::vector<std::unique_ptr<Function>> functions;   // free functions
+  std::vector<std::unique_ptr<Class>> classes;        // a class stands behind its base
+
+  const Class *findClass(const std::string &name) const;
+};
+
+} // namespace rtsl::typed
