@@ -1,0 +1,102 @@
+//===- Error.h - what the runtime throws ----------------------------------===//
+//
+// Messages are lower case, active, without a full stop, with `backticks` round names, like the
+// compiler's.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl::runtime {
+
+enum class ErrorCode : std::uint8_t {
+  // Files.
+  FileNotFound,
+  FileUnreadable,
+  FileUnwritable, // a path that cannot be written, or a disk that is full
+  UnsupportedFormat,
+  // Meshes and images.
+  BadMesh, // truncated, empty, not finite, an index out of range
+  BadImage,
+  // Scene files.
+  JsonSyntax,
+  DuplicateKey,
+  UnknownKey,
+  MissingKey,
+  WrongType,
+  OutOfRange,
+  UnknownName, // of a texture, material or other object
+  ReferenceCycle,
+  NotSupported,
+  BadOverride, // --set
+  // Building a scene from a program.
+  UnknownClass,
+  WrongClass,
+  UnknownMember,
+  NotSettable, // a member that is not public
+  BadArguments,
+  MissingMember,
+  DegenerateGeometry,
+  MissingMethod,
+  IncompleteScene, // no camera, nothing to render
+  // Running.
+  Cancelled,
+  OutOfMemory,
+  Internal,
+};
+
+/// The name of a code as scripts see it: "fileNotFound".
+const char *name(ErrorCode code);
+
+/// A place in a file. Lines and columns count from 1, columns and lengths in bytes; line 0 means
+/// the whole file.
+struct Place {
+  std::string file;
+  std::uint32_t line = 0, column = 0, length = 0;
+};
+
+/// A second place that helps to understand an error.
+struct RelatedPlace {
+  Place place;
+  std::string text;
+};
+
+class Error : public std::runtime_error {
+public:
+  Error(ErrorCode code, const std::string &message, std::optional<Place> place = std::nullopt)
+      : std::runtime_error(message), code(code), place(std::move(place)) {}
+
+  /// Suggests what to write instead of the text at `place`.
+  Error &fix(std::string text) {
+    replacement = std::move(text);
+    return *this;
+  }
+  Error &related(Place where, std::string text) {
+    relatedPlaces.push_back({std::move(where), std::move(text)});
+    return *this;
+  }
+  Error &note(std::string text) {
+    notes.push_back(std::move(text));
+    return *this;
+  }
+
+  ErrorCode code;
+  std::optional<Place> place;
+  std::optional<std::string> replacement;
+  std::vector<RelatedPlace> relatedPlaces;
+  std::vector<std::string> notes;
+};
+
+/// What does not stop a run but deserves a word.
+struct Warning {
+  std::string message;
+  std::optional<Place> place;
+};
+
+} // namespace rtsl::runtime

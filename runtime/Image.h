@@ -1,0 +1,61 @@
+//===- Image.h - pictures in memory and in files --------------------------===//
+#pragma once
+
+#include "runtime/Error.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// Linear light, `channels` floats a pixel, rows from the top.
+struct Image {
+  std::uint32_t width = 0, height = 0, channels = 3;
+  std::vector<float> pixels;
+
+  Image() = default;
+  Image(std::uint32_t width, std::uint32_t height, std::uint32_t channels)
+      : width(width), height(height), channels(channels),
+        pixels(std::size_t(width) * height * channels, 0.0f) {}
+
+  float *at(std::uint32_t x, std::uint32_t y) {
+    return pixels.data() + (std::size_t(y) * width + x) * channels;
+  }
+  const float *at(std::uint32_t x, std::uint32_t y) const {
+    return pixels.data() + (std::size_t(y) * width + x) * channels;
+  }
+};
+
+/// Red, green and blue of an image with N channels. 3: as they are. 1: grey.
+Image toRgb(const Image &image);
+
+/// Throws FileUnwritable or UnsupportedFormat now if `writeImage(path, ...)` could not succeed
+/// later: unknown extension, missing or read-only folder, a folder in the file's place. Call it
+/// before a long rendering.
+void checkWritable(const std::string &path);
+
+/// Writes .exr (32-bit float, R G B, Y for one channel, or C0 C1 ... for others) or .png (8 bit,
+/// sRGB, clamped to [0, 1], not a number becomes black). The file appears whole or not at all.
+/// Throws FileUnwritable, UnsupportedFormat.
+void writeImage(const std::string &path, const Image &image);
+
+/// Reads what writeImage writes (any EXR of float or half channels, any PNG); PNG values are made
+/// linear. Throws FileNotFound, FileUnreadable, UnsupportedFormat, BadImage.
+Image readImage(const std::string &path);
+
+/// Linear to sRGB and back (IEC 61966-2-1:1999), both in [0, 1].
+float encodeSrgb(float linear);
+float decodeSrgb(float encoded);
+
+/// How far two pictures of the same shape are apart.
+struct ImageDifference {
+  double rootMeanSquare = 0; // over all channels of all pixels
+  double largest = 0;
+  std::size_t pixelsThatDiffer = 0; // not the same bits in some channel
+};
+/// Throws BadImage if the shapes differ.
+ImageDifference compareImages(const Image &a, const Image &b);
+
+} // namespace rtsl::runtime

@@ -1,0 +1,100 @@
+//===- Scene.h - objects, meshes, lights and a camera for a program -------===//
+//
+// A scene holds the records of the program's objects, laid out as the program says, and what there
+// is to hit. It checks everything when it is given, so that rendering has nothing left to refuse.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/Mesh.h"
+#include "runtime/Program.h"
+#include "runtime/Value.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// How an object is described: constructor arguments by position or by name, then public members.
+struct ObjectValues {
+  std::variant<std::monostate, std::vector<Value>, std::vector<NamedValue>> constructor;
+  std::vector<NamedValue> members;
+  std::optional<Place> place; // of the object, for messages
+};
+
+/// A box. A side may be infinite.
+struct Bounds {
+  float lower[3], upper[3];
+};
+
+class Scene {
+public:
+  /// The program must stay as it is; the scene keeps it alive.
+  explicit Scene(std::shared_ptr<const Program> program);
+  ~Scene();
+  Scene(Scene &&) noexcept;
+  Scene &operator=(Scene &&) noexcept;
+
+  const Program &program() const;
+
+  /// Adds an object of class `className`: defaults, then the constructor, then the public members.
+  /// `name` is for messages; empty: the class's name. Throws UnknownClass, UnknownMember,
+  /// NotSettable, BadArguments, WrongType, WrongClass, MissingMember.
+  RtslRef addObject(const std::string &className, const ObjectValues &values = {},
+                    const std::string &name = {});
+
+  /// The same with constructor arguments in order.
+  RtslRef addObject(const std::string &className, std::vector<Value> arguments,
+                    const std::string &name = {});
+
+  /// Adds an RTSL primitive to what rays can hit. Its bounds are asked for at once: not a number or
+  /// inverted ones throw DegenerateGeometry; a box without any extent gives a warning, for no ray
+  /// will hit it. Returns the instance's index.
+  std::uint32_t addPrimitive(RtslRef primitive, RtslRef material);
+
+  /// Adds a mesh; returns its index for addMeshInstance. Throws BadMesh.
+  std::uint32_t addMesh(Mesh mesh, const std::string &name = {});
+
+  /// Adds a mesh to what rays can hit. Returns the instance's index.
+  std::uint32_t addMeshInstance(std::uint32_t mesh, RtslRef material);
+
+  void addLight(RtslRef light);
+  void setCamera(RtslRef camera);
+  void setBackground(RtslRef miss);
+  /// One component for each of the program's color, or one for all. Throws WrongType.
+  void setBackgroundColor(const std::vector<float> &color);
+  void setAmbient(const std::vector<float> &color);
+
+  /// The record of an object, to look at or to change a member between renderings.
+  const std::uint8_t *record(RtslRef object) const;
+  const ClassInfo &classOf(RtslRef object) const;
+  const std::string &nameOf(RtslRef object) const;
+
+  const std::vector<Warning> &warnings() const;
+
+  /// The launch that describes this scene, with width, height, seed, depth and the traversal left
+  /// at 0. It stays valid until the scene changes. Throws IncompleteScene if there is no camera.
+  RtslLaunch launch() const;
+
+  /// World bounds of an RTSL primitive's instance, as computeBounds gave them, a few units in the
+  /// last place larger.
+  const Bounds &primitiveBounds(std::uint32_t instance) const;
+  /// Number of primitives that the instance holds: 1, or the triangles of its mesh.
+  std::uint32_t primitiveCount(std::uint32_t instance) const;
+  /// The name of an instance for messages: that of its primitive or mesh.
+  const std::string &instanceName(std::uint32_t instance) const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self;
+};
+
+/// The name in `candidates` that is nearest to `name`, if near enough to have been meant.
+std::optional<std::string> nearestName(std::string_view name,
+                                       const std::vector<std::string> &candidates);
+
+} // namespace rtsl::runtime

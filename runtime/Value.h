@@ -1,0 +1,56 @@
+//===- Value.h - what a scene gives to a member or a parameter ------------===//
+#pragma once
+
+#include "runtime/Error.h"
+#include "runtime/device/Abi.h"
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// A number, a truth value, a reference to an object, or a list of values: a vector, a color, a
+/// matrix (its columns one after the other, flat or nested), an array, a buffer (nested once a
+/// dimension).
+class Value {
+public:
+  enum class Kind : std::uint8_t { Number, Boolean, Reference, List };
+
+  Value(double number) : kind(Kind::Number), number(number) {}
+  Value(float number) : Value(double(number)) {}
+  Value(int number) : Value(double(number)) {}
+  Value(unsigned number) : Value(double(number)) {}
+  Value(bool boolean) : kind(Kind::Boolean), boolean(boolean) {}
+  Value(std::initializer_list<Value> list) : kind(Kind::List), list(list) {}
+  explicit Value(std::vector<Value> list) : kind(Kind::List), list(std::move(list)) {}
+  static Value reference(RtslRef object) {
+    Value value(0.0);
+    value.kind = Kind::Reference;
+    value.object = object;
+    return value;
+  }
+
+  Value &at(Place where) {
+    place = std::move(where);
+    return *this;
+  }
+
+  Kind kind;
+  double number = 0;
+  bool boolean = false;
+  RtslRef object = 0;
+  std::vector<Value> list;
+  std::optional<Place> place; // for messages
+};
+
+/// A value with the name of the member or parameter that it is for.
+struct NamedValue {
+  std::string name;
+  Value value;
+  std::optional<Place> place = std::nullopt; // of the name
+};
+
+} // namespace rtsl::runtime

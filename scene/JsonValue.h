@@ -1,0 +1,58 @@
+//===- JsonValue.h - JSON of which every value knows its place ------------===//
+#pragma once
+
+#include "runtime/Error.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl::scene {
+
+struct JsonValue;
+
+/// A key of a JSON object.
+struct JsonKey {
+  std::string text;
+  std::uint32_t line = 0, column = 0, length = 0;
+};
+
+struct JsonValue {
+  enum class Kind : std::uint8_t { Null, Boolean, Number, String, Array, Object };
+
+  Kind kind = Kind::Null;
+  bool boolean = false;
+  bool isInteger = false; // a number that was written without a fraction and fits 64 bits
+  double number = 0;
+  std::string string;
+  std::vector<JsonValue> elements; // Array
+  std::vector<std::pair<JsonKey, JsonValue>>
+      members; // Object, in the order of the file; no key twice
+
+  // Where it begins; length counts the bytes of a value on one line, 1 for an array or object.
+  std::shared_ptr<const std::string> file;
+  std::uint32_t line = 0, column = 0, length = 0;
+  bool fromOverride = false; // came from --set
+
+  runtime::Place place() const { return {*file, line, column, length}; }
+  runtime::Place place(const JsonKey &key) const {
+    return {*file, key.line, key.column, key.length};
+  }
+  const JsonValue *find(const std::string &key) const;
+  JsonValue *find(const std::string &key);
+};
+
+/// "a number", "an object": for messages.
+const char *describe(JsonValue::Kind kind);
+
+/// Parses a whole text. Throws runtime::Error with JsonSyntax, or DuplicateKey. Nesting deeper than
+/// 256 is refused.
+JsonValue parseJson(const std::string &text, const std::string &file);
+
+/// Applies "path.to.key=value": see readSceneFile. A missing last key of an object is added, an
+/// array's index must exist or be one past the end. Throws BadOverride.
+void applyOverride(JsonValue &root, const std::string &text);
+
+} // namespace rtsl::scene

@@ -1,0 +1,105 @@
+//===- SceneFile.h - the JSON scene file ----------------------------------===//
+//
+//   SceneDescription description = scene::readSceneFile("scene.json", {"objects.0.mesh=foo.obj"});
+//   std::vector<std::string> imports = ...description.imports..., classes =
+//   scene::classesUsed(description);
+//   ... compile and link ...
+//   runtime::Scene built = scene::buildScene(description, program);
+//
+// docs/scene-format.md describes the format, docs/scene-schema.json is its schema. All errors are
+// runtime::Error with file, line, column and length.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/Scene.h"
+#include "scene/JsonValue.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtsl::scene {
+
+using runtime::Place;
+
+/// A text with its place.
+struct LocatedName {
+  std::string text;
+  Place place;
+};
+
+/// {"class": ..., "constructor": ..., members...}. Values stay JSON until the classes are known.
+struct ObjectDescription {
+  LocatedName className;
+  const JsonValue *constructor = nullptr; // a list or an object
+  std::vector<std::pair<LocatedName, const JsonValue *>> members;
+  Place place;
+};
+
+/// A reference: the name of an object or an object written in its place.
+struct ReferenceDescription {
+  LocatedName name; // empty text: written in place
+  std::shared_ptr<ObjectDescription> object;
+};
+
+struct GeometryDescription {
+  std::optional<ObjectDescription> primitive; // or
+  LocatedName mesh;                           // path as written
+  std::string meshPath;                       // resolved
+  ReferenceDescription material;
+  runtime::Transform transform;
+  Place place;
+};
+
+/// "render", with the defaults where the file is silent.
+struct RenderSettings {
+  std::string engine = "classic";
+  std::uint32_t width = 960, height = 540;
+  std::uint32_t samplesPerPixel = 16;
+  std::uint32_t depth = 8;
+  std::uint32_t seed = 1;
+};
+
+struct ImportDescription {
+  LocatedName name; // as written: "std.cameras" or "glass.rtsl"
+  std::string path; // resolved; empty for a module name such as std.cameras
+};
+
+struct SceneDescription {
+  std::string file; // as given
+  std::vector<ImportDescription> imports;
+  ObjectDescription camera;
+  std::map<std::string, ObjectDescription> textures, materials;
+  std::vector<GeometryDescription> objects;
+  std::vector<ObjectDescription> lights;
+  std::optional<ObjectDescription> background; // an rt_Miss class
+  const JsonValue *backgroundColor = nullptr;  // or a color
+  const JsonValue *ambient = nullptr;
+  RenderSettings render;
+  std::shared_ptr<const JsonValue> root; // owns all of the above JSON
+};
+
+/// Reads a scene file and applies overrides (each "path.to.key=value", as given to --set) in order.
+/// An override's value is JSON, or else taken as a string; its paths to files are relative to the
+/// working directory, those of the file to the file's folder.
+SceneDescription readSceneFile(const std::string &path,
+                               const std::vector<std::string> &overrides = {});
+
+/// The same for a text that is at hand; `path` is for messages and for relative paths.
+SceneDescription parseScene(const std::string &text, const std::string &path,
+                            const std::vector<std::string> &overrides = {});
+
+/// The classes that the scene names, each once, sorted. Linking keeps these.
+std::vector<std::string> classesUsed(const SceneDescription &description);
+
+/// Loads the meshes, makes the objects and checks all names and types against the program.
+runtime::Scene buildScene(const SceneDescription &description,
+                          std::shared_ptr<const runtime::Program> program);
+
+} // namespace rtsl::scene
