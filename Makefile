@@ -1,0 +1,45 @@
+# A thin cover over CMake's presets: dev, release, asan.
+#
+#   make demo     install what is missing, build, render examples/glass
+#   make check    install what is missing, build, run every test
+#   make golden   renew the expected output of the golden tests (then read the difference)
+#   make bench    build and run the benchmarks
+
+PRESET ?= release
+BUILD := build/$(PRESET)
+JOBS ?= $(shell nproc)
+
+.PHONY: demo check build configure dependencies golden bench format install clean
+
+demo: build
+	$(BUILD)/bin/rtslc render examples/glass/scene.json -o $(BUILD)/glass.png
+	@echo "the picture is $(BUILD)/glass.png"
+
+check: build
+	cd $(BUILD) && ctest --output-on-failure -j$(JOBS)
+
+build: configure
+	cmake --build --preset $(PRESET) -j $(JOBS)
+
+configure: dependencies
+	cmake --preset $(PRESET) $(CMAKE_FLAGS)
+
+dependencies:
+ifndef SKIP_DEPENDENCIES
+	@scripts/install-dependencies
+endif
+
+golden: build
+	tests/golden/update $(BUILD)
+
+bench: build
+	cmake --build --preset $(PRESET) --target bench
+
+format:
+	git ls-files '*.cpp' '*.h' | xargs clang-format-22 -i
+
+install: build
+	cmake --install $(BUILD)
+
+clean:
+	rm -rf build
