@@ -1,0 +1,63 @@
+// atan2.
+//
+// Error bound of the fast path: see docs/elementary-functions.md. Where the bound does not decide
+// the rounding, the angle is computed again in double-double.
+#pragma once
+
+#include "runtime/device/math/DoubleDoubleFunctions.h"
+#include "runtime/device/math/Rounding.h"
+
+namespace rtsl::device {
+
+namespace detail {
+
+/// Relative error of firstQuadrantAngle() for floats, and of pi minus it.
+inline constexpr double arcTangent2Bound = 0x1p-56;
+
+inline Double2 accurateAngle(double y, double x, bool behind) {
+  Double2 angle =
+      y <= x ? accurateFirstOctantAngle(y, x) : add(halfPi, negate(accurateFirstOctantAngle(x, y)));
+  return behind ? add(pi, negate(angle)) : angle;
+}
+
+/// The angle of (x, y) for y >= 0 and x >= 0, of (-x, y) if `behind`; one of them not zero, both
+/// finite.
+inline float roundedAngle(double y, double x, bool behind) {
+  if (!behind && y < x * 0x1p-27) {
+    // atan(q) = q (1 - q^2/3 + ...) lies between q (1 - 2^-54) and q. The quotient q of two floats
+    // is a midpoint between floats, which happens below the normal floats, or at least 2^-50 away
+    // from it; so a nudge towards zero decides.
+    double q = y / x;
+    return float(fma(q, -0x1p-52, q));
+  }
+  Double2 angle = firstQuadrantAngle({y, 0.0}, {x, 0.0});
+  if (behind)
+    angle = complement(pi, angle);
+  float result;
+  if (roundsSafely(angle, arcTangent2Bound, result))
+    return result;
+  return roundToFloat(accurateAngle(y, x, behind));
+}
+
+} // namespace detail
+
+/// The angle of the point (x, y) in [-pi, pi]; signed zeros and infinities as in C99 (F.9.1.4).
+/// GLSL calls this atan(y, x).
+inline float atan2(float y, float x) {
+  using namespace detail;
+  if (isNaN(x) || isNaN(y))
+    return canonicalNaN();
+  float height = absolute(y), width = absolute(x);
+  bool behind = bitsOf(x) >= floatSignBit;
+  if (height == 0.0f && width == 0.0f)
+    width = 1.0f; // the sign of the zero x still chooses between 0 and pi
+  if (height == infinity() || width == infinity()) {
+    // Like a point on an axis, or on the diagonal.
+    bool both = height == width;
+    height = both || height == infinity() ? 1.0f : 0.0f;
+    width = both || width == infinity() ? 1.0f : 0.0f;
+  }
+  return withSignOf(roundedAngle(height, width, behind), y);
+}
+
+} // namespace rtsl::device

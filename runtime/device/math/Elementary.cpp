@@ -1,0 +1,38 @@
+// The elementary functions under C names, for compiled shaders to call.
+#include "runtime/device/math/Elementary.h"
+
+#define RTSL_EXPORT_UNARY(name)                                                                    \
+  float rtsl_##name(float x) {                                                                     \
+    return rtsl::device::name(x);                                                                  \
+  }
+#define RTSL_EXPORT_BINARY(name)                                                                   \
+  float rtsl_##name(float x, float y) {                                                            \
+    return rtsl::device::name(x, y);                                                               \
+  }
+
+extern "C" {
+
+RTSL_EXPORT_UNARY(sin)
+RTSL_EXPORT_UNARY(cos)
+RTSL_EXPORT_UNARY(tan)
+RTSL_EXPORT_UNARY(asin)
+RTSL_EXPORT_UNARY(acos)
+RTSL_EXPORT_UNARY(atan)
+RTSL_EXPORT_UNARY(sinh)
+RTSL_EXPORT_UNARY(cosh)
+RTSL_EXPORT_UNARY(tanh)
+RTSL_EXPORT_UNARY(asinh)
+RTSL_EXPORT_UNARY(acosh)
+RTSL_EXPORT_UNARY(atanh)
+RTSL_EXPORT_UNARY(exp)
+RTSL_EXPORT_UNARY(exp2)
+RTSL_EXPORT_UNARY(expm1)
+RTSL_EXPORT_UNARY(log)
+RTSL_EXPORT_UNARY(log2)
+RTSL_EXPORT_UNARY(log1p)
+RTSL_EXPORT_UNARY(sqrt)
+RTSL_EXPORT_UNARY(inversesqrt)
+RTSL_EXPORT_BINARY(pow)
+RTSL_EXPORT_BINARY(atan2) // (y, x)
+
+} // extern "C"

@@ -1,0 +1,31 @@
+// Correctly rounded elementary functions in binary32, one source for the host and for nvptx64.
+//
+// Every function of one argument returns the float nearest to the exact result (ties cannot occur
+// but where the result is a float), which was tested for all 2^32 arguments against MPFR. pow and
+// atan2 carry a proven error bound and fall back to double-double where it does not decide;
+// docs/elementary-functions.md has the method, the bounds and the figures.
+//
+// NaN results are always 0x7fc00000. Signed zeros and infinities are as in C99; errors of domain
+// give NaN. There is no global state: no errno, no rounding mode but round-to-nearest, no flush to
+// zero.
+//
+//     Trigonometric.h         sin cos tan            ArgumentReduction.h
+//     InverseTrigonometric.h  asin acos atan         ArcTangentKernel.h
+//     ArcTangent2.h           atan2                  ArcTangentKernel.h, DoubleDoubleFunctions.h
+//     Exponential.h           exp exp2 expm1         ExponentialKernel.h
+//     Hyperbolic.h            sinh cosh tanh         ExponentialKernel.h
+//     Logarithm.h             log log2 log1p         LogarithmKernel.h
+//     InverseHyperbolic.h     asinh acosh atanh      LogarithmKernel.h
+//     Power.h                 pow                    both kernels, DoubleDoubleFunctions.h
+//     InverseSquareRoot.h     inversesqrt sqrt
+#pragma once
+
+#include "runtime/device/math/ArcTangent2.h"
+#include "runtime/device/math/Exponential.h"
+#include "runtime/device/math/Hyperbolic.h"
+#include "runtime/device/math/InverseHyperbolic.h"
+#include "runtime/device/math/InverseSquareRoot.h"
+#include "runtime/device/math/InverseTrigonometric.h"
+#include "runtime/device/math/Logarithm.h"
+#include "runtime/device/math/Power.h"
+#include "runtime/device/math/Trigonometric.h"

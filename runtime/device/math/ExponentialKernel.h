@@ -1,0 +1,58 @@
+// e^x in double with a low part: the common ground of exp, exp2, expm1, the hyperbolic functions
+// and pow.
+//
+// Table-driven as in Tang, "Table-driven implementation of the exponential function", ACM TOMS
+// 15(2), 1989:
+//     x = (64 k + j) ln(2)/64 + r,  |r| <= ln(2)/128,      e^x = 2^k * 2^(j/64) * e^r.
+#pragma once
+
+#include "runtime/device/math/DoubleDouble.h"
+#include "runtime/device/math/tables/Constants.h"
+#include "runtime/device/math/tables/ExponentialTable.h"
+
+namespace rtsl::device::detail {
+
+/// x = step * ln(2)/64 + remainder, with |remainder| <= ln(2)/128 (a little more after rounding).
+struct ExponentialReduction {
+  int step;
+  double remainder;
+};
+
+/// For |x| < 700. The remainder's relative error is below 2^-52.
+inline ExponentialReduction reduceExponential(double x) {
+  constexpr double stepsPerUnit = exponentialTableSize * inverseLn2.hi;
+  NearestInteger step = nearestInteger(x * stepsPerUnit);
+  double remainder = fma(-step.asDouble, exponentialStep[0],
+                         x); // exact: the product is, and then Sterbenz's lemma
+  return {step.asInt, fma(-step.asDouble, exponentialStep[1], remainder)};
+}
+
+/// e^r - 1 - r for |r| <= 0.0055, by Taylor's series. What is left out is below r^7/5040 < 2^-64.
+inline double exponentialCurvature(double r) {
+  double q = fma(r, 1.0 / 720, 1.0 / 120);
+  q = fma(r, q, 1.0 / 24);
+  q = fma(r, q, 1.0 / 6);
+  q = fma(r, q, 0.5);
+  return r * r * q;
+}
+
+/// e^r - 1.
+inline double exponentialTail(double r) {
+  return r + exponentialCurvature(r);
+}
+
+/// 2^(step/64) * (1 + tail) = hi + lo, where |lo| <= |hi|/150 and the relative error of the sum is
+/// below 2^-59 plus that of the tail times |tail|. Step/64 within the exponents of normal doubles.
+inline Double2 scaledExponential(int step, double tail) {
+  ExponentialEntry entry = exponentialTable[step & (exponentialTableSize - 1)];
+  double scale = powerOfTwo(step >> 6);
+  return {scale * entry.hi, scale * fma(entry.hi, tail, entry.lo)};
+}
+
+/// e^x for |x| < 700.
+inline Double2 exponential(double x) {
+  ExponentialReduction reduced = reduceExponential(x);
+  return scaledExponential(reduced.step, exponentialTail(reduced.remainder));
+}
+
+} // namespace rtsl::device::detail

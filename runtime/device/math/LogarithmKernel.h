@@ -1,0 +1,74 @@
+// ln(x) in double with a low part: the common ground of the logarithms and the inverse hyperbolic
+// functions.
+//
+// Table-driven as in Tang, "Table-driven implementation of the logarithm function", ACM TOMS 16(4),
+// 1990, with the table's reciprocals so short that the reduced argument is exact:
+//     x = 2^k m,  11/16 <= m < 11/8,      m * inverse = 1 + r,  |r| < 2^-7,      ln x = k ln 2 -
+//     ln(inverse) + ln(1 + r).
+#pragma once
+
+#include "runtime/device/math/DoubleDouble.h"
+#include "runtime/device/math/tables/Constants.h"
+#include "runtime/device/math/tables/LogarithmTable.h"
+
+namespace rtsl::device::detail {
+
+/// ln(x) = exponent * ln(2) + (entry.hi + entry.lo) + ln(1 + r + rLow).
+struct LogarithmReduction {
+  int exponent;
+  LogarithmEntry entry;
+  double r, rLow;
+};
+
+/// For positive x, normal as doubles (all floats are). r is exact if x.hi has 40 bits or fewer.
+inline LogarithmReduction reduceLogarithm(Double2 x) {
+  // The doubles from 11/16 to 11/8 are one run of 2^52 bit patterns, so that the distance from
+  // 11/16 holds both the exponent and, in the seven bits below it, the table's cell.
+  uint64_t distance = bitsOf(x.hi) - bitsOf(0.6875);
+  int exponent = int(int64_t(distance) >> 52);
+  LogarithmEntry entry = logarithmTable[(distance >> 45) & 127];
+  double scaledInverse = entry.inverse * powerOfTwo(-exponent);
+  return {exponent, entry, fma(x.hi, scaledInverse, -1.0), x.lo * scaledInverse};
+}
+
+/// ln(1 + r) - r for |r| < 2^-7, by Taylor's series. What is left out is below 2^-59 |r|.
+inline double logarithmCurvature(double r) {
+  double q = fma(r, -1.0 / 8, 1.0 / 7);
+  q = fma(r, q, -1.0 / 6);
+  q = fma(r, q, 1.0 / 5);
+  q = fma(r, q, -1.0 / 4);
+  q = fma(r, q, 1.0 / 3);
+  q = fma(r, q, -1.0 / 2);
+  return r * r * q;
+}
+
+/// The natural logarithm of 2^(exponent) times the reduced number, relative error about 2^-59.
+inline Double2 logarithm(const LogarithmReduction &x, int exponent) {
+  double head = fma(double(exponent), ln2Parts[0], x.entry.hi); // exact
+  Double2 sum = fastTwoSum(head, x.r);
+  double low = fma(-x.r, x.rLow, x.rLow) + logarithmCurvature(x.r); // ln(1 + r + rLow) - r
+  low += fma(double(exponent), ln2Parts[1], x.entry.lo);
+  return {sum.hi, sum.lo + low};
+}
+
+/// ln(x) for positive x = hi + lo.
+inline Double2 naturalLogarithm(Double2 x) {
+  LogarithmReduction reduced = reduceLogarithm(x);
+  return logarithm(reduced, reduced.exponent);
+}
+
+/// ln(1 + t) for t > -1, accurate near zero.
+inline Double2 naturalLogarithmOfOnePlus(Double2 t) {
+  Double2 sum = twoSum(1.0, t.hi);
+  return naturalLogarithm({sum.hi, sum.lo + t.lo});
+}
+
+/// log2(x) for positive x.
+inline Double2 binaryLogarithm(double x) {
+  LogarithmReduction reduced = reduceLogarithm({x, 0.0});
+  Double2 fraction = multiply(normalized(logarithm(reduced, 0)), inverseLn2);
+  Double2 sum = twoSum(double(reduced.exponent), fraction.hi);
+  return {sum.hi, sum.lo + fraction.lo};
+}
+
+} // namespace rtsl::device::detail
