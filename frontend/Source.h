@@ -52,6 +52,10 @@ public:
   std::string_view text(FileId file) const;
   std::string_view text(SourceRange range) const;
   LineColumn lineColumn(FileId file, std::uint32_t offset) const;
+  /// The other way round; a place behind the end of its line or of the text gives that end.
+  std::uint32_t offset(FileId file, LineColumn place) const;
+  /// The text of that name, if there is one; otherwise 0.
+  FileId find(std::string_view name) const;
   /// The text of a line (counted from 1), without its line ending.
   std::string_view line(FileId file, std::uint32_t line) const;
 
