@@ -11,30 +11,32 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// Relative error of firstQuadrantAngle() for floats, and of pi minus it.
+/// Relative error of fastAngle().
 inline constexpr double arcTangent2Bound = 0x1p-56;
 
+/// The angle of (x, y), or of (-x, y) if `behind`, for finite x, y >= 0 that are not both zero.
+inline Double2 fastAngle(double y, double x, bool behind) {
+  Double2 angle = firstQuadrantAngle({y, 0.0}, {x, 0.0});
+  return behind ? complement(pi, angle) : angle;
+}
+
+/// The same with a relative error below 2^-90.
 inline Double2 accurateAngle(double y, double x, bool behind) {
   Double2 angle =
       y <= x ? accurateFirstOctantAngle(y, x) : add(halfPi, negate(accurateFirstOctantAngle(x, y)));
   return behind ? add(pi, negate(angle)) : angle;
 }
 
-/// The angle of (x, y) for y >= 0 and x >= 0, of (-x, y) if `behind`; one of them not zero, both
-/// finite.
 inline float roundedAngle(double y, double x, bool behind) {
   if (!behind && y < x * 0x1p-27) {
     // atan(q) = q (1 - q^2/3 + ...) lies between q (1 - 2^-54) and q. The quotient q of two floats
-    // is a midpoint between floats, which happens below the normal floats, or at least 2^-50 away
-    // from it; so a nudge towards zero decides.
+    // either is a midpoint between floats, which happens below the normal floats, or is at least
+    // 2^-50 away from it; so a nudge towards zero decides.
     double q = y / x;
     return float(fma(q, -0x1p-52, q));
   }
-  Double2 angle = firstQuadrantAngle({y, 0.0}, {x, 0.0});
-  if (behind)
-    angle = complement(pi, angle);
   float result;
-  if (roundsSafely(angle, arcTangent2Bound, result))
+  if (roundsSafely(fastAngle(y, x, behind), arcTangent2Bound, result))
     return result;
   return roundToFloat(accurateAngle(y, x, behind));
 }

@@ -74,23 +74,33 @@ inline bool exactPower(double x, double y, double &result) {
   return true;
 }
 
-/// x^y for finite x > 0, x != 1, and finite y != 0.
-inline float positivePower(double x, double y) {
+/// x^y in double with a low part, relative error below powerBound, for -104 <= y ln x <= 89.
+inline Double2 fastPower(double x, double y) {
   Double2 logarithm = logarithmForPower(x);
-  double estimate = y * logarithm.hi;
-  if (estimate > 89.0) // e^89 > 2^128
-    return infinity();
-  if (estimate < -104.0) // e^-104 < 2^-150
-    return 0.0f;
   Double2 exponent = twoProduct(y, logarithm.hi);
   exponent.lo = fma(y, logarithm.lo, exponent.lo);
+  return exponential(exponent);
+}
+
+/// x^y in double-double, relative error below 2^-90, in the same range.
+inline Double2 accuratePower(double x, double y) {
+  return accurateExponential(multiply(accurateLogarithm(x), {y, 0.0}));
+}
+
+/// x^y for finite x > 0, x != 1, and finite y != 0.
+inline float positivePower(double x, double y) {
+  double exponent = y * logarithmForPower(x).hi;
+  if (exponent > 89.0) // e^89 > 2^128
+    return infinity();
+  if (exponent < -104.0) // e^-104 < 2^-150
+    return 0.0f;
   float result;
-  if (roundsSafely(exponential(exponent), powerBound, result))
+  if (roundsSafely(fastPower(x, y), powerBound, result))
     return result;
   double exact;
   if (exactPower(x, y, exact))
     return float(exact);
-  return roundToFloat(accurateExponential(multiply(accurateLogarithm(x), {y, 0.0})));
+  return roundToFloat(accuratePower(x, y));
 }
 
 enum class Parity { fraction, even, odd };

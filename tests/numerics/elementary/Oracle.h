@@ -1,0 +1,40 @@
+// The correctly rounded result, independent of the code under test.
+#pragma once
+
+#include "Functions.h"
+
+#include <cstdint>
+
+namespace rtsl::elementary {
+
+/// Rounds function values correctly: with the C library in double where that decides, with MPFR
+/// where it does not. One oracle a thread (MPFR keeps its exponent range per thread).
+///
+/// "Decides" leaves the C library an error of 2^-42, more than 500 of its last places; glibc states
+/// errors of at most 3 for the functions used here.
+class Oracle {
+public:
+  Oracle();
+  ~Oracle();
+  Oracle(const Oracle &) = delete;
+  Oracle &operator=(const Oracle &) = delete;
+
+  struct Answer {
+    float rounded; ///< a NaN is the canonical one
+    double unrounded;
+  };
+  Answer operator()(const Unary &function, float x);
+  Answer operator()(const Binary &function, float x, float y);
+
+  /// How often MPFR was asked.
+  std::uint64_t timesAsked() const { return asked; }
+
+private:
+  template <typename Evaluate>
+  Answer round(double approximation, Evaluate evaluate);
+
+  mpfr_t first, second, result;
+  std::uint64_t asked = 0;
+};
+
+} // namespace rtsl::elementary
