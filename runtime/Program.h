@@ -26,6 +26,7 @@ struct ValueType {
   std::string className;                    // Reference: the base or class that is asked for
   std::string name;                         // as the author spells it, for messages: "vec3", "float[4]"
   std::uint32_t size = 4;                   // bytes of the whole
+  std::vector<struct MemberInfo> fields;    // Struct: its members, with offsets from its start
 };
 
 struct MemberInfo {
@@ -62,6 +63,10 @@ struct Program {
 #define RTSL_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
 #include "runtime/device/Slots.def"
   } slots;
+
+  /// RTSL_NEEDS_*: what the shading methods of the program's classes read.
+  std::uint32_t needs = RTSL_NEEDS_ALL;
+  /// The program's rtsl_sample.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample, float *color) = nullptr;
 
   std::shared_ptr<void> code; // keeps the code alive

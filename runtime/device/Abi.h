@@ -70,7 +70,8 @@ typedef struct RtslLaunch {
   uint32_t seed;
   const RtslBvhNode *nodes;     // device traversal; null if the host's own is used
   const RtslLeafItem *leafItems;
-  uint32_t rootIsLeaf, nodeCount;
+  uint32_t rootIsLeaf, nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items to be tested one by one
+  uint32_t needs;               // RTSL_NEEDS_*: what the classes of the scene read
   const void *host;             // the host's own (for example its Embree scene); never read by device code
 } RtslLaunch;
 
@@ -82,6 +83,7 @@ typedef struct RtslState {
   uint32_t instance, primitive;           // of the hit so far; RTSL_NO_HIT: none
   uint32_t candidateInstance, candidatePrimitive;
   float u, v;                             // barycentrics of vertices 1 and 2 of a triangle hit
+  float hitPointError;                    // bound of the distance of HitPoint from the surface that was hit
 
   // Counter-based random numbers: (pixel, sample) make the key, `dimension` counts what was drawn.
   uint32_t randomKey[2];
@@ -103,6 +105,17 @@ typedef struct RtslState {
 
 #define RTSL_NO_HIT 0xffffffffu
 
+// RtslLaunch::needs: state that a shading method of the scene reads. The rest is not computed.
+#define RTSL_NEEDS_TEXTURE_COORDINATES 1u // TextureUV TextureUVW
+#define RTSL_NEEDS_DERIVATIVES 2u         // dPdu dPdv dsdu dsdv dtdu dtdv
+#define RTSL_NEEDS_TRANSFORMS 4u          // ObjectToWorld WorldToObject
+#define RTSL_NEEDS_ALL 7u
+
+// What rtsl_traverse answers.
+#define RTSL_MISS 0u
+#define RTSL_HIT 1u
+#define RTSL_BAD_RAY 2u // not finite, or no direction: nothing is seen along it
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -120,7 +133,8 @@ extern "C" {
 //===----------------------------------------------------------------------===//
 
 /// Finds the nearest hit with Epsilon < t < HitDistance along state's ray and commits it (HitDistance, instance,
-/// primitive, u, v, attributes). With anyHit it may stop at the first. Returns 1 if there is one.
+/// primitive, u, v, attributes); instance must be RTSL_NO_HIT before. With anyHit it only tells whether there is one,
+/// and what it commits means nothing. Returns RTSL_MISS, RTSL_HIT or RTSL_BAD_RAY.
 uint32_t rtsl_traverse(RtslState *state, uint32_t anyHit);
 
 /// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 and commits t if the candidate wins.

@@ -1,0 +1,41 @@
+# rtsl_bitcode(library header_symbol SOURCES...): compiles freestanding C++ to LLVM bitcode for the host and embeds the
+# linked module into a static library, as the bytes between the symbols <symbol>Begin and <symbol>End.
+find_program(RTSL_CLANG NAMES clang++-22 PATHS /usr/lib/llvm-22/bin REQUIRED)
+find_program(RTSL_LLVM_LINK NAMES llvm-link-22 llvm-link PATHS /usr/lib/llvm-22/bin REQUIRED)
+
+# The target's features are those of the host baseline and no others, so that the code generator may inline these functions
+# into shaders. No errno: a square root is then one instruction.
+set(RTSL_BITCODE_FLAGS -std=c++17 -O2 -ffreestanding -nostdlib -ffp-contract=off -fno-math-errno -march=x86-64-v3
+    -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wall -Wextra)
+
+function(rtsl_bitcode library symbol)
+  set(modules)
+  foreach(source IN LISTS ARGN)
+    get_filename_component(stem "${source}" NAME_WE)
+    set(module "${CMAKE_CURRENT_BINARY_DIR}/${library}.${stem}.bc")
+    add_custom_command(OUTPUT "${module}"
+      COMMAND "${RTSL_CLANG}" ${RTSL_BITCODE_FLAGS} -I "${PROJECT_SOURCE_DIR}" -MD -MF "${module}.d" -MT "${module}"
+              -emit-llvm -c "${source}" -o "${module}"
+      DEPENDS "${source}" DEPFILE "${module}.d" COMMENT "Compiling ${stem} to bitcode" VERBATIM)
+    list(APPEND modules "${module}")
+  endforeach()
+  set(linked "${CMAKE_CURRENT_BINARY_DIR}/${library}.bc")
+  add_custom_command(OUTPUT "${linked}" COMMAND "${RTSL_LLVM_LINK}" ${modules} -o "${linked}"
+    DEPENDS ${modules} COMMENT "Linking ${library}.bc" VERBATIM)
+  # The assembler puts the file into the object as it is: no megabytes of C++ to parse.
+  set(embedding "${CMAKE_CURRENT_BINARY_DIR}/${library}Bytes.cpp")
+  file(CONFIGURE OUTPUT "${embedding}" CONTENT [[
+// Made by cmake/RtslBitcode.cmake.
+asm(".section .rodata.@symbol@, \"a\", @progbits\n"
+    ".balign 16\n"
+    ".globl @symbol@Begin\n"
+    ".globl @symbol@End\n"
+    "@symbol@Begin:\n"
+    ".incbin \"@linked@\"\n"
+    "@symbol@End:\n"
+    ".byte 0\n"
+    ".text\n");
+]] @ONLY)
+  set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${linked}" CXX_COMPILER_LAUNCHER "")
+  target_sources(${library} PRIVATE "${embedding}")
+endfunction()

@@ -1,0 +1,92 @@
+//===- Bvh.h - traversal of the binary tree -------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+#include "runtime/device/Vector.h"
+
+namespace rtsl::device {
+
+/// No path from the root is longer; the builder sees to it (runtime/BvhBuilder.h). A step down
+/// pushes one child at most.
+constexpr int maxBvhDepth = 64;
+
+/// Nodes are entered if the slabs say so within this factor. It covers three roundings of the
+/// slab's distance (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013: 1 + 2 gamma(3)) and as much
+/// again for the roundings of the hit distance that it is compared with, so that which of two
+/// nearly equal hits wins does not depend on the order of traversal.
+constexpr float bvhSlack = 1.0f + 16 * roundingUnit;
+
+/// Where the ray enters the box, or infinity if it does not within [tMin, tMax], both ends
+/// included. Where a component of the direction is 0, `inverse` is infinite, and 0 * inf is no
+/// number for an origin in the plane of a side: comparisons are written so that this leaves the
+/// interval as it is.
+inline float enterBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
+                      float tMin, float tMax) {
+  float near = tMin, far = tMax;
+  float x0 = ((inverse.x < 0 ? upper : lower)[0] - origin.x) * inverse.x;
+  float x1 = ((inverse.x < 0 ? lower : upper)[0] - origin.x) * inverse.x;
+  float y0 = ((inverse.y < 0 ? upper : lower)[1] - origin.y) * inverse.y;
+  float y1 = ((inverse.y < 0 ? lower : upper)[1] - origin.y) * inverse.y;
+  float z0 = ((inverse.z < 0 ? upper : lower)[2] - origin.z) * inverse.z;
+  float z1 = ((inverse.z < 0 ? lower : upper)[2] - origin.z) * inverse.z;
+  near = x0 > near ? x0 : near;
+  near = y0 > near ? y0 : near;
+  near = z0 > near ? z0 : near;
+  far = x1 < far ? x1 : far;
+  far = y1 < far ? y1 : far;
+  far = z1 < far ? z1 : far;
+  return near <= far * bvhSlack ? near : infinity;
+}
+
+/// Calls test(item) for every leaf item whose boxes the ray meets between tMin and tMax(), nearer
+/// boxes first. tMax() may shrink meanwhile. test returns true to stop; then so does this.
+/// `inverse` is 1 / direction by component.
+template <typename Limit, typename Test>
+bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin, Limit tMax,
+                 Test test) {
+  if (launch.rootIsLeaf) {
+    for (uint32_t i = 0; i < launch.nodeCount; ++i)
+      if (test(launch.leafItems[i]))
+        return true;
+    return false;
+  }
+  struct Entry {
+    int32_t child;
+    uint32_t count;
+    float near;
+  };
+  Entry stack[maxBvhDepth];
+  int top = 0;
+  Entry current = {0, 0, tMin};
+  for (;;) {
+    if (current.child >= 0) {
+      const RtslBvhNode &node = launch.nodes[current.child];
+      float limit = tMax();
+      float near0 = enterBox(node.lower[0], node.upper[0], origin, inverse, tMin, limit);
+      float near1 = enterBox(node.lower[1], node.upper[1], origin, inverse, tMin, limit);
+      bool enter0 = near0 < infinity, enter1 = near1 < infinity;
+      if (enter0 && enter1) {
+        int nearer = near1 < near0;
+        stack[top++] = {node.child[1 - nearer], node.count[1 - nearer], nearer ? near0 : near1};
+        current = {node.child[nearer], node.count[nearer], nearer ? near1 : near0};
+        continue;
+      }
+      if (enter0 || enter1) {
+        current = {node.child[enter1], node.count[enter1], enter1 ? near1 : near0};
+        continue;
+      }
+    } else {
+      uint32_t first = uint32_t(~current.child);
+      for (uint32_t i = first; i < first + current.count; ++i)
+        if (test(launch.leafItems[i]))
+          return true;
+    }
+    do {
+      if (top == 0)
+        return false;
+      current = stack[--top];
+    } while (!(current.near <= tMax() * bvhSlack));
+  }
+}
+
+} // namespace rtsl::device

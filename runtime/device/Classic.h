@@ -1,0 +1,188 @@
+//===- Classic.h - the classic engine: camera, trace, shade, light --------===//
+//
+// A ray's color is what `shade` of the material that it hits writes to SampleColor, or the
+// background's. A shader asks for other rays with `trace` and for lights with `illuminance`. Each
+// ray has an RtslState of its own on the stack, of which only what can be read is written: clearing
+// it would cost more than many a shader.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+#include "runtime/device/Random.h"
+#include "runtime/device/Spawn.h"
+#include "runtime/device/Surface.h"
+#include "runtime/device/Vector.h"
+
+namespace rtsl::device {
+
+inline void setColor(float *color, uint32_t components, float value) {
+  for (uint32_t i = 0; i < components; ++i)
+    color[i] = value;
+}
+
+inline void copyColor(float *to, const float *from, uint32_t components) {
+  for (uint32_t i = 0; i < components; ++i)
+    to[i] = from[i];
+}
+
+inline bool isBlack(const float *color, uint32_t components) {
+  for (uint32_t i = 0; i < components; ++i)
+    if (color[i] != 0)
+      return false;
+  return true;
+}
+
+/// Makes state's ray start: nothing hit yet, seen from `epsilon` to `distance` in units of the
+/// direction.
+inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon, float distance) {
+  store(state.RayOrigin, origin);
+  store(state.RayDirection, direction);
+  setVector(state.InverseRayDirection, 1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z);
+  state.Epsilon = epsilon;
+  state.HitDistance = distance;
+  state.instance = RTSL_NO_HIT;
+  state.primitive = RTSL_NO_HIT;
+}
+
+/// What a ray has from the one that spawned it.
+inline void inherit(RtslState &state, const RtslState &parent) {
+  state.launch = parent.launch;
+  state.TimeSeed = parent.TimeSeed;
+  state.Time = parent.Time;
+  state.LaunchIndex[0] = parent.LaunchIndex[0];
+  state.LaunchIndex[1] = parent.LaunchIndex[1];
+  state.LaunchSize[0] = parent.LaunchSize[0];
+  state.LaunchSize[1] = parent.LaunchSize[1];
+}
+
+/// State that a method may read although nobody wrote it in this ray.
+inline void setDefaults(RtslState &state, uint32_t components) {
+  setColor(state.SampleColor, components, 0);
+  setColor(state.LightColor, components, 0);
+  setColor(state.EmissionColor, components, 0);
+  setColor(state.BSDFValue, components, 0);
+  setVector(state.LightDirection, 0, 0, 0);
+  state.LightDistance = infinity;
+  state.BSDFSeed[0] = state.BSDFSeed[1] = 0;
+  state.PDF = 0;
+  state.du = state.dv = 0;
+}
+
+/// Follows state's ray and puts the color that arrives into SampleColor.
+inline void follow(RtslState &state) {
+  const RtslLaunch &launch = *state.launch;
+  uint32_t components = launch.colorComponents;
+  setDefaults(state, components);
+  uint32_t found = rtsl_traverse(&state, 0);
+  if (found == RTSL_HIT) {
+    describeHit(state);
+    rtsl_rt_Material_shade(&state, launch.instances[state.instance].material);
+  } else if (found == RTSL_MISS) {
+    if (launch.background)
+      rtsl_rt_Miss_miss(&state, launch.background);
+    else
+      copyColor(state.SampleColor, launch.backgroundColor, components);
+  }
+}
+
+/// `trace(origin, direction)`. Deeper than the launch allows nothing is seen: color 0.
+inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) {
+  const RtslLaunch &launch = *parent.launch;
+  uint32_t components = launch.colorComponents;
+  uint32_t dimension = parent.dimension++; // even if nothing is traced, so that depth does not
+                                           // change what is drawn later
+  if (uint32_t(parent.Depth) >= launch.maxDepth) {
+    setColor(color, components, 0);
+    return;
+  }
+  RtslState state;
+  inherit(state, parent);
+  state.Depth = parent.Depth + 1;
+  childKey(parent.randomKey, dimension, state.randomKey);
+  state.dimension = 0;
+  setRay(state, origin, direction, spawnEpsilon(parent, origin, direction), infinity);
+  follow(state);
+  copyColor(color, state.SampleColor, components);
+}
+
+/// Is anything between `point` and the light that `shading` has just asked?
+inline bool inShadow(const RtslState &shading, Vec3 point) {
+  Vec3 direction = load(shading.LightDirection);
+  RtslState state;
+  inherit(state, shading);
+  state.Depth = shading.Depth + 1;
+  float epsilon = spawnEpsilon(shading, point, direction);
+  // The light's own surface, if it has one, lies at the end: keep as clear of it as of where the
+  // ray starts.
+  float distance = shading.LightDistance;
+  float length = largest(direction);
+  if (distance < infinity && length > 0)
+    distance -= primitivePointError(point, direction, distance) / length;
+  childKey(shading.randomKey, shading.dimension, state.randomKey);
+  state.dimension = 0;
+  setRay(state, point, direction, epsilon, distance);
+  if (!(epsilon < distance))
+    return false;
+  return rtsl_traverse(&state, 1) != RTSL_MISS; // along a bad ray no light comes
+}
+
+/// One light of `illuminance (P [, N, angle])`. Returns whether the body runs.
+inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, float cosAngle) {
+  const RtslLaunch &launch = *state.launch;
+  uint32_t components = launch.colorComponents;
+  setVector(state.LightDirection, 0, 0, 0);
+  state.LightDistance = infinity;
+  setColor(state.LightColor, components, 0);
+  // The light sees the point that was asked for, the shader keeps the one that was hit.
+  Vec3 hitPoint = load(state.HitPoint);
+  store(state.HitPoint, point);
+  rtsl_rt_Light_illumination(&state, launch.lights[index]);
+  store(state.HitPoint, hitPoint);
+
+  ++state.dimension; // one for the shadow ray, traced or not
+  if (isBlack(state.LightColor, components) || !(state.LightDistance > 0))
+    return false;
+  Vec3 direction = load(state.LightDirection);
+  if (cosAngle > -1.0f) {
+    float cosine = dot(normalized(direction), normalized(axis));
+    if (!(cosine >= cosAngle))
+      return false;
+  }
+  return !inShadow(state, point);
+}
+
+/// The ray of one sample of one pixel and what it sees. Row 0 is the top of the picture, where
+/// ScreenCoord.y is near 1.
+inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index, float *color) {
+  uint32_t components = launch.colorComponents;
+  RtslState state;
+  state.launch = &launch;
+  Words4 key = hash4(x, y, index, launch.seed);
+  state.randomKey[0] = key.x;
+  state.randomKey[1] = key.y;
+  state.dimension = 0;
+  state.Depth = 0;
+  state.LaunchIndex[0] = x;
+  state.LaunchIndex[1] = y;
+  state.LaunchSize[0] = launch.width;
+  state.LaunchSize[1] = launch.height;
+
+  Words4 shift = hash4(x, y, 0xffffffffu, launch.seed); // the same for all samples of the pixel
+  float jitterX, jitterY;
+  pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
+  state.ScreenCoord[0] = (float(x) + jitterX) / float(launch.width);
+  state.ScreenCoord[1] = 1.0f - (float(y) + jitterY) / float(launch.height);
+  state.LensCoord[0] = unitFloat(key.z);
+  state.LensCoord[1] = unitFloat(key.w);
+  state.TimeSeed = unitFloat(hash3(key.x, key.y, key.z).x);
+  state.Time = 0;
+  state.du = state.dv = 0;
+  setRay(state, {0, 0, 0}, {0, 0, 0}, 0, infinity);
+  rtsl_rt_Camera_generateRay(&state, launch.camera);
+  setRay(state, load(state.RayOrigin), load(state.RayDirection), 0, infinity);
+  follow(state);
+  copyColor(color, state.SampleColor, components);
+}
+
+} // namespace rtsl::device

@@ -1,0 +1,38 @@
+//===- Device.cpp - the runtime that lies beside shader code --------------===//
+//
+// Freestanding, without exceptions. Compiled to bitcode and linked into compiled programs, where it
+// inlines; also compiled by the host's compiler for programs whose shaders are C++. The slots and
+// rtsl_traverse are defined elsewhere.
+//
+//===----------------------------------------------------------------------===//
+#include "runtime/device/Abi.h"
+#include "runtime/device/Classic.h"
+#include "runtime/device/Hit.h"
+
+using namespace rtsl;
+
+extern "C" {
+
+uint32_t rtsl_hit(RtslState *state, float t) {
+  return device::commitCandidate(*state, t);
+}
+
+void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz,
+                float *color) {
+  device::trace(*parent, {ox, oy, oz}, {dx, dy, dz}, color);
+}
+
+uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx,
+                          float ny, float nz, float cosAngle) {
+  return device::illuminate(*state, index, {px, py, pz}, {nx, ny, nz}, cosAngle);
+}
+
+float rtsl_rand(RtslState *state) {
+  return device::randomNumber(state->randomKey, state->dimension++);
+}
+
+void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color) {
+  device::sample(*launch, x, y, sample, color);
+}
+
+} // extern "C"

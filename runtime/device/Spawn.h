@@ -1,0 +1,61 @@
+//===- Spawn.h - how far from a surface a spawned ray begins to see -------===//
+//
+// A computed hit point lies off its surface by rounding. A ray that starts there must not see that
+// surface again, and must miss as little else as possible; so rt_Epsilon comes from a bound of that
+// distance, not from a constant.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+#include "runtime/device/Vector.h"
+
+namespace rtsl::device {
+
+// Bounds are in rounding units of the largest coordinate that took part.
+//
+// A point of a triangle is u, v, w against its vertices: gamma(7) for three products and their sum
+// with weights that were rounded themselves (Pharr, Jakob, Humphreys, "Physically Based Rendering",
+// 3rd edition, 2016, section 3.9.4). The next test of the triangle moves the vertices to the ray's
+// origin (1 unit of up to twice the coordinate), shears them (3 more) and interpolates the depth (5
+// more).
+constexpr float triangleErrorUnits = 20;
+// A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t. A
+// quadric solved without cancellation (differences from its centre, r^2 - |f - (f.d) d|^2) is right
+// to about 8 units of the distances in it; the same again for the next test.
+constexpr float primitiveErrorUnits = 24;
+
+/// Bound of |p - surface| for p = o + t d on an RTSL primitive.
+inline float primitivePointError(Vec3 origin, Vec3 direction, float t) {
+  return primitiveErrorUnits * roundingUnit * (largest(origin) + absolute(t) * largest(direction));
+}
+
+/// Bound of |p - surface| for a triangle's point.
+inline float trianglePointError(Vec3 v0, Vec3 v1, Vec3 v2) {
+  return triangleErrorUnits * roundingUnit *
+         maximum(maximum(largest(v0), largest(v1)), largest(v2));
+}
+
+/// Epsilon for a ray that a shader sends from `origin`, in units of `direction`. Leaving a surface
+/// at an angle with cosine c to the normal, a ray that starts d below it comes through at d / c;
+/// what is skipped meanwhile lies within d of the tangent plane.
+inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {
+  float error = triangleErrorUnits * roundingUnit * largest(origin);
+  float length = largest(direction);
+  if (!(length > 0 && length < infinity))
+    return 0;
+  if (parent.instance == RTSL_NO_HIT)
+    return error / length;
+  error = maximum(error, parent.hitPointError);
+  // The angle means something only near the hit point.
+  if (!(largest(origin - load(parent.HitPoint)) <= 64 * error))
+    return error / length;
+  Vec3 unit = normalized(direction);
+  float cosine = absolute(dot(unit, normalized(load(parent.GeometricNormal))));
+  constexpr float smallestCosine = 0x1p-12f;
+  cosine = cosine > smallestCosine ? (cosine < 1 ? cosine : 1.0f) : smallestCosine;
+  // |direction| without overflow: its component along the unit vector.
+  return error / (cosine * dot(direction, unit));
+}
+
+} // namespace rtsl::device

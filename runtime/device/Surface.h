@@ -1,0 +1,118 @@
+//===- Surface.h - what is known of a surface where it was hit ------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+#include "runtime/device/Spawn.h"
+#include "runtime/device/Traverse.h"
+#include "runtime/device/Vector.h"
+
+namespace rtsl::device {
+
+inline void setVector(float *p, float x, float y, float z) {
+  store(p, {x, y, z});
+}
+
+inline void setIdentity(float m[16]) {
+  for (int i = 0; i < 16; ++i)
+    m[i] = i % 5 == 0 ? 1.0f : 0.0f;
+}
+
+/// dP/du and dP/dv of a triangle from the texture coordinates of its vertices (0 where these do not
+/// span the plane).
+inline void triangleDerivatives(RtslState &state, const TriangleVertices &p, const float *uv0,
+                                const float *uv1, const float *uv2) {
+  Vec3 e1 = p.v1 - p.v0, e2 = p.v2 - p.v0;
+  float u1 = uv1[0] - uv0[0], t1 = uv1[1] - uv0[1];
+  float u2 = uv2[0] - uv0[0], t2 = uv2[1] - uv0[1];
+  float determinant = differenceOfProducts(u1, t2, u2, t1);
+  float reciprocal = determinant != 0 ? 1.0f / determinant : 0.0f;
+  store(state.dPdu, (e1 * t2 - e2 * t1) * reciprocal);
+  store(state.dPdv, (e2 * u1 - e1 * u2) * reciprocal);
+}
+
+/// Point, normals and texture coordinates of a mesh at state's hit.
+inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t needs) {
+  const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
+  TriangleVertices p = triangleVertices(mesh, state.primitive);
+  float u = state.u, v = state.v, w = (1.0f - u) - v;
+  store(state.HitPoint, {fused(p.v0.x, w, fused(p.v1.x, u, p.v2.x * v)),
+                         fused(p.v0.y, w, fused(p.v1.y, u, p.v2.y * v)),
+                         fused(p.v0.z, w, fused(p.v1.z, u, p.v2.z * v))});
+  state.hitPointError = trianglePointError(p.v0, p.v1, p.v2);
+
+  Vec3 geometric = normalized(cross(p.v1 - p.v0, p.v2 - p.v0));
+  store(state.GeometricNormal, geometric);
+  Vec3 shading = geometric;
+  if (mesh.normals) {
+    Vec3 sum = load(mesh.normals + 3 * size_t(index[0])) * w +
+               load(mesh.normals + 3 * size_t(index[1])) * u +
+               load(mesh.normals + 3 * size_t(index[2])) * v;
+    if (!isZero(sum)) // normals that cancel, or that the file has as 0
+      shading = normalized(sum);
+  }
+  store(state.ShadingNormal, shading);
+
+  if (needs & (RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES)) {
+    // Without texture coordinates a triangle is its own unit triangle.
+    static constexpr float own[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+    const float *uv0 = mesh.uvs ? mesh.uvs + 2 * size_t(index[0]) : own[0];
+    const float *uv1 = mesh.uvs ? mesh.uvs + 2 * size_t(index[1]) : own[1];
+    const float *uv2 = mesh.uvs ? mesh.uvs + 2 * size_t(index[2]) : own[2];
+    float s = fused(uv0[0], w, fused(uv1[0], u, uv2[0] * v));
+    float t = fused(uv0[1], w, fused(uv1[1], u, uv2[1] * v));
+    state.TextureUV[0] = s;
+    state.TextureUV[1] = t;
+    setVector(state.TextureUVW, s, t, 0);
+    if (needs & RTSL_NEEDS_DERIVATIVES)
+      triangleDerivatives(state, p, uv0, uv1, uv2);
+  }
+}
+
+/// The same for an RTSL primitive, by its methods.
+inline void describePrimitive(RtslState &state, RtslRef primitive, uint32_t needs) {
+  Vec3 origin = load(state.RayOrigin), direction = load(state.RayDirection);
+  float t = state.HitDistance;
+  store(state.HitPoint, {fused(t, direction.x, origin.x), fused(t, direction.y, origin.y),
+                         fused(t, direction.z, origin.z)});
+  state.hitPointError = primitivePointError(origin, direction, t);
+  setVector(state.GeometricNormal, 0, 0, 0);
+  setVector(state.ShadingNormal, 0, 0, 0);
+  rtsl_rt_Primitive_computeNormal(&state, primitive);
+  // A normal that the author leaves out equals the other one.
+  if (isZero(load(state.ShadingNormal)))
+    store(state.ShadingNormal, load(state.GeometricNormal));
+  else if (isZero(load(state.GeometricNormal)))
+    store(state.GeometricNormal, load(state.ShadingNormal));
+  if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
+    rtsl_rt_Primitive_computeTextureCoordinates(&state, primitive);
+  if (needs & RTSL_NEEDS_DERIVATIVES)
+    rtsl_rt_Primitive_computeDerivatives(&state, primitive);
+}
+
+/// Everything that a material may read of the hit, once traversal has found it.
+inline void describeHit(RtslState &state) {
+  const RtslLaunch &launch = *state.launch;
+  const RtslInstance &instance = launch.instances[state.instance];
+  uint32_t needs = launch.needs;
+  state.PrimitiveIndex = int32_t(state.primitive);
+  state.InstanceIndex = int32_t(state.instance);
+  if (needs & RTSL_NEEDS_TEXTURE_COORDINATES) {
+    state.TextureUV[0] = state.TextureUV[1] = 0;
+    setVector(state.TextureUVW, 0, 0, 0);
+  }
+  if (needs & RTSL_NEEDS_DERIVATIVES) {
+    setVector(state.dPdu, 0, 0, 0);
+    setVector(state.dPdv, 0, 0, 0);
+    state.dsdu = state.dsdv = state.dtdu = state.dtdv = 0;
+  }
+  if (needs & RTSL_NEEDS_TRANSFORMS) { // geometry is in world space so far
+    setIdentity(state.ObjectToWorld);
+    setIdentity(state.WorldToObject);
+  }
+  if (instance.primitive == 0)
+    describeTriangle(state, launch.meshes[instance.mesh], needs);
+  else
+    describePrimitive(state, instance.primitive, needs);
+}
+
+} // namespace rtsl::device

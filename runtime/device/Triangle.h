@@ -1,0 +1,124 @@
+//===- Triangle.h - the one ray-triangle intersector ----------------------===//
+//
+// Whatever found a hit, its t, u and v come from here. Watertight after Woop, Benthin and Wald,
+// "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: the vertices are moved to the ray's
+// origin and sheared so that the ray is the z axis; both triangles at an edge then see the same
+// two-dimensional vertices, and the sign of the edge function decides. That paper falls back to
+// double where an edge function is zero; here Kahan's difference of products gives the sign exactly
+// in single.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Vector.h"
+
+#include <stdint.h>
+
+namespace rtsl::device {
+
+/// What the test needs of a ray; made once a ray.
+struct TriangleRay {
+  Vec3 origin;
+  int kx, ky, kz;   // kz: the axis along which the direction is longest
+  float sx, sy, sz; // shear and scale, of the direction scaled by 2^-exponent
+  int directionExponent;
+};
+
+struct TriangleHit {
+  float t, u, v; // u, v: weights of vertices 1 and 2
+};
+
+/// `direction` must be finite and not zero; of any length.
+inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
+  TriangleRay ray;
+  ray.origin = origin;
+  float x = absolute(direction.x), y = absolute(direction.y), z = absolute(direction.z);
+  ray.kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+  ray.kx = ray.kz == 2 ? 0 : ray.kz + 1;
+  ray.ky = ray.kx == 2 ? 0 : ray.kx + 1;
+  ray.directionExponent = 0;
+  float length = largest(direction);
+  if (!(length > 0x1p-30f && length < 0x1p30f)) {
+    int exponent = exponentOf(length);
+    if (exponent < -126) { // denormal: first out of the cellar
+      direction = direction * 0x1p100f;
+      ray.directionExponent = -100;
+      exponent = exponentOf(largest(direction));
+    }
+    // 2^-127 is denormal, so the largest lengths end at 2, not at 1.
+    int down = exponent > 126 ? 126 : exponent;
+    direction = direction * powerOfTwo(-down);
+    ray.directionExponent += down;
+  }
+  // Three selects, for an index into a register is a trip through memory.
+  float dx = direction[ray.kx], dy = direction[ray.ky], dz = direction[ray.kz];
+  ray.sz = 1.0f / dz;
+  ray.sx = dx * ray.sz;
+  ray.sy = dy * ray.sz;
+  return ray;
+}
+
+/// a times 2^exponent, rounded once more if the result is denormal; saturates to infinity.
+inline float scaledBy(float a, int exponent) {
+  while (exponent > 100) {
+    a *= 0x1p100f;
+    exponent -= 100;
+  }
+  while (exponent < -100) {
+    a *= 0x1p-100f;
+    exponent += 100;
+  }
+  return a * powerOfTwo(exponent);
+}
+
+/// Where the line of `ray` meets the triangle; from both sides, edges and vertices belong to it.
+/// The caller compares t. t is in units of the direction given to makeTriangleRay and may have any
+/// sign.
+inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, TriangleHit &hit) {
+  Vec3 a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
+  float az = a[ray.kz], bz = b[ray.kz], cz = c[ray.kz];
+  float ax = a[ray.kx] - ray.sx * az, ay = a[ray.ky] - ray.sy * az;
+  float bx = b[ray.kx] - ray.sx * bz, by = b[ray.ky] - ray.sy * bz;
+  float cx = c[ray.kx] - ray.sx * cz, cy = c[ray.ky] - ray.sy * cz;
+
+  // Far from 1 the products would leave the range of a float. Powers of two change no sign.
+  float size =
+      maximum(maximum(maximum(absolute(ax), absolute(ay)), maximum(absolute(bx), absolute(by))),
+              maximum(absolute(cx), absolute(cy)));
+  float depth = maximum(maximum(absolute(az), absolute(bz)), absolute(cz));
+  int depthExponent = 0;
+  if (!(size > 0x1p-30f && size < 0x1p30f)) {
+    if (!(size > 0 && size < infinity))
+      return false;
+    int exponent = exponentOf(size);
+    int up = exponent < -100 ? 100 : exponent > 100 ? -100 : -exponent;
+    float scale = powerOfTwo(up);
+    ax *= scale, ay *= scale, bx *= scale, by *= scale, cx *= scale, cy *= scale;
+  }
+  if (!(depth < 0x1p30f)) {
+    if (!(depth < infinity))
+      return false;
+    depthExponent = exponentOf(depth);
+    float scale = powerOfTwo(depthExponent > 126 ? -126 : -depthExponent);
+    depthExponent = depthExponent > 126 ? 126 : depthExponent;
+    az *= scale, bz *= scale, cz *= scale;
+  }
+
+  float e0 = differenceOfProducts(cx, by, cy, bx);
+  float e1 = differenceOfProducts(ax, cy, ay, cx);
+  float e2 = differenceOfProducts(bx, ay, by, ax);
+  if (!((e0 >= 0 && e1 >= 0 && e2 >= 0) || (e0 <= 0 && e1 <= 0 && e2 <= 0)))
+    return false;
+  float determinant = (e0 + e1) + e2;
+  if (!(determinant != 0))
+    return false;
+  float reciprocal = 1.0f / determinant;
+  float t = ((e0 * az + e1 * bz) + e2 * cz) * reciprocal * ray.sz;
+  int exponent = depthExponent - ray.directionExponent;
+  hit.t = exponent == 0 ? t : scaledBy(t, exponent);
+  hit.u = e1 * reciprocal;
+  hit.v = e2 * reciprocal;
+  return true;
+}
+
+} // namespace rtsl::device
