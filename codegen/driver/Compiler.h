@@ -1,0 +1,47 @@
+//===- Compiler.h - the compiler as a library -----------------------------===//
+//
+// From a checked module to the text of a stage, or to a program that runs in this process.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "frontend/Diagnostics.h"
+#include "runtime/Program.h"
+#include "sema/TypedAst.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl {
+
+/// What can be looked at on the way, in order.
+enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Llvm };
+
+struct CompileOptions {
+  std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
+  bool checkIndices = true;
+  unsigned optimization = 2; // of machine code, 0 to 3
+};
+
+/// What a scene tells the linker.
+struct LinkRequest {
+  /// The classes that the scene has objects of; only these are kept. Empty: all classes of the module.
+  std::vector<std::string> classes;
+  /// Which material meets which primitive, as (primitive class, material class); the primitive class is empty for a
+  /// triangle mesh. Attributes are matched along these.
+  std::vector<std::pair<std::string, std::string>> surfaces;
+};
+
+/// The text of `stage` (Ir, Ssa or Llvm) for a module without a scene: what is called through references stays a
+/// declared slot. Nothing if there were errors.
+std::optional<std::string> emit(const typed::Module &module, Stage stage, const CompileOptions &options,
+                                Diagnostics &diagnostics);
+
+/// Compiles and links the module for a scene, in this process. Null if there were errors.
+std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
+                                                       const CompileOptions &options, Diagnostics &diagnostics);
+
+} // namespace rtsl

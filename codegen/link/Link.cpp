@@ -1,0 +1,33 @@
+//===- Link.cpp - from classes to a program -------------------------------===//
+#include "codegen/link/Link.h"
+
+#include "codegen/link/Reflect.h"
+#include "codegen/link/Steps.h"
+
+#include "mlir/IR/Verifier.h"
+
+namespace rtsl {
+
+std::string initializeSymbol(const std::string &className) { return className + ".initialize"; }
+std::string constructSymbol(const std::string &className) { return className + ".construct"; }
+
+bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
+          Diagnostics &diagnostics, std::vector<runtime::ClassInfo> &classes) {
+  linking::LinkContext context{ir, module, request, diagnostics, {}};
+  linking::dropUnusedClasses(context);
+  linking::placeAttributes(context);
+  linking::resolveSlots(context);
+  if (diagnostics.hasErrors())
+    return false;
+  linking::makeEntries(context);
+  assert(mlir::succeeded(mlir::verify(ir)) && "linking broke the IR");
+
+  for (const linking::LinkedClass &linked : context.classes) {
+    runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters, colorComponents);
+    info.id = linked.id;
+    classes.push_back(std::move(info));
+  }
+  return true;
+}
+
+} // namespace rtsl

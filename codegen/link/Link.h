@@ -1,0 +1,31 @@
+//===- Link.h - from classes to a program ---------------------------------===//
+//
+// Lowering leaves classes beside each other: a method called through a reference is a declared slot, an attribute has no
+// place yet. Linking knows which classes a scene uses. In order, it
+//   1. drops the classes that the scene has no objects of (DropUnusedClasses.cpp),
+//   2. gives each attribute its place, matched by name and type between primitives and materials (PlaceAttributes.cpp),
+//   3. resolves each slot to a switch over the classes that are there, or a direct call if there is one
+//      (ResolveSlots.cpp),
+//   4. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp).
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+#include "mlir/IR/BuiltinOps.h"
+
+#include <string>
+#include <vector>
+
+namespace rtsl {
+
+/// Links level 1 IR in place. Reports through `diagnostics` and returns false on errors. Fills `classes` with what the
+/// runtime needs to know (without code addresses). `colorComponents` is what the module was lowered with.
+bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
+          Diagnostics &diagnostics, std::vector<runtime::ClassInfo> &classes);
+
+/// The symbols under which code of a linked program is found.
+std::string initializeSymbol(const std::string &className); // member defaults
+std::string constructSymbol(const std::string &className);  // constructor on packed arguments
+
+} // namespace rtsl

@@ -1,0 +1,98 @@
+//===- MakeEntries.cpp - the ways into a program --------------------------===//
+//
+// The runtime calls a program in three ways: a slot of Slots.def on an object, the defaults of a class on a new record,
+// and the constructor of a class on packed arguments:
+//
+//   func.func @Glass.construct(%self: !rtsl.ref<"Glass">, %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/link/Reflect.h"
+#include "codegen/link/Steps.h"
+
+namespace rtsl::linking {
+
+namespace {
+
+struct Slot {
+  const char *base;
+  const char *method;
+};
+constexpr Slot slots[] = {
+#define RTSL_SLOT(base, method) {#base, #method},
+#include "runtime/device/Slots.def"
+};
+
+void exportFunction(mlir::func::FuncOp function) {
+  function->setAttr("rtsl.export", mlir::UnitAttr::get(function.getContext()));
+  function.setPublic();
+}
+
+void makeSlot(LinkContext &context, const Slot &slot) {
+  std::vector<const LinkedClass *> classes;
+  for (const LinkedClass &linked : context.classes)
+    if (linked.info->root == slot.base)
+      classes.push_back(&linked);
+
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
+  const mlir::Type object = ir::RefType::get(builder.getContext(), slot.base);
+  auto function = mlir::func::FuncOp::create(builder, builder.getUnknownLoc(),
+                                             std::string("rtsl_") + slot.base + "_" + slot.method,
+                                             builder.getFunctionType({object}, {}));
+  buildDispatch(context, function, classes, slot.method);
+  exportFunction(function);
+}
+
+/// A constructor that takes its arguments from memory, so that the runtime can call it without knowing its signature.
+void makeConstruct(LinkContext &context, LinkedClass &linked) {
+  const typed::Function *constructor = findConstructor(*linked.info);
+  mlir::func::FuncOp target = constructor ? findMethod(context, linked, "constructor") : nullptr;
+  if (!target)
+    return;
+
+  mlir::MLIRContext *mlirContext = target.getContext();
+  llvm::SmallVector<mlir::StringAttr> names;
+  llvm::SmallVector<mlir::Type> types;
+  for (std::size_t i = 0; i < constructor->parameters.size(); ++i) {
+    const std::string &name = constructor->parameters[i]->name;
+    names.push_back(mlir::StringAttr::get(mlirContext, name.empty() ? "unnamed" + std::to_string(i) : name));
+    const mlir::Type type = target.getArgumentTypes()[i + 1];
+    const auto address = mlir::dyn_cast<ir::PtrType>(type); // of an aggregate
+    types.push_back(address ? address.getPointee() : type);
+  }
+  linked.parameters = ir::StructType::get(mlirContext, linked.info->name + ".arguments", names, types);
+
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
+  const mlir::Location location = target.getLoc();
+  auto function = mlir::func::FuncOp::create(
+      builder, location, constructSymbol(linked.info->name),
+      builder.getFunctionType({target.getArgumentTypes().front(), ir::PtrType::get(linked.parameters)}, {}));
+  function->setAttr("rtsl.constructor", mlir::UnitAttr::get(mlirContext));
+
+  mlir::Block *entry = function.addEntryBlock();
+  builder.setInsertionPointToEnd(entry);
+  llvm::SmallVector<mlir::Value> arguments = {entry->getArgument(0)};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const mlir::Value address = ir::FieldOp::create(builder, location, entry->getArgument(1), names[i].getValue());
+    const bool byAddress = mlir::isa<ir::PtrType>(target.getArgumentTypes()[i + 1]);
+    arguments.push_back(byAddress ? address : ir::LoadOp::create(builder, location, address).getResult());
+  }
+  mlir::func::CallOp::create(builder, location, target, arguments);
+  ir::ReturnOp::create(builder, location);
+  exportFunction(function);
+}
+
+} // namespace
+
+void makeEntries(LinkContext &context) {
+  for (auto function : context.ir.getOps<mlir::func::FuncOp>())
+    function.setPrivate();
+  for (const Slot &slot : slots)
+    makeSlot(context, slot);
+  for (LinkedClass &linked : context.classes) {
+    makeConstruct(context, linked);
+    if (auto initialize = context.ir.lookupSymbol<mlir::func::FuncOp>(initializeSymbol(linked.info->name)))
+      exportFunction(initialize);
+  }
+}
+
+} // namespace rtsl::linking

@@ -1,0 +1,150 @@
+//===- PlaceAttributes.cpp - where scratch members of a hit lie -----------===//
+//
+// A primitive's scratch members are attributes of its hits; a material reads those that it declares itself, matched by
+// name and type. Two attributes may share a place if no primitive has both. What nobody reads has no place, and is not
+// stored.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Layout.h"
+#include "codegen/link/Reflect.h"
+#include "codegen/link/Steps.h"
+
+#include <algorithm>
+#include <set>
+
+namespace rtsl::linking {
+
+namespace {
+
+const typed::Class *findClass(const LinkContext &context, const std::string &name) {
+  for (const LinkedClass &linked : context.classes)
+    if (linked.info->name == name)
+      return linked.info;
+  return nullptr;
+}
+
+const typed::Member *findScratch(const typed::Class &info, const std::string &name) {
+  for (const typed::Member *member : allMembers(info))
+    if (member->access == ast::Access::Scratch && member->name == name)
+      return member;
+  return nullptr;
+}
+
+/// Every scratch member that the material declares must be one of the primitive's, of the same type.
+void matchSurface(LinkContext &context, const std::string &primitiveName, const typed::Class &material) {
+  const typed::Class *primitive = findClass(context, primitiveName);
+  const std::string shownName = primitive ? primitiveName : "mesh";
+  for (const typed::Member *read : allMembers(material)) {
+    if (read->access != ast::Access::Scratch)
+      continue;
+    const typed::Member *written = primitive ? findScratch(*primitive, read->name) : nullptr;
+    if (!written) {
+      Diagnostic &error =
+          context.diagnostics.report(Code::attributeMissing, read->range, material.name, read->name, shownName);
+      if (primitive)
+        error.label(primitive->range, fmt::format("the scene gives `{}` to this primitive", material.name));
+      else
+        error.note("the triangles of a mesh have no attributes but their normals and texture coordinates");
+    } else if (written->type != read->type) {
+      context.diagnostics
+          .report(Code::attributeTypeMismatch, read->range, material.name, read->name, toString(read->type),
+                  shownName, toString(written->type))
+          .label(written->range, fmt::format("written here as `{}`", toString(written->type)));
+    }
+  }
+}
+
+struct Attribute {
+  std::string name;
+  mlir::Type type;
+  std::uint32_t words = 0;
+  std::uint32_t offset = 0;
+  bool isRead = false;
+  std::set<std::string> primitives; // classes whose functions mention it
+  std::vector<ir::AttributeOp> uses;
+};
+
+bool isRead(ir::AttributeOp op) {
+  return std::any_of(op->user_begin(), op->user_end(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
+}
+
+/// All attributes of the module, in the order in which they are first mentioned.
+std::vector<Attribute> collect(mlir::ModuleOp ir) {
+  std::vector<Attribute> attributes;
+  for (auto function : ir.getOps<mlir::func::FuncOp>()) {
+    function.walk([&](ir::AttributeOp op) {
+      const mlir::Type type = mlir::cast<ir::PtrType>(op.getType()).getPointee();
+      auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute &known) {
+        return known.name == op.getName().str() && known.type == type;
+      });
+      if (found == attributes.end()) {
+        Attribute added;
+        added.name = op.getName().str();
+        added.type = type;
+        added.words = ir::sizeInBytes(type) / 4;
+        found = attributes.insert(attributes.end(), std::move(added));
+      }
+      found->uses.push_back(op);
+      found->isRead |= isRead(op);
+      if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+        found->primitives.insert(owner.str());
+    });
+  }
+  return attributes;
+}
+
+bool shareAPrimitive(const Attribute &a, const Attribute &b) {
+  return std::any_of(a.primitives.begin(), a.primitives.end(),
+                     [&](const std::string &name) { return b.primitives.count(name) != 0; });
+}
+
+/// The lowest place that no attribute of the same primitive takes.
+std::uint32_t firstFit(const Attribute &attribute, const std::vector<const Attribute *> &placed) {
+  std::uint32_t offset = 0;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Attribute *other : placed)
+      if (shareAPrimitive(attribute, *other) && offset < other->offset + other->words &&
+          other->offset < offset + attribute.words) {
+        offset = other->offset + other->words;
+        moved = true;
+      }
+  }
+  return offset;
+}
+
+void eraseStores(const Attribute &attribute) {
+  for (ir::AttributeOp op : attribute.uses) {
+    for (mlir::Operation *user : llvm::make_early_inc_range(op->getUsers()))
+      user->erase();
+    op.erase();
+  }
+}
+
+} // namespace
+
+void placeAttributes(LinkContext &context) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const auto &[primitive, material] : context.request.surfaces)
+    if (const typed::Class *info = findClass(context, material); info && seen.insert({primitive, material}).second)
+      matchSurface(context, primitive, *info);
+
+  std::vector<Attribute> attributes = collect(context.ir);
+  std::vector<const Attribute *> placed;
+  std::uint32_t words = 0;
+  for (Attribute &attribute : attributes) {
+    if (!attribute.isRead) {
+      eraseStores(attribute);
+      continue;
+    }
+    attribute.offset = firstFit(attribute, placed);
+    placed.push_back(&attribute);
+    words = std::max(words, attribute.offset + attribute.words);
+    for (ir::AttributeOp op : attribute.uses)
+      op.setOffset(attribute.offset);
+  }
+  if (words > RTSL_MAX_ATTRIBUTE_WORDS)
+    context.diagnostics.report(Code::attributesTooLarge, {}, words, RTSL_MAX_ATTRIBUTE_WORDS);
+}
+
+} // namespace rtsl::linking

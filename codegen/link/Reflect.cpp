@@ -1,0 +1,136 @@
+//===- Reflect.cpp - describe classes to the runtime ----------------------===//
+#include "codegen/link/Reflect.h"
+
+#include "codegen/ir/Layout.h"
+
+#include <algorithm>
+#include <set>
+
+namespace rtsl {
+
+namespace {
+
+using ValueKind = runtime::ValueType::Kind;
+
+ValueKind scalarKind(const Type *scalar) {
+  switch (scalar->kind) {
+  case TypeKind::Bool: return ValueKind::Bool;
+  case TypeKind::Int: return ValueKind::Int;
+  case TypeKind::UInt: return ValueKind::UInt;
+  default: return ValueKind::Float;
+  }
+}
+
+/// Number of 4-byte words of a value that is no buffer, as codegen/ir/Layout.h lays it out.
+std::uint32_t elementWords(const runtime::ValueType &type, std::uint32_t colorComponents) {
+  std::uint32_t words = type.kind == ValueKind::Color ? colorComponents : std::uint32_t(type.rows) * type.columns;
+  for (std::uint32_t size : type.arraySizes)
+    words *= size;
+  return words;
+}
+
+runtime::MemberInfo reflectMember(const std::string &name, const Type *type, std::uint32_t offset, mlir::Type irType,
+                                  std::uint32_t colorComponents) {
+  runtime::MemberInfo info;
+  info.name = name;
+  info.type = reflect(type, colorComponents);
+  info.type.size = ir::sizeInBytes(irType);
+  info.offset = offset;
+  return info;
+}
+
+} // namespace
+
+runtime::ValueType reflect(const Type *type, std::uint32_t colorComponents) {
+  runtime::ValueType value;
+  value.name = toString(type);
+  if (type->is(TypeKind::Buffer)) {
+    value.bufferRank = static_cast<std::uint8_t>(type->count);
+    type = type->element;
+  }
+  while (type->is(TypeKind::Array)) {
+    value.arraySizes.push_back(type->count);
+    type = type->element;
+  }
+  switch (type->kind) {
+  case TypeKind::Vector:
+    value.kind = scalarKind(type->element);
+    value.rows = static_cast<std::uint8_t>(type->count);
+    break;
+  case TypeKind::Matrix:
+    value.rows = static_cast<std::uint8_t>(type->rows());
+    value.columns = static_cast<std::uint8_t>(type->columns());
+    break;
+  case TypeKind::Color:
+    value.kind = ValueKind::Color;
+    break;
+  case TypeKind::Struct:
+    value.kind = ValueKind::Struct;
+    break;
+  case TypeKind::Class:
+    value.kind = ValueKind::Reference;
+    value.className = type->classType ? type->classType->name : type->builtinClass;
+    break;
+  default:
+    value.kind = scalarKind(type);
+    break;
+  }
+  value.size = value.bufferRank ? sizeof(RtslBuffer) : elementWords(value, colorComponents) * 4;
+  return value;
+}
+
+const typed::Function *findConstructor(const typed::Class &info) {
+  for (const auto &function : info.functions)
+    if (function->isConstructor)
+      return function.get();
+  return info.base ? findConstructor(*info.base) : nullptr;
+}
+
+std::vector<const typed::Member *> allMembers(const typed::Class &info) {
+  std::vector<const typed::Class *> chain;
+  for (const typed::Class *at = &info; at; at = at->base)
+    chain.push_back(at);
+  std::vector<const typed::Member *> members;
+  for (auto at = chain.rbegin(); at != chain.rend(); ++at)
+    for (const auto &member : (*at)->members)
+      members.push_back(member.get());
+  return members;
+}
+
+runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters,
+                           std::uint32_t colorComponents) {
+  runtime::ClassInfo result;
+  result.name = info.name;
+  result.root = info.root;
+  result.base = info.base ? info.base->name : info.root;
+  result.recordSize = ir::recordSize(record);
+
+  for (const typed::Member *member : allMembers(info)) {
+    const std::optional<std::uint32_t> offset = ir::memberOffset(record, member->name);
+    if (!offset) // scratch and const members are not in the record
+      continue;
+    const mlir::Type type = record.findMember(member->name).getType();
+    runtime::MemberInfo described = reflectMember(member->name, member->type, *offset, type, colorComponents);
+    described.isPublic = member->access == ast::Access::Public;
+    described.hasDefault = member->init != nullptr;
+    result.members.push_back(std::move(described));
+  }
+
+  if (const typed::Function *constructor = findConstructor(info); constructor && parameters) {
+    result.hasConstructor = true;
+    result.parameterSize = ir::sizeInBytes(parameters);
+    for (unsigned i = 0; i < constructor->parameters.size(); ++i)
+      result.parameters.push_back(reflectMember(parameters.getFieldNames()[i].str(), constructor->parameters[i]->type,
+                                                ir::fieldOffset(parameters, i), parameters.getFieldTypes()[i],
+                                                colorComponents));
+  }
+
+  std::set<std::string> methods;
+  for (const typed::Class *at = &info; at; at = at->base)
+    for (const auto &function : at->functions)
+      methods.insert(function->name);
+  result.methods.assign(methods.begin(), methods.end());
+  return result;
+}
+
+} // namespace rtsl

@@ -1,0 +1,24 @@
+//===- Reflect.h - describe classes to the runtime ------------------------===//
+#pragma once
+
+#include "codegen/ir/Rtsl.h"
+#include "runtime/Program.h"
+#include "sema/TypedAst.h"
+
+namespace rtsl {
+
+/// What the runtime knows about a class: how its record and the packed arguments of its constructor are laid out. Offsets
+/// come from codegen/ir/Layout.h. `parameters` is the struct of packed arguments; null: no constructor.
+runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters,
+                           std::uint32_t colorComponents);
+
+/// A type as scenes see it.
+runtime::ValueType reflect(const Type *type, std::uint32_t colorComponents);
+
+/// The constructor of a class, its own or inherited; null if there is none.
+const typed::Function *findConstructor(const typed::Class &info);
+
+/// All members of a class that its record holds or that `intersect` writes, inherited ones first.
+std::vector<const typed::Member *> allMembers(const typed::Class &info);
+
+} // namespace rtsl

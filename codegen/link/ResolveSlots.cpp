@@ -1,0 +1,114 @@
+//===- ResolveSlots.cpp - from a method's name to the classes that have it ===//
+//
+//   %c = rtsl.call_method "weight" on %t(%x) : !rtsl.ref<"rt_Texture">, (f32) -> f32
+// becomes a call of
+//   func.func private @dispatch.rt_Texture.weight(%object, %x) -> f32
+// which switches over the classes below rt_Texture that the scene uses; with one class it is a direct call.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/link/Steps.h"
+
+namespace rtsl::linking {
+
+namespace {
+
+/// Whether objects of the class may stand where a reference to `base` (an rt_ class or one of the user's) is asked for.
+bool derivesFrom(const typed::Class &info, llvm::StringRef base) {
+  if (info.root == base)
+    return true;
+  for (const typed::Class *at = &info; at; at = at->base)
+    if (at->name == base)
+      return true;
+  return false;
+}
+
+/// Calls the method of one class and hands on what it gives.
+void buildCall(mlir::OpBuilder &builder, const LinkedClass &linked, mlir::func::FuncOp target,
+               mlir::func::FuncOp function) {
+  const mlir::Location location = function.getLoc();
+  mlir::Block &entry = function.getBody().front();
+  llvm::SmallVector<mlir::Value> arguments(entry.getArguments().begin(), entry.getArguments().end());
+  const auto exact = ir::RefType::get(builder.getContext(), linked.info->name);
+  if (arguments.front().getType() != exact)
+    arguments.front() = ir::CastRefOp::create(builder, location, exact, arguments.front());
+  auto call = mlir::func::CallOp::create(builder, location, target, arguments);
+  ir::ReturnOp::create(builder, location, call.getResults());
+}
+
+void buildZeroReturn(mlir::OpBuilder &builder, mlir::func::FuncOp function) {
+  llvm::SmallVector<mlir::Value> zeros;
+  for (mlir::Type type : function.getResultTypes())
+    zeros.push_back(ir::createZero(builder, function.getLoc(), type));
+  ir::ReturnOp::create(builder, function.getLoc(), zeros);
+}
+
+} // namespace
+
+mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method) {
+  mlir::ModuleOp ir = context.ir; // lookups are not const in MLIR
+  return ir.lookupSymbol<mlir::func::FuncOp>(linked.info->name + "." + method);
+}
+
+void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
+                   const std::vector<const LinkedClass *> &classes, const std::string &method) {
+  std::vector<std::pair<const LinkedClass *, mlir::func::FuncOp>> targets;
+  for (const LinkedClass *linked : classes)
+    if (mlir::func::FuncOp target = findMethod(context, *linked, method))
+      targets.push_back({linked, target});
+
+  mlir::Block *entry = function.addEntryBlock();
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(entry);
+  const bool oneForAll = targets.size() == 1 && classes.size() == 1;
+  if (oneForAll) {
+    buildCall(builder, *targets.front().first, targets.front().second, function);
+    return;
+  }
+  if (!targets.empty()) {
+    const mlir::Value id = ir::ClassIdOp::create(builder, function.getLoc(), entry->getArgument(0));
+    llvm::SmallVector<llvm::SmallVector<std::int32_t>> values;
+    for (const auto &target : targets)
+      values.push_back({static_cast<std::int32_t>(target.first->id)});
+    auto choice = ir::SwitchOp::create(builder, function.getLoc(), id, values, std::nullopt);
+    for (auto [target, arm] : llvm::zip(targets, choice.getArms())) {
+      mlir::OpBuilder inArm = mlir::OpBuilder::atBlockEnd(&arm.front());
+      buildCall(inArm, *target.first, target.second, function);
+    }
+  }
+  buildZeroReturn(builder, function);
+}
+
+void resolveSlots(LinkContext &context) {
+  llvm::SmallVector<ir::CallMethodOp> calls;
+  context.ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
+
+  for (ir::CallMethodOp call : calls) {
+    const std::string base = mlir::cast<ir::RefType>(call.getObject().getType()).getClassName().str();
+    const std::string method = call.getMethod().str();
+    const std::string name = "dispatch." + base + "." + method;
+    auto function = context.ir.lookupSymbol<mlir::func::FuncOp>(name);
+    if (!function) {
+      std::vector<const LinkedClass *> classes;
+      for (const LinkedClass &linked : context.classes) {
+        if (!derivesFrom(*linked.info, base))
+          continue;
+        classes.push_back(&linked);
+        if (!findMethod(context, linked, method))
+          context.diagnostics.report(Code::slotNotFilled, linked.info->range, method, linked.info->name);
+      }
+      llvm::SmallVector<mlir::Type> inputs = {call.getObject().getType()};
+      llvm::append_range(inputs, call.getArguments().getTypes());
+      mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
+      function = mlir::func::FuncOp::create(builder, call.getLoc(), name,
+                                            builder.getFunctionType(inputs, call.getResultTypes()));
+      buildDispatch(context, function, classes, method);
+    }
+    mlir::OpBuilder builder(call);
+    llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
+    llvm::append_range(arguments, call.getArguments());
+    auto direct = mlir::func::CallOp::create(builder, call.getLoc(), function, arguments);
+    call.replaceAllUsesWith(direct.getResults());
+    call.erase();
+  }
+}
+
+} // namespace rtsl::linking

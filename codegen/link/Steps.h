@@ -1,0 +1,52 @@
+//===- Steps.h - the steps of linking, for Link.cpp -----------------------===//
+#pragma once
+
+#include "codegen/ir/Rtsl.h"
+#include "codegen/link/Link.h"
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rtsl::linking {
+
+/// A class that objects of the program have.
+struct LinkedClass {
+  const typed::Class *info = nullptr;
+  ir::ClassOp record;
+  std::uint32_t id = 0; // from 1, in the order of the module
+  ir::StructType parameters; // packed arguments of the constructor; null: it has none
+};
+
+struct LinkContext {
+  mlir::ModuleOp ir;
+  const typed::Module &module;
+  const LinkRequest &request;
+  Diagnostics &diagnostics;
+  std::vector<LinkedClass> classes;
+};
+
+/// Keeps the classes that are asked for: fills `context.classes` and erases the functions of the others.
+void dropUnusedClasses(LinkContext &context);
+
+/// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody reads.
+void placeAttributes(LinkContext &context);
+
+/// Replaces every `rtsl.call_method` by a call of a dispatch function.
+void resolveSlots(LinkContext &context);
+
+/// Adds the entries of runtime/device/Slots.def and those that make objects; everything else becomes private.
+void makeEntries(LinkContext &context);
+
+/// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
+mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);
+
+/// Fills the empty `function`, whose first argument is an object of class or base `base`: it calls `method` of whatever
+/// class the object has, with the remaining arguments. A class in `classes` that does not define the method does
+/// nothing there and gives zeros.
+void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
+                   const std::vector<const LinkedClass *> &classes, const std::string &method);
+
+} // namespace rtsl::linking

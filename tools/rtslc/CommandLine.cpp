@@ -1,0 +1,59 @@
+//===- CommandLine.cpp - what the commands of rtslc share -----------------===//
+#include "CommandLine.h"
+
+namespace rtsl::tool {
+
+namespace {
+
+/// `rgb`, `mono`, `spectral:N` or a bare number of components.
+std::string parseColor(const std::string &text, CompileOptions &options) {
+  if (text == "rgb" || text == "mono") {
+    options.colorComponents = text == "rgb" ? 3 : 1;
+    return {};
+  }
+  const std::string prefix = "spectral:";
+  const std::string digits = text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text;
+  const bool isNumber = !digits.empty() && digits.size() <= 2 &&
+                        digits.find_first_not_of("0123456789") == std::string::npos;
+  const unsigned long count = isNumber ? std::stoul(digits) : 0;
+  if (count < 1 || count > RTSL_MAX_COLOR)
+    return "give rgb, mono, spectral:N or N, with N from 1 to " + std::to_string(RTSL_MAX_COLOR);
+  options.colorComponents = static_cast<std::uint32_t>(count);
+  return {};
+}
+
+} // namespace
+
+void addMessageOptions(CLI::App &command, CommonOptions &options) {
+  command
+      .add_option_function<std::string>(
+          "--diagnostics", [&options](const std::string &form) { options.jsonDiagnostics = form == "json"; },
+          "how messages are written to standard error")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->type_name("text|json");
+  command.add_option("--ansi", options.ansi, "colour in messages")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->type_name("auto|always|never");
+  command.add_option("--error-limit", options.errorLimit, "stop showing errors after this many; 0 shows all")
+      ->type_name("N");
+}
+
+void addCompileOptions(CLI::App &command, CommonOptions &options) {
+  command
+      .add_option_function<std::string>(
+          "--color",
+          [&options](const std::string &text) {
+            if (const std::string complaint = parseColor(text, options.compile); !complaint.empty())
+              throw CLI::ValidationError("--color", complaint);
+          },
+          "what a color is made of")
+      ->type_name("rgb|mono|spectral:N|N");
+  command.add_flag_callback(
+      "--unchecked", [&options] { options.compile.checkIndices = false; },
+      "trust array and buffer indices: one out of range is then undefined");
+  command.add_option("-O", options.compile.optimization, "optimisation of machine code, 0 to 3")
+      ->check(CLI::Range(0, 3))
+      ->type_name("LEVEL");
+}
+
+} // namespace rtsl::tool

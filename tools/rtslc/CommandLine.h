@@ -1,0 +1,42 @@
+//===- CommandLine.h - what the commands of rtslc share -------------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+
+namespace rtsl::tool {
+
+/// How a run ends, for scripts.
+enum ExitStatus : int {
+  Fine = 0,
+  Diagnosed = 1,     // errors in what the user gave: source, scene, mesh, image
+  Usage = 2,         // arguments that make no sense
+  InternalError = 3, // a fault of rtslc itself
+};
+
+/// Options that every command understands.
+struct CommonOptions {
+  bool jsonDiagnostics = false;
+  std::string ansi = "auto"; // colour on the terminal: auto, always, never
+  std::size_t errorLimit = 20;
+  CompileOptions compile;
+};
+
+/// Adds --diagnostics, --ansi and --error-limit.
+void addMessageOptions(CLI::App &command, CommonOptions &options);
+/// Adds --color, --unchecked and -O.
+void addCompileOptions(CLI::App &command, CommonOptions &options);
+
+/// What a command does once the arguments are read; gives the exit status.
+using Action = std::function<int()>;
+
+void addCheckCommand(CLI::App &app, Action &action);
+void addCompileCommand(CLI::App &app, Action &action);
+void addRenderCommand(CLI::App &app, Action &action);
+void addCompareCommand(CLI::App &app, Action &action);
+
+} // namespace rtsl::tool

@@ -1,0 +1,35 @@
+//===- Messages.h - diagnostics on their way to the user ------------------===//
+#pragma once
+
+#include "CommandLine.h"
+#include "frontend/Diagnostics.h"
+#include "runtime/Error.h"
+
+namespace rtsl::tool {
+
+/// The sources and messages of one run. Prints the messages once, when asked or when it goes.
+class Messages {
+public:
+  explicit Messages(const CommonOptions &options);
+  ~Messages() { print(); }
+
+  SourceManager sources;
+  Diagnostics diagnostics{sources};
+
+  /// Records what the runtime or a scene file threw, with its place.
+  void report(const runtime::Error &error);
+  void report(const runtime::Warning &warning);
+
+  /// The range of a place in a file, which is read if no source has its name yet.
+  SourceRange rangeOf(const runtime::Place &place);
+
+  /// Writes all messages to standard error.
+  void print();
+  ExitStatus status() const { return diagnostics.hasErrors() ? Diagnosed : Fine; }
+
+private:
+  const CommonOptions &options;
+  bool printed = false;
+};
+
+} // namespace rtsl::tool

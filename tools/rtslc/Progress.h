@@ -1,0 +1,26 @@
+//===- Progress.h - a line on the terminal that says how far we are -------===//
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace rtsl::tool {
+
+/// Shows nothing unless standard error is a terminal.
+class Progress {
+public:
+  explicit Progress(std::string what);
+  ~Progress() { finish(); }
+  /// `share` in [0, 1]; drawn at most ten times a second.
+  void update(double share);
+  /// Wipes the line.
+  void finish();
+
+private:
+  using Clock = std::chrono::steady_clock;
+  std::string what;
+  bool enabled, drawn = false;
+  Clock::time_point start, last;
+};
+
+} // namespace rtsl::tool

@@ -1,0 +1,221 @@
+//===- RenderCommand.cpp - rtslc render -----------------------------------===//
+#include "CommandLine.h"
+#include "Messages.h"
+#include "Progress.h"
+#include "codegen/driver/Compiler.h"
+#include "codegen/driver/SourceLoader.h"
+#include "runtime/Renderer.h"
+#include "scene/SceneFile.h"
+#include "sema/Sema.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace rtsl::tool {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct RenderCommandOptions {
+  CommonOptions common;
+  std::string scene;
+  std::string output;
+  std::vector<std::string> overrides;
+  std::optional<std::uint32_t> samples, depth, seed;
+  std::uint32_t threads = 0;
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+  runtime::Traversal traversal = runtime::Traversal::Embree;
+  bool json = false;
+  bool quiet = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+/// "960x540" to its two numbers, each from 1 to 65536.
+std::pair<std::uint32_t, std::uint32_t> parseSize(const std::string &text) {
+  unsigned width = 0, height = 0;
+  int used = 0;
+  const bool isSize = text.size() < 32 && std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) == 2 &&
+                      static_cast<std::size_t>(used) == text.size();
+  if (!isSize || width < 1 || height < 1 || width > 65536 || height > 65536)
+    throw CLI::ValidationError("--size", "give WIDTHxHEIGHT in pixels, each from 1 to 65536, such as 960x540");
+  return {width, height};
+}
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+runtime::RenderOptions renderOptions(const RenderCommandOptions &options, const scene::RenderSettings &settings) {
+  runtime::RenderOptions render;
+  render.width = options.size ? options.size->first : settings.width;
+  render.height = options.size ? options.size->second : settings.height;
+  render.samplesPerPixel = options.samples.value_or(settings.samplesPerPixel);
+  render.maxDepth = options.depth.value_or(settings.depth);
+  render.seed = options.seed.value_or(settings.seed);
+  render.threads = options.threads;
+  render.traversal = options.traversal;
+  render.cancel = &interrupted;
+  return render;
+}
+
+/// Which classes the scene has objects of, and which materials meet which primitives.
+LinkRequest linkRequest(const scene::SceneDescription &description) {
+  LinkRequest request;
+  request.classes = scene::classesUsed(description);
+  for (const scene::GeometryDescription &geometry : description.objects) {
+    const scene::ObjectDescription *material = geometry.material.object.get();
+    if (!material)
+      if (auto named = description.materials.find(geometry.material.name.text); named != description.materials.end())
+        material = &named->second;
+    if (material)
+      request.surfaces.push_back({geometry.primitive ? geometry.primitive->className.text : std::string(),
+                                  material->className.text});
+  }
+  return request;
+}
+
+/// Reads and checks the files that the scene imports; null if there were errors.
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, Messages &messages) {
+  SourceLoader loader(messages.sources, messages.diagnostics);
+  std::vector<const ast::TranslationUnit *> units;
+  for (const scene::ImportDescription &import : description.imports) {
+    const SourceRange range = messages.rangeOf(import.name.place);
+    if (import.path.empty())
+      messages.diagnostics.report(Code::unknownModule, range, import.name.text);
+    else if (const ast::TranslationUnit *unit = loader.load(import.path, range))
+      units.push_back(unit);
+  }
+  std::unique_ptr<typed::Module> module = rtsl::check(
+      units, [&](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
+      messages.diagnostics);
+  return messages.diagnostics.hasErrors() ? nullptr : std::move(module);
+}
+
+struct Times {
+  double compile = 0, scene = 0, image = 0;
+};
+
+void printSummary(const RenderCommandOptions &options, const runtime::RenderOptions &render,
+                  const runtime::RenderStatistics &statistics, const Times &times) {
+  if (options.json) {
+    const nlohmann::ordered_json document = {
+        {"version", 1},
+        {"output", options.output},
+        {"size", {render.width, render.height}},
+        {"spp", render.samplesPerPixel},
+        {"seed", render.seed},
+        {"seconds",
+         {{"compile", times.compile},
+          {"scene", times.scene},
+          {"build", statistics.buildSeconds},
+          {"render", statistics.renderSeconds},
+          {"image", times.image}}},
+        {"samples", statistics.samples},
+        {"badRays", statistics.badRays},
+        {"retracedRays", statistics.retracedRays},
+        {"rescaledRays", statistics.rescaledRays},
+        {"samplesNotFinite", statistics.samplesNotFinite}};
+    fmt::print("{}\n", document.dump(2));
+  } else if (!options.quiet) {
+    fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
+               options.output, render.width, render.height, render.samplesPerPixel, times.compile * 1e3,
+               statistics.renderSeconds, double(statistics.samples) / statistics.renderSeconds * 1e-6);
+    if (statistics.samplesNotFinite)
+      fmt::print(stderr, "{} samples were infinite or not a number, and count as black\n", statistics.samplesNotFinite);
+    if (statistics.badRays)
+      fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n", statistics.badRays);
+  }
+}
+
+void renderScene(const RenderCommandOptions &options, Messages &messages) {
+  runtime::checkWritable(options.output);
+  const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
+
+  Times times;
+  Clock::time_point start = Clock::now();
+  const std::unique_ptr<typed::Module> module = loadShaders(description, messages);
+  if (!module)
+    return;
+  const std::shared_ptr<const runtime::Program> program =
+      compileProgram(*module, linkRequest(description), options.common.compile, messages.diagnostics);
+  if (!program)
+    return;
+  times.compile = secondsSince(start);
+
+  start = Clock::now();
+  const runtime::Scene scene = scene::buildScene(description, program);
+  times.scene = secondsSince(start);
+  for (const runtime::Warning &warning : scene.warnings())
+    messages.report(warning);
+
+  runtime::RenderOptions render = renderOptions(options, description.render);
+  Progress progress("rendering");
+  if (!options.quiet)
+    render.progress = [&](double share) { progress.update(share); };
+  runtime::RenderStatistics statistics;
+  const runtime::Image image = runtime::render(scene, render, &statistics);
+  progress.finish();
+
+  start = Clock::now();
+  runtime::writeImage(options.output, image);
+  times.image = secondsSince(start);
+  printSummary(options, render, statistics, times);
+}
+
+int render(const RenderCommandOptions &options) {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  Messages messages(options.common);
+  try {
+    renderScene(options, messages);
+  } catch (const runtime::Error &error) {
+    messages.report(error);
+  }
+  return messages.status();
+}
+
+} // namespace
+
+void addRenderCommand(CLI::App &app, Action &action) {
+  auto options = std::make_shared<RenderCommandOptions>();
+  CLI::App *command = app.add_subcommand("render", "compile a scene's shaders and render it");
+  command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
+  command->add_option("-o,--output", options->output, "the picture: .png or .exr")->required()->type_name("IMAGE");
+  command->add_option("--spp", options->samples, "samples a pixel")->check(CLI::Range(1u, 1u << 24))->type_name("N");
+  command
+      ->add_option_function<std::string>(
+          "--size", [options](const std::string &text) { options->size = parseSize(text); }, "size in pixels")
+      ->type_name("WxH");
+  command->add_option("--threads", options->threads, "threads; all cores if not given")
+      ->check(CLI::Range(1u, 4096u))
+      ->type_name("N");
+  command->add_option("--depth", options->depth, "how often a ray may lead to another; 0: camera rays only")
+      ->check(CLI::Range(0u, 1000u))
+      ->type_name("N");
+  command->add_option("--seed", options->seed, "seed of the random numbers")->type_name("N");
+  command->add_option("--set", options->overrides, "change a value of the scene file, such as objects.3.mesh=bunny.obj")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--traversal", options->traversal, "embree: fast; device: the one that GPUs run")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, runtime::Traversal>{
+                                              {"embree", runtime::Traversal::Embree}, {"device", runtime::Traversal::Device}})
+                      .description(""))
+      ->type_name("embree|device");
+  command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
+  command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
+  addCompileOptions(*command, options->common);
+  addMessageOptions(*command, options->common);
+  command->footer("example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");
+  command->callback([options, &action] { action = [options] { return render(*options); }; });
+}
+
+} // namespace rtsl::tool
