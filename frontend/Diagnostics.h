@@ -1,8 +1,8 @@
 //===- Diagnostics.h - messages to the author of a shader or scene --------===//
 //
-// All messages are declared in one table, DiagnosticCodes.def. A message has a range (shown with a caret),
-// labels at related places, notes, and fixes as data that a tool can apply. Messages are lower case, active,
-// without a full stop, with `backticks` round code.
+// All messages are declared in one table, DiagnosticCodes.def. A message has a range (shown with a
+// caret), labels at related places, notes, and fixes as data that a tool can apply. Messages are
+// lower case, active, without a full stop, with `backticks` round code.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -27,8 +28,8 @@ enum class Code : std::uint16_t {
 
 /// The row of the table for a code.
 struct CodeInfo {
-  const char *name;    // "unknownName"
-  const char *number;  // "E0201"
+  const char *name;   // "unknownName"
+  const char *number; // "E0201"
   Severity severity;
   const char *message; // fmt format string
 };
@@ -40,7 +41,8 @@ struct Label {
   std::string text;
 };
 
-/// An edit that mends the mistake. `sure` fixes are applied by `rtslc check --fix`.
+/// An edit that mends the mistake. `sure` fixes are applied by `rtslc check --fix`; the sure fixes
+/// of one message belong together, the others are alternatives for the reader.
 struct Fix {
   SourceRange range; // empty range: insertion
   std::string replacement;
@@ -75,8 +77,9 @@ class Diagnostics {
 public:
   explicit Diagnostics(const SourceManager &sources) : sourceManager(sources) {}
 
-  /// Formats the message of `code` with `args` and records it at `range`. The returned message may be extended
-  /// until the next report. The same code at the same range is recorded once.
+  /// Formats the message of `code` with `args` and records it at `range`. The returned message may
+  /// be extended until the next report. The same code at the same range is recorded once (without a
+  /// place: the same message).
   template <typename... Args>
   Diagnostic &report(Code code, SourceRange range, const Args &...args) {
     return add(code, range, fmt::format(fmt::runtime(info(code).message), args...));
@@ -84,6 +87,8 @@ public:
 
   bool hasErrors() const { return numErrors != 0; }
   std::size_t errorCount() const { return numErrors; }
+  /// Errors beyond the limit: counted in `errorCount`, not held in `all`.
+  std::size_t hiddenErrors() const { return numHidden; }
   /// True once `errorLimit` errors were recorded: later errors are counted but not shown.
   bool limitReached() const { return errorLimit != 0 && numErrors >= errorLimit; }
 
@@ -98,14 +103,31 @@ private:
 
   const SourceManager &sourceManager;
   std::vector<Diagnostic> diagnostics;
-  Diagnostic dropped{}; // takes what is reported beyond the limit
+  std::unordered_set<std::string> seen; // code and place of what was reported
+  Diagnostic dropped{};                 // takes what is reported beyond the limit, or twice
   std::size_t numErrors = 0;
+  std::size_t numHidden = 0;
 };
 
-/// Text for people: file:line:column, the source line, a caret, labels, notes and fixes. ANSI colour if asked.
+/// Text for people: file:line:column, the source line, a caret, labels, notes and fixes. ANSI
+/// colour if asked.
 std::string renderText(const Diagnostics &diagnostics, bool colour);
 
-/// One JSON document for scripts: {"version": 1, "diagnostics": [...]}.
+/// One JSON document for scripts: {"version": 1, "diagnostics": [...], "hiddenErrors": 0}. Each
+/// position has a byte offset (from 0), a line and a column (from 1, in bytes); bytes that are not
+/// UTF-8 become U+FFFD.
 std::string renderJson(const Diagnostics &diagnostics);
+
+/// A text with the sure fixes of its messages applied.
+struct FixedText {
+  std::string text;
+  std::size_t applied = 0; // messages whose fixes were applied
+  std::size_t skipped =
+      0; // messages whose fixes overlap with one that was applied: run again after it
+};
+
+/// Applies the sure fixes for one text, in the order of the messages. All fixes of a message are
+/// applied, or none.
+FixedText applyFixes(const Diagnostics &diagnostics, FileId file);
 
 } // namespace rtsl

@@ -61,9 +61,13 @@ const SourceManager::File &SourceManager::get(FileId file) const {
   return file == 0 || file > files.size() ? none : files[file - 1];
 }
 
-std::string_view SourceManager::name(FileId file) const { return get(file).name; }
+std::string_view SourceManager::name(FileId file) const {
+  return get(file).name;
+}
 
-std::string_view SourceManager::text(FileId file) const { return get(file).text; }
+std::string_view SourceManager::text(FileId file) const {
+  return get(file).text;
+}
 
 std::string_view SourceManager::text(SourceRange range) const {
   const std::string_view all = text(range.file);

@@ -1,7 +1,8 @@
 //===- Source.h - source texts and positions in them ----------------------===//
 //
-// Every text that a message can point into (RTSL files, scene files) is held by one `SourceManager`.
-// A position is a file and a byte offset; lines and columns are computed only when a message is shown.
+// Every text that a message can point into (RTSL files, scene files) is held by one
+// `SourceManager`. A position is a file and a byte offset; lines and columns are computed only when
+// a message is shown.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -15,7 +16,8 @@
 
 namespace rtsl {
 
-/// A text in a `SourceManager`. Zero is "no file": a message without a place, such as a bad argument.
+/// A text in a `SourceManager`. Zero is "no file": a message without a place, such as a bad
+/// argument.
 using FileId = std::uint32_t;
 
 /// The half-open range of bytes [begin, end) of one text.
@@ -38,14 +40,15 @@ struct LineColumn {
   std::uint32_t column = 1;
 };
 
-/// Owns the texts. Texts stay where they are: a `string_view` into one lives as long as the manager.
+/// Owns the texts. Texts stay where they are: a `string_view` into one lives as long as the
+/// manager.
 class SourceManager {
 public:
   /// Adds a text under the name that messages show (the path as the user gave it).
   FileId add(std::string name, std::string text);
 
-  /// Reads a file and adds it; "-" is standard input. On failure returns no id and says why in `whyNot`
-  /// (as the operating system puts it).
+  /// Reads a file and adds it; "-" is standard input. On failure returns no id and says why in
+  /// `whyNot` (as the operating system puts it).
   std::optional<FileId> addFile(const std::string &path, std::string &whyNot);
 
   std::string_view name(FileId file) const;

@@ -1,0 +1,94 @@
+//===- Diagnostics.cpp - recording messages and applying their fixes ------===//
+#include "frontend/Diagnostics.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace rtsl {
+
+const CodeInfo &info(Code code) {
+  static constexpr CodeInfo table[] = {
+#define RTSL_DIAGNOSTIC(id, number, severity, message) {#id, #number, Severity::severity, message},
+#include "frontend/DiagnosticCodes.def"
+  };
+  return table[static_cast<std::size_t>(code)];
+}
+
+Diagnostic &Diagnostics::add(Code code, SourceRange range, std::string message) {
+  Severity severity = info(code).severity;
+  if (warningsAreErrors)
+    severity = Severity::Error;
+
+  const std::string key = range.isValid() ? fmt::format("{} {} {} {}", static_cast<int>(code),
+                                                        range.file, range.begin, range.end)
+                                          : fmt::format("{} {}", static_cast<int>(code), message);
+  const bool isRepeated = !seen.insert(key).second;
+  const bool isHidden = !isRepeated && severity == Severity::Error && limitReached();
+  if (!isRepeated && severity == Severity::Error)
+    ++numErrors;
+  if (isHidden)
+    ++numHidden;
+
+  Diagnostic diagnostic{code, severity, std::move(message), range, {}, {}, {}};
+  if (isRepeated || isHidden) {
+    dropped = std::move(diagnostic);
+    return dropped;
+  }
+  diagnostics.push_back(std::move(diagnostic));
+  return diagnostics.back();
+}
+
+namespace {
+
+/// True if both edits cannot be made: they share bytes, insert at the same place, or one inserts
+/// inside of the other.
+bool overlap(const Fix &a, const Fix &b) {
+  if (a.range.begin == b.range.begin)
+    return true;
+  return a.range.begin < b.range.begin ? a.range.end > b.range.begin : b.range.end > a.range.begin;
+}
+
+} // namespace
+
+FixedText applyFixes(const Diagnostics &diagnostics, FileId file) {
+  FixedText result;
+  std::vector<const Fix *> accepted; // sorted by begin, disjoint
+  const auto begin = [](const Fix *fix) { return fix->range.begin; };
+  const auto before = [&](const Fix *a, const Fix *b) { return begin(a) < begin(b); };
+
+  for (const Diagnostic &diagnostic : diagnostics.all()) {
+    std::vector<const Fix *> edits;
+    bool fits = true;
+    for (const Fix &fix : diagnostic.fixes)
+      if (fix.sure && fix.range.file == file)
+        edits.push_back(&fix);
+    if (edits.empty())
+      continue;
+    std::sort(edits.begin(), edits.end(), before);
+    for (std::size_t i = 0; i < edits.size() && fits; ++i) {
+      fits = i == 0 || !overlap(*edits[i - 1], *edits[i]);
+      const auto next = std::lower_bound(accepted.begin(), accepted.end(), edits[i], before);
+      fits = fits && (next == accepted.end() || !overlap(**next, *edits[i])) &&
+             (next == accepted.begin() || !overlap(**std::prev(next), *edits[i]));
+    }
+    if (!fits) {
+      ++result.skipped;
+      continue;
+    }
+    for (const Fix *edit : edits)
+      accepted.insert(std::lower_bound(accepted.begin(), accepted.end(), edit, before), edit);
+    ++result.applied;
+  }
+
+  const std::string_view text = diagnostics.sources().text(file);
+  std::size_t at = 0;
+  for (const Fix *fix : accepted) {
+    result.text += text.substr(at, fix->range.begin - at);
+    result.text += fix->replacement;
+    at = fix->range.end;
+  }
+  result.text += text.substr(at);
+  return result;
+}
+
+} // namespace rtsl
