@@ -1,0 +1,46 @@
+//===- RtslDialect.td - the `rtsl` dialect --------------------------------===//
+#ifndef RTSL_DIALECT_TD
+#define RTSL_DIALECT_TD
+
+include "mlir/IR/DialectBase.td"
+
+def Rtsl_Dialect : Dialect {
+  let name = "rtsl";
+  let cppNamespace = "::rtsl::ir";
+  let summary = "shaders for one ray";
+  let description = [{
+    The IR of the shading language. It has two levels in one dialect.
+
+    **Level 1** is structured and keeps the author's names: variables are `rtsl.var`, control flow is `rtsl.if`,
+    `rtsl.loop`, `rtsl.switch` and `rtsl.illuminance` with `rtsl.break`, `rtsl.continue` and `rtsl.return`.
+    **Level 2** is SSA over `cf`: no structured ops, and variables only where an address is really needed.
+
+    Values are scalars (`f32`, `i32`, `i1`), vectors of them, and references to objects of the scene. Integers carry no
+    sign; the op does. A `color` is a `vector<Kxf32>` with K chosen when a program is lowered. Aggregates (structs,
+    arrays, matrices, buffers) are never values: they live in memory behind `!rtsl.ptr` and are reached by `rtsl.field`,
+    `rtsl.element` and `rtsl.buffer_element`.
+
+    Functions are `func.func`. The state of the ray is a parameter of each that shows only in LLVM. Discardable
+    attributes of functions:
+
+    | attribute | |
+    |---|---|
+    | `rtsl.class = "Glass"`, `rtsl.method = "shade"` | a method; its first argument is the object |
+    | `rtsl.constructor` | writes the record of its object, so members are not constants there |
+    | `rtsl.export` | keeps its name and may be called from outside of the program |
+    | `rtsl.noinline` | stays a function |
+  }];
+  let useDefaultTypePrinterParser = 1;
+  let useDefaultAttributePrinterParser = 1;
+  let hasOperationAttrVerify = 1;
+  let hasConstantMaterializer = 1;
+  let extraClassDeclaration = [{
+    void registerTypes();
+  }];
+  let dependentDialects = [
+    "::mlir::arith::ArithDialect", "::mlir::cf::ControlFlowDialect", "::mlir::func::FuncDialect",
+    "::mlir::math::MathDialect", "::mlir::vector::VectorDialect"
+  ];
+}
+
+#endif

@@ -1,0 +1,173 @@
+//===- RtslFolds.cpp - what the operations are of constants ---------------===//
+//
+// Elementary functions are computed by runtime/device/math, the same code that a shader calls: the
+// value does not depend on whether, or on which machine, it was folded.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/RtslOps.h"
+#include "runtime/device/math/Elementary.h"
+
+#include "mlir/Dialect/CommonFolders.h"
+#include "mlir/IR/Matchers.h"
+#include "llvm/ADT/APSInt.h"
+
+namespace rtsl::ir {
+
+using llvm::APFloat;
+using llvm::APInt;
+using mlir::FloatAttr;
+using mlir::IntegerAttr;
+using mlir::OpFoldResult;
+
+//===----------------------------------------------------------------------===//
+// Elementary functions
+//===----------------------------------------------------------------------===//
+
+static float evaluate(Elementary function, float x) {
+  switch (function) {
+  case Elementary::Sin:
+    return device::sin(x);
+  case Elementary::Cos:
+    return device::cos(x);
+  case Elementary::Tan:
+    return device::tan(x);
+  case Elementary::Asin:
+    return device::asin(x);
+  case Elementary::Acos:
+    return device::acos(x);
+  case Elementary::Atan:
+    return device::atan(x);
+  case Elementary::Sinh:
+    return device::sinh(x);
+  case Elementary::Cosh:
+    return device::cosh(x);
+  case Elementary::Tanh:
+    return device::tanh(x);
+  case Elementary::Asinh:
+    return device::asinh(x);
+  case Elementary::Acosh:
+    return device::acosh(x);
+  case Elementary::Atanh:
+    return device::atanh(x);
+  case Elementary::Exp:
+    return device::exp(x);
+  case Elementary::Exp2:
+    return device::exp2(x);
+  case Elementary::Expm1:
+    return device::expm1(x);
+  case Elementary::Log:
+    return device::log(x);
+  case Elementary::Log2:
+    return device::log2(x);
+  case Elementary::Log1p:
+    return device::log1p(x);
+  case Elementary::InverseSqrt:
+    return device::inversesqrt(x);
+  case Elementary::Pow:
+  case Elementary::Atan2:
+    break;
+  }
+  llvm_unreachable("not a function of one operand");
+}
+
+OpFoldResult ElementaryOp::fold(FoldAdaptor adaptor) {
+  Elementary function = getFunction();
+  if (getOperands().size() == 1)
+    return mlir::constFoldUnaryOp<FloatAttr, APFloat, void>(
+        adaptor.getOperands(),
+        [&](const APFloat &x) { return APFloat(evaluate(function, x.convertToFloat())); });
+  return mlir::constFoldBinaryOp<FloatAttr, APFloat, void>(
+      adaptor.getOperands(), [&](const APFloat &x, const APFloat &y) {
+        float a = x.convertToFloat(), b = y.convertToFloat();
+        return APFloat(function == Elementary::Pow ? device::pow(a, b) : device::atan2(a, b));
+      });
+}
+
+//===----------------------------------------------------------------------===//
+// Integers
+//===----------------------------------------------------------------------===//
+
+static mlir::Attribute foldToInt(mlir::Attribute input, mlir::Type type, bool isSigned) {
+  return mlir::constFoldCastOp<FloatAttr, IntegerAttr, APFloat, APInt, void>(
+      input, type, [&](const APFloat &value, bool &) {
+        // Saturates, and gives 0 for NaN, exactly as the op does.
+        llvm::APSInt result(32, !isSigned);
+        bool isExact;
+        value.convertToInteger(result, APFloat::rmTowardZero, &isExact);
+        return APInt(result);
+      });
+}
+
+OpFoldResult ToSintOp::fold(FoldAdaptor adaptor) {
+  return foldToInt(adaptor.getInput(), getType(), /*isSigned=*/true);
+}
+OpFoldResult ToUintOp::fold(FoldAdaptor adaptor) {
+  return foldToInt(adaptor.getInput(), getType(), /*isSigned=*/false);
+}
+
+/// Folds constants by `compute`, whose divisor is never zero.
+template <typename Compute>
+static mlir::Attribute foldDivision(llvm::ArrayRef<mlir::Attribute> operands, Compute compute) {
+  return mlir::constFoldBinaryOp<IntegerAttr, APInt, void>(
+      operands, [&](const APInt &a, const APInt &b) {
+        return b.isZero() ? APInt::getZero(32) : compute(a, b);
+      });
+}
+
+// APInt::sdiv gives the smallest number again when it is divided by -1, and srem gives 0.
+OpFoldResult SDivOp::fold(FoldAdaptor adaptor) {
+  if (mlir::matchPattern(adaptor.getRhs(), mlir::m_One()))
+    return getLhs();
+  return foldDivision(adaptor.getOperands(),
+                      [](const APInt &a, const APInt &b) { return a.sdiv(b); });
+}
+OpFoldResult UDivOp::fold(FoldAdaptor adaptor) {
+  if (mlir::matchPattern(adaptor.getRhs(), mlir::m_One()))
+    return getLhs();
+  return foldDivision(adaptor.getOperands(),
+                      [](const APInt &a, const APInt &b) { return a.udiv(b); });
+}
+OpFoldResult SRemOp::fold(FoldAdaptor adaptor) {
+  return foldDivision(adaptor.getOperands(),
+                      [](const APInt &a, const APInt &b) { return a.srem(b); });
+}
+OpFoldResult URemOp::fold(FoldAdaptor adaptor) {
+  return foldDivision(adaptor.getOperands(),
+                      [](const APInt &a, const APInt &b) { return a.urem(b); });
+}
+
+//===----------------------------------------------------------------------===//
+// References
+//===----------------------------------------------------------------------===//
+
+/// What a chain of casts starts from.
+static mlir::Value withoutCasts(mlir::Value object) {
+  while (auto cast = object.getDefiningOp<CastRefOp>())
+    object = cast.getObject();
+  return object;
+}
+
+OpFoldResult CastRefOp::fold(FoldAdaptor) {
+  mlir::Value origin = withoutCasts(getObject());
+  if (origin.getType() == getType())
+    return origin;
+  if (origin == getObject())
+    return {};
+  getObjectMutable().assign(origin);
+  return getResult();
+}
+
+OpFoldResult ClassIdOp::fold(FoldAdaptor) {
+  if (withoutCasts(getObject()).getDefiningOp<NullRefOp>())
+    return IntegerAttr::get(getType(), 0);
+  return {};
+}
+
+OpFoldResult EqualRefOp::fold(FoldAdaptor) {
+  mlir::Value lhs = withoutCasts(getLhs()), rhs = withoutCasts(getRhs());
+  if (lhs == rhs || (lhs.getDefiningOp<NullRefOp>() && rhs.getDefiningOp<NullRefOp>()))
+    return mlir::BoolAttr::get(getContext(), true);
+  return {};
+}
+
+} // namespace rtsl::ir

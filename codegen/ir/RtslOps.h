@@ -1,0 +1,35 @@
+//===- RtslOps.h - operations of the `rtsl` dialect -----------------------===//
+#pragma once
+
+#include "codegen/ir/RtslTypes.h"
+
+#include "mlir/IR/Builders.h"
+#include "mlir/IR/BuiltinOps.h"
+#include "mlir/IR/OpDefinition.h"
+#include "mlir/IR/OpImplementation.h"
+#include "mlir/IR/SymbolTable.h"
+#include "mlir/Interfaces/InferTypeOpInterface.h"
+#include "mlir/Interfaces/MemorySlotInterfaces.h"
+#include "mlir/Interfaces/SideEffectInterfaces.h"
+
+#include "codegen/ir/RtslEnums.h.inc"
+
+#define GET_ATTRDEF_CLASSES
+#include "codegen/ir/RtslAttributes.h.inc"
+
+namespace rtsl::ir {
+class MemberDeclOp;
+} // namespace rtsl::ir
+
+#define GET_OP_CLASSES
+#include "codegen/ir/RtslOps.h.inc"
+
+namespace rtsl::ir {
+
+/// Zero of a value type: `arith.constant` or `rtsl.null_ref`.
+mlir::Value createZero(mlir::OpBuilder &builder, mlir::Location location, mlir::Type type);
+
+/// The class of that name in the module around `from`; null if it is not declared.
+ClassOp findClass(mlir::Operation *from, llvm::StringRef name);
+
+} // namespace rtsl::ir

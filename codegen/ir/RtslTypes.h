@@ -1,0 +1,44 @@
+//===- RtslTypes.h - types of the `rtsl` dialect --------------------------===//
+//
+// And the questions about types that the ops, the lowering and the passes ask.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "mlir/IR/BuiltinTypes.h"
+#include "mlir/IR/Types.h"
+#include "mlir/Interfaces/MemorySlotInterfaces.h"
+
+#include <optional>
+
+#define GET_TYPEDEF_CLASSES
+#include "codegen/ir/RtslTypes.h.inc"
+
+namespace rtsl::ir {
+
+/// f32, i32 or i1.
+bool isScalar(mlir::Type type);
+/// A scalar, a vector of 1 to 16 scalars or a reference: what an SSA value that goes to memory may
+/// be.
+bool isValueType(mlir::Type type);
+/// What may stand behind a `!rtsl.ptr`: a value type or an aggregate of such.
+bool isStorable(mlir::Type type);
+bool isFloatOrVector(mlir::Type type);
+bool isIntOrVector(mlir::Type type);
+bool isColor(mlir::Type type);
+bool isVec3(mlir::Type type);
+bool isPtrToValue(mlir::Type type);
+
+template <typename T>
+bool isPtrTo(mlir::Type type) {
+  auto pointer = llvm::dyn_cast<PtrType>(type);
+  return pointer && llvm::isa<T>(pointer.getPointee());
+}
+
+/// i32, or the vector of i32 that has the shape of `type`.
+mlir::Type intLike(mlir::Type type);
+
+/// Number of scalars, vectors and references in a storable type; a buffer counts as one.
+unsigned leafCount(mlir::Type type);
+
+} // namespace rtsl::ir
