@@ -1,0 +1,75 @@
+"""Runs rtslc as a user would, in a folder that goes away."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+RTSLC = os.environ["RTSLC"]
+EXAMPLES = pathlib.Path(os.environ["EXAMPLES"])
+
+FINE, DIAGNOSED, USAGE = 0, 1, 2
+SECONDS = 60  # far beyond what any of these takes: only a hang ends there
+
+
+def as_nobody():
+    """For files that a test makes unreadable: root reads everything."""
+    if os.getuid() == 0:
+        os.setgid(65534)
+        os.setuid(65534)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rtslc-"))
+        os.chmod(self.folder, 0o755)
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, name, content):
+        path = self.folder / name
+        if isinstance(content, bytes):
+            path.write_bytes(content)
+        else:
+            path.write_text(content)
+        return path
+
+    def run_rtslc(self, *arguments, status=FINE, stdin=None, stdout=subprocess.PIPE, unprivileged=False):
+        """Gives (standard output, standard error); fails unless the exit status is the one asked for."""
+        done = subprocess.run([RTSLC, *map(str, arguments)], cwd=self.folder, input=stdin, stdout=stdout,
+                              stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=as_nobody if unprivileged else None)
+        error = done.stderr.decode("utf-8", "replace")
+        self.assertEqual(done.returncode, status, f"exit status of {arguments}:\n{error[:4000]}")
+        return (done.stdout or b"").decode("utf-8", "replace"), error
+
+    def diagnose(self, *arguments, stdin=None, unprivileged=False):
+        """The messages of a run that ends with errors, as data."""
+        _, error = self.run_rtslc(*arguments, "--diagnostics=json", status=DIAGNOSED, stdin=stdin,
+                                  unprivileged=unprivileged)
+        return json.loads(error)["diagnostics"]
+
+    def assert_message(self, diagnostics, code, containing="", line=None, column=None, file=None):
+        """Exactly one message, of this code, at this place."""
+        self.assertEqual([d["code"] for d in diagnostics], [code], diagnostics)
+        message = diagnostics[0]
+        self.assertIn(containing, message["message"])
+        if line is not None:
+            self.assertEqual(message["range"]["begin"]["line"], line, message)
+        if column is not None:
+            self.assertEqual(message["range"]["begin"]["column"], column, message)
+        if file is not None:
+            self.assertTrue(message["range"]["file"].endswith(file), message)
+
+    def files(self):
+        return sorted(p.name for p in self.folder.iterdir())
+
+    def glass_scene(self, **changes):
+        """The scene of the first example with some of its keys replaced, beside its shaders."""
+        for source in (EXAMPLES / "glass").iterdir():
+            if source.suffix in (".rtsl", ".obj"):
+                shutil.copy(source, self.folder)
+        scene = json.loads((EXAMPLES / "glass" / "scene.json").read_text())
+        scene.update(changes)
+        return self.write("scene.json", json.dumps(scene, indent=1))

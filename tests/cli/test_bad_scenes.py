@@ -1,0 +1,137 @@
+"""Scenes, meshes and arguments of `rtslc render` that make no sense."""
+
+import json
+import unittest
+
+from harness import USAGE, Case
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+SMALL = ("--size", "32x18", "--spp", "1")
+
+
+class BadScenes(Case):
+    def render(self, *arguments):
+        """The messages of a rendering that must fail and leave no picture."""
+        diagnostics = self.diagnose("render", "scene.json", "-o", "picture.png", *SMALL, *arguments)
+        self.assertFalse([name for name in self.files() if "picture" in name], "a picture was left behind")
+        return diagnostics
+
+    def line_of(self, text):
+        lines = (self.folder / "scene.json").read_text().splitlines()
+        return next(i + 1 for i, line in enumerate(lines) if text in line)
+
+    def test_missing_scene(self):
+        self.assert_message(self.render(), "E0900", "scene.json")
+
+    def test_json_syntax(self):
+        self.write("scene.json", '{\n  "rtsl": 1,\n  "camera": }\n')
+        self.assert_message(self.render(), "E0800", line=3, column=13, file="scene.json")
+
+    def test_truncated_json(self):
+        text = self.glass_scene().read_text()
+        self.write("scene.json", text[: len(text) // 2])
+        self.assertEqual([d["code"] for d in self.render()], ["E0800"])
+
+    def test_unknown_class(self):
+        self.glass_scene(background={"class": "Skye"})
+        self.assert_message(self.render(), "E0810", "Skye", line=self.line_of('"Skye"'), file="scene.json")
+
+    def test_unknown_member(self):
+        self.glass_scene(background={"class": "Sky", "horizont": [1, 1, 1]})
+        self.assert_message(self.render(), "E0812", "horizont", line=self.line_of('"horizont"'))
+
+    def test_unknown_source(self):
+        self.glass_scene()
+        diagnostics = self.render("--set", "import.0=Nothing.rtsl")
+        self.assertEqual(diagnostics[0]["code"], "E0100")
+        self.assertIn("Nothing.rtsl", diagnostics[0]["message"])
+
+    def test_unknown_mesh(self):
+        self.glass_scene()
+        diagnostics = self.render("--set", "objects.3.mesh=nothing.obj")
+        self.assert_message(diagnostics, "E0900", "nothing.obj")
+
+    def test_unknown_material(self):
+        self.glass_scene()
+        self.assert_message(self.render("--set", "objects.1.material=gless"), "E0806", "gless")
+
+    def test_mesh_with_nan(self):
+        self.write("broken.obj", TRIANGLE.replace("1 0 0", "nan 0 0"))
+        self.glass_scene()
+        self.assert_message(self.render("--set", "objects.3.mesh=broken.obj"), "E0904", "broken.obj")
+
+    def test_truncated_mesh(self):
+        header = b"ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float x\nproperty float y\n" \
+                 b"property float z\nelement face 50\nproperty list uchar int vertex_indices\nend_header\n"
+        self.write("half.ply", header + b"\0" * 300)
+        self.glass_scene()
+        self.assert_message(self.render("--set", "objects.3.mesh=half.ply"), "E0904", "half.ply")
+
+    def test_mesh_with_an_index_out_of_range(self):
+        self.write("range.obj", TRIANGLE.replace("f 1 2 3", "f 1 2 77"))
+        self.glass_scene()
+        self.assert_message(self.render("--set", "objects.3.mesh=range.obj"), "E0904", "range.obj")
+
+    def test_empty_mesh(self):
+        self.write("empty.obj", "")
+        self.glass_scene()
+        self.assert_message(self.render("--set", "objects.3.mesh=empty.obj"), "E0904", "empty.obj")
+
+    def test_sphere_of_radius_zero(self):
+        self.glass_scene()
+        out, error = self.run_rtslc("render", "scene.json", "-o", "picture.png", *SMALL, "--set",
+                                    "objects.1.primitive.radius=0", "--diagnostics=json")
+        warnings = json.loads(error[: error.rindex("}") + 1])["diagnostics"] if "{" in error else []
+        self.assertTrue(any(w["code"] == "W2800" and "Sphere" in w["message"] for w in warnings), error)
+
+    def test_sphere_of_radius_nan(self):
+        self.glass_scene()
+        diagnostics = self.render("--set", "objects.1.primitive.radius=1e999")
+        self.assertTrue(diagnostics)
+
+    def test_attribute_without_source(self):
+        self.write("Needy.rtsl", "class Needy : rt_Material;\nscratch vec3 grain;\n"
+                                 "void shade() { rt_SampleColor = color(grain.x); }\n")
+        path = self.glass_scene()
+        scene = json.loads(path.read_text())
+        scene["import"].append("Needy.rtsl")
+        scene["materials"]["glass"] = {"class": "Needy"}
+        path.write_text(json.dumps(scene))
+        diagnostics = self.render()
+        self.assert_message(diagnostics, "E0700", "grain", line=2, column=14, file="Needy.rtsl")
+        self.assertTrue(diagnostics[0]["labels"][0]["range"]["file"].endswith("Sphere.rtsl"))
+
+    def test_attribute_of_another_type(self):
+        self.write("Needy.rtsl", "class Needy : rt_Material;\nscratch vec3 coordinates;\n"
+                                 "void shade() { rt_SampleColor = color(coordinates.x); }\n")
+        path = self.glass_scene()
+        scene = json.loads(path.read_text())
+        scene["import"].append("Needy.rtsl")
+        scene["materials"]["floor"] = {"class": "Needy"}
+        path.write_text(json.dumps(scene))
+        diagnostics = self.render()
+        self.assert_message(diagnostics, "E0701", "vec2", file="Needy.rtsl")
+        self.assertTrue(diagnostics[0]["labels"][0]["range"]["file"].endswith("Parallelogram.rtsl"))
+
+    def test_unwritable_picture(self):
+        self.glass_scene()
+        diagnostics = self.diagnose("render", "scene.json", "-o", "nowhere/picture.png", *SMALL)
+        self.assert_message(diagnostics, "E0902", "nowhere")
+
+    def test_picture_of_unknown_format(self):
+        self.glass_scene()
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "picture.jpeg", *SMALL), "E0903", "jpeg")
+
+    def test_arguments_that_make_no_sense(self):
+        self.glass_scene()
+        for arguments in (["--spp", "0"], ["--spp", "-3"], ["--size", "0x10"], ["--size", "10"], ["--size", "1e9x2"],
+                          ["--threads", "0"], ["--color", "spectral:99"], ["--traversal", "fast"], ["--unknown"]):
+            with self.subTest(arguments=arguments):
+                _, error = self.run_rtslc("render", "scene.json", "-o", "picture.png", *arguments, status=USAGE)
+                self.assertIn(arguments[0], error)
+        self.run_rtslc("render", "scene.json", status=USAGE)
+        self.run_rtslc(status=USAGE)
+
+
+if __name__ == "__main__":
+    unittest.main()

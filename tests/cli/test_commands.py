@@ -1,0 +1,81 @@
+"""The commands on good input."""
+
+import json
+import unittest
+
+from harness import EXAMPLES, Case
+
+MATERIAL = "class Grey : rt_Material;\n\nvoid shade() {\n  rt_SampleColor = color(0.5);\n}\n"
+
+
+class Commands(Case):
+    def test_help_has_an_example_for_each_command(self):
+        out, _ = self.run_rtslc("--help")
+        for command in ("check", "compile", "render", "compare"):
+            self.assertIn(command, out)
+            text, _ = self.run_rtslc(command, "--help")
+            self.assertIn("example:\n  rtslc " + command, text)
+
+    def test_version(self):
+        out, _ = self.run_rtslc("--version")
+        self.assertRegex(out, r"^rtslc \d+\.\d+\.\d+\n$")
+
+    def test_check_reads_standard_input(self):
+        out, error = self.run_rtslc("check", "-", stdin=MATERIAL.encode())
+        self.assertEqual((out, error), ("", ""))
+
+    def test_check_accepts_the_examples(self):
+        sources = sorted(EXAMPLES.glob("*/*.rtsl"))
+        self.assertTrue(sources)
+        self.run_rtslc("check", *sources)
+
+    def test_fix_mends_a_missing_semicolon(self):
+        path = self.write("grey.rtsl", MATERIAL.replace(";\n}", "\n}"))
+        self.run_rtslc("check", "--fix", "grey.rtsl", status=1)
+        self.assertEqual(path.read_text(), MATERIAL)
+        self.run_rtslc("check", "grey.rtsl")
+
+    def test_compile_shows_every_stage(self):
+        self.write("grey.rtsl", MATERIAL)
+        marks = {"ast": "Grey", "typed-ast": "Grey", "ir": "func.func", "ssa": "func.func", "llvm": "define"}
+        for stage, mark in marks.items():
+            with self.subTest(stage=stage):
+                out, _ = self.run_rtslc("compile", "grey.rtsl", f"--emit={stage}")
+                self.assertIn(mark, out)
+                self.run_rtslc("compile", "grey.rtsl", f"--emit={stage}", "-o", "out")
+                self.assertEqual((self.folder / "out").read_text(), out)
+                piped, _ = self.run_rtslc("compile", "-", f"--emit={stage}", "-o", "-", stdin=MATERIAL.encode())
+                self.assertEqual(piped.replace("<stdin>", "grey.rtsl"), out)
+
+    def test_output_is_the_same_on_every_run(self):
+        sources = sorted((EXAMPLES / "glass").glob("*.rtsl"))
+        for stage in ("ir", "ssa", "llvm"):
+            first, _ = self.run_rtslc("compile", *sources, f"--emit={stage}")
+            second, _ = self.run_rtslc("compile", *sources, f"--emit={stage}")
+            self.assertEqual(first, second)
+
+    def test_render_is_silent_when_piped_and_reports_as_json(self):
+        self.glass_scene()
+        out, error = self.run_rtslc("render", "scene.json", "-o", "a.png", "--size", "32x18", "--spp", "2", "--json")
+        figures = json.loads(out)
+        self.assertEqual(figures["samples"], 32 * 18 * 2)
+        self.assertNotIn("\r", error)
+        self.assertEqual(self.files().count("a.png"), 1)
+
+    def test_a_mesh_from_anywhere(self):
+        path = self.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.glass_scene()
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "--size", "32x18", "--spp", "1", "--set",
+                       f"objects.3.mesh={path}")
+
+    def test_compare(self):
+        self.glass_scene()
+        for seed in "12":
+            self.run_rtslc("render", "scene.json", "-o", f"{seed}.exr", "--size", "32x18", "--spp", "1", "--seed", seed)
+        self.run_rtslc("compare", "1.exr", "1.exr")
+        self.run_rtslc("compare", "1.exr", "2.exr", status=1)
+        self.run_rtslc("compare", "1.exr", "2.exr", "--threshold", "10")
+
+
+if __name__ == "__main__":
+    unittest.main()
