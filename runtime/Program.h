@@ -1,7 +1,7 @@
 //===- Program.h - compiled shaders as the runtime sees them --------------===//
 //
-// A program is code plus a description of its classes. It may come from the compiler in process or be linked in ahead of
-// time; the runtime does not know which.
+// A program is code plus a description of its classes. It may come from the compiler in process or
+// be linked in ahead of time; the runtime does not know which.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -15,39 +15,42 @@
 
 namespace rtsl::runtime {
 
-/// The types that a scene can set. A vector has `rows` components, a matrix `columns` x `rows`, stored by columns.
+/// The types that a scene can set. A vector has `rows` components, a matrix `columns` x `rows`,
+/// stored by columns.
 struct ValueType {
   enum class Kind : std::uint8_t { Float, Int, UInt, Bool, Color, Reference, Struct };
   Kind kind = Kind::Float;
   std::uint8_t rows = 1;
   std::uint8_t columns = 1;
-  std::uint8_t bufferRank = 0;              // 1 to 3: an unsized array of the above, an RtslBuffer in the record
-  std::vector<std::uint32_t> arraySizes;    // fixed-length dimensions, outermost first
-  std::string className;                    // Reference: the base or class that is asked for
-  std::string name;                         // as the author spells it, for messages: "vec3", "float[4]"
-  std::uint32_t size = 4;                   // bytes of the whole
-  std::vector<struct MemberInfo> fields;    // Struct: its members, with offsets from its start
+  std::uint8_t bufferRank = 0; // 1 to 3: an unsized array of the above, an RtslBuffer in the record
+  std::vector<std::uint32_t> arraySizes; // fixed-length dimensions, outermost first
+  std::string className;                 // Reference: the base or class that is asked for
+  std::string name;              // as the author spells it, for messages: "vec3", "float[4]"
+  std::uint32_t size = 4;        // bytes of the whole; of a buffer: of the RtslBuffer
+  std::uint32_t elementSize = 0; // of a buffer: bytes from element to element
+  std::vector<struct MemberInfo> fields; // Struct: its members, with offsets from its start
 };
 
 struct MemberInfo {
   std::string name;
   ValueType type;
-  std::uint32_t offset = 0; // bytes from the start of the record (members) or of the packed arguments (parameters)
-  bool isPublic = false;    // the scene may set it
+  std::uint32_t offset =
+      0; // bytes from the start of the record (members) or of the packed arguments (parameters)
+  bool isPublic = false; // the scene may set it
   bool hasDefault = false;
 };
 
 struct ClassInfo {
   std::string name;
-  std::string base;                     // "rt_Primitive", or another class of the user's
-  std::string root;                     // the rt_ class at the end of the chain
-  std::uint32_t id = 0;                 // first word of a record; from 1
-  std::uint32_t recordSize = 4;         // bytes, multiple of 4
-  std::vector<MemberInfo> members;      // inherited ones first
+  std::string base;                // "rt_Primitive", or another class of the user's
+  std::string root;                // the rt_ class at the end of the chain
+  std::uint32_t id = 0;            // first word of a record; from 1
+  std::uint32_t recordSize = 4;    // bytes, multiple of 4
+  std::vector<MemberInfo> members; // inherited ones first
   bool hasConstructor = false;
-  std::vector<MemberInfo> parameters;   // of the constructor
-  std::uint32_t parameterSize = 0;      // bytes of the packed arguments
-  std::vector<std::string> methods;     // defined or inherited
+  std::vector<MemberInfo> parameters; // of the constructor
+  std::uint32_t parameterSize = 0;    // bytes of the packed arguments
+  std::vector<std::string> methods;   // defined or inherited
   /// Writes member defaults into the record at `object`. Null: there are none.
   void (*initialize)(RtslState *state, RtslRef object) = nullptr;
   /// Runs the constructor on the record at `object`. Null: there is none.
@@ -67,7 +70,8 @@ struct Program {
   /// RTSL_NEEDS_*: what the shading methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
   /// The program's rtsl_sample.
-  void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample, float *color) = nullptr;
+  void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
+                 float *color) = nullptr;
 
   std::shared_ptr<void> code; // keeps the code alive
 

@@ -1,0 +1,177 @@
+#include "runtime/AtomicFile.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace rtsl::runtime {
+
+namespace {
+
+[[noreturn]] void throwUnwritable(const std::string &path, int error) {
+  throw Error(ErrorCode::FileUnwritable,
+              fmt::format("cannot write `{}`: {}", path, std::strerror(error)), Place{path});
+}
+
+/// A name in the folder of `path`, so that renaming stays within one file system.
+std::string temporaryName(const std::string &path) {
+  static std::atomic<unsigned> counter{0};
+  std::size_t slash = path.find_last_of('/');
+  std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
+  std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
+  // Shortened, for the whole must stay a legal name.
+  return fmt::format("{}.{}.{}-{}.tmp", folder, file.substr(0, 200), ::getpid(), counter++);
+}
+
+/// Creates the temporary file with the rights that a new file would have, or those of the one that
+/// it replaces.
+int createTemporary(const std::string &path, std::string &temporary) {
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    temporary = temporaryName(path);
+    int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0 || errno != EEXIST)
+      return file;
+  }
+  return -1;
+}
+
+/// 0, or errno.
+int writeAll(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR)
+      continue;
+    if (written < 0)
+      return errno;
+    if (written == 0)
+      return ENOSPC;
+    bytes.remove_prefix(std::size_t(written));
+  }
+  return 0;
+}
+
+bool isSpecial(const std::string &path) {
+  struct stat status;
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+bool isFolder(const std::string &path) {
+  struct stat status;
+  return !path.empty() &&
+         (path.back() == '/' || (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)));
+}
+
+/// The file that a symbolic link stands for: the link is to stay, its target to be replaced.
+std::string followLinks(std::string path) {
+  for (int depth = 0; depth < 40; ++depth) {
+    char target[4096];
+    ssize_t length = ::readlink(path.c_str(), target, sizeof target);
+    if (length <= 0 || length == ssize_t(sizeof target))
+      return path;
+    std::string next(target, std::size_t(length));
+    std::size_t slash = path.find_last_of('/');
+    path = next[0] == '/' || slash == std::string::npos ? next : path.substr(0, slash + 1) + next;
+  }
+  throwUnwritable(path, ELOOP);
+}
+
+void writeDirectly(const std::string &path, std::string_view bytes) {
+  int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0)
+    throwUnwritable(path, errno);
+  int error = writeAll(file, bytes);
+  if (::close(file) != 0 && error == 0)
+    error = errno;
+  if (error)
+    throwUnwritable(path, error);
+}
+
+} // namespace
+
+void checkFileWritable(const std::string &path) {
+  if (path.empty())
+    throwUnwritable(path, ENOENT);
+  if (isFolder(path))
+    throwUnwritable(path, EISDIR);
+  if (isSpecial(path)) {
+    if (::access(path.c_str(), W_OK) != 0)
+      throwUnwritable(path, errno);
+    return;
+  }
+  std::string target = followLinks(path), temporary;
+  if (::access(target.c_str(), F_OK) == 0 && ::access(target.c_str(), W_OK) != 0)
+    throwUnwritable(path, errno);
+  int file = createTemporary(target, temporary);
+  if (file < 0)
+    throwUnwritable(path, errno);
+  ::close(file);
+  ::unlink(temporary.c_str());
+}
+
+void writeFileAtomically(const std::string &path, std::string_view bytes) {
+  if (path.empty())
+    throwUnwritable(path, ENOENT);
+  if (isFolder(path))
+    throwUnwritable(path, EISDIR);
+  if (isSpecial(path))
+    return writeDirectly(path, bytes);
+  std::string target = followLinks(path), temporary;
+  struct stat replaced;
+  bool replaces = ::stat(target.c_str(), &replaced) == 0;
+  // Renaming would get past the write protection of a file.
+  if (replaces && ::access(target.c_str(), W_OK) != 0)
+    throwUnwritable(path, errno);
+  int file = createTemporary(target, temporary);
+  if (file < 0)
+    throwUnwritable(path, errno);
+  int error = writeAll(file, bytes);
+  if (error == 0 && replaces && ::fchmod(file, replaced.st_mode & 07777) != 0)
+    error = errno;
+  // Some file systems find out only here that they are full.
+  if (error == 0 && ::fsync(file) != 0 && errno != EINVAL && errno != ENOSYS)
+    error = errno;
+  if (::close(file) != 0 && error == 0)
+    error = errno;
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0)
+    error = errno;
+  if (error) {
+    ::unlink(temporary.c_str());
+    throwUnwritable(path, error);
+  }
+}
+
+std::string readFile(const std::string &path) {
+  int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0)
+    throw Error(errno == ENOENT || errno == ENOTDIR ? ErrorCode::FileNotFound
+                                                    : ErrorCode::FileUnreadable,
+                fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), Place{path});
+  std::string bytes;
+  struct stat status;
+  if (::fstat(file, &status) == 0 && status.st_size > 0)
+    bytes.reserve(std::size_t(status.st_size));
+  char chunk[1 << 16];
+  for (;;) {
+    ssize_t count = ::read(file, chunk, sizeof chunk);
+    if (count < 0 && errno == EINTR)
+      continue;
+    if (count < 0) {
+      int error = errno;
+      ::close(file);
+      throw Error(ErrorCode::FileUnreadable,
+                  fmt::format("cannot read `{}`: {}", path, std::strerror(error)), Place{path});
+    }
+    if (count == 0)
+      break;
+    bytes.append(chunk, std::size_t(count));
+  }
+  ::close(file);
+  return bytes;
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,106 @@
+#include "runtime/Image.h"
+
+#include "runtime/AtomicFile.h"
+#include "runtime/ImageFormats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+
+namespace rtsl::runtime {
+
+namespace {
+
+enum class Format { Png, Exr };
+
+Format formatOf(const std::string &path) {
+  std::size_t dot = path.find_last_of("./");
+  std::string extension = dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot + 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  if (extension == "png")
+    return Format::Png;
+  if (extension == "exr")
+    return Format::Exr;
+  throw Error(
+      ErrorCode::UnsupportedFormat,
+      fmt::format("cannot tell the format of `{}`: a picture's name ends in `.png` or `.exr`",
+                  path),
+      Place{path});
+}
+
+} // namespace
+
+Image toRgb(const Image &image) {
+  if (image.channels == 3)
+    return image;
+  Image rgb(image.width, image.height, 3);
+  std::size_t count = std::size_t(image.width) * image.height;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float *from = image.pixels.data() + i * image.channels;
+    float *to = rgb.pixels.data() + i * 3;
+    // The components of a spectral color run from the longest wave to the shortest: red, green and
+    // blue are the means of its thirds, so that equal components are grey. A component may be
+    // shared by two thirds.
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      std::uint32_t first = c * image.channels / 3;
+      std::uint32_t last = std::max(first + 1, ((c + 1) * image.channels + 2) / 3);
+      float sum = 0;
+      for (std::uint32_t k = first; k < last; ++k)
+        sum += from[k];
+      to[c] = sum / float(last - first);
+    }
+  }
+  return rgb;
+}
+
+void checkWritable(const std::string &path) {
+  formatOf(path);
+  checkFileWritable(path);
+}
+
+void writeImage(const std::string &path, const Image &image) {
+  Format format = formatOf(path);
+  if (image.width == 0 || image.height == 0 || image.channels == 0 ||
+      image.pixels.size() != std::size_t(image.width) * image.height * image.channels)
+    throw Error(ErrorCode::BadImage, fmt::format("cannot write `{}`: the picture is empty", path),
+                Place{path});
+  writeFileAtomically(path,
+                      format == Format::Png ? encodePng(image, path) : encodeExr(image, path));
+}
+
+Image readImage(const std::string &path) {
+  Format format = formatOf(path);
+  std::string bytes = readFile(path);
+  return format == Format::Png ? decodePng(bytes, path) : decodeExr(bytes, path);
+}
+
+ImageDifference compareImages(const Image &a, const Image &b) {
+  if (a.width != b.width || a.height != b.height || a.channels != b.channels)
+    throw Error(
+        ErrorCode::BadImage,
+        fmt::format("the pictures differ in shape: {}x{} with {} channels, and {}x{} with {}",
+                    a.width, a.height, a.channels, b.width, b.height, b.channels));
+  ImageDifference difference;
+  double sum = 0;
+  std::size_t count = std::size_t(a.width) * a.height;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float *p = a.pixels.data() + i * a.channels, *q = b.pixels.data() + i * b.channels;
+    if (std::memcmp(p, q, sizeof(float) * a.channels) != 0)
+      ++difference.pixelsThatDiffer;
+    for (std::uint32_t c = 0; c < a.channels; ++c) {
+      double d = std::fabs(double(p[c]) - double(q[c]));
+      if (std::isnan(d)) // one of them is not a number, or both are the same infinity
+        d = std::memcmp(p + c, q + c, sizeof(float)) == 0 ? 0 : INFINITY;
+      difference.largest = std::max(difference.largest, d);
+      sum += d * d;
+    }
+  }
+  difference.rootMeanSquare = count ? std::sqrt(sum / double(count * a.channels)) : 0;
+  return difference;
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,16 @@
+//===- ImageFormats.h - pictures as the bytes of a file -------------------===//
+#pragma once
+
+#include "runtime/Image.h"
+
+#include <string>
+
+namespace rtsl::runtime {
+
+std::string encodePng(const Image &image, const std::string &path);
+Image decodePng(const std::string &bytes, const std::string &path);
+
+std::string encodeExr(const Image &image, const std::string &path);
+Image decodeExr(const std::string &bytes, const std::string &path);
+
+} // namespace rtsl::runtime

@@ -1,0 +1,138 @@
+#include "runtime/Mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rtsl::runtime {
+
+Transform Transform::translate(double x, double y, double z) {
+  Transform result;
+  result.columns[3] = {x, y, z};
+  return result;
+}
+
+Transform Transform::scale(double x, double y, double z) {
+  Transform result;
+  result.columns[0][0] = x;
+  result.columns[1][1] = y;
+  result.columns[2][2] = z;
+  return result;
+}
+
+// Rodrigues' formula. Quarter turns are exact, for they are what scenes are full of.
+Transform Transform::rotate(const std::array<double, 3> &axis, double degrees) {
+  double length = std::hypot(axis[0], axis[1], axis[2]);
+  double x = axis[0] / length, y = axis[1] / length, z = axis[2] / length;
+  double turn = std::remainder(degrees, 360.0), radians = turn * (3.14159265358979323846 / 180);
+  double c = std::cos(radians), s = std::sin(radians);
+  if (turn == 90 || turn == -90)
+    c = 0;
+  if (std::fabs(turn) == 180)
+    s = 0;
+  Transform result;
+  result.columns[0] = {c + x * x * (1 - c), y * x * (1 - c) + z * s, z * x * (1 - c) - y * s};
+  result.columns[1] = {x * y * (1 - c) - z * s, c + y * y * (1 - c), z * y * (1 - c) + x * s};
+  result.columns[2] = {x * z * (1 - c) + y * s, y * z * (1 - c) - x * s, c + z * z * (1 - c)};
+  return result;
+}
+
+Transform Transform::then(const Transform &next) const {
+  Transform result;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row) {
+      double sum = column == 3 ? next.columns[3][row] : 0;
+      for (int k = 0; k < 3; ++k)
+        sum += next.columns[k][row] * columns[column][k];
+      result.columns[column][row] = sum;
+    }
+  return result;
+}
+
+double Transform::determinant() const {
+  const auto &c = columns;
+  return c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) -
+         c[1][0] * (c[0][1] * c[2][2] - c[0][2] * c[2][1]) +
+         c[2][0] * (c[0][1] * c[1][2] - c[0][2] * c[1][1]);
+}
+
+void Mesh::apply(const Transform &transform) {
+  const auto &c = transform.columns;
+  for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+    double x = positions[i], y = positions[i + 1], z = positions[i + 2];
+    for (int row = 0; row < 3; ++row)
+      positions[i + row] = float(c[0][row] * x + c[1][row] * y + c[2][row] * z + c[3][row]);
+  }
+  // The cofactors are the inverse transpose times the determinant; its sign turns normals back to
+  // the side where they were.
+  double sign = transform.determinant() < 0 ? -1 : 1;
+  double cofactors[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      cofactors[i][j] = sign * (c[i1][j1] * c[i2][j2] - c[i1][j2] * c[i2][j1]);
+    }
+  for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
+    double x = normals[i], y = normals[i + 1], z = normals[i + 2], n[3];
+    for (int row = 0; row < 3; ++row)
+      n[row] = cofactors[0][row] * x + cofactors[1][row] * y + cofactors[2][row] * z;
+    double length = std::hypot(n[0], n[1], n[2]);
+    for (int row = 0; row < 3; ++row)
+      normals[i + row] = length > 0 ? float(n[row] / length) : 0.0f;
+  }
+  if (sign < 0)
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+      std::swap(indices[i + 1], indices[i + 2]);
+}
+
+namespace {
+
+/// Products of three coordinates, and Embree's own range, end well before the range of a float.
+constexpr float largestCoordinate = 1e18f;
+
+[[noreturn]] void throwBad(const std::string &name, const std::string &what) {
+  throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` {}", name, what), Place{name});
+}
+
+} // namespace
+
+void validateMesh(const Mesh &mesh, const std::string &name) {
+  if (mesh.positions.size() % 3 != 0 || mesh.indices.size() % 3 != 0)
+    throwBad(name, "has an incomplete vertex or triangle");
+  if (mesh.indices.empty())
+    throwBad(name, "has no triangles");
+  std::size_t vertices = mesh.vertexCount();
+  if (vertices > 0xffffffffu || mesh.triangleCount() > 0x7fffffffu)
+    throwBad(name, "is too large: at most 2^32 vertices and 2^31 triangles");
+  if (!mesh.normals.empty() && mesh.normals.size() != 3 * vertices)
+    throwBad(name,
+             fmt::format("has {} normals for {} vertices", mesh.normals.size() / 3, vertices));
+  if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * vertices)
+    throwBad(name, fmt::format("has {} texture coordinates for {} vertices", mesh.uvs.size() / 2,
+                               vertices));
+  const char axes[] = "xyz";
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    float p = mesh.positions[i];
+    if (!std::isfinite(p))
+      throwBad(name, fmt::format("has a vertex that is not finite: {} of vertex {} is {}",
+                                 axes[i % 3], i / 3, p));
+    if (std::fabs(p) > largestCoordinate)
+      throwBad(name,
+               fmt::format("has a vertex too far out: {} of vertex {} is {:g}, more than {:g}",
+                           axes[i % 3], i / 3, p, largestCoordinate));
+  }
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+    if (!std::isfinite(mesh.normals[i]))
+      throwBad(name, fmt::format("has a normal that is not finite at vertex {}", i / 3));
+  for (std::size_t i = 0; i < mesh.uvs.size(); ++i)
+    if (!std::isfinite(mesh.uvs[i]))
+      throwBad(name,
+               fmt::format("has a texture coordinate that is not finite at vertex {}", i / 2));
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    if (mesh.indices[i] >= vertices)
+      throwBad(name, fmt::format("has an index out of range: triangle {} uses vertex {} of {}",
+                                 i / 3, mesh.indices[i], vertices));
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,506 @@
+#include "runtime/Scene.h"
+
+#include "runtime/ValueStore.h"
+#include "runtime/device/Random.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace rtsl::runtime {
+
+namespace {
+
+/// Records begin behind this: reference 0 is "none", and a class id of 0 there makes every dispatch
+/// do nothing.
+constexpr std::uint32_t firstRecord = 16;
+constexpr std::uint32_t recordAlignment = 16;
+
+struct ObjectInfo {
+  RtslRef object;
+  const ClassInfo *classInfo;
+  std::string name;
+  std::optional<Place> place;
+};
+
+struct MeshStorage {
+  Mesh mesh;
+  std::string name;
+};
+
+std::string listParameters(const ClassInfo &info) {
+  std::string text = info.name + "(";
+  for (std::size_t i = 0; i < info.parameters.size(); ++i)
+    text += fmt::format("{}{} {}", i ? ", " : "", info.parameters[i].type.name,
+                        info.parameters[i].name);
+  return text + ")";
+}
+
+bool hasMethod(const ClassInfo &info, const std::string &method) {
+  return std::find(info.methods.begin(), info.methods.end(), method) != info.methods.end();
+}
+
+/// A few units in the last place outwards, for the author's sums are rounded; and into the range in
+/// which boxes can be multiplied with each other. An infinite primitive stays in the largest box
+/// there is.
+float outwards(float side, float direction) {
+  constexpr float largest = 1e18f;
+  float moved = side + direction * (std::fabs(side) * 0x1p-21f + std::numeric_limits<float>::min());
+  return std::clamp(moved, -largest, largest);
+}
+
+} // namespace
+
+struct Scene::Implementation {
+  std::shared_ptr<const Program> program;
+  std::vector<std::uint8_t> records;
+  std::vector<ObjectInfo> objects; // ascending by reference
+  std::vector<std::unique_ptr<std::uint32_t[]>> buffers;
+  std::vector<std::unique_ptr<MeshStorage>> meshes;
+  std::vector<RtslMesh> meshTable;
+  std::vector<RtslInstance> instances;
+  std::vector<std::string> instanceNames;
+  std::vector<Bounds> instanceBounds; // of RTSL primitives
+  std::uint64_t primitiveTotal = 0;
+  std::vector<RtslRef> lights;
+  RtslRef camera = 0, background = 0;
+  float backgroundColor[RTSL_MAX_COLOR] = {}, ambient[RTSL_MAX_COLOR] = {};
+  std::vector<Warning> warnings;
+
+  const ObjectInfo &info(RtslRef object) const {
+    auto found =
+        std::lower_bound(objects.begin(), objects.end(), object,
+                         [](const ObjectInfo &info, RtslRef ref) { return info.object < ref; });
+    if (found == objects.end() || found->object != object)
+      throw Error(ErrorCode::UnknownName,
+                  fmt::format("no object of the scene has the reference {}", object));
+    return *found;
+  }
+
+  bool derivesFrom(const ClassInfo *info, const std::string &className) const {
+    for (; info; info = program->find(info->base))
+      if (info->name == className || info->base == className || info->root == className)
+        return true;
+    return false;
+  }
+
+  RtslLaunch tables() {
+    RtslLaunch launch{};
+    launch.records = records.data();
+    launch.instances = instances.data();
+    launch.meshes = meshTable.data();
+    launch.lights = lights.data();
+    launch.camera = camera;
+    launch.background = background;
+    std::memcpy(launch.backgroundColor, backgroundColor, sizeof backgroundColor);
+    std::memcpy(launch.ambient, ambient, sizeof ambient);
+    launch.instanceCount = std::uint32_t(instances.size());
+    launch.meshCount = std::uint32_t(meshTable.size());
+    launch.lightCount = std::uint32_t(lights.size());
+    launch.colorComponents = program->colorComponents;
+    launch.needs = program->needs;
+    return launch;
+  }
+
+  /// Calls code of the program outside of any ray.
+  template <typename Call>
+  void withState(RtslRef object, Call call) {
+    RtslLaunch launch = tables();
+    RtslState state{};
+    state.launch = &launch;
+    state.instance = state.primitive = RTSL_NO_HIT;
+    state.HitDistance = std::numeric_limits<float>::infinity();
+    device::Words3 key = device::hash3(object, 0, 0);
+    state.randomKey[0] = key.x;
+    state.randomKey[1] = key.y;
+    call(state);
+  }
+
+  StoreContext storeContext() {
+    StoreContext context;
+    context.colorComponents = program->colorComponents;
+    context.allocate = [this](std::size_t bytes) {
+      buffers.push_back(std::make_unique<std::uint32_t[]>(bytes / 4 + 1));
+      return reinterpret_cast<std::uint8_t *>(buffers.back().get());
+    };
+    context.classMismatch = [this](RtslRef object,
+                                   const std::string &className) -> const std::string * {
+      const ClassInfo *classInfo = info(object).classInfo;
+      return derivesFrom(classInfo, className) ? nullptr : &classInfo->name;
+    };
+    return context;
+  }
+
+  void requireRole(RtslRef object, const std::string &root,
+                   const std::vector<std::string> &methods) const {
+    const ObjectInfo &given = info(object);
+    if (given.classInfo->root != root)
+      throw Error(ErrorCode::WrongClass,
+                  fmt::format("`{}` is a `{}`, where a `{}` is needed", given.name,
+                              given.classInfo->name, root),
+                  given.place);
+    for (const std::string &method : methods)
+      if (!hasMethod(*given.classInfo, method))
+        throw Error(ErrorCode::MissingMethod,
+                    fmt::format("class `{}` of `{}` does not define `{}`", given.classInfo->name,
+                                given.name, method),
+                    given.place);
+  }
+
+  void runConstructor(const ClassInfo &classInfo, const ObjectInfo &object,
+                      const ObjectValues &values);
+  void setMembers(const ClassInfo &classInfo, const ObjectInfo &object, const ObjectValues &values);
+  void checkUnset(const ClassInfo &classInfo, const ObjectInfo &object, const ObjectValues &values);
+  void setColor(const std::vector<float> &color, float *to, const char *what) const;
+  std::uint32_t addInstance(RtslRef primitive, std::uint32_t mesh, RtslRef material,
+                            std::string name, std::uint32_t primitives);
+};
+
+Scene::Scene(std::shared_ptr<const Program> program) : self(std::make_unique<Implementation>()) {
+  self->program = std::move(program);
+  self->records.assign(firstRecord, 0);
+  if (self->program->colorComponents < 1 || self->program->colorComponents > RTSL_MAX_COLOR)
+    throw Error(ErrorCode::OutOfRange, fmt::format("a color has 1 to {} components, not {}",
+                                                   RTSL_MAX_COLOR, self->program->colorComponents));
+}
+Scene::~Scene() = default;
+Scene::Scene(Scene &&) noexcept = default;
+Scene &Scene::operator=(Scene &&) noexcept = default;
+
+const Program &Scene::program() const {
+  return *self->program;
+}
+
+//===----------------------------------------------------------------------===//
+// Objects
+//===----------------------------------------------------------------------===//
+
+void Scene::Implementation::runConstructor(const ClassInfo &classInfo, const ObjectInfo &object,
+                                           const ObjectValues &values) {
+  bool given = !std::holds_alternative<std::monostate>(values.constructor);
+  if (!classInfo.hasConstructor) {
+    if (given)
+      throw Error(ErrorCode::BadArguments,
+                  fmt::format("class `{}` has no constructor; set its public members by name",
+                              classInfo.name),
+                  values.place);
+    return;
+  }
+
+  const std::vector<MemberInfo> &parameters = classInfo.parameters;
+  std::vector<const Value *> arguments(parameters.size(), nullptr);
+  if (auto *list = std::get_if<std::vector<Value>>(&values.constructor)) {
+    if (list->size() != parameters.size())
+      throw Error(ErrorCode::BadArguments,
+                  fmt::format("the constructor of `{}` takes {} argument{}, not {}", classInfo.name,
+                              parameters.size(), parameters.size() == 1 ? "" : "s", list->size()),
+                  values.place)
+          .note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      arguments[i] = &(*list)[i];
+  } else if (auto *named = std::get_if<std::vector<NamedValue>>(&values.constructor)) {
+    for (const NamedValue &one : *named) {
+      auto found =
+          std::find_if(parameters.begin(), parameters.end(),
+                       [&](const MemberInfo &parameter) { return parameter.name == one.name; });
+      if (found == parameters.end()) {
+        Error error(
+            ErrorCode::BadArguments,
+            fmt::format("the constructor of `{}` has no parameter `{}`", classInfo.name, one.name),
+            one.place ? one.place : values.place);
+        std::vector<std::string> names;
+        for (const MemberInfo &parameter : parameters)
+          names.push_back(parameter.name);
+        if (auto near = nearestName(one.name, names))
+          error.fix(*near);
+        throw error.note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+      }
+      const Value *&argument = arguments[std::size_t(found - parameters.begin())];
+      if (argument)
+        throw Error(ErrorCode::BadArguments, fmt::format("parameter `{}` is given twice", one.name),
+                    one.place ? one.place : values.place);
+      argument = &one.value;
+    }
+  }
+  std::string missing;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (!arguments[i])
+      missing += fmt::format("{}`{}`", missing.empty() ? "" : ", ", parameters[i].name);
+  if (!missing.empty())
+    throw Error(
+        ErrorCode::BadArguments,
+        fmt::format("the constructor of `{}` misses an argument for {}", classInfo.name, missing),
+        values.place)
+        .note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+
+  // Words, for the packed arguments are read as such.
+  std::vector<std::uint32_t> packed(classInfo.parameterSize / 4 + 1, 0);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    storeValue(
+        parameters[i].type, *arguments[i],
+        reinterpret_cast<std::uint8_t *>(packed.data()) + parameters[i].offset, storeContext(),
+        fmt::format("parameter `{}` of `{}`", parameters[i].name, classInfo.name), values.place);
+  if (classInfo.construct)
+    withState(object.object,
+              [&](RtslState &state) { classInfo.construct(&state, object.object, packed.data()); });
+}
+
+void Scene::Implementation::setMembers(const ClassInfo &classInfo, const ObjectInfo &object,
+                                       const ObjectValues &values) {
+  for (const NamedValue &one : values.members) {
+    auto found = std::find_if(classInfo.members.begin(), classInfo.members.end(),
+                              [&](const MemberInfo &member) { return member.name == one.name; });
+    if (found == classInfo.members.end()) {
+      Error error(ErrorCode::UnknownMember,
+                  fmt::format("class `{}` has no member `{}`", classInfo.name, one.name),
+                  one.place ? one.place : values.place);
+      std::vector<std::string> names;
+      for (const MemberInfo &member : classInfo.members)
+        if (member.isPublic)
+          names.push_back(member.name);
+      if (auto near = nearestName(one.name, names))
+        error.fix(*near);
+      throw error;
+    }
+    if (!found->isPublic)
+      throw Error(ErrorCode::NotSettable,
+                  fmt::format("member `{}` of `{}` is not public", one.name, classInfo.name),
+                  one.place ? one.place : values.place);
+    storeValue(found->type, one.value, records.data() + object.object + found->offset,
+               storeContext(), fmt::format("member `{}` of `{}`", one.name, object.name),
+               values.place);
+  }
+}
+
+void Scene::Implementation::checkUnset(const ClassInfo &classInfo, const ObjectInfo &object,
+                                       const ObjectValues &values) {
+  for (const MemberInfo &member : classInfo.members) {
+    if (!member.isPublic || member.hasDefault)
+      continue;
+    bool given = std::any_of(values.members.begin(), values.members.end(),
+                             [&](const NamedValue &one) { return one.name == member.name; });
+    if (given)
+      continue;
+    if (member.type.kind == ValueType::Kind::Reference && member.type.bufferRank == 0 &&
+        member.type.arraySizes.empty()) {
+      RtslRef reference;
+      std::memcpy(&reference, records.data() + object.object + member.offset, 4);
+      if (reference == 0)
+        throw Error(ErrorCode::MissingMember,
+                    fmt::format("`{}` refers to nothing: set member `{}` of class `{}`, a `{}`",
+                                object.name, member.name, classInfo.name, member.type.className),
+                    object.place);
+    } else if (!classInfo.hasConstructor && member.type.bufferRank == 0) {
+      warnings.push_back({fmt::format("member `{}` of `{}` is not set and has no default: it is 0",
+                                      member.name, object.name),
+                          object.place});
+    }
+  }
+}
+
+RtslRef Scene::addObject(const std::string &className, const ObjectValues &values,
+                         const std::string &name) {
+  const ClassInfo *classInfo = self->program->find(className);
+  if (!classInfo) {
+    Error error(ErrorCode::UnknownClass, fmt::format("no class is named `{}`", className),
+                values.place);
+    std::vector<std::string> names;
+    for (const ClassInfo &one : self->program->classes)
+      names.push_back(one.name);
+    if (auto near = nearestName(className, names))
+      error.fix(*near);
+    throw error;
+  }
+  std::vector<std::uint8_t> &records = self->records;
+  std::size_t start = (records.size() + recordAlignment - 1) / recordAlignment * recordAlignment;
+  if (start + classInfo->recordSize > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorCode::OutOfMemory, "the objects of the scene take more than 4 GiB",
+                values.place);
+  std::size_t before = records.size();
+  records.resize(start + std::max(classInfo->recordSize, 4u), 0);
+  std::memcpy(records.data() + start, &classInfo->id, 4);
+  RtslRef object = RtslRef(start);
+  self->objects.push_back({object, classInfo, name.empty() ? className : name, values.place});
+  try {
+    const ObjectInfo info = self->objects.back();
+    if (classInfo->initialize)
+      self->withState(object, [&](RtslState &state) { classInfo->initialize(&state, object); });
+    self->runConstructor(*classInfo, info, values);
+    self->setMembers(*classInfo, info, values);
+    self->checkUnset(*classInfo, info, values);
+  } catch (...) { // half an object is none
+    self->objects.pop_back();
+    records.resize(before);
+    throw;
+  }
+  return object;
+}
+
+RtslRef Scene::addObject(const std::string &className, std::vector<Value> arguments,
+                         const std::string &name) {
+  ObjectValues values;
+  values.constructor = std::move(arguments);
+  return addObject(className, values, name);
+}
+
+const std::uint8_t *Scene::record(RtslRef object) const {
+  return self->records.data() + self->info(object).object;
+}
+const ClassInfo &Scene::classOf(RtslRef object) const {
+  return *self->info(object).classInfo;
+}
+const std::string &Scene::nameOf(RtslRef object) const {
+  return self->info(object).name;
+}
+
+//===----------------------------------------------------------------------===//
+// What there is to hit
+//===----------------------------------------------------------------------===//
+
+std::uint32_t Scene::Implementation::addInstance(RtslRef primitive, std::uint32_t mesh,
+                                                 RtslRef material, std::string name,
+                                                 std::uint32_t primitives) {
+  requireRole(material, "rt_Material", {"shade"});
+  if (primitiveTotal + primitives > 0x7fffffffu)
+    throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
+  instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal)});
+  primitiveTotal += primitives;
+  instanceNames.push_back(std::move(name));
+  instanceBounds.push_back({});
+  return std::uint32_t(instances.size() - 1);
+}
+
+std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material) {
+  self->requireRole(primitive, "rt_Primitive", {"intersect", "computeBounds"});
+  const ObjectInfo &info = self->info(primitive);
+  Bounds given;
+  self->withState(primitive, [&](RtslState &state) {
+    for (int i = 0; i < 3; ++i) { // what computeBounds leaves out shows
+      state.BoundMin[i] = std::numeric_limits<float>::quiet_NaN();
+      state.BoundMax[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+    if (self->program->slots.rt_Primitive_computeBounds)
+      self->program->slots.rt_Primitive_computeBounds(&state, primitive);
+    std::copy_n(state.BoundMin, 3, given.lower);
+    std::copy_n(state.BoundMax, 3, given.upper);
+  });
+  const char axes[] = "xyz";
+  int flatSides = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (std::isnan(given.lower[i]) || std::isnan(given.upper[i]))
+      throw Error(
+          ErrorCode::DegenerateGeometry,
+          fmt::format("the bounds of primitive `{}` are not numbers (in {})", info.name, axes[i]),
+          info.place);
+    if (given.lower[i] > given.upper[i])
+      throw Error(ErrorCode::DegenerateGeometry,
+                  fmt::format("the bounds of primitive `{}` are inverted: {} runs from {} to {}",
+                              info.name, axes[i], given.lower[i], given.upper[i]),
+                  info.place);
+    flatSides += given.lower[i] == given.upper[i];
+  }
+  if (flatSides >= 2)
+    self->warnings.push_back(
+        {fmt::format("primitive `{}` is {}: no ray can hit it", info.name,
+                     flatSides == 3 ? "a single point" : "a line without width"),
+         info.place});
+  std::uint32_t instance = self->addInstance(primitive, 0, material, info.name, 1);
+  Bounds &bounds = self->instanceBounds.back();
+  for (int i = 0; i < 3; ++i) {
+    bounds.lower[i] = outwards(given.lower[i], -1);
+    bounds.upper[i] = outwards(given.upper[i], 1);
+  }
+  return instance;
+}
+
+std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name) {
+  std::string shown = name.empty() ? fmt::format("mesh {}", self->meshes.size()) : name;
+  validateMesh(mesh, shown);
+  auto storage = std::make_unique<MeshStorage>(MeshStorage{std::move(mesh), std::move(shown)});
+  Mesh &kept = storage->mesh;
+  // Embree reads 16 bytes at each vertex, so one float more than there is must be readable.
+  kept.positions.push_back(0);
+  RtslMesh table{};
+  table.positions = kept.positions.data();
+  table.normals = kept.normals.empty() ? nullptr : kept.normals.data();
+  table.uvs = kept.uvs.empty() ? nullptr : kept.uvs.data();
+  table.indices = kept.indices.data();
+  table.vertexCount = std::uint32_t(kept.vertexCount());
+  table.triangleCount = std::uint32_t(kept.triangleCount());
+  self->meshTable.push_back(table);
+  self->meshes.push_back(std::move(storage));
+  return std::uint32_t(self->meshes.size() - 1);
+}
+
+std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material) {
+  if (mesh >= self->meshes.size())
+    throw Error(ErrorCode::UnknownName, fmt::format("the scene has no mesh number {}", mesh));
+  return self->addInstance(0, mesh, material, self->meshes[mesh]->name,
+                           self->meshTable[mesh].triangleCount);
+}
+
+const Bounds &Scene::primitiveBounds(std::uint32_t instance) const {
+  return self->instanceBounds.at(instance);
+}
+
+std::uint32_t Scene::primitiveCount(std::uint32_t instance) const {
+  const RtslInstance &one = self->instances.at(instance);
+  return one.primitive ? 1 : self->meshTable[one.mesh].triangleCount;
+}
+
+const std::string &Scene::instanceName(std::uint32_t instance) const {
+  return self->instanceNames.at(instance);
+}
+
+//===----------------------------------------------------------------------===//
+// Lights, camera, background
+//===----------------------------------------------------------------------===//
+
+void Scene::addLight(RtslRef light) {
+  self->requireRole(light, "rt_Light", {"illumination"});
+  self->lights.push_back(light);
+}
+
+void Scene::setCamera(RtslRef camera) {
+  self->requireRole(camera, "rt_Camera", {"generateRay"});
+  self->camera = camera;
+}
+
+void Scene::setBackground(RtslRef miss) {
+  self->requireRole(miss, "rt_Miss", {"miss"});
+  self->background = miss;
+}
+
+void Scene::Implementation::setColor(const std::vector<float> &color, float *to,
+                                     const char *what) const {
+  std::uint32_t components = program->colorComponents;
+  if (color.size() != 1 && color.size() != components)
+    throw Error(ErrorCode::WrongType, fmt::format("the {} takes 1 or {} numbers, not {}", what,
+                                                  components, color.size()));
+  for (std::uint32_t i = 0; i < components; ++i)
+    to[i] = color[color.size() == 1 ? 0 : i];
+}
+
+void Scene::setBackgroundColor(const std::vector<float> &color) {
+  self->setColor(color, self->backgroundColor, "background");
+  self->background = 0;
+}
+
+void Scene::setAmbient(const std::vector<float> &color) {
+  self->setColor(color, self->ambient, "ambient light");
+}
+
+const std::vector<Warning> &Scene::warnings() const {
+  return self->warnings;
+}
+
+RtslLaunch Scene::launch() const {
+  if (self->camera == 0)
+    throw Error(ErrorCode::IncompleteScene, "the scene has no camera");
+  return self->tables();
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,251 @@
+#include "runtime/ValueStore.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace rtsl::runtime {
+
+namespace {
+
+const char *describe(const Value &value) {
+  switch (value.kind) {
+  case Value::Kind::Number:
+    return "a number";
+  case Value::Kind::Boolean:
+    return "a truth value";
+  case Value::Kind::Reference:
+    return "a reference to an object";
+  case Value::Kind::List:
+    return "a list";
+  }
+  return "something else";
+}
+
+class Store {
+public:
+  Store(const StoreContext &context, const std::string &what, const std::optional<Place> &fallback)
+      : context(context), what(what), fallback(fallback) {}
+
+  void whole(const ValueType &type, const Value &value, std::uint8_t *to) {
+    if (type.bufferRank > 0)
+      buffer(type, value, to);
+    else
+      array(type, 0, value, to, type.size);
+  }
+
+private:
+  [[noreturn]] void fail(ErrorCode code, const Value &value, const std::string &message) const {
+    throw Error(code, fmt::format("{} {}", what, message), value.place ? value.place : fallback);
+  }
+  [[noreturn]] void wrongType(const ValueType &type, const Value &value) const {
+    fail(ErrorCode::WrongType, value, fmt::format("is a `{}`, not {}", type.name, describe(value)));
+  }
+
+  /// Dimension `level` of a fixed-length array that takes `size` bytes.
+  void array(const ValueType &type, std::size_t level, const Value &value, std::uint8_t *to,
+             std::uint32_t size) {
+    if (level == type.arraySizes.size())
+      return element(type, value, to, size);
+    std::uint32_t count = type.arraySizes[level];
+    if (value.kind != Value::Kind::List)
+      wrongType(type, value);
+    if (value.list.size() != count)
+      fail(ErrorCode::WrongType, value,
+           fmt::format("takes {} elements, not {}", count, value.list.size()));
+    for (std::uint32_t i = 0; i < count; ++i)
+      array(type, level + 1, value.list[i], to + std::size_t(i) * (size / count), size / count);
+  }
+
+  void element(const ValueType &type, const Value &value, std::uint8_t *to, std::uint32_t size) {
+    switch (type.kind) {
+    case ValueType::Kind::Float:
+    case ValueType::Kind::Int:
+    case ValueType::Kind::UInt:
+    case ValueType::Kind::Bool:
+      return numbers(type, value, to);
+    case ValueType::Kind::Color:
+      return color(type, value, to, size);
+    case ValueType::Kind::Reference:
+      return reference(type, value, to);
+    case ValueType::Kind::Struct:
+      return structure(type, value, to);
+    }
+  }
+
+  void scalar(const ValueType &type, const Value &value, std::uint8_t *to) {
+    if (type.kind == ValueType::Kind::Bool) {
+      if (value.kind != Value::Kind::Boolean)
+        wrongType(type, value);
+      std::uint32_t bits = value.boolean;
+      std::memcpy(to, &bits, 4);
+      return;
+    }
+    if (value.kind != Value::Kind::Number)
+      wrongType(type, value);
+    if (type.kind == ValueType::Kind::Float) {
+      float number = float(value.number);
+      if (std::isinf(number) && !std::isinf(value.number))
+        fail(ErrorCode::OutOfRange, value,
+             fmt::format("cannot be {:g}: the largest float is 3.4e38", value.number));
+      std::memcpy(to, &number, 4);
+      return;
+    }
+    if (value.number != std::floor(value.number))
+      fail(ErrorCode::WrongType, value, fmt::format("takes whole numbers, not {:g}", value.number));
+    bool isSigned = type.kind == ValueType::Kind::Int;
+    double lowest = isSigned ? -2147483648.0 : 0.0,
+           highest = isSigned ? 2147483647.0 : 4294967295.0;
+    if (!(value.number >= lowest && value.number <= highest))
+      fail(ErrorCode::OutOfRange, value,
+           fmt::format("cannot be {:.0f}: it lies between {:.0f} and {:.0f}", value.number, lowest,
+                       highest));
+    std::uint32_t bits =
+        isSigned ? std::uint32_t(std::int32_t(value.number)) : std::uint32_t(value.number);
+    std::memcpy(to, &bits, 4);
+  }
+
+  /// A scalar, a vector, or a matrix by its columns: nested or in a row.
+  void numbers(const ValueType &type, const Value &value, std::uint8_t *to) {
+    std::uint32_t rows = type.rows, columns = type.columns;
+    if (rows * columns == 1)
+      return scalar(type, value, to);
+    if (value.kind != Value::Kind::List)
+      wrongType(type, value);
+    if (columns > 1 && value.list.size() == columns && value.list[0].kind == Value::Kind::List) {
+      for (std::uint32_t i = 0; i < columns; ++i)
+        row(type, value.list[i], to + 4 * std::size_t(i) * rows, rows);
+      return;
+    }
+    row(type, value, to, rows * columns);
+  }
+
+  void row(const ValueType &type, const Value &value, std::uint8_t *to, std::uint32_t count) {
+    if (value.kind != Value::Kind::List)
+      wrongType(type, value);
+    if (value.list.size() != count)
+      fail(ErrorCode::WrongType, value,
+           fmt::format("is a `{}` and takes {} numbers, not {}", type.name, count,
+                       value.list.size()));
+    for (std::uint32_t i = 0; i < count; ++i)
+      scalar(type, value.list[i], to + 4 * std::size_t(i));
+  }
+
+  /// One number for all components, red, green and blue, or as many numbers as a color has here.
+  void color(const ValueType &type, const Value &value, std::uint8_t *to, std::uint32_t size) {
+    std::uint32_t count = context.colorComponents;
+    std::vector<float> components;
+    ValueType number;
+    number.name = type.name;
+    auto read = [&](const Value &one) {
+      float component;
+      scalar(number, one, reinterpret_cast<std::uint8_t *>(&component));
+      return component;
+    };
+    if (value.kind == Value::Kind::Number) {
+      components.assign(count, read(value));
+    } else if (value.kind == Value::Kind::List && value.list.size() == count) {
+      for (const Value &one : value.list)
+        components.push_back(read(one));
+    } else if (value.kind == Value::Kind::List && value.list.size() == 3 && count == 1) {
+      // Luminance of linear sRGB (ITU-R BT.709-6).
+      components.push_back(0.2126f * read(value.list[0]) + 0.7152f * read(value.list[1]) +
+                           0.0722f * read(value.list[2]));
+    } else if (value.kind == Value::Kind::List) {
+      fail(ErrorCode::WrongType, value,
+           fmt::format(
+               "is a color of {} component{}; it takes that many numbers or one for all, not {}",
+               count, count == 1 ? "" : "s", value.list.size()));
+    } else {
+      wrongType(type, value);
+    }
+    std::memset(to, 0, size);
+    std::memcpy(to, components.data(), 4 * components.size());
+  }
+
+  void reference(const ValueType &type, const Value &value, std::uint8_t *to) {
+    if (value.kind != Value::Kind::Reference)
+      wrongType(type, value);
+    if (value.object != 0)
+      if (const std::string *actual = context.classMismatch(value.object, type.className))
+        fail(ErrorCode::WrongClass, value,
+             fmt::format("takes a `{}`, not a `{}`", type.className, *actual));
+    std::memcpy(to, &value.object, 4);
+  }
+
+  /// The fields in the order of the declaration.
+  void structure(const ValueType &type, const Value &value, std::uint8_t *to) {
+    if (type.fields.empty())
+      fail(ErrorCode::NotSupported, value,
+           fmt::format("is a `{}`, which a scene cannot set", type.name));
+    if (value.kind != Value::Kind::List || value.list.size() != type.fields.size())
+      fail(ErrorCode::WrongType, value,
+           fmt::format("is a `{}` and takes a list of its {} members", type.name,
+                       type.fields.size()));
+    for (std::size_t i = 0; i < type.fields.size(); ++i) {
+      std::string inner = fmt::format("`{}` in {}", type.fields[i].name, what);
+      Store(context, inner, value.list[i].place ? value.list[i].place : fallback)
+          .whole(type.fields[i].type, value.list[i], to + type.fields[i].offset);
+    }
+  }
+
+  /// Lists nested once a dimension, all of one length in each.
+  void buffer(const ValueType &type, const Value &value, std::uint8_t *to) {
+    ValueType one = type;
+    one.bufferRank = 0;
+    std::uint32_t stride = type.elementSize;
+    if (stride == 0) {
+      stride = type.kind == ValueType::Kind::Color ? 4 * context.colorComponents
+                                                   : 4u * type.rows * type.columns;
+      for (std::uint32_t count : type.arraySizes)
+        stride *= count;
+    }
+    one.size = stride;
+
+    RtslBuffer header{};
+    std::vector<const Value *> elements{&value};
+    for (std::uint32_t level = 0; level < type.bufferRank; ++level) {
+      std::vector<const Value *> next;
+      std::size_t length = 0;
+      for (std::size_t i = 0; i < elements.size(); ++i) {
+        if (elements[i]->kind != Value::Kind::List)
+          wrongType(type, *elements[i]);
+        if (i == 0)
+          length = elements[i]->list.size();
+        else if (elements[i]->list.size() != length)
+          fail(ErrorCode::WrongType, *elements[i],
+               fmt::format("has rows of different lengths: {} and {}", length,
+                           elements[i]->list.size()));
+        for (const Value &inner : elements[i]->list)
+          next.push_back(&inner);
+      }
+      if (length > 0xffffffffu)
+        fail(ErrorCode::OutOfRange, value, "has too many elements");
+      header.size[level] = std::uint32_t(length);
+      elements = std::move(next);
+    }
+    std::uint8_t *memory = context.allocate(std::size_t(stride) * elements.size());
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      array(one, 0, *elements[i], memory + i * stride, stride);
+    std::uint64_t address = reinterpret_cast<std::uint64_t>(memory);
+    header.addressLow = std::uint32_t(address);
+    header.addressHigh = std::uint32_t(address >> 32);
+    std::memcpy(to, &header, sizeof header);
+  }
+
+  const StoreContext &context;
+  const std::string &what;
+  const std::optional<Place> &fallback;
+};
+
+} // namespace
+
+void storeValue(const ValueType &type, const Value &value, std::uint8_t *to,
+                const StoreContext &context, const std::string &what,
+                const std::optional<Place> &fallback) {
+  Store(context, what, fallback).whole(type, value, to);
+}
+
+} // namespace rtsl::runtime

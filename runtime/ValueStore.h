@@ -1,0 +1,29 @@
+//===- ValueStore.h - values of a scene as bytes of a record --------------===//
+#pragma once
+
+#include "runtime/Program.h"
+#include "runtime/Value.h"
+
+#include <functional>
+#include <string>
+
+namespace rtsl::runtime {
+
+/// What storing a value needs from the scene.
+struct StoreContext {
+  std::uint32_t colorComponents;
+  /// Memory of the scene's own that stays where it is.
+  std::function<std::uint8_t *(std::size_t bytes)> allocate;
+  /// Null if the object may stand where `className` is asked for; otherwise the name of the class
+  /// that it has.
+  std::function<const std::string *(RtslRef object, const std::string &className)> classMismatch;
+};
+
+/// Writes `value` as a `type` to `to`. `what` names the member or parameter in messages ("member
+/// `radius` of `ball`"). Throws WrongType, OutOfRange, WrongClass; the error's place is the value's
+/// or `fallback`.
+void storeValue(const ValueType &type, const Value &value, std::uint8_t *to,
+                const StoreContext &context, const std::string &what,
+                const std::optional<Place> &fallback);
+
+} // namespace rtsl::runtime
