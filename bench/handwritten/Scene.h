@@ -1,0 +1,86 @@
+//===- Scene.h - examples/glass as numbers and an Embree scene ------------===//
+//
+// What scene.json says, written down by hand. Nothing here is general: geometry, materials and
+// lights are those of this scene.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/Mesh.h"
+
+#include <embree3/rtcore.h>
+#include <glm/glm.hpp>
+
+#include <array>
+
+namespace handwritten {
+
+using glm::vec2;
+using glm::vec3;
+
+struct Sphere {
+  vec3 center;
+  float radius;
+};
+
+struct Floor {
+  vec3 anchor{-8, 0, 6}, side1{16, 0, 0}, side2{0, 0, -16};
+  vec3 normal = glm::normalize(glm::cross(side1, side2));
+  // dot(inverse1, p - anchor) is the coordinate of p along side1, in [0, 1].
+  vec3 inverse1 = side1 / glm::dot(side1, side1);
+  vec3 inverse2 = side2 / glm::dot(side2, side2);
+};
+
+struct BallLight {
+  vec3 position;
+  float radius;
+  vec3 intensity;
+};
+
+/// A pinhole camera at `eye`; a sample at (x, y) in [0, 1]^2 looks along corner + x across + y
+/// upward.
+struct Camera {
+  vec3 eye{0, 2.2f, 7.5f};
+  vec3 gaze = glm::normalize(vec3(0, -0.19f, -1));
+  vec3 right = glm::normalize(glm::cross(gaze, vec3(0, 1, 0)));
+  vec3 up = glm::cross(right, gaze);
+  vec3 corner = -1.6f * right - 0.9f * up + 2.7f * gaze;
+  vec3 across = 3.2f * right;
+  vec3 upward = 1.8f * up;
+};
+
+/// Embree's ids of the geometries, in the order in which they are attached.
+enum Geometry : unsigned { floorGeometry, sphereGeometry, knotGeometry };
+
+/// The spheres, by Embree's primitive id.
+enum SphereId : unsigned { glassSphere, plasterSphere };
+
+class Scene {
+public:
+  /// Takes the knot, already where it stands. Throws std::runtime_error with Embree's message.
+  explicit Scene(rtsl::runtime::Mesh knot);
+  ~Scene();
+  Scene(const Scene &) = delete;
+  Scene &operator=(const Scene &) = delete;
+
+  RTCScene embree() const { return scene; }
+  /// The normal of the knot's vertices, interpolated; not unit.
+  vec3 knotNormal(unsigned triangle, float u, float v) const;
+
+  Camera camera;
+  Floor floor;
+  std::array<Sphere, 2> spheres{{{{-1.1f, 1, 0.6f}, 1}, {{0.55f, 0.45f, 2}, 0.45f}}};
+  std::array<BallLight, 2> lights{{{{4, 6, 4}, 0.4f, {38, 36, 33}}, {{-5, 4, 2}, 0.4f, {6, 7, 9}}}};
+  vec3 ambient{0.12f, 0.13f, 0.16f};
+
+private:
+  void attachFloor();
+  void attachSpheres();
+  void attachKnot();
+
+  rtsl::runtime::Mesh knot;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+};
+
+} // namespace handwritten
