@@ -8,6 +8,7 @@
 #include "mlir/IR/OpDefinition.h"
 #include "mlir/IR/OpImplementation.h"
 #include "mlir/IR/SymbolTable.h"
+#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "mlir/Interfaces/InferTypeOpInterface.h"
 #include "mlir/Interfaces/MemorySlotInterfaces.h"
 #include "mlir/Interfaces/SideEffectInterfaces.h"
@@ -19,6 +20,11 @@
 
 namespace rtsl::ir {
 class MemberDeclOp;
+
+/// The frame, in which values survive a trace, as what memory effects are on.
+struct FrameResource : mlir::SideEffects::Resource::Base<FrameResource> {
+  llvm::StringRef getName() final { return "Frame"; }
+};
 } // namespace rtsl::ir
 
 #define GET_OP_CLASSES

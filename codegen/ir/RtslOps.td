@@ -87,7 +87,7 @@ def Rtsl_VarOp : Rtsl_Op<"var", [Rtsl_Named, DeclareOpInterfaceMethods<Promotabl
     Example: `%sum = rtsl.var "sum" : !rtsl.ptr<f32>`
   }];
   let arguments = (ins StrAttr:$name);
-  let results = (outs Res<Rtsl_PtrType, "", [MemAlloc<AutomaticAllocationScopeResource>]>:$result);
+  let results = (outs Res<Rtsl_Ptr, "", [MemAlloc<AutomaticAllocationScopeResource>]>:$result);
   let assemblyFormat = "$name attr-dict `:` type($result)";
   let builders = [OpBuilder<(ins "::llvm::StringRef":$name, "::mlir::Type":$type)>];
 }
@@ -97,7 +97,7 @@ def Rtsl_ClearOp : Rtsl_Op<"clear", [Rtsl_MemOp, Rtsl_Accessor, Rtsl_Safe]> {
   let description = [{
     Example: `rtsl.clear %matrix : !rtsl.ptr<!rtsl.array<3 x vector<3xf32>>>`
   }];
-  let arguments = (ins Arg<Rtsl_PtrType, "", [MemWrite]>:$address);
+  let arguments = (ins Arg<Rtsl_Ptr, "", [MemWrite]>:$address);
   let assemblyFormat = "$address attr-dict `:` type($address)";
 }
 
@@ -134,7 +134,7 @@ def Rtsl_CopyOp : Rtsl_Op<"copy", [AllTypesMatch<["source", "target"]>, Rtsl_Acc
 
     Example: `rtsl.copy %from to %to : !rtsl.ptr<!rtsl.struct<"Ray", {origin: vector<3xf32>}>>`
   }];
-  let arguments = (ins Arg<Rtsl_PtrType, "", [MemRead]>:$source, Arg<Rtsl_PtrType, "", [MemWrite]>:$target);
+  let arguments = (ins Arg<Rtsl_Ptr, "", [MemRead]>:$source, Arg<Rtsl_Ptr, "", [MemWrite]>:$target);
   let assemblyFormat = "$source `to` $target attr-dict `:` type($source)";
   let hasCanonicalizeMethod = 1;
 }
@@ -145,7 +145,7 @@ def Rtsl_FieldOp : Rtsl_Op<"field", [Pure, Rtsl_Accessor, Rtsl_Safe]> {
     Example: `%o = rtsl.field %ray["origin"] : !rtsl.ptr<!rtsl.struct<"Ray", {origin: f32}>> -> !rtsl.ptr<f32>`
   }];
   let arguments = (ins Rtsl_PtrToStruct:$base, StrAttr:$field);
-  let results = (outs Rtsl_PtrType:$result);
+  let results = (outs Rtsl_Ptr:$result);
   let assemblyFormat = "$base `[` $field `]` attr-dict `:` type($base) `->` type($result)";
   let hasVerifier = 1;
   let builders = [OpBuilder<(ins "::mlir::Value":$base, "::llvm::StringRef":$field)>];
@@ -159,7 +159,7 @@ def Rtsl_ElementOp : Rtsl_Op<"element", [Pure, Rtsl_Accessor, Rtsl_Safe]> {
     Example: `%e = rtsl.element %array[%i] : !rtsl.ptr<!rtsl.array<4 x f32>> -> !rtsl.ptr<f32>`
   }];
   let arguments = (ins Rtsl_PtrToArray:$base, I32:$index);
-  let results = (outs Rtsl_PtrType:$result);
+  let results = (outs Rtsl_Ptr:$result);
   let assemblyFormat = "$base `[` $index `]` attr-dict `:` type($base) `->` type($result)";
   let hasVerifier = 1;
   let builders = [OpBuilder<(ins "::mlir::Value":$base, "::mlir::Value":$index)>];
@@ -176,8 +176,8 @@ def Rtsl_MemberOp : Rtsl_Op<"member", [Pure, Rtsl_Named, Rtsl_SymbolUser]> {
 
     Example: `%eta = rtsl.member %self["eta"] : !rtsl.ref<"Glass"> -> !rtsl.ptr<f32>`
   }];
-  let arguments = (ins Rtsl_RefType:$object, StrAttr:$member);
-  let results = (outs Rtsl_PtrType:$result);
+  let arguments = (ins Rtsl_Ref:$object, StrAttr:$member);
+  let results = (outs Rtsl_Ptr:$result);
   let assemblyFormat = "$object `[` $member `]` attr-dict `:` type($object) `->` type($result)";
 }
 
@@ -189,7 +189,7 @@ def Rtsl_StateOp : Rtsl_Op<"state", [Pure, Rtsl_Named]> {
     Example: `%o = rtsl.state "RayOrigin" : !rtsl.ptr<vector<3xf32>>`
   }];
   let arguments = (ins StrAttr:$name);
-  let results = (outs Rtsl_PtrType:$result);
+  let results = (outs Rtsl_Ptr:$result);
   let assemblyFormat = "$name attr-dict `:` type($result)";
   let hasVerifier = 1;
   let builders = [OpBuilder<(ins "::llvm::StringRef":$name, "::mlir::Type":$type)>];
@@ -204,7 +204,7 @@ def Rtsl_AttributeOp : Rtsl_Op<"attribute", [Pure, Rtsl_Named]> {
     Example: `%n = rtsl.attribute "n" {offset = 0 : i32} : !rtsl.ptr<vector<3xf32>>`
   }];
   let arguments = (ins StrAttr:$name, OptionalAttr<I32Attr>:$offset);
-  let results = (outs Rtsl_PtrType:$result);
+  let results = (outs Rtsl_Ptr:$result);
   let assemblyFormat = "$name attr-dict `:` type($result)";
   let hasVerifier = 1;
   let builders = [OpBuilder<(ins "::llvm::StringRef":$name, "::mlir::Type":$type)>];
@@ -218,7 +218,7 @@ def Rtsl_BufferElementOp : Rtsl_Op<"buffer_element", []> {
     Example: `%v = rtsl.buffer_element %b[%i] : !rtsl.ptr<!rtsl.buffer<f32, 1>> -> !rtsl.ptr<f32>`
   }];
   let arguments = (ins Arg<Rtsl_PtrToBuffer, "", [MemRead]>:$buffer, Variadic<I32>:$indices);
-  let results = (outs Rtsl_PtrType:$result);
+  let results = (outs Rtsl_Ptr:$result);
   let assemblyFormat = "$buffer `[` $indices `]` attr-dict `:` type($buffer) `->` type($result)";
   let hasVerifier = 1;
   let builders = [OpBuilder<(ins "::mlir::Value":$buffer, "::mlir::ValueRange":$indices)>];
@@ -244,7 +244,7 @@ def Rtsl_NullRefOp : Rtsl_Op<"null_ref", [Pure]> {
   let description = [{
     Example: `%none = rtsl.null_ref : !rtsl.ref<"rt_Texture">`
   }];
-  let results = (outs Rtsl_RefType:$result);
+  let results = (outs Rtsl_Ref:$result);
   let assemblyFormat = "attr-dict `:` type($result)";
 }
 
@@ -255,8 +255,8 @@ def Rtsl_CastRefOp : Rtsl_Op<"cast_ref", [Pure]> {
 
     Example: `%t = rtsl.cast_ref %checker : !rtsl.ref<"Checker"> -> !rtsl.ref<"rt_Texture">`
   }];
-  let arguments = (ins Rtsl_RefType:$object);
-  let results = (outs Rtsl_RefType:$result);
+  let arguments = (ins Rtsl_Ref:$object);
+  let results = (outs Rtsl_Ref:$result);
   let assemblyFormat = "$object attr-dict `:` type($object) `->` type($result)";
   let hasFolder = 1;
 }
@@ -266,7 +266,7 @@ def Rtsl_ClassIdOp : Rtsl_Op<"class_id", [Pure]> {
   let description = [{
     Example: `%id = rtsl.class_id %texture : !rtsl.ref<"rt_Texture">`
   }];
-  let arguments = (ins Rtsl_RefType:$object);
+  let arguments = (ins Rtsl_Ref:$object);
   let results = (outs I32:$result);
   let assemblyFormat = "$object attr-dict `:` type($object)";
   let hasFolder = 1;
@@ -277,7 +277,7 @@ def Rtsl_EqualRefOp : Rtsl_Op<"equal_ref", [Pure]> {
   let description = [{
     Example: `%same = rtsl.equal_ref %a, %b : !rtsl.ref<"A">, !rtsl.ref<"B">`
   }];
-  let arguments = (ins Rtsl_RefType:$lhs, Rtsl_RefType:$rhs);
+  let arguments = (ins Rtsl_Ref:$lhs, Rtsl_Ref:$rhs);
   let results = (outs I1:$result);
   let assemblyFormat = "$lhs `,` $rhs attr-dict `:` type($lhs) `,` type($rhs)";
   let hasFolder = 1;
@@ -290,7 +290,7 @@ def Rtsl_CallMethodOp : Rtsl_Op<"call_method"> {
 
     Example: `%c = rtsl.call_method "weight" on %t(%x) : !rtsl.ref<"rt_Texture">, (f32) -> f32`
   }];
-  let arguments = (ins StrAttr:$method, Rtsl_RefType:$object, Variadic<AnyType>:$arguments);
+  let arguments = (ins StrAttr:$method, Rtsl_Ref:$object, Variadic<AnyType>:$arguments);
   let results = (outs Variadic<Rtsl_Value>:$results);
   let assemblyFormat = [{
     $method `on` $object `(` $arguments `)` attr-dict `:` type($object) `,` functional-type($arguments, $results)
@@ -568,5 +568,7 @@ def Rtsl_ReturnOp : Rtsl_Op<"return", [Terminator]> {
   let hasVerifier = 1;
   let builders = [OpBuilder<(ins), [{}]>];
 }
+
+include "codegen/ir/RtslContinuationOps.td"
 
 #endif

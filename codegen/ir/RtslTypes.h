@@ -23,6 +23,12 @@ bool isScalar(mlir::Type type);
 bool isValueType(mlir::Type type);
 /// What may stand behind a `!rtsl.ptr`: a value type or an aggregate of such.
 bool isStorable(mlir::Type type);
+inline bool isRef(mlir::Type type) {
+  return llvm::isa<RefType>(type);
+}
+inline bool isPtr(mlir::Type type) {
+  return llvm::isa<PtrType>(type);
+}
 bool isFloatOrVector(mlir::Type type);
 bool isIntOrVector(mlir::Type type);
 bool isColor(mlir::Type type);

@@ -95,6 +95,9 @@ def Rtsl_BufferType : Rtsl_Type<"Buffer", "buffer"> {
 
 class Rtsl_Constraint<string predicate, string what> : Type<CPred<"::rtsl::ir::" # predicate # "($_self)">, what>;
 
+// Stated as predicates, not as the types themselves, so that types print in full.
+def Rtsl_Ref : Rtsl_Constraint<"isRef", "a reference">;
+def Rtsl_Ptr : Rtsl_Constraint<"isPtr", "an address">;
 def Rtsl_Value : Rtsl_Constraint<"isValueType", "a scalar, a vector or a reference">;
 def Rtsl_FloatLike : Rtsl_Constraint<"isFloatOrVector", "f32 or a vector of f32">;
 def Rtsl_IntLike : Rtsl_Constraint<"isIntOrVector", "i32 or a vector of i32">;

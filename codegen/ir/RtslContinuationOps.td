@@ -1,0 +1,135 @@
+//===- RtslContinuationOps.td - continuations (level 2) -------------------===//
+//
+// What takes the place of `rtsl.trace` when a function is split there. Included by RtslOps.td. In the order in which the
+// passes of codegen/passes/continuation make them.
+//
+//===----------------------------------------------------------------------===//
+#ifndef RTSL_CONTINUATION_OPS_TD
+#define RTSL_CONTINUATION_OPS_TD
+
+include "mlir/Interfaces/ControlFlowInterfaces.td"
+
+// What is read or written is the frame, memory of the ray's that nothing else touches.
+def Rtsl_FrameResource : Resource<"::rtsl::ir::FrameResource">;
+
+def Rtsl_SuspendOp : Rtsl_Op<"suspend", [Terminator,
+    DeclareOpInterfaceMethods<BranchOpInterface>]> {
+  let summary = "traces a ray and goes on at a block when it comes back";
+  let description = [{
+    Everything that is live in the `resume` block has to survive the trace. What is passed to its arguments is saved and
+    restored; `names` says what each is called in the source, one unique name for one value in the whole function, so that it
+    keeps its slot from trace to trace. The `resume` block begins with `rtsl.trace_result` and has this op as its only
+    predecessor.
+
+    Example: `rtsl.suspend %origin, %direction, ^resume(%i : i32) names ["i"]`
+  }];
+  let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, Variadic<Rtsl_Value>:$saved,
+                       DefaultValuedAttr<StrArrayAttr, "{}">:$names);
+  let successors = (successor AnySuccessor:$resume);
+  let assemblyFormat = [{
+    $origin `,` $direction `,` $resume (`(` $saved^ `:` type($saved) `)`)? (`names` $names^)? attr-dict
+  }];
+  let hasVerifier = 1;
+}
+
+def Rtsl_TraceResultOp : Rtsl_Op<"trace_result", []> {
+  let summary = "the color that the traced ray brought back";
+  let description = [{
+    The first operation of the block, or of the function, that a suspended trace resumes at.
+
+    Example: `%c = rtsl.trace_result : vector<3xf32>`
+  }];
+  let results = (outs Rtsl_Color:$color);
+  let assemblyFormat = "attr-dict `:` type($color)";
+}
+
+def Rtsl_FrameLoadOp : Rtsl_Op<"frame_load", [Rtsl_Named]> {
+  let summary = "restores a value from the frame";
+  let description = [{
+    The name is the slot's, the number its place in bytes. A bool takes one bit of the word.
+
+    Example: `%i = rtsl.frame_load "i"[0] : i32`
+    Example: `%inside = rtsl.frame_load "inside"[4] bit 2 : i1`
+  }];
+  let arguments = (ins StrAttr:$name, I32Attr:$offset, OptionalAttr<I32Attr>:$bit);
+  let results = (outs Res<Rtsl_Value, "", [MemRead<Rtsl_FrameResource>]>:$result);
+  let assemblyFormat = "$name `[` $offset `]` (`bit` $bit^)? attr-dict `:` type($result)";
+  let hasVerifier = 1;
+}
+
+def Rtsl_FrameStoreOp : Rtsl_Op<"frame_store", [MemoryEffects<[MemWrite<Rtsl_FrameResource>]>]> {
+  let summary = "saves a value in the frame";
+  let description = [{
+    Example: `rtsl.frame_store %i, "i"[0] : i32`
+  }];
+  let arguments = (ins Rtsl_Value:$value, StrAttr:$name, I32Attr:$offset, OptionalAttr<I32Attr>:$bit);
+  let assemblyFormat = "$value `,` $name `[` $offset `]` (`bit` $bit^)? attr-dict `:` type($value)";
+  let hasVerifier = 1;
+}
+
+def Rtsl_FrameObjectOp : Rtsl_Op<"frame_object", [Pure, Rtsl_Named]> {
+  let summary = "address of a variable that lives in the frame";
+  let description = [{
+    A variable that is indexed at run time and alive across a trace has no other place. Its words are its own.
+
+    Example: `%table = rtsl.frame_object "table"[8] : !rtsl.ptr<!rtsl.array<4 x f32>>`
+  }];
+  let arguments = (ins StrAttr:$name, I32Attr:$offset);
+  let results = (outs Rtsl_Ptr:$result);
+  let assemblyFormat = "$name `[` $offset `]` attr-dict `:` type($result)";
+}
+
+def Rtsl_SpawnOp : Rtsl_Op<"spawn", []> {
+  let summary = "prepares the ray that is traced when this state ends";
+  let description = [{
+    Followed by the end of the state, with `rtsl.next trace`.
+
+    Example: `rtsl.spawn %origin, %direction`
+  }];
+  let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction);
+  let assemblyFormat = "$origin `,` $direction attr-dict";
+}
+
+def Rtsl_Transition : I32Enum<"Transition", "what happens when a state ends", [
+    I32EnumCase<"Done", 0, "done">, I32EnumCase<"Trace", 1, "trace">, I32EnumCase<"Jump", 2, "jump">]> {
+  let cppNamespace = "::rtsl::ir";
+}
+
+def Rtsl_NextOp : Rtsl_Op<"next", [Pure]> {
+  let summary = "what comes after this state, as a number";
+  let description = [{
+    `done`: the method is over. `trace @s`: the spawned ray is traced, then state `@s` runs. `jump @s`: state `@s` runs at
+    once. Numbers are given when the program is complete: 0 for done, the number of the state for `trace`, its negative for
+    `jump`.
+
+    Example: `%next = rtsl.next trace @Glass.shade.state1`
+  }];
+  let arguments = (ins EnumAttr<Rtsl_Dialect, Rtsl_Transition, "transition">:$transition,
+                       OptionalAttr<FlatSymbolRefAttr>:$state);
+  let results = (outs I32:$result);
+  let assemblyFormat = "$transition ($state^)? attr-dict";
+  let hasVerifier = 1;
+}
+
+def Rtsl_EndOp : Rtsl_Op<"end", [Pure, Terminator, ReturnLike]> {
+  let summary = "ends a state";
+  let description = [{
+    Example: `rtsl.end %next`
+  }];
+  let arguments = (ins I32:$next);
+  let assemblyFormat = "$next attr-dict";
+}
+
+def Rtsl_FrameSlotOp : Rtsl_Op<"frame_slot", [Pure]> {
+  let summary = "address of a place in a frame";
+  let description = [{
+    What accesses of the frame become once it is a parameter. The number is the place in bytes.
+
+    Example: `%p = rtsl.frame_slot %frame[8] : !rtsl.ptr<i32> -> !rtsl.ptr<vector<3xf32>>`
+  }];
+  let arguments = (ins Rtsl_PtrToValue:$frame, I32Attr:$offset);
+  let results = (outs Rtsl_Ptr:$result);
+  let assemblyFormat = "$frame `[` $offset `]` attr-dict `:` type($frame) `->` type($result)";
+}
+
+#endif

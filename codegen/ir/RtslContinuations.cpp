@@ -1,0 +1,63 @@
+//===- RtslContinuations.cpp - the operations of split functions ----------===//
+#include "codegen/ir/RtslOps.h"
+
+#include "llvm/ADT/StringSet.h"
+
+namespace rtsl::ir {
+
+using mlir::LogicalResult;
+
+mlir::SuccessorOperands SuspendOp::getSuccessorOperands(unsigned) {
+  return mlir::SuccessorOperands(getSavedMutable());
+}
+
+LogicalResult SuspendOp::verify() {
+  mlir::Block *resume = getResume();
+  if (resume->getSinglePredecessor() != getOperation()->getBlock())
+    return emitOpError() << "resumes at a block that has other predecessors";
+  if (resume->empty() || !llvm::isa<TraceResultOp>(resume->front()))
+    return emitOpError() << "resumes at a block that does not begin with `rtsl.trace_result`";
+  if (getNames().size() != getSaved().size())
+    return emitOpError() << "saves " << getSaved().size() << " values and names "
+                         << getNames().size();
+  llvm::StringSet<> seen;
+  for (auto name : getNames().getAsRange<mlir::StringAttr>())
+    if (!seen.insert(name.getValue()).second)
+      return emitOpError() << "saves \"" << name.getValue() << "\" twice";
+  return mlir::success();
+}
+
+static LogicalResult verifySlot(mlir::Operation *op, mlir::Type type, std::uint32_t offset,
+                                std::optional<std::uint32_t> bit) {
+  if (offset % 4 != 0)
+    return op->emitOpError() << "accesses byte " << offset << ", which is not a multiple of 4";
+  if (bit.has_value() != type.isInteger(1))
+    return op->emitOpError() << "names a bit for a bool, and for a bool only";
+  if (bit && *bit > 31)
+    return op->emitOpError() << "names bit " << *bit << " of a word of 32";
+  return mlir::success();
+}
+
+LogicalResult FrameLoadOp::verify() {
+  return verifySlot(*this, getResult().getType(), getOffset(), getBit());
+}
+
+LogicalResult FrameStoreOp::verify() {
+  return verifySlot(*this, getValue().getType(), getOffset(), getBit());
+}
+
+void FrameLoadOp::getAsmResultNames(mlir::OpAsmSetValueNameFn setName) {
+  setName(getResult(), getName());
+}
+
+void FrameObjectOp::getAsmResultNames(mlir::OpAsmSetValueNameFn setName) {
+  setName(getResult(), getName());
+}
+
+LogicalResult NextOp::verify() {
+  if (getState().has_value() == (getTransition() == Transition::Done))
+    return emitOpError() << "names a state for `trace` and `jump`, and none for `done`";
+  return mlir::success();
+}
+
+} // namespace rtsl::ir
