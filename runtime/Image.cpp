@@ -1,6 +1,7 @@
 #include "runtime/Image.h"
 
 #include "runtime/AtomicFile.h"
+#include "runtime/ColorBasis.h"
 #include "runtime/ImageFormats.h"
 
 #include <fmt/format.h>
@@ -38,20 +39,15 @@ Image toRgb(const Image &image) {
   if (image.channels == 3)
     return image;
   Image rgb(image.width, image.height, 3);
+  const ColorBasis basis = makeColorBasis(image.channels);
   std::size_t count = std::size_t(image.width) * image.height;
   for (std::size_t i = 0; i < count; ++i) {
     const float *from = image.pixels.data() + i * image.channels;
-    float *to = rgb.pixels.data() + i * 3;
-    // The components of a spectral color run from the longest wave to the shortest: red, green and
-    // blue are the means of its thirds, so that equal components are grey. A component may be
-    // shared by two thirds.
     for (std::uint32_t c = 0; c < 3; ++c) {
-      std::uint32_t first = c * image.channels / 3;
-      std::uint32_t last = std::max(first + 1, ((c + 1) * image.channels + 2) / 3);
-      float sum = 0;
-      for (std::uint32_t k = first; k < last; ++k)
-        sum += from[k];
-      to[c] = sum / float(last - first);
+      double sum = 0;
+      for (std::uint32_t k = 0; k < image.channels; ++k)
+        sum += basis.toRgb[c][k] * double(from[k]);
+      rgb.pixels[i * 3 + c] = float(sum);
     }
   }
   return rgb;

@@ -28,7 +28,8 @@ struct Image {
   }
 };
 
-/// Red, green and blue of an image with N channels. 3: as they are. 1: grey.
+/// Red, green and blue of an image with N channels, by runtime/ColorBasis.h. 3: as they are. 1:
+/// grey.
 Image toRgb(const Image &image);
 
 /// Throws FileUnwritable or UnsupportedFormat now if `writeImage(path, ...)` could not succeed

@@ -476,12 +476,12 @@ void Scene::setBackground(RtslRef miss) {
 
 void Scene::Implementation::setColor(const std::vector<float> &color, float *to,
                                      const char *what) const {
-  std::uint32_t components = program->colorComponents;
-  if (color.size() != 1 && color.size() != components)
-    throw Error(ErrorCode::WrongType, fmt::format("the {} takes 1 or {} numbers, not {}", what,
-                                                  components, color.size()));
-  for (std::uint32_t i = 0; i < components; ++i)
-    to[i] = color[color.size() == 1 ? 0 : i];
+  std::vector<float> components = colorFromNumbers(color, program->colorComponents);
+  if (components.empty())
+    throw Error(ErrorCode::WrongType,
+                fmt::format("the {} is a color: it takes 1, 3 or {} numbers, not {}", what,
+                            program->colorComponents, color.size()));
+  std::copy(components.begin(), components.end(), to);
 }
 
 void Scene::setBackgroundColor(const std::vector<float> &color) {

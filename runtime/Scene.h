@@ -65,7 +65,8 @@ public:
   void addLight(RtslRef light);
   void setCamera(RtslRef camera);
   void setBackground(RtslRef miss);
-  /// One component for each of the program's color, or one for all. Throws WrongType.
+  /// As many numbers as the program's color has components, red, green and blue, or one for all.
+  /// Throws WrongType.
   void setBackgroundColor(const std::vector<float> &color);
   void setAmbient(const std::vector<float> &color);
 

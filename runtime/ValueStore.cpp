@@ -1,5 +1,7 @@
 #include "runtime/ValueStore.h"
 
+#include "runtime/ColorBasis.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -136,31 +138,30 @@ private:
   /// One number for all components, red, green and blue, or as many numbers as a color has here.
   void color(const ValueType &type, const Value &value, std::uint8_t *to, std::uint32_t size) {
     std::uint32_t count = context.colorComponents;
-    std::vector<float> components;
     ValueType number;
     number.name = type.name;
+    std::vector<float> numbers;
     auto read = [&](const Value &one) {
-      float component;
-      scalar(number, one, reinterpret_cast<std::uint8_t *>(&component));
-      return component;
+      numbers.push_back(0);
+      scalar(number, one, reinterpret_cast<std::uint8_t *>(&numbers.back()));
     };
-    if (value.kind == Value::Kind::Number) {
-      components.assign(count, read(value));
-    } else if (value.kind == Value::Kind::List && value.list.size() == count) {
+    if (value.kind == Value::Kind::List)
       for (const Value &one : value.list)
-        components.push_back(read(one));
-    } else if (value.kind == Value::Kind::List && value.list.size() == 3 && count == 1) {
-      // Luminance of linear sRGB (ITU-R BT.709-6).
-      components.push_back(0.2126f * read(value.list[0]) + 0.7152f * read(value.list[1]) +
-                           0.0722f * read(value.list[2]));
-    } else if (value.kind == Value::Kind::List) {
+        read(one);
+    else if (value.kind == Value::Kind::Number)
+      read(value);
+    else
+      wrongType(type, value);
+    std::vector<float> components = colorFromNumbers(numbers, count);
+    if (components.empty())
       fail(ErrorCode::WrongType, value,
            fmt::format(
-               "is a color of {} component{}; it takes that many numbers or one for all, not {}",
-               count, count == 1 ? "" : "s", value.list.size()));
-    } else {
-      wrongType(type, value);
-    }
+               "is a color: it takes {}, not {} numbers",
+               count == 3 ? "3 numbers or one for all"
+               : count == 1
+                   ? "one number, or 3 for red, green and blue"
+                   : fmt::format("{} numbers, 3 for red, green and blue, or one for all", count),
+               numbers.size()));
     std::memset(to, 0, size);
     std::memcpy(to, components.data(), 4 * components.size());
   }
@@ -241,6 +242,22 @@ private:
 };
 
 } // namespace
+
+std::vector<float> colorFromNumbers(const std::vector<float> &numbers, std::uint32_t components) {
+  if (numbers.size() == 1)
+    return std::vector<float>(components, numbers[0]);
+  if (numbers.size() == components)
+    return numbers;
+  if (numbers.size() != 3)
+    return {};
+  std::vector<float> color(components);
+  const ColorBasis basis = makeColorBasis(components);
+  for (std::uint32_t i = 0; i < components; ++i)
+    color[i] =
+        float(basis.toColor[i][0] * double(numbers[0]) + basis.toColor[i][1] * double(numbers[1]) +
+              basis.toColor[i][2] * double(numbers[2]));
+  return color;
+}
 
 void storeValue(const ValueType &type, const Value &value, std::uint8_t *to,
                 const StoreContext &context, const std::string &what,

@@ -1,0 +1,207 @@
+#include "FakeProgram.h"
+
+#include "runtime/Renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <random>
+
+using namespace rtsl::runtime;
+using namespace rtsl::runtime::test;
+
+namespace {
+
+RtslRef addCamera(Scene &scene, double distance = 5) {
+  return scene.addObject("Camera", members({{"eye", vector(0, 1, distance)},
+                                            {"gaze", vector(0, -0.2, -2)},
+                                            {"up", vector(0, 1, 0)}}));
+}
+
+Mesh quad(float half, float y) {
+  Mesh mesh;
+  mesh.positions = {-half, y, -half, half, y, -half, half, y, half, -half, y, half};
+  mesh.indices = {0, 2, 1, 0, 3, 2};
+  return mesh;
+}
+
+/// A mirrored ball, matt balls and a floor under a light and a sky.
+Scene room() {
+  Scene scene(fakeProgram());
+  scene.setCamera(addCamera(scene));
+  RtslRef red = scene.addObject("Lambert", members({{"albedo", Value{0.8, 0.2, 0.1}}}), "red");
+  RtslRef grey = scene.addObject("Lambert", members({}), "grey");
+  RtslRef mirror = scene.addObject("Mirror", members({}), "mirror");
+  scene.addPrimitive(scene.addObject("Sphere", {vector(-1, 1, 0), 1.0}), mirror);
+  scene.addPrimitive(scene.addObject("Sphere", {vector(1.2, 0.7, 0.5), 0.7}), red);
+  scene.addMeshInstance(scene.addMesh(quad(10, 0), "floor"), grey);
+  scene.addLight(scene.addObject(
+      "Light", members({{"position", vector(4, 6, 4)}, {"intensity", Value{60, 60, 60}}})));
+  scene.setBackground(scene.addObject(
+      "Sky", members({{"low", Value{0.7, 0.7, 0.7}}, {"high", Value{0.2, 0.4, 0.9}}})));
+  return scene;
+}
+
+RenderOptions small() {
+  RenderOptions options;
+  options.width = 96;
+  options.height = 64;
+  options.samplesPerPixel = 4;
+  return options;
+}
+
+} // namespace
+
+TEST(Renderer, EmbreeAndDeviceTraversalSeeTheSame) {
+  Scene scene = room();
+  RenderOptions options = small();
+  RenderStatistics statistics;
+  Image embree = render(scene, options, &statistics);
+  EXPECT_EQ(statistics.samples, 96u * 64 * 4);
+  EXPECT_EQ(statistics.badRays, 0u);
+  EXPECT_EQ(statistics.samplesNotFinite, 0u);
+  options.traversal = Traversal::Device;
+  Image device = render(scene, options);
+  ImageDifference difference = compareImages(embree, device);
+  EXPECT_LE(difference.pixelsThatDiffer, 2u);
+  EXPECT_LT(difference.rootMeanSquare, 1e-3);
+  if (const char *path = std::getenv("RTSL_TEST_PICTURE"))
+    writeImage(path, embree);
+}
+
+TEST(Renderer, PictureDoesNotDependOnThreads) {
+  Scene scene = room();
+  for (Traversal traversal : {Traversal::Embree, Traversal::Device}) {
+    RenderOptions options = small();
+    options.traversal = traversal;
+    options.threads = 1;
+    Image one = render(scene, options);
+    options.threads = 7;
+    Image seven = render(scene, options);
+    EXPECT_EQ(compareImages(one, seven).pixelsThatDiffer, 0u);
+  }
+}
+
+TEST(Renderer, SeedChangesTheNoiseAndNothingElse) {
+  Scene scene = room();
+  RenderOptions options = small();
+  Image a = render(scene, options), b = render(scene, options);
+  EXPECT_EQ(compareImages(a, b).pixelsThatDiffer, 0u);
+  options.seed = 2;
+  Image c = render(scene, options);
+  EXPECT_GT(compareImages(a, c).pixelsThatDiffer, 100u);
+  EXPECT_LT(compareImages(a, c).rootMeanSquare, 0.2);
+}
+
+TEST(Renderer, RowZeroIsTheTop) {
+  Scene scene(fakeProgram());
+  scene.setCamera(addCamera(scene));
+  scene.setBackground(
+      scene.addObject("Sky", members({{"low", Value{0, 0, 0}}, {"high", Value{1, 1, 1}}})));
+  Image image = render(scene, small());
+  EXPECT_GT(image.at(48, 0)[0], image.at(48, 63)[0] + 0.2f);
+}
+
+TEST(Renderer, ANoiseMaterialAveragesToOneHalf) {
+  Scene scene(fakeProgram());
+  scene.setCamera(addCamera(scene, 0));
+  scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 0), 100.0}),
+                     scene.addObject("Noise", members({})));
+  RenderOptions options = small();
+  options.samplesPerPixel = 16;
+  Image image = render(scene, options);
+  double sum = 0;
+  for (float value : image.pixels)
+    sum += value;
+  // The mean of n uniform numbers has deviation sqrt(1/12n).
+  double n = double(image.pixels.size()) * options.samplesPerPixel;
+  EXPECT_NEAR(sum / double(image.pixels.size()), 0.5, 5 * std::sqrt(1 / (12 * n)));
+}
+
+TEST(Renderer, DepthZeroSeesCameraRaysOnly) {
+  Scene scene(fakeProgram());
+  scene.setCamera(addCamera(scene));
+  scene.addPrimitive(scene.addObject("Sphere", {vector(0, 1, 0), 2.0}),
+                     scene.addObject("Mirror", members({})));
+  scene.setBackgroundColor({0.25f});
+  RenderOptions options = small();
+  options.maxDepth = 0;
+  Image none = render(scene, options);
+  EXPECT_EQ(none.at(48, 32)[0], 0.0f); // no background behind the last bounce
+  EXPECT_EQ(none.at(0, 0)[0], 0.25f);
+  options.maxDepth = 1;
+  Image one = render(scene, options);
+  EXPECT_EQ(one.at(48, 32)[0], 0.25f);
+}
+
+TEST(Renderer, ProgressReachesOneAndCancellingStops) {
+  Scene scene = room();
+  RenderOptions options = small();
+  double last = 0;
+  bool ascending = true;
+  options.progress = [&](double share) {
+    ascending &= share >= last;
+    last = share;
+  };
+  render(scene, options);
+  EXPECT_TRUE(ascending);
+  EXPECT_EQ(last, 1.0);
+
+  std::atomic<bool> cancel{false};
+  options.cancel = &cancel;
+  options.progress = [&](double) { cancel = true; };
+  try {
+    render(scene, options);
+    FAIL() << "it went on";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.code, ErrorCode::Cancelled);
+  }
+}
+
+TEST(Renderer, RefusesOptionsOutOfRange) {
+  Scene scene = room();
+  auto codeOf = [&](auto change) {
+    RenderOptions options = small();
+    change(options);
+    try {
+      render(scene, options);
+    } catch (const Error &error) {
+      return std::string(name(error.code)) + ": " + error.what();
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(
+      codeOf([](RenderOptions &o) { o.samplesPerPixel = 0; }),
+      "outOfRange: the number of samples per pixel must lie between 1 and 4294967294, not be 0");
+  EXPECT_EQ(codeOf([](RenderOptions &o) { o.width = 0; }),
+            "outOfRange: the width must lie between 1 and 65536, not be 0");
+  EXPECT_EQ(codeOf([](RenderOptions &o) { o.maxDepth = 1000; }),
+            "outOfRange: the depth must lie between 0 and 256, not be 1000");
+}
+
+TEST(Renderer, BadRaysAreCountedAndBlack) {
+  Scene scene(fakeProgram());
+  scene.setCamera(scene.addObject(
+      "Camera",
+      members({{"eye", vector(NAN, 0, 0)}, {"gaze", vector(0, 0, -1)}, {"up", vector(0, 1, 0)}})));
+  scene.setBackgroundColor({1, 1, 1});
+  for (Traversal traversal : {Traversal::Embree, Traversal::Device}) {
+    RenderOptions options = small();
+    options.traversal = traversal;
+    RenderStatistics statistics;
+    Image image = render(scene, options, &statistics);
+    EXPECT_EQ(statistics.badRays, statistics.samples);
+    EXPECT_EQ(image.at(3, 3)[0], 0.0f);
+  }
+}
+
+TEST(Renderer, ASceneWithoutACameraIsRefused) {
+  Scene scene(fakeProgram());
+  try {
+    render(scene, small());
+    FAIL();
+  } catch (const Error &error) {
+    EXPECT_EQ(error.code, ErrorCode::IncompleteScene);
+  }
+}
