@@ -12,7 +12,7 @@ std::string initializeSymbol(const std::string &className) { return className + 
 std::string constructSymbol(const std::string &className) { return className + ".construct"; }
 
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, std::vector<runtime::ClassInfo> &classes) {
+          Diagnostics &diagnostics, runtime::Program &program) {
   linking::LinkContext context{ir, module, request, diagnostics, {}};
   linking::dropUnusedClasses(context);
   linking::placeAttributes(context);
@@ -23,10 +23,12 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   assert(mlir::succeeded(mlir::verify(ir)) && "linking broke the IR");
 
   for (const linking::LinkedClass &linked : context.classes) {
-    runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters, colorComponents);
+    runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
     info.id = linked.id;
-    classes.push_back(std::move(info));
+    program.classes.push_back(std::move(info));
   }
+  program.colorComponents = colorComponents;
+  program.needs = linking::findNeeds(ir);
   return true;
 }
 

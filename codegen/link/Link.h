@@ -6,7 +6,8 @@
 //   2. gives each attribute its place, matched by name and type between primitives and materials (PlaceAttributes.cpp),
 //   3. resolves each slot to a switch over the classes that are there, or a direct call if there is one
 //      (ResolveSlots.cpp),
-//   4. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp).
+//   4. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp),
+//   5. finds out what of a hit anybody reads (FindNeeds.cpp).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,10 +20,10 @@
 
 namespace rtsl {
 
-/// Links level 1 IR in place. Reports through `diagnostics` and returns false on errors. Fills `classes` with what the
-/// runtime needs to know (without code addresses). `colorComponents` is what the module was lowered with.
+/// Links level 1 IR in place. Reports through `diagnostics` and returns false on errors. Fills `classes` and `needs` of
+/// `program` (without code addresses). `colorComponents` is what the module was lowered with.
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, std::vector<runtime::ClassInfo> &classes);
+          Diagnostics &diagnostics, runtime::Program &program);
 
 /// The symbols under which code of a linked program is found.
 std::string initializeSymbol(const std::string &className); // member defaults

@@ -21,36 +21,30 @@ ValueKind scalarKind(const Type *scalar) {
   }
 }
 
-/// Number of 4-byte words of a value that is no buffer, as codegen/ir/Layout.h lays it out.
-std::uint32_t elementWords(const runtime::ValueType &type, std::uint32_t colorComponents) {
-  std::uint32_t words = type.kind == ValueKind::Color ? colorComponents : std::uint32_t(type.rows) * type.columns;
-  for (std::uint32_t size : type.arraySizes)
-    words *= size;
-  return words;
-}
-
-runtime::MemberInfo reflectMember(const std::string &name, const Type *type, std::uint32_t offset, mlir::Type irType,
-                                  std::uint32_t colorComponents) {
+runtime::MemberInfo reflectMember(const std::string &name, const Type *type, std::uint32_t offset, mlir::Type irType) {
   runtime::MemberInfo info;
   info.name = name;
-  info.type = reflect(type, colorComponents);
-  info.type.size = ir::sizeInBytes(irType);
+  info.type = reflect(type, irType);
   info.offset = offset;
   return info;
 }
 
 } // namespace
 
-runtime::ValueType reflect(const Type *type, std::uint32_t colorComponents) {
+runtime::ValueType reflect(const Type *type, mlir::Type irType) {
   runtime::ValueType value;
   value.name = toString(type);
+  value.size = ir::sizeInBytes(irType);
   if (type->is(TypeKind::Buffer)) {
     value.bufferRank = static_cast<std::uint8_t>(type->count);
     type = type->element;
+    irType = mlir::cast<ir::BufferType>(irType).getElement();
+    value.elementSize = ir::sizeInBytes(irType);
   }
   while (type->is(TypeKind::Array)) {
     value.arraySizes.push_back(type->count);
     type = type->element;
+    irType = mlir::cast<ir::ArrayType>(irType).getElement();
   }
   switch (type->kind) {
   case TypeKind::Vector:
@@ -66,6 +60,12 @@ runtime::ValueType reflect(const Type *type, std::uint32_t colorComponents) {
     break;
   case TypeKind::Struct:
     value.kind = ValueKind::Struct;
+    for (unsigned i = 0; i < type->structure->fields.size(); ++i) {
+      const auto layout = mlir::cast<ir::StructType>(irType);
+      const typed::Field &field = type->structure->fields[i];
+      value.fields.push_back(
+          reflectMember(field.name, field.type, ir::fieldOffset(layout, i), layout.getFieldTypes()[i]));
+    }
     break;
   case TypeKind::Class:
     value.kind = ValueKind::Reference;
@@ -75,7 +75,6 @@ runtime::ValueType reflect(const Type *type, std::uint32_t colorComponents) {
     value.kind = scalarKind(type);
     break;
   }
-  value.size = value.bufferRank ? sizeof(RtslBuffer) : elementWords(value, colorComponents) * 4;
   return value;
 }
 
@@ -97,8 +96,7 @@ std::vector<const typed::Member *> allMembers(const typed::Class &info) {
   return members;
 }
 
-runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters,
-                           std::uint32_t colorComponents) {
+runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters) {
   runtime::ClassInfo result;
   result.name = info.name;
   result.root = info.root;
@@ -109,8 +107,8 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
     const std::optional<std::uint32_t> offset = ir::memberOffset(record, member->name);
     if (!offset) // scratch and const members are not in the record
       continue;
-    const mlir::Type type = record.findMember(member->name).getType();
-    runtime::MemberInfo described = reflectMember(member->name, member->type, *offset, type, colorComponents);
+    runtime::MemberInfo described =
+        reflectMember(member->name, member->type, *offset, record.findMember(member->name).getType());
     described.isPublic = member->access == ast::Access::Public;
     described.hasDefault = member->init != nullptr;
     result.members.push_back(std::move(described));
@@ -121,8 +119,7 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
     result.parameterSize = ir::sizeInBytes(parameters);
     for (unsigned i = 0; i < constructor->parameters.size(); ++i)
       result.parameters.push_back(reflectMember(parameters.getFieldNames()[i].str(), constructor->parameters[i]->type,
-                                                ir::fieldOffset(parameters, i), parameters.getFieldTypes()[i],
-                                                colorComponents));
+                                                ir::fieldOffset(parameters, i), parameters.getFieldTypes()[i]));
   }
 
   std::set<std::string> methods;

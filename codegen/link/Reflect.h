@@ -9,11 +9,10 @@ namespace rtsl {
 
 /// What the runtime knows about a class: how its record and the packed arguments of its constructor are laid out. Offsets
 /// come from codegen/ir/Layout.h. `parameters` is the struct of packed arguments; null: no constructor.
-runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters,
-                           std::uint32_t colorComponents);
+runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters);
 
-/// A type as scenes see it.
-runtime::ValueType reflect(const Type *type, std::uint32_t colorComponents);
+/// A type as scenes see it, with the sizes of the type that it was lowered to.
+runtime::ValueType reflect(const Type *type, mlir::Type irType);
 
 /// The constructor of a class, its own or inherited; null if there is none.
 const typed::Function *findConstructor(const typed::Class &info);

@@ -40,6 +40,9 @@ void resolveSlots(LinkContext &context);
 /// Adds the entries of runtime/device/Slots.def and those that make objects; everything else becomes private.
 void makeEntries(LinkContext &context);
 
+/// RTSL_NEEDS_*: what some function of the program reads, so that the runtime computes nothing else.
+std::uint32_t findNeeds(mlir::ModuleOp ir);
+
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);
 
