@@ -4,11 +4,10 @@
 // passes in the order of the command line, verifies after each and prints IR.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/ir/RtslDialect.h"
+#include "codegen/passes/Pipeline.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlow.h"
-#include "mlir/Dialect/Func/Extensions/InlinerExtension.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/Dialect/Math/IR/Math.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -17,9 +16,10 @@
 
 int main(int argc, char **argv) {
   mlir::DialectRegistry registry;
-  registry.insert<rtsl::ir::RtslDialect, mlir::arith::ArithDialect, mlir::cf::ControlFlowDialect,
-                  mlir::func::FuncDialect, mlir::math::MathDialect, mlir::vector::VectorDialect>();
-  mlir::func::registerInlinerExtension(registry);
+  registry.insert<mlir::arith::ArithDialect, mlir::cf::ControlFlowDialect, mlir::func::FuncDialect,
+                  mlir::math::MathDialect, mlir::vector::VectorDialect>();
+  rtsl::codegen::registerPassDependencies(registry);
+  rtsl::codegen::registerPasses();
   mlir::registerTransformsPasses();
   return mlir::asMainReturnCode(
       mlir::MlirOptMain(argc, argv, "runs passes on the IR of the shading language\n", registry));

@@ -1,0 +1,45 @@
+//===- HoistVariables.cpp - variables to the entry of their function ------===//
+#include "codegen/passes/HoistVariables.h"
+
+#include "codegen/ir/RtslOps.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/Pass/Pass.h"
+
+namespace rtsl::codegen {
+
+namespace {
+
+struct HoistVariables : mlir::PassWrapper<HoistVariables, mlir::OperationPass<mlir::func::FuncOp>> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(HoistVariables)
+  llvm::StringRef getArgument() const override { return "rtsl-hoist-vars"; }
+  llvm::StringRef getDescription() const override {
+    return "variables move to the entry of their function";
+  }
+
+  void runOnOperation() override {
+    if (getOperation().isExternal())
+      return;
+    mlir::Block &entry = getOperation().getBody().front();
+    llvm::SmallVector<ir::VarOp> scattered;
+    getOperation().walk([&](ir::VarOp variable) {
+      if (variable->getBlock() != &entry)
+        scattered.push_back(variable);
+    });
+
+    mlir::OpBuilder builder(&getContext());
+    for (ir::VarOp variable : llvm::reverse(scattered)) {
+      builder.setInsertionPointAfter(variable);
+      ir::ClearOp::create(builder, variable.getLoc(), variable.getResult());
+      variable->moveBefore(&entry, entry.begin());
+    }
+  }
+};
+
+} // namespace
+
+std::unique_ptr<mlir::Pass> createHoistVariablesPass() {
+  return std::make_unique<HoistVariables>();
+}
+
+} // namespace rtsl::codegen

@@ -1,0 +1,77 @@
+//===- InlineFunctions.cpp - calls replaced by what they call -------------===//
+#include "codegen/passes/InlineFunctions.h"
+
+#include "codegen/ir/RtslOps.h"
+
+#include "mlir/Analysis/CallGraph.h"
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/IR/SymbolTable.h"
+#include "mlir/Pass/Pass.h"
+#include "mlir/Transforms/Inliner.h"
+
+namespace rtsl::codegen {
+
+namespace {
+
+/// Functions of at most this many operations are inlined wherever they are called.
+constexpr unsigned smallFunction = 60;
+
+unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {
+  unsigned count = 0;
+  function.walk([&](mlir::Operation *) {
+    return ++count > limit ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+  });
+  return count;
+}
+
+/// Whether a trace stands in the function itself. What its callees trace has been inlined by then,
+/// or needs a frame anyway.
+bool traces(mlir::func::FuncOp function) {
+  return function
+      .walk([](mlir::Operation *op) {
+        return llvm::isa<ir::TraceOp, ir::IlluminateOp>(op) ? mlir::WalkResult::interrupt()
+                                                            : mlir::WalkResult::advance();
+      })
+      .wasInterrupted();
+}
+
+struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<mlir::ModuleOp>> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(InlineFunctions)
+  llvm::StringRef getArgument() const override { return "rtsl-inline"; }
+  llvm::StringRef getDescription() const override { return "calls are replaced by what they call"; }
+
+  bool isWorthIt(const mlir::Inliner::ResolvedCall &resolved) {
+    auto callee = resolved.targetNode->getCallableRegion()->getParentOfType<mlir::func::FuncOp>();
+    auto caller = resolved.call->getParentOfType<mlir::func::FuncOp>();
+    if (!callee || !caller || callee->hasAttr("rtsl.noinline"))
+      return false;
+    if (callee->hasAttr("rtsl.constructor") && !caller->hasAttr("rtsl.constructor"))
+      return false;
+    if (operationCount(callee, smallFunction) <= smallFunction || traces(callee))
+      return true;
+    auto uses = callee.getSymbolUses(getOperation());
+    return callee.isPrivate() && uses && llvm::hasSingleElement(*uses);
+  }
+
+  void runOnOperation() override {
+    mlir::InlinerConfig config;
+    config.setMaxInliningIterations(4);
+    config.setCanHandleMultipleBlocks();
+    auto runNothing = [](mlir::Pass &, mlir::OpPassManager &, mlir::Operation *) {
+      return mlir::success();
+    };
+    mlir::Inliner inliner(
+        getOperation(), getAnalysis<mlir::CallGraph>(), *this, getAnalysisManager(), runNothing,
+        config, [this](const mlir::Inliner::ResolvedCall &call) { return isWorthIt(call); });
+    if (mlir::failed(inliner.doInlining()))
+      signalPassFailure();
+  }
+};
+
+} // namespace
+
+std::unique_ptr<mlir::Pass> createInlineFunctionsPass() {
+  return std::make_unique<InlineFunctions>();
+}
+
+} // namespace rtsl::codegen

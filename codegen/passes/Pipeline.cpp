@@ -1,0 +1,61 @@
+//===- Pipeline.cpp - from level 1 to level 2, in order -------------------===//
+#include "codegen/passes/Pipeline.h"
+
+#include "codegen/ir/RtslDialect.h"
+#include "codegen/passes/ExpandCopies.h"
+#include "codegen/passes/HoistVariables.h"
+#include "codegen/passes/InlineFunctions.h"
+#include "codegen/passes/ToControlFlow.h"
+
+#include "mlir/Dialect/Func/Extensions/InlinerExtension.h"
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/Pass/PassManager.h"
+#include "mlir/Pass/PassRegistry.h"
+#include "mlir/Transforms/Passes.h"
+
+namespace rtsl::codegen {
+
+/// Takes variables apart, makes them values and cleans up. Twice: an index that was in a variable
+/// is a constant only after the first time.
+static void addPromotion(mlir::OpPassManager &function) {
+  function.addPass(createHoistVariablesPass());
+  for (int round = 0; round < 2; ++round) {
+    function.addPass(mlir::createSROA());
+    function.addPass(mlir::createMem2Reg());
+    function.addPass(mlir::createCanonicalizerPass());
+    function.addPass(mlir::createCSEPass());
+  }
+}
+
+void buildSsaPipeline(mlir::OpPassManager &module) {
+  // Each function by itself first, so that what is inlined is small.
+  auto &functions = module.nest<mlir::func::FuncOp>();
+  functions.addPass(createToControlFlowPass());
+  addPromotion(functions);
+
+  // Arguments and results that are aggregates stay in memory until their function is inlined.
+  module.addPass(createInlineFunctionsPass());
+  auto &inlined = module.nest<mlir::func::FuncOp>();
+  addPromotion(inlined);
+  inlined.addPass(mlir::createSCCPPass());
+  inlined.addPass(createExpandCopiesPass());
+  inlined.addPass(mlir::createCanonicalizerPass());
+  inlined.addPass(mlir::createCSEPass());
+
+  module.addPass(mlir::createSymbolDCEPass());
+}
+
+void registerPassDependencies(mlir::DialectRegistry &registry) {
+  registry.insert<ir::RtslDialect>();
+  mlir::func::registerInlinerExtension(registry);
+}
+
+void registerPasses() {
+  mlir::registerPass(createToControlFlowPass);
+  mlir::registerPass(createHoistVariablesPass);
+  mlir::registerPass(createExpandCopiesPass);
+  mlir::registerPass(createInlineFunctionsPass);
+  mlir::PassPipelineRegistration<>("rtsl-ssa", "level 1 to level 2, optimised", buildSsaPipeline);
+}
+
+} // namespace rtsl::codegen
