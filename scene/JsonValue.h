@@ -31,7 +31,8 @@ struct JsonValue {
   std::vector<std::pair<JsonKey, JsonValue>>
       members; // Object, in the order of the file; no key twice
 
-  // Where it begins; length counts the bytes of a value on one line, 1 for an array or object.
+  // Where it begins: a string inside its quotes, an array or object at its bracket (length 1). Line
+  // 0 for an override.
   std::shared_ptr<const std::string> file;
   std::uint32_t line = 0, column = 0, length = 0;
   bool fromOverride = false; // came from --set

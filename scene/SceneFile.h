@@ -49,6 +49,7 @@ struct ReferenceDescription {
 };
 
 struct GeometryDescription {
+  LocatedName name;                           // for messages; empty text: none
   std::optional<ObjectDescription> primitive; // or
   LocatedName mesh;                           // path as written
   std::string meshPath;                       // resolved
@@ -97,6 +98,9 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
 
 /// The classes that the scene names, each once, sorted. Linking keeps these.
 std::vector<std::string> classesUsed(const SceneDescription &description);
+
+/// Every mention of a class, with its place, in the order of the file's sections.
+std::vector<LocatedName> classMentions(const SceneDescription &description);
 
 /// Loads the meshes, makes the objects and checks all names and types against the program.
 runtime::Scene buildScene(const SceneDescription &description,

@@ -1,0 +1,266 @@
+//===- BuildScene.cpp - from a description to objects of a program --------===//
+#include "scene/SceneFile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::scene {
+
+using runtime::ClassInfo;
+using runtime::Error;
+using runtime::ErrorCode;
+using runtime::MemberInfo;
+using runtime::Mesh;
+using runtime::NamedValue;
+using runtime::ObjectValues;
+using runtime::Program;
+using runtime::Scene;
+using runtime::Value;
+using runtime::ValueType;
+
+namespace {
+
+using Kind = JsonValue::Kind;
+
+class SceneBuilder {
+public:
+  SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program)
+      : description(description), program(*program), scene(std::move(program)) {}
+
+  Scene build() {
+    scene.setCamera(add(description.camera, "camera"));
+    // Named objects come into being in the order of their names, those that they refer to before
+    // them.
+    for (const auto &texture : description.textures)
+      named(texture.first, texture.second.className.place);
+    for (const auto &material : description.materials)
+      named(material.first, material.second.className.place);
+    for (std::size_t i = 0; i < description.objects.size(); ++i)
+      addGeometry(description.objects[i], i);
+    for (std::size_t i = 0; i < description.lights.size(); ++i)
+      scene.addLight(add(description.lights[i],
+                         fmt::format("{} (lights.{})", description.lights[i].className.text, i)));
+    if (description.background)
+      scene.setBackground(add(*description.background, "background"));
+    if (description.backgroundColor)
+      setColor(*description.backgroundColor,
+               [&](const auto &color) { scene.setBackgroundColor(color); });
+    if (description.ambient)
+      setColor(*description.ambient, [&](const auto &color) { scene.setAmbient(color); });
+    return std::move(scene);
+  }
+
+private:
+  RtslRef add(const ObjectDescription &object, const std::string &name) {
+    const ClassInfo *classInfo = program.find(object.className.text);
+    ObjectValues values;
+    values.place = object.className.place;
+    if (object.constructor && object.constructor->kind == Kind::Array) {
+      std::vector<Value> arguments;
+      const auto &elements = object.constructor->elements;
+      for (std::size_t i = 0; i < elements.size(); ++i)
+        arguments.push_back(
+            convert(elements[i],
+                    classInfo && i < classInfo->parameters.size() ? &classInfo->parameters[i].type
+                                                                  : nullptr,
+                    fmt::format("argument {} of `{}`", i + 1, object.className.text)));
+      values.constructor = std::move(arguments);
+    } else if (object.constructor) {
+      std::vector<NamedValue> arguments;
+      for (const auto &[key, value] : object.constructor->members)
+        arguments.push_back(
+            {key.text,
+             convert(value, classInfo ? typeOf(classInfo->parameters, key.text) : nullptr,
+                     fmt::format("parameter `{}` of `{}`", key.text, object.className.text)),
+             value.fromOverride ? value.place() : object.constructor->place(key)});
+      values.constructor = std::move(arguments);
+    }
+    for (const auto &[key, value] : object.members)
+      values.members.push_back(
+          {key.text,
+           convert(*value, classInfo ? typeOf(classInfo->members, key.text) : nullptr,
+                   fmt::format("member `{}` of `{}`", key.text, name)),
+           key.place});
+    return scene.addObject(object.className.text, values, name);
+  }
+
+  static const ValueType *typeOf(const std::vector<MemberInfo> &members, const std::string &name) {
+    for (const MemberInfo &member : members)
+      if (member.name == name)
+        return &member.type;
+    return nullptr;
+  }
+
+  /// JSON as a value. Strings name objects where the type is a reference, and mean nothing
+  /// elsewhere.
+  Value convert(const JsonValue &json, const ValueType *type, const std::string &what) {
+    switch (json.kind) {
+    case Kind::Number:
+      return Value(json.number).at(json.place());
+    case Kind::Boolean:
+      return Value(json.boolean).at(json.place());
+    case Kind::Array: {
+      std::vector<Value> list;
+      list.reserve(json.elements.size());
+      for (const JsonValue &element : json.elements)
+        list.push_back(convert(element, type, what));
+      return Value(std::move(list)).at(json.place());
+    }
+    case Kind::String:
+      refuseUnlessReference(json, type, what);
+      return Value::reference(named(json.string, json.place())).at(json.place());
+    case Kind::Object: {
+      refuseUnlessReference(json, type, what);
+      ObjectDescription object = inPlace(json, what);
+      return Value::reference(add(object, object.className.text)).at(json.place());
+    }
+    case Kind::Null:
+      break;
+    }
+    throw Error(ErrorCode::WrongType, fmt::format("{} cannot be null", what), json.place());
+  }
+
+  static void refuseUnlessReference(const JsonValue &json, const ValueType *type,
+                                    const std::string &what) {
+    if (type && type->kind != ValueType::Kind::Reference)
+      throw Error(ErrorCode::WrongType,
+                  fmt::format("{} is a `{}`, not {}", what, type->name, describe(json.kind)),
+                  json.place());
+  }
+
+  /// An object written where a reference is asked for.
+  static ObjectDescription inPlace(const JsonValue &json, const std::string &what) {
+    const JsonValue *className = json.find("class");
+    if (!className || className->kind != Kind::String)
+      throw Error(ErrorCode::MissingKey, fmt::format("{}: an object needs a `class`", what),
+                  json.place());
+    ObjectDescription object;
+    object.className = {className->string, className->place()};
+    object.place = json.place();
+    for (const auto &[key, member] : json.members) {
+      if (key.text == "constructor")
+        object.constructor = &member;
+      else if (key.text != "class")
+        object.members.push_back({{key.text, json.place(key)}, &member});
+    }
+    if (object.constructor && object.constructor->kind != Kind::Array &&
+        object.constructor->kind != Kind::Object)
+      throw Error(ErrorCode::WrongType,
+                  "`constructor` is a list of arguments or an object of arguments by name",
+                  object.constructor->place());
+    return object;
+  }
+
+  /// The texture or material of this name, made when it is first asked for.
+  RtslRef named(const std::string &name, const Place &place) {
+    auto found = made.find(name);
+    if (found != made.end()) {
+      if (found->second == 0)
+        throw Error(ErrorCode::ReferenceCycle,
+                    fmt::format("`{}` refers to itself through others", name), place);
+      return found->second;
+    }
+    const ObjectDescription *object = nullptr;
+    if (auto texture = description.textures.find(name); texture != description.textures.end())
+      object = &texture->second;
+    else if (auto material = description.materials.find(name);
+             material != description.materials.end())
+      object = &material->second;
+    if (!object) {
+      Error error(ErrorCode::UnknownName, fmt::format("no texture or material is named `{}`", name),
+                  place);
+      if (auto near = runtime::nearestName(name, allNames()))
+        error.fix(*near);
+      throw error;
+    }
+    made[name] = 0; // on the way
+    return made[name] = add(*object, name);
+  }
+
+  std::vector<std::string> allNames() const {
+    std::vector<std::string> names;
+    for (const auto &texture : description.textures)
+      names.push_back(texture.first);
+    for (const auto &material : description.materials)
+      names.push_back(material.first);
+    return names;
+  }
+
+  void addGeometry(const GeometryDescription &geometry, std::size_t index) {
+    RtslRef material =
+        geometry.material.object
+            ? add(*geometry.material.object, geometry.material.object->className.text)
+            : named(geometry.material.name.text, geometry.material.name.place);
+    requireMaterial(material, geometry);
+    if (geometry.primitive) {
+      std::string name =
+          geometry.name.text.empty()
+              ? fmt::format("{} (objects.{})", geometry.primitive->className.text, index)
+              : geometry.name.text;
+      scene.addPrimitive(add(*geometry.primitive, name), material);
+      return;
+    }
+    scene.addMeshInstance(mesh(geometry), material);
+  }
+
+  /// With the place of the reference, which is where the mistake is.
+  void requireMaterial(RtslRef material, const GeometryDescription &geometry) const {
+    const ClassInfo &classInfo = scene.classOf(material);
+    if (classInfo.root == "rt_Material")
+      return;
+    const LocatedName &name =
+        geometry.material.object ? geometry.material.object->className : geometry.material.name;
+    throw Error(ErrorCode::WrongClass,
+                fmt::format("`{}` is a `{}`, a `{}`, where a material is needed", name.text,
+                            classInfo.name, classInfo.root),
+                name.place);
+  }
+
+  /// A file that is placed twice in the same way is held once.
+  std::uint32_t mesh(const GeometryDescription &geometry) {
+    auto key = std::make_pair(geometry.meshPath, geometry.transform.columns);
+    auto found = meshes.find(key);
+    if (found != meshes.end())
+      return found->second;
+    try {
+      Mesh moved = runtime::loadMesh(geometry.meshPath);
+      moved.apply(geometry.transform);
+      return meshes[key] =
+                 scene.addMesh(std::move(moved),
+                               geometry.name.text.empty() ? geometry.meshPath : geometry.name.text);
+    } catch (Error &error) {
+      error.place = geometry.mesh.place;
+      throw;
+    }
+  }
+
+  template <typename Set>
+  void setColor(const JsonValue &json, Set set) {
+    std::vector<float> color;
+    if (json.kind == Kind::Number)
+      color.push_back(float(json.number));
+    for (const JsonValue &element : json.elements)
+      color.push_back(float(element.number));
+    try {
+      set(color);
+    } catch (Error &error) {
+      error.place = json.place();
+      throw;
+    }
+  }
+
+  const SceneDescription &description;
+  const Program &program;
+  Scene scene;
+  std::map<std::string, RtslRef> made; // 0: on the way
+  std::map<std::pair<std::string, decltype(runtime::Transform::columns)>, std::uint32_t> meshes;
+};
+
+} // namespace
+
+Scene buildScene(const SceneDescription &description, std::shared_ptr<const Program> program) {
+  return SceneBuilder(description, std::move(program)).build();
+}
+
+} // namespace rtsl::scene

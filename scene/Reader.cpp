@@ -1,0 +1,77 @@
+#include "scene/Reader.h"
+
+#include "runtime/Scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rtsl::scene {
+
+using runtime::Error;
+using runtime::ErrorCode;
+
+const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what) {
+  if (value.kind != kind)
+    throw Error(ErrorCode::WrongType,
+                fmt::format("{} is {}, not {}", what, describe(kind), describe(value.kind)),
+                value.place());
+  return value;
+}
+
+void checkKeys(const JsonValue &object, std::initializer_list<const char *> known,
+               const std::string &what) {
+  for (const auto &member : object.members) {
+    const std::string &key = member.first.text;
+    if (std::find(known.begin(), known.end(), key) != known.end())
+      continue;
+    Error error(ErrorCode::UnknownKey, fmt::format("{} has no key `{}`", what, key),
+                member.second.fromOverride ? member.second.place() : object.place(member.first));
+    if (auto near = runtime::nearestName(key, std::vector<std::string>(known.begin(), known.end())))
+      error.fix(*near);
+    throw error;
+  }
+}
+
+const JsonValue &require(const JsonValue &object, const char *key, const std::string &what) {
+  if (const JsonValue *found = object.find(key))
+    return *found;
+  throw Error(ErrorCode::MissingKey, fmt::format("{} needs a `{}`", what, key), object.place());
+}
+
+double readNumber(const JsonValue &value, const std::string &what) {
+  expect(value, JsonValue::Kind::Number, what);
+  if (!std::isfinite(value.number))
+    throw Error(ErrorCode::OutOfRange, fmt::format("{} is not finite", what), value.place());
+  return value.number;
+}
+
+std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uint32_t highest,
+                          const std::string &what) {
+  double number = readNumber(value, what);
+  if (number != std::floor(number))
+    throw Error(ErrorCode::WrongType, fmt::format("{} is a whole number, not {:g}", what, number),
+                value.place());
+  if (number < lowest || number > highest)
+    throw Error(ErrorCode::OutOfRange,
+                fmt::format("{} lies between {} and {}, it cannot be {:.0f}", what, lowest, highest,
+                            number),
+                value.place());
+  return std::uint32_t(number);
+}
+
+std::vector<double> readNumbers(const JsonValue &value, std::size_t count,
+                                const std::string &what) {
+  expect(value, JsonValue::Kind::Array, what);
+  if (value.elements.size() != count)
+    throw Error(ErrorCode::WrongType,
+                fmt::format("{} takes {} numbers, not {}", what, count, value.elements.size()),
+                value.place());
+  std::vector<double> numbers;
+  for (const JsonValue &element : value.elements)
+    numbers.push_back(readNumber(element, fmt::format("each number of {}", what)));
+  return numbers;
+}
+
+} // namespace rtsl::scene

@@ -1,0 +1,32 @@
+//===- Reader.h - picking JSON apart, with messages -----------------------===//
+#pragma once
+
+#include "scene/JsonValue.h"
+
+#include <initializer_list>
+#include <string>
+
+namespace rtsl::scene {
+
+/// Throws WrongType unless `value` is of `kind`. `what` begins the message: "`camera`".
+const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what);
+
+/// Throws UnknownKey for the first key of an object that is not in `known`, with what may have been
+/// meant.
+void checkKeys(const JsonValue &object, std::initializer_list<const char *> known,
+               const std::string &what);
+
+/// A member that must be there: MissingKey otherwise.
+const JsonValue &require(const JsonValue &object, const char *key, const std::string &what);
+
+/// A finite number.
+double readNumber(const JsonValue &value, const std::string &what);
+
+/// A whole number in [lowest, highest]: WrongType, OutOfRange.
+std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uint32_t highest,
+                          const std::string &what);
+
+/// A list of exactly `count` numbers.
+std::vector<double> readNumbers(const JsonValue &value, std::size_t count, const std::string &what);
+
+} // namespace rtsl::scene

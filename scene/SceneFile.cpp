@@ -1,0 +1,319 @@
+//===- SceneFile.cpp - from JSON to a description -------------------------===//
+#include "scene/SceneFile.h"
+
+#include "runtime/AtomicFile.h"
+#include "scene/Reader.h"
+#include "scene/TransformReader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace rtsl::scene {
+
+using runtime::Error;
+using runtime::ErrorCode;
+
+namespace {
+
+using Kind = JsonValue::Kind;
+
+class SceneReader {
+public:
+  SceneReader(const JsonValue &root, SceneDescription &scene) : root(root), scene(scene) {}
+
+  void read() {
+    expect(root, Kind::Object, "a scene");
+    refuseWhatComesLater();
+    checkKeys(root,
+              {"$schema", "rtsl", "import", "camera", "textures", "materials", "objects", "lights",
+               "background", "ambient", "render"},
+              "a scene");
+    readVersion();
+    if (const JsonValue *imports = root.find("import"))
+      readImports(*imports);
+    scene.camera = readObject(require(root, "camera", "a scene"), "`camera`");
+    if (const JsonValue *textures = root.find("textures"))
+      readNamed(*textures, "textures", scene.textures);
+    if (const JsonValue *materials = root.find("materials"))
+      readNamed(*materials, "materials", scene.materials);
+    if (const JsonValue *objects = root.find("objects")) {
+      expect(*objects, Kind::Array, "`objects`");
+      for (const JsonValue &object : objects->elements)
+        scene.objects.push_back(readGeometry(object));
+    }
+    if (const JsonValue *lights = root.find("lights")) {
+      expect(*lights, Kind::Array, "`lights`");
+      for (const JsonValue &light : lights->elements)
+        scene.lights.push_back(readObject(light, "a light"));
+    }
+    if (const JsonValue *background = root.find("background")) {
+      if (background->kind == Kind::Object)
+        scene.background = readObject(*background, "`background`");
+      else
+        scene.backgroundColor = &readColor(*background, "`background`");
+    }
+    if (const JsonValue *ambient = root.find("ambient"))
+      scene.ambient = &readColor(*ambient, "`ambient`");
+    if (const JsonValue *render = root.find("render"))
+      readRender(*render);
+  }
+
+private:
+  /// Keys of the format that this version does not know what to do with.
+  void refuseWhatComesLater() const {
+    for (const char *key : {"nodes", "variables"})
+      for (const auto &member : root.members)
+        if (member.first.text == key)
+          throw Error(
+              ErrorCode::NotSupported,
+              fmt::format("`{}` is not supported yet: list what there is to see in `objects`", key),
+              member.second.fromOverride ? member.second.place() : root.place(member.first));
+  }
+
+  void readVersion() const {
+    const JsonValue *version = root.find("rtsl");
+    if (!version)
+      throw Error(ErrorCode::MissingKey,
+                  "a scene begins with `\"rtsl\": 1`, the version of the format", root.place());
+    expect(*version, Kind::Number, "`rtsl`");
+    if (version->number != 1)
+      throw Error(ErrorCode::NotSupported,
+                  fmt::format("version {:g} of the scene format is not supported, only 1 is",
+                              version->number),
+                  version->place());
+  }
+
+  void readImports(const JsonValue &value) {
+    if (value.kind == Kind::String)
+      return readImport(value);
+    expect(value, Kind::Array, "`import`");
+    for (const JsonValue &element : value.elements)
+      readImport(element);
+  }
+
+  void readImport(const JsonValue &value) {
+    expect(value, Kind::String, "an import");
+    ImportDescription import{{value.string, value.place()}, ""};
+    if (value.string.empty())
+      throw Error(ErrorCode::OutOfRange, "an import has no name", value.place());
+    const std::string extension = ".rtsl";
+    bool isFile = value.string.size() > extension.size() &&
+                  value.string.compare(value.string.size() - extension.size(), extension.size(),
+                                       extension) == 0;
+    if (isFile)
+      import.path = resolve(value);
+    scene.imports.push_back(std::move(import));
+  }
+
+  /// Relative to the folder of the scene file; what the command line gives, to the working
+  /// directory.
+  std::string resolve(const JsonValue &value) const {
+    std::filesystem::path path(value.string);
+    if (path.is_absolute() || value.fromOverride)
+      return value.string;
+    return (std::filesystem::path(scene.file).parent_path() / path).lexically_normal().string();
+  }
+
+  ObjectDescription readObject(const JsonValue &value, const std::string &what) const {
+    expect(value, Kind::Object, what);
+    ObjectDescription object;
+    object.place = value.place();
+    const JsonValue &className = expect(require(value, "class", what), Kind::String, "`class`");
+    object.className = {className.string, className.place()};
+    if (className.string.empty())
+      throw Error(ErrorCode::UnknownClass, "a class has no name", className.place());
+    for (const auto &[key, member] : value.members) {
+      if (key.text == "class")
+        continue;
+      if (key.text == "constructor") {
+        if (member.kind != Kind::Array && member.kind != Kind::Object)
+          throw Error(
+              ErrorCode::WrongType,
+              fmt::format(
+                  "`constructor` is a list of arguments or an object of arguments by name, not {}",
+                  describe(member.kind)),
+              member.place());
+        object.constructor = &member;
+        continue;
+      }
+      object.members.push_back(
+          {{key.text, member.fromOverride ? member.place() : value.place(key)}, &member});
+    }
+    return object;
+  }
+
+  void readNamed(const JsonValue &value, const std::string &section,
+                 std::map<std::string, ObjectDescription> &objects) const {
+    expect(value, Kind::Object, fmt::format("`{}`", section));
+    for (const auto &[key, member] : value.members) {
+      auto other = scene.textures.find(key.text);
+      if (other != scene.textures.end())
+        throw Error(ErrorCode::DuplicateKey,
+                    fmt::format("`{}` is the name of a texture already", key.text),
+                    value.place(key))
+            .related(other->second.place, "the texture");
+      objects[key.text] = readObject(member, fmt::format("`{}`", key.text));
+    }
+  }
+
+  ReferenceDescription readReference(const JsonValue &value, const std::string &what) const {
+    ReferenceDescription reference;
+    if (value.kind == Kind::String) {
+      reference.name = {value.string, value.place()};
+    } else if (value.kind == Kind::Object) {
+      reference.object = std::make_shared<ObjectDescription>(readObject(value, what));
+    } else {
+      throw Error(
+          ErrorCode::WrongType,
+          fmt::format("{} is a name or an object with a class, not {}", what, describe(value.kind)),
+          value.place());
+    }
+    return reference;
+  }
+
+  GeometryDescription readGeometry(const JsonValue &value) const {
+    expect(value, Kind::Object, "an element of `objects`");
+    checkKeys(value, {"name", "primitive", "mesh", "material", "transform"}, "an object");
+    GeometryDescription geometry;
+    geometry.place = value.place();
+    if (const JsonValue *name = value.find("name")) {
+      expect(*name, Kind::String, "`name`");
+      geometry.name = {name->string, name->place()};
+    }
+    const JsonValue *primitive = value.find("primitive"), *mesh = value.find("mesh");
+    if (!primitive == !mesh)
+      throw Error(primitive ? ErrorCode::UnknownKey : ErrorCode::MissingKey,
+                  primitive ? "an object is a `primitive` or a `mesh`, not both"
+                            : "an object needs a `primitive` or a `mesh`",
+                  value.place());
+    if (primitive)
+      geometry.primitive = readObject(*primitive, "`primitive`");
+    if (mesh) {
+      expect(*mesh, Kind::String, "`mesh`");
+      geometry.mesh = {mesh->string, mesh->place()};
+      geometry.meshPath = resolve(*mesh);
+    }
+    geometry.material = readReference(require(value, "material", "an object"), "`material`");
+    if (const JsonValue *transform = value.find("transform")) {
+      if (primitive)
+        throw Error(
+            ErrorCode::NotSupported,
+            "the transform of a primitive is not supported yet: place it by its own members",
+            transform->place());
+      geometry.transform = readTransform(*transform);
+    }
+    return geometry;
+  }
+
+  /// A number or a list of numbers; how many there may be is the program's to say.
+  static const JsonValue &readColor(const JsonValue &value, const std::string &what) {
+    if (value.kind == Kind::Number) {
+      readNumber(value, what);
+      return value;
+    }
+    if (value.kind != Kind::Array)
+      throw Error(ErrorCode::WrongType,
+                  fmt::format("{} is a color, not {}", what, describe(value.kind)), value.place());
+    readNumbers(value, value.elements.size(), what);
+    return value;
+  }
+
+  void readRender(const JsonValue &value) {
+    expect(value, Kind::Object, "`render`");
+    checkKeys(value, {"engine", "size", "spp", "depth", "seed"}, "`render`");
+    RenderSettings &render = scene.render;
+    if (const JsonValue *engine = value.find("engine")) {
+      expect(*engine, Kind::String, "`engine`");
+      if (engine->string != "classic")
+        throw Error(ErrorCode::NotSupported,
+                    fmt::format("there is no engine `{}`, only `classic`", engine->string),
+                    engine->place());
+      render.engine = engine->string;
+    }
+    if (const JsonValue *size = value.find("size")) {
+      readNumbers(*size, 2, "`size`");
+      render.width = readInteger(size->elements[0], 1, 65536, "the width");
+      render.height = readInteger(size->elements[1], 1, 65536, "the height");
+    }
+    if (const JsonValue *spp = value.find("spp"))
+      render.samplesPerPixel = readInteger(*spp, 1, 0x7fffffff, "`spp`");
+    if (const JsonValue *depth = value.find("depth"))
+      render.depth = readInteger(*depth, 0, 256, "`depth`");
+    if (const JsonValue *seed = value.find("seed"))
+      render.seed = readInteger(*seed, 0, 0xffffffff, "`seed`");
+  }
+
+  const JsonValue &root;
+  SceneDescription &scene;
+};
+
+/// Objects written where a reference is asked for name classes too.
+void collect(const JsonValue &value, std::vector<LocatedName> &mentions) {
+  if (value.kind == Kind::Object) {
+    if (const JsonValue *className = value.find("class");
+        className && className->kind == Kind::String)
+      mentions.push_back({className->string, className->place()});
+    for (const auto &member : value.members)
+      collect(member.second, mentions);
+  }
+  for (const JsonValue &element : value.elements)
+    collect(element, mentions);
+}
+
+void collect(const ObjectDescription &object, std::vector<LocatedName> &mentions) {
+  mentions.push_back(object.className);
+  if (object.constructor)
+    collect(*object.constructor, mentions);
+  for (const auto &member : object.members)
+    collect(*member.second, mentions);
+}
+
+} // namespace
+
+SceneDescription parseScene(const std::string &text, const std::string &path,
+                            const std::vector<std::string> &overrides) {
+  auto root = std::make_shared<JsonValue>(parseJson(text, path));
+  for (const std::string &override : overrides)
+    applyOverride(*root, override);
+  SceneDescription scene;
+  scene.file = path;
+  scene.root = root;
+  SceneReader(*root, scene).read();
+  return scene;
+}
+
+SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides) {
+  return parseScene(runtime::readFile(path), path, overrides);
+}
+
+std::vector<LocatedName> classMentions(const SceneDescription &description) {
+  std::vector<LocatedName> mentions;
+  collect(description.camera, mentions);
+  for (const auto &texture : description.textures)
+    collect(texture.second, mentions);
+  for (const auto &material : description.materials)
+    collect(material.second, mentions);
+  for (const GeometryDescription &geometry : description.objects) {
+    if (geometry.primitive)
+      collect(*geometry.primitive, mentions);
+    if (geometry.material.object)
+      collect(*geometry.material.object, mentions);
+  }
+  for (const ObjectDescription &light : description.lights)
+    collect(light, mentions);
+  if (description.background)
+    collect(*description.background, mentions);
+  return mentions;
+}
+
+std::vector<std::string> classesUsed(const SceneDescription &description) {
+  std::set<std::string> names;
+  for (const LocatedName &mention : classMentions(description))
+    names.insert(mention.text);
+  return {names.begin(), names.end()};
+}
+
+} // namespace rtsl::scene
