@@ -24,6 +24,11 @@ namespace {
 
 constexpr std::size_t deepestNesting = 256;
 
+/// What stands between values, or brackets them.
+bool isPunctuation(char c) {
+  return c != '\0' && std::strchr(" \t\r\n,:{}[]", c);
+}
+
 struct Token {
   std::uint32_t line, column, length;
 };
@@ -55,7 +60,7 @@ public:
     if (position < text.size() && std::strchr("{}[]", text[position]))
       ++position;
     else
-      while (position < text.size() && !std::strchr(" \t\r\n,:{}[]", text[position]))
+      while (position < text.size() && !isPunctuation(text[position]))
         ++position;
     return at(start, position - start);
   }
@@ -129,7 +134,7 @@ public:
     return true;
   }
 
-  bool parse_error(std::size_t position, const std::string &lastToken,
+  bool parse_error(std::size_t position, const std::string &,
                    const nlohmann::json::exception &exception) override {
     std::string message = exception.what();
     // "[json.exception...] parse error at ...: syntax error while parsing X - REASON; last read:
@@ -144,9 +149,20 @@ public:
       message = message.substr(0, last) +
                 (end == std::string::npos || end < last ? "" : message.substr(end + 1));
     }
-    bool atEnd = message.find("end of input") != std::string::npos;
-    std::size_t length = atEnd ? 1 : std::max<std::size_t>(lastToken.size(), 1);
-    std::size_t start = atEnd ? text.size() : position >= length ? position - length : 0;
+    bool atEnd = message.find("unexpected end of input") != std::string::npos;
+    // The parser has read up to the end of the token that it cannot use.
+    std::size_t end = atEnd ? text.size() : std::clamp<std::size_t>(position, 1, text.size());
+    std::size_t start = atEnd ? end : end - 1;
+    if (message.find("unexpected string literal") != std::string::npos) {
+      while (start > 0 && (text[start - 1] != '"' || (start > 1 && text[start - 2] == '\\')))
+        --start;
+      start -= start > 0;
+    } else if (!atEnd && message.find("invalid string") == std::string::npos &&
+               !isPunctuation(text[start])) {
+      while (start > 0 && !isPunctuation(text[start - 1]))
+        --start;
+    }
+    std::size_t length = end - start;
     Place place = placeOfOffset(text, *file, start, length);
     error = Error(ErrorCode::JsonSyntax, fmt::format("this is not JSON: {}", message), place);
     char wrong = start < text.size() ? text[start] : '\0';

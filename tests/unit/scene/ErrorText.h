@@ -1,0 +1,37 @@
+//===- ErrorText.h - an error as one line, for tests ----------------------===//
+#pragma once
+
+#include "runtime/Error.h"
+
+#include <string>
+
+namespace rtsl::scene::test {
+
+/// "file:line:column+length: code: message (fix `...`) (note ...)", or "no error".
+template <typename Action>
+std::string errorOf(Action action) {
+  try {
+    action();
+  } catch (const runtime::Error &error) {
+    std::string text;
+    if (error.place) {
+      text = error.place->file;
+      if (error.place->line)
+        text += ":" + std::to_string(error.place->line) + ":" +
+                std::to_string(error.place->column) + "+" + std::to_string(error.place->length);
+      text += ": ";
+    }
+    text += std::string(runtime::name(error.code)) + ": " + error.what();
+    if (error.replacement)
+      text += " (fix `" + *error.replacement + "`)";
+    for (const runtime::RelatedPlace &related : error.relatedPlaces)
+      text += " (" + std::to_string(related.place.line) + ":" +
+              std::to_string(related.place.column) + " " + related.text + ")";
+    for (const std::string &note : error.notes)
+      text += " (note " + note + ")";
+    return text;
+  }
+  return "no error";
+}
+
+} // namespace rtsl::scene::test
