@@ -1,0 +1,39 @@
+//===- Analysis.h - what lowering asks about a typed tree -----------------===//
+#pragma once
+
+#include "sema/TypedAst.h"
+
+#include <functional>
+#include <set>
+
+namespace rtsl::lowering {
+
+/// Calls `visit` for each expression of a statement or below an expression, outer ones first.
+void forEachExpr(const typed::Stmt &stmt, const std::function<void(const typed::Expr &)> &visit);
+void forEachExpr(const typed::Expr &expr, const std::function<void(const typed::Expr &)> &visit);
+
+/// The variables that are assigned somewhere in `body`, as a whole or in part.
+std::set<const typed::Variable *> assignedVariables(const typed::Stmt &body);
+
+/// May evaluation change something, or end in another way than with a value?
+bool hasSideEffects(const typed::Expr &expr);
+
+/// Nothing changes, and it costs less than a branch: then `&&`, `||` and `?:` evaluate it in any
+/// case.
+bool isCheap(const typed::Expr &expr);
+
+/// Does `function`, or what it calls, report hits or use scratch members? `concrete` is the class
+/// of the object; null for a free function.
+bool takesPartInIntersection(const typed::Function &function, const typed::Class *concrete);
+
+/// The definition that a call on the object itself runs: that of the most derived class with the
+/// callee's parameters.
+const typed::Function &resolve(const typed::Function &callee, const typed::Class *concrete);
+
+/// Do two functions have the same parameter types?
+bool sameParameters(const typed::Function &a, const typed::Function &b);
+
+/// Does the expression stand for a place in memory (and not for a value)?
+bool isPlace(const typed::Expr &expr);
+
+} // namespace rtsl::lowering

@@ -1,0 +1,23 @@
+//===- Lower.cpp - from the typed tree to level 1 -------------------------===//
+#include "codegen/lower/Lower.h"
+
+#include "codegen/lower/Lowering.h"
+#include "runtime/device/Abi.h"
+
+namespace rtsl {
+
+mlir::OwningOpRef<mlir::ModuleOp> lower(const typed::Module &module, const LowerOptions &options,
+                                        mlir::MLIRContext &context) {
+  assert(options.diagnostics && "lowering needs somewhere to report to");
+  assert(options.colorComponents >= 1 && options.colorComponents <= RTSL_MAX_COLOR);
+  context.loadDialect<ir::RtslDialect>();
+  std::size_t errorsBefore = options.diagnostics->errorCount();
+  mlir::OwningOpRef<mlir::ModuleOp> target =
+      mlir::ModuleOp::create(mlir::UnknownLoc::get(&context));
+  lowering::ModuleLowering(module, options, *target).run();
+  if (options.diagnostics->errorCount() != errorsBefore)
+    return nullptr;
+  return target;
+}
+
+} // namespace rtsl

@@ -1,0 +1,117 @@
+//===- LowerCalls.cpp - calls of the author's functions -------------------===//
+//
+// Arguments are evaluated from left to right. An `in` argument is a value, or the address of a
+// copy; for `out` and `inout` the place is found once, before the call, a temporary goes to the
+// function (with the value of the place, for `inout`), and after the call the temporaries are
+// copied back, again from left to right. So what overlaps is harmless.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/lower/Analysis.h"
+#include "codegen/lower/Lowering.h"
+
+namespace rtsl::lowering {
+
+void FunctionLowering::passArguments(const typed::Function &callee,
+                                     const std::vector<typed::ExprPtr> &args,
+                                     llvm::SmallVectorImpl<Value> &values,
+                                     std::vector<CopyOut> &outputs) {
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const typed::Variable &parameter = *callee.parameters[i];
+    const Type *type = parameter.type;
+    llvm::StringRef name = parameter.name.empty() ? "argument" : llvm::StringRef(parameter.name);
+    emitter.setLoc(module.location(args[i]->range));
+    if (parameter.direction == ast::Direction::In) {
+      if (!livesInMemory(type)) {
+        values.push_back(value(*args[i]));
+        continue;
+      }
+      Value copy = temporary(name, type);
+      lowerInto(*args[i], copy);
+      values.push_back(copy);
+      continue;
+    }
+    Place target = place(*args[i]);
+    Value copy = temporary(name, type);
+    if (parameter.direction == ast::Direction::InOut)
+      storeTo(load(target), copy, type);
+    values.push_back(copy);
+    outputs.push_back({target, copy});
+  }
+}
+
+void FunctionLowering::copyOut(const std::vector<CopyOut> &outputs) {
+  for (const CopyOut &output : outputs)
+    store(loadFrom(output.from, output.target.type), output.target);
+}
+
+Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
+  const typed::Class *concrete = expr.onSelf ? key.concrete : nullptr;
+  const typed::Function &callee = resolve(*expr.function, concrete);
+  bool forIntersect = accepted && takesPartInIntersection(callee, concrete);
+  mlir::func::FuncOp target = module.function({&callee, concrete, forIntersect});
+
+  llvm::SmallVector<Value, 8> values;
+  std::vector<CopyOut> outputs;
+  if (concrete)
+    values.push_back(self());
+  const Type *type = callee.returnType;
+  if (livesInMemory(type)) {
+    if (!result)
+      result = temporary(callee.name, type);
+    values.push_back(result);
+  }
+  passArguments(callee, expr.args, values, outputs);
+  if (forIntersect) {
+    if (concrete)
+      for (const typed::Member *member : module.scratchMembers(concrete))
+        values.push_back(scratch[member]);
+    values.push_back(accepted);
+  }
+  emitter.setLoc(module.location(expr.range));
+  auto call = emitter.make<mlir::func::CallOp>(target, values);
+  copyOut(outputs);
+  if (livesInMemory(type))
+    return loadFrom(result, type);
+  return Parts(call.getResults().begin(), call.getResults().end());
+}
+
+// `lookup()` leaves what it finds in a state variable. It is cleared before, so that a texture that
+// sets nothing is black and not what another one has set.
+Parts FunctionLowering::lowerMethodCall(const typed::MethodCallExpr &expr) {
+  Value object = value(*expr.receiver);
+  if (!expr.function) {
+    bool isFloat = expr.method == "lookupFloat";
+    if (!isFloat && expr.method != "lookup") {
+      unsupported(expr.range, "calling `" + expr.method + "` through a reference");
+      return zeroOf(expr.type);
+    }
+    emitter.setLoc(module.location(expr.range));
+    Value state = emitter.make<ir::StateOp>(isFloat ? "FloatTextureValue" : "TextureColor",
+                                            module.type(expr.type));
+    emitter.store(emitter.zero(module.type(expr.type)), state);
+    emitter.make<ir::CallMethodOp>(mlir::TypeRange(), "lookup", object, mlir::ValueRange());
+    return {emitter.load(state)};
+  }
+
+  const typed::Function &callee = *expr.function;
+  llvm::SmallVector<Value, 8> values;
+  std::vector<CopyOut> outputs;
+  const Type *type = callee.returnType;
+  llvm::SmallVector<mlir::Type, 1> results;
+  Value result;
+  if (livesInMemory(type)) {
+    result = temporary(callee.name, type);
+    values.push_back(result);
+  } else if (!type->is(TypeKind::Void)) {
+    results.push_back(module.type(type));
+  }
+  passArguments(callee, expr.args, values, outputs);
+  emitter.setLoc(module.location(expr.range));
+  auto call = emitter.make<ir::CallMethodOp>(results, module.slotName(callee), object, values);
+  copyOut(outputs);
+  if (livesInMemory(type))
+    return loadFrom(result, type);
+  return Parts(call.getResults().begin(), call.getResults().end());
+}
+
+} // namespace rtsl::lowering

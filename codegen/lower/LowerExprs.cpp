@@ -1,0 +1,356 @@
+//===- LowerExprs.cpp - expressions ---------------------------------------===//
+//
+// Operands are evaluated from left to right, and so is an assignment: the place first, then the
+// value, then the store.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/lower/Analysis.h"
+#include "codegen/lower/Color.h"
+#include "codegen/lower/Lowering.h"
+
+#include "sema/Casting.h"
+
+namespace rtsl::lowering {
+
+using typed::ExprKind;
+
+Columns FunctionLowering::columns(const Parts &parts) {
+  Columns result;
+  for (Value part : parts)
+    result.push_back(num(part));
+  return result;
+}
+
+Parts FunctionLowering::parts(const Columns &columns) {
+  return Parts(columns.begin(), columns.end());
+}
+
+Parts FunctionLowering::zeroOf(const Type *type) {
+  if (type->is(TypeKind::Void))
+    return {};
+  if (isAggregate(type))
+    return {temporary("zero", type)};
+  if (type->isMatrix())
+    return Parts(type->columns(), emitter.zero(module.type(type->element)));
+  return {emitter.zero(module.type(type))};
+}
+
+Parts FunctionLowering::lower(const typed::Expr &expr) {
+  emitter.setLoc(module.location(expr.range));
+  switch (expr.kind) {
+  case ExprKind::Literal:
+    return lowerLiteral(expr.type, cast<typed::LiteralExpr>(expr).value);
+  case ExprKind::Variable:
+    return lowerVariable(cast<typed::VariableExpr>(expr));
+  case ExprKind::State:
+    return load(place(expr));
+  case ExprKind::Member: {
+    const typed::Member &member = *cast<typed::MemberExpr>(expr).member;
+    if (member.isConst && member.constant)
+      return lowerLiteral(member.type, *member.constant);
+    if (member.isConst)
+      return lower(*member.init);
+    return load(place(expr));
+  }
+  case ExprKind::Field:
+    return load(place(expr));
+  case ExprKind::Swizzle: {
+    const auto &swizzle = cast<typed::SwizzleExpr>(expr);
+    Value vector = value(*swizzle.base);
+    if (swizzle.components.size() == 1)
+      return {emitter.extract(vector, static_cast<unsigned>(swizzle.components.front()))};
+    llvm::SmallVector<std::int64_t, 4> components(swizzle.components.begin(),
+                                                  swizzle.components.end());
+    return {emitter.shuffle(vector, components)};
+  }
+  case ExprKind::Index:
+    return lowerIndex(cast<typed::IndexExpr>(expr));
+  case ExprKind::Length:
+    return lowerLength(cast<typed::LengthExpr>(expr));
+  case ExprKind::Unary:
+    return lowerUnary(cast<typed::UnaryExpr>(expr));
+  case ExprKind::IncDec:
+    return lowerIncDec(cast<typed::IncDecExpr>(expr));
+  case ExprKind::Binary: {
+    const auto &op = cast<typed::BinaryExpr>(expr);
+    if (op.op == ast::BinaryOp::LogicalAnd || op.op == ast::BinaryOp::LogicalOr)
+      return lowerShortCircuit(op);
+    Parts left = lower(*op.left);
+    if (hasSideEffects(*op.right))
+      left = snapshot(left, op.left->type);
+    Parts right = lower(*op.right);
+    emitter.setLoc(module.location(expr.range));
+    return binary(op.op, left, op.left->type, right, op.right->type);
+  }
+  case ExprKind::Assign:
+    return lowerAssign(cast<typed::AssignExpr>(expr));
+  case ExprKind::Conditional:
+    return lowerConditional(cast<typed::ConditionalExpr>(expr));
+  case ExprKind::Comma:
+    lower(*cast<typed::CommaExpr>(expr).left);
+    return lower(*cast<typed::CommaExpr>(expr).right);
+  case ExprKind::Convert: {
+    const typed::Expr &operand = *cast<typed::ConvertExpr>(expr).operand;
+    return convert(lower(operand), operand.type, expr.type);
+  }
+  case ExprKind::Construct:
+    return lowerConstruct(cast<typed::ConstructExpr>(expr));
+  case ExprKind::Builtin:
+    return lowerBuiltin(cast<typed::BuiltinExpr>(expr));
+  case ExprKind::Call:
+    return lowerCall(cast<typed::CallExpr>(expr));
+  case ExprKind::MethodCall:
+    return lowerMethodCall(cast<typed::MethodCallExpr>(expr));
+  case ExprKind::String:
+    unsupported(expr.range, "a string");
+    return {};
+  }
+  llvm_unreachable("every kind of expression is listed");
+}
+
+void FunctionLowering::lowerInto(const typed::Expr &expr, Value address) {
+  emitter.setLoc(module.location(expr.range));
+  if (livesInMemory(expr.type)) {
+    if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && isAggregate(expr.type))
+      return constructInto(*construct, address);
+    if (auto *call = dynCast<typed::CallExpr>(&expr)) {
+      lowerCall(*call, address);
+      return;
+    }
+  }
+  storeTo(lower(expr), address, expr.type);
+}
+
+Parts FunctionLowering::snapshot(Parts parts, const Type *type) {
+  if (!isAggregate(type) || type->is(TypeKind::Buffer))
+    return parts;
+  Value copy = temporary("copy", type);
+  emitter.copy(parts.front(), copy);
+  return {copy};
+}
+
+//===----------------------------------------------------------------------===//
+// Constants
+//===----------------------------------------------------------------------===//
+
+static std::size_t scalarsOf(const Type *type) {
+  if (type->is(TypeKind::Struct)) {
+    std::size_t sum = 0;
+    for (const typed::Field &field : type->structure->fields)
+      sum += scalarsOf(field.type);
+    return sum;
+  }
+  if (type->is(TypeKind::Array))
+    return type->count * scalarsOf(type->element);
+  return type->componentCount();
+}
+
+// The scalars [first, first + count) as a constant of their own.
+static typed::Constant slice(const typed::Constant &constant, std::size_t first,
+                             std::size_t count) {
+  typed::Constant part;
+  auto begin = constant.scalars.begin() + static_cast<std::ptrdiff_t>(first);
+  part.scalars.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+  return part;
+}
+
+Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &constant) {
+  auto scalar = [&](const Type *scalarType, typed::Constant::Scalar value) -> Value {
+    switch (scalarType->kind) {
+    case TypeKind::Float:
+      return emitter.floatConstant(value.f);
+    case TypeKind::Bool:
+      return emitter.boolConstant(value.b);
+    default:
+      return emitter.intConstant(value.i);
+    }
+  };
+  if (type->is(TypeKind::Color)) {
+    auto part = [&](std::size_t i) { return num(emitter.floatConstant(constant.scalars[i].f)); };
+    return {constant.scalars.size() == 1
+                ? colorOfGrey(part(0), colorComponents())
+                : colorOfRgb(part(0), part(1), part(2), colorComponents())};
+  }
+  if (type->isScalar())
+    return {scalar(type, constant.scalars.front())};
+  if (type->isVector()) {
+    llvm::SmallVector<Value, 4> components;
+    for (typed::Constant::Scalar value : constant.scalars)
+      components.push_back(scalar(type->element, value));
+    return {emitter.vector(components)};
+  }
+  if (type->isMatrix()) {
+    Parts columns;
+    for (unsigned i = 0; i < type->columns(); ++i)
+      columns.append(lowerLiteral(type->element, slice(constant, i * type->rows(), type->rows())));
+    return columns;
+  }
+  return {constantAggregate(type, constant)};
+}
+
+// Stored once, at the start of the function; nothing writes there later.
+Value FunctionLowering::constantAggregate(const Type *type, const typed::Constant &constant) {
+  std::vector<std::uint32_t> bits;
+  for (typed::Constant::Scalar value : constant.scalars)
+    bits.push_back(type->isError() ? 0 : value.u);
+  Value &known = constantAggregates[{type, bits}];
+  if (known)
+    return known;
+  mlir::OpBuilder::InsertionGuard guard(emitter);
+  emitter.setInsertionPointToStart(&function.getBody().front());
+  Value address = temporary("constant", type);
+  known = address;
+  std::function<void(const Type *, std::size_t, Value)> fill = [&](const Type *part,
+                                                                   std::size_t first, Value to) {
+    if (part->is(TypeKind::Struct)) {
+      for (const typed::Field &field : part->structure->fields) {
+        fill(field.type, first, emitter.field(to, field.name));
+        first += scalarsOf(field.type);
+      }
+    } else if (part->is(TypeKind::Array)) {
+      std::size_t size = scalarsOf(part->element);
+      for (unsigned i = 0; i < part->count; ++i)
+        fill(part->element, first + i * size, emitter.element(to, i));
+    } else {
+      storeTo(lowerLiteral(part, slice(constant, first, scalarsOf(part))), to, part);
+    }
+  };
+  fill(type, 0, address);
+  return address;
+}
+
+//===----------------------------------------------------------------------===//
+// Reading
+//===----------------------------------------------------------------------===//
+
+Parts FunctionLowering::lowerVariable(const typed::VariableExpr &expr) {
+  const typed::Variable &variable = *expr.variable;
+  auto known = variables.find(&variable);
+  if (known != variables.end())
+    return known->second.address ? loadFrom(known->second.address, variable.type)
+                                 : known->second.value;
+  if (variable.constant)
+    return lowerLiteral(variable.type, *variable.constant);
+  // A constant of the file whose value depends on the target, such as one with colors.
+  if (!isAggregate(variable.type))
+    return lower(*variable.init);
+  Value &global = globalAggregates[&variable];
+  if (!global) {
+    mlir::OpBuilder::InsertionGuard guard(emitter);
+    emitter.setInsertionPointToStart(&function.getBody().front());
+    Value address = temporary(variable.name, variable.type);
+    lowerInto(*variable.init, address);
+    globalAggregates[&variable] = address;
+    return {address};
+  }
+  return {global};
+}
+
+Parts FunctionLowering::lowerIndex(const typed::IndexExpr &expr) {
+  const Type *type = expr.base->type;
+  if (isPlace(expr) && !type->isVector())
+    return load(place(expr));
+  if (type->isVector()) {
+    Value vector = value(*expr.base);
+    if (auto *literal = dynCast<typed::LiteralExpr>(expr.index);
+        literal && literal->value.scalars.front().u < type->count)
+      return {emitter.extract(vector, static_cast<unsigned>(literal->value.scalars.front().u))};
+    return {emitter.extract(vector, clampedIndex(*expr.index, type->count))};
+  }
+  return load(place(expr));
+}
+
+Parts FunctionLowering::lowerLength(const typed::LengthExpr &expr) {
+  // `buffer[i].length()` asks for the second dimension; which i does not matter, but what it does
+  // is done.
+  unsigned dimension = 0;
+  const typed::Expr *base = expr.base.get();
+  while (auto *index = dynCast<typed::IndexExpr>(base)) {
+    if (!index->base->type->is(TypeKind::Buffer))
+      break;
+    if (hasSideEffects(*index->index))
+      lower(*index->index);
+    base = index->base.get();
+    ++dimension;
+  }
+  if (!base->type->is(TypeKind::Buffer)) // an array: its length is its type
+    return {emitter.intConstant(base->type->count)};
+  Place buffer = place(*base);
+  return {emitter.make<ir::BufferLengthOp>(emitter.getI32Type(), buffer.address, dimension)};
+}
+
+//===----------------------------------------------------------------------===//
+// Writing
+//===----------------------------------------------------------------------===//
+
+Parts FunctionLowering::lowerIncDec(const typed::IncDecExpr &expr) {
+  Place target = place(*expr.target);
+  Parts before = load(target), after;
+  for (Value part : before) {
+    Num old = num(part);
+    after.push_back(expr.increment ? old + 1.0 : old - 1.0);
+  }
+  emitter.setLoc(module.location(expr.range));
+  store(after, target);
+  return expr.prefix ? after : before;
+}
+
+Parts FunctionLowering::lowerAssign(const typed::AssignExpr &expr) {
+  Place target = place(*expr.target);
+  Parts result;
+  if (expr.compound) {
+    Parts old = load(target);
+    Parts operand = lower(*expr.value);
+    emitter.setLoc(module.location(expr.range));
+    result = binary(expr.op, old, expr.target->type, operand, expr.value->type);
+  } else {
+    result = lower(*expr.value);
+    emitter.setLoc(module.location(expr.range));
+  }
+  store(result, target);
+  if (isAggregate(expr.type) && !target.guard)
+    return {target.address};
+  return result;
+}
+
+//===----------------------------------------------------------------------===//
+// Choosing
+//===----------------------------------------------------------------------===//
+
+Parts FunctionLowering::lowerConditional(const typed::ConditionalExpr &expr) {
+  Value condition = value(*expr.condition);
+  if (!livesInMemory(expr.type) && !expr.type->is(TypeKind::Void) && isCheap(*expr.whenTrue) &&
+      isCheap(*expr.whenFalse)) {
+    Num whenTrue = number(*expr.whenTrue), whenFalse = number(*expr.whenFalse);
+    emitter.setLoc(module.location(expr.range));
+    return {emitter.fold<mlir::arith::SelectOp>(condition, static_cast<Value>(whenTrue),
+                                                static_cast<Value>(whenFalse))};
+  }
+  if (expr.type->is(TypeKind::Void)) {
+    emitter.ifThen(condition, [&] { lower(*expr.whenTrue); }, [&] { lower(*expr.whenFalse); });
+    return {};
+  }
+  emitter.setLoc(module.location(expr.range));
+  Value result = temporary("choice", expr.type);
+  emitter.ifThen(
+      condition, [&] { lowerInto(*expr.whenTrue, result); },
+      [&] { lowerInto(*expr.whenFalse, result); });
+  return loadFrom(result, expr.type);
+}
+
+Parts FunctionLowering::lowerShortCircuit(const typed::BinaryExpr &expr) {
+  bool isAnd = expr.op == ast::BinaryOp::LogicalAnd;
+  Num left = number(*expr.left);
+  if (isCheap(*expr.right)) {
+    Num right = number(*expr.right);
+    emitter.setLoc(module.location(expr.range));
+    return {isAnd ? left & right : left | right};
+  }
+  emitter.setLoc(module.location(expr.range));
+  Value result = temporary(isAnd ? "and" : "or", expr.type);
+  emitter.store(left, result);
+  emitter.ifThen(isAnd ? left : !left, [&] { emitter.store(value(*expr.right), result); });
+  return {emitter.load(result)};
+}
+
+} // namespace rtsl::lowering

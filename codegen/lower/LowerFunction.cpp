@@ -1,0 +1,144 @@
+//===- LowerFunction.cpp - entry and exit of functions --------------------===//
+//
+// Scratch members of a primitive. In `intersect` they are variables of that call: what one
+// candidate computes must not touch what the best hit so far has stored. Each `hit(t)` that is
+// accepted is remembered, and where `intersect` returns after one, the scratch members are stored
+// as attributes of the hit:
+//
+//   %n = rtsl.var "n"                       a variable for each scratch member
+//   %accepted = rtsl.var "accepted"
+//   ...  %h = rtsl.hit %t                   accepted = accepted | h
+//   rtsl.if %accepted {                     at each return
+//     rtsl.store (n), rtsl.attribute "n"
+//   }
+//
+// A helper that uses scratch members or reports hits is lowered a second time for calls from
+// `intersect`, `Class.helper.intersect`, and takes the addresses of these variables behind its own
+// parameters. Everywhere else (and in every material) a scratch member is the attribute of the hit
+// that won.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/lower/Analysis.h"
+#include "codegen/lower/Lowering.h"
+
+namespace rtsl::lowering {
+
+FunctionLowering::FunctionLowering(ModuleLowering &module, const FunctionKey &key,
+                                   mlir::func::FuncOp function)
+    : module(module), key(key), function(function), emitter(module.context()) {
+  emitter.setLoc(function.getLoc());
+  emitter.setInsertionPointToStart(function.addEntryBlock());
+}
+
+Value FunctionLowering::self() {
+  return function.getArgument(0);
+}
+
+void FunctionLowering::run() {
+  bindParameters();
+  if (key.function->name == "intersect" && key.inIntersect)
+    enterIntersect();
+  lower(*key.function->body);
+  if (!emitter.isTerminated())
+    emitReturnOfZero();
+}
+
+void FunctionLowering::runInitialize(const std::vector<const typed::Member *> &members) {
+  for (const typed::Member *member : members) {
+    emitter.setLoc(module.location(member->range));
+    Value address = emitter.make<ir::MemberOp>(module.pointer(member->type), self(), member->name);
+    lowerInto(*member->init, address);
+  }
+  emitter.returnValues({});
+}
+
+//===----------------------------------------------------------------------===//
+// Entry
+//===----------------------------------------------------------------------===//
+
+void FunctionLowering::bindParameters() {
+  const typed::Function &source = *key.function;
+  unsigned next = 0;
+  auto argument = [&](llvm::StringRef name) -> Value {
+    mlir::BlockArgument value = function.getArgument(next++);
+    value.setLoc(mlir::NameLoc::get(emitter.getStringAttr(name), value.getLoc()));
+    return value;
+  };
+  if (key.concrete)
+    argument("self");
+  if (livesInMemory(source.returnType))
+    resultAddress = argument("result");
+
+  std::set<const typed::Variable *> assigned = assignedVariables(*source.body);
+  for (const auto &parameter : source.parameters) {
+    Value value = argument(parameter->name);
+    Binding &binding = variables[parameter.get()];
+    if (livesInMemory(parameter->type) || parameter->direction != ast::Direction::In) {
+      binding.address = value;
+    } else if (assigned.count(parameter.get())) {
+      binding.address = emitter.variable(parameter->name, value.getType());
+      emitter.store(value, binding.address);
+    } else {
+      binding.value = {value};
+    }
+  }
+  if (key.inIntersect && source.name != "intersect") {
+    if (key.concrete)
+      for (const typed::Member *member : module.scratchMembers(key.concrete))
+        scratch[member] = argument(member->name);
+    accepted = argument("accepted");
+  }
+}
+
+void FunctionLowering::enterIntersect() {
+  for (const typed::Member *member : module.scratchMembers(key.concrete))
+    scratch[member] = emitter.variable(member->name, module.type(member->type));
+  accepted = emitter.variable("accepted", emitter.getI1Type());
+  commitsScratch = true;
+}
+
+//===----------------------------------------------------------------------===//
+// Exit
+//===----------------------------------------------------------------------===//
+
+void FunctionLowering::commitScratch() {
+  if (!commitsScratch)
+    return;
+  emitter.ifThen(emitter.load(accepted), [&] {
+    for (const typed::Member *member : module.scratchMembers(key.concrete)) {
+      Value attribute = emitter.make<ir::AttributeOp>(member->name, module.type(member->type));
+      if (isAggregate(member->type) || member->type->isMatrix())
+        emitter.copy(scratch[member], attribute);
+      else
+        emitter.store(emitter.load(scratch[member]), attribute);
+    }
+  });
+}
+
+void FunctionLowering::emitReturn(const Parts &value) {
+  const Type *type = key.function->returnType;
+  if (livesInMemory(type)) {
+    storeTo(value, resultAddress, type);
+    commitScratch();
+    emitter.returnValues({});
+    return;
+  }
+  commitScratch();
+  emitter.returnValues(value);
+}
+
+// Control that reaches the end of a function with a result gives zero.
+void FunctionLowering::emitReturnOfZero() {
+  const Type *type = key.function->returnType;
+  commitScratch();
+  if (livesInMemory(type)) {
+    emitter.make<ir::ClearOp>(resultAddress);
+    emitter.returnValues({});
+  } else if (type->is(TypeKind::Void)) {
+    emitter.returnValues({});
+  } else {
+    emitter.returnValues(emitter.zero(module.type(type)));
+  }
+}
+
+} // namespace rtsl::lowering

@@ -1,0 +1,239 @@
+//===- Lowering.h - the two workers of lowering ---------------------------===//
+//
+// `ModuleLowering` knows types, symbols and which functions are still to do; `FunctionLowering`
+// does one function. The latter's member functions are in a file for each concern: LowerStmts,
+// LowerExprs, LowerPlaces, LowerOperators, LowerConstruct, LowerCalls and LowerBuiltins.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/ir/Rtsl.h"
+#include "codegen/lower/Library.h"
+#include "codegen/lower/Lower.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "llvm/ADT/DenseMap.h"
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace rtsl::lowering {
+
+/// The value of an expression: of a scalar, vector, color or reference one value; of a matrix its
+/// columns; of a struct or an array the address of where it lies (read it before anything else may
+/// change it); of void nothing.
+using Parts = llvm::SmallVector<Value, 4>;
+
+/// One function to be lowered. A method is lowered once for each class whose objects run it, so
+/// that what it calls on itself is known. `inIntersect`: on behalf of `intersect`, where scratch
+/// members are variables.
+struct FunctionKey {
+  const typed::Function *function = nullptr;
+  const typed::Class *concrete = nullptr;
+  bool inIntersect = false;
+
+  bool operator<(const FunctionKey &other) const {
+    return std::tie(function, concrete, inIntersect) <
+           std::tie(other.function, other.concrete, other.inIntersect);
+  }
+};
+
+class ModuleLowering {
+public:
+  ModuleLowering(const typed::Module &source, const LowerOptions &options, mlir::ModuleOp target);
+  void run();
+
+  // LowerTypes.cpp
+  mlir::Type type(const Type *type);
+  mlir::Type pointer(const Type *type) { return ir::PtrType::get(this->type(type)); }
+
+  // LowerDecls.cpp
+  /// The function for a key; declares it and puts it on the list of what is to do at the first
+  /// call.
+  mlir::func::FuncOp function(const FunctionKey &key);
+  /// The name of a dispatch slot: the method's, with parameter types where the name alone is not
+  /// enough.
+  std::string slotName(const typed::Function &method) const;
+  /// Scratch members of a class, inherited ones first.
+  std::vector<const typed::Member *> scratchMembers(const typed::Class *concrete) const;
+
+  mlir::Location location(SourceRange range);
+  /// Reports what cannot be lowered yet.
+  void reportUnsupported(SourceRange range, const std::string &what);
+
+  mlir::MLIRContext *context() { return target.getContext(); }
+  const LowerOptions &options;
+  Library library;
+
+private:
+  void lowerClass(const typed::Class &definition);
+  void lowerInitialize(const typed::Class &definition);
+  std::string symbolOf(const FunctionKey &key);
+  mlir::FunctionType functionType(const FunctionKey &key);
+
+  const typed::Module &source;
+  mlir::ModuleOp target;
+  Emitter emitter; // of what stands at module level
+  llvm::DenseMap<const Type *, mlir::Type> types;
+  std::map<FunctionKey, mlir::func::FuncOp> functions;
+  std::set<std::string> symbols;
+  std::deque<FunctionKey> pending;
+};
+
+/// A place in memory: something behind an address, or components of a vector there.
+struct Place {
+  const Type *type = nullptr;
+  Value address; // of the whole vector where components are meant
+  Value guard;   // i1: the place exists; null: it does
+  bool isPartOfVector = false;
+  llvm::SmallVector<unsigned, 4> components; // constant ones, or
+  Value component;                           // one that is computed
+};
+
+class FunctionLowering {
+public:
+  FunctionLowering(ModuleLowering &module, const FunctionKey &key, mlir::func::FuncOp function);
+  void run();
+  /// The function that sets member defaults.
+  void runInitialize(const std::vector<const typed::Member *> &members);
+
+private:
+  // LowerFunction.cpp: entry and exit
+  void bindParameters();
+  void enterIntersect();
+  void commitScratch();
+  void emitReturn(const Parts &value);
+  void emitReturnOfZero();
+  Value self();
+
+  // LowerStmts.cpp
+  void lower(const typed::Stmt &stmt);
+  void lower(const typed::StmtPtr &stmt) {
+    if (stmt)
+      lower(*stmt);
+  }
+  void lowerAll(const std::vector<typed::StmtPtr> &body);
+  void lowerDeclaration(const typed::Variable &variable);
+  void lowerIf(const typed::IfStmt &stmt);
+  void lowerLoop(const typed::Expr *condition, const typed::Stmt &body, const typed::Expr *step,
+                 bool testAfter);
+  void lowerSwitch(const typed::SwitchStmt &stmt);
+  void lowerIlluminance(const typed::IlluminanceStmt &stmt);
+
+  // LowerExprs.cpp
+  Parts lower(const typed::Expr &expr);
+  Value value(const typed::Expr &expr) { return lower(expr).front(); }
+  Num number(const typed::Expr &expr) { return {emitter, value(expr)}; }
+  /// Evaluates into memory that nothing else refers to.
+  void lowerInto(const typed::Expr &expr, Value address);
+  Parts lowerLiteral(const Type *type, const typed::Constant &constant);
+  Value constantAggregate(const Type *type, const typed::Constant &constant);
+  Parts lowerVariable(const typed::VariableExpr &expr);
+  Parts lowerIndex(const typed::IndexExpr &expr);
+  Parts lowerLength(const typed::LengthExpr &expr);
+  Parts lowerIncDec(const typed::IncDecExpr &expr);
+  Parts lowerAssign(const typed::AssignExpr &expr);
+  Parts lowerConditional(const typed::ConditionalExpr &expr);
+  Parts lowerShortCircuit(const typed::BinaryExpr &expr);
+  /// The same value, safe from what happens later: structs and arrays are copied.
+  Parts snapshot(Parts parts, const Type *type);
+
+  // LowerPlaces.cpp
+  Place place(const typed::Expr &expr);
+  Place indexPlace(const typed::IndexExpr &expr);
+  Place bufferPlace(const typed::IndexExpr &expr);
+  Parts load(const Place &place);
+  void store(const Parts &parts, const Place &place);
+  Parts loadFrom(Value address, const Type *type);
+  void storeTo(const Parts &parts, Value address, const Type *type);
+  Value temporary(llvm::StringRef name, const Type *type);
+  /// An index, clamped to [0, count - 1] if indices are checked.
+  Value clampedIndex(const typed::Expr &index, Value count);
+  Value clampedIndex(const typed::Expr &index, std::uint32_t count);
+
+  // LowerOperators.cpp
+  Parts lowerUnary(const typed::UnaryExpr &expr);
+  Parts binary(ast::BinaryOp op, const Parts &left, const Type *leftType, const Parts &right,
+               const Type *rightType);
+  Num arithmetic(ast::BinaryOp op, Num left, Num right, bool isSigned);
+  Parts multiplyMatrices(const Parts &left, const Type *leftType, const Parts &right,
+                         const Type *rightType);
+  Num equality(const Parts &left, const Parts &right, const Type *type);
+  Parts convert(const Parts &parts, const Type *from, const Type *to);
+  Num convertScalars(Num number, const Type *from, const Type *to);
+
+  // LowerConstruct.cpp
+  Parts lowerConstruct(const typed::ConstructExpr &expr);
+  void constructInto(const typed::ConstructExpr &expr, Value address);
+  Parts constructMatrix(const typed::ConstructExpr &expr);
+  /// All scalars of a value, in order.
+  void appendScalars(const Parts &parts, const Type *type, llvm::SmallVectorImpl<Value> &scalars);
+
+  // LowerCalls.cpp
+  Parts lowerCall(const typed::CallExpr &expr, Value result = nullptr);
+  Parts lowerMethodCall(const typed::MethodCallExpr &expr);
+  /// Copies arguments in: values, and addresses of temporaries.
+  struct CopyOut {
+    Place target;
+    Value from;
+  };
+  void passArguments(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
+                     llvm::SmallVectorImpl<Value> &values, std::vector<CopyOut> &outputs);
+  void copyOut(const std::vector<CopyOut> &outputs);
+
+  // LowerBuiltins.cpp, LowerBuiltinsInteger.cpp, LowerBuiltinsRay.cpp
+  Parts lowerBuiltin(const typed::BuiltinExpr &expr);
+  std::optional<Parts> lowerNumericBuiltin(const typed::BuiltinExpr &expr);
+  std::optional<Parts> lowerGeometricBuiltin(const typed::BuiltinExpr &expr);
+  std::optional<Parts> lowerIntegerBuiltin(const typed::BuiltinExpr &expr);
+  std::optional<Parts> lowerPackingBuiltin(const typed::BuiltinExpr &expr);
+  std::optional<Parts> lowerRayBuiltin(const typed::BuiltinExpr &expr);
+  Num elementary(ir::Elementary function, llvm::ArrayRef<Num> operands);
+
+  // Small helpers
+  Num num(Value value) { return {emitter, value}; }
+  Columns columns(const Parts &parts);
+  Parts parts(const Columns &columns);
+  unsigned colorComponents() const { return module.options.colorComponents; }
+  void unsupported(SourceRange range, const std::string &what) {
+    module.reportUnsupported(range, what);
+  }
+  /// A value of `type` to go on with behind an error.
+  Parts zeroOf(const Type *type);
+
+  ModuleLowering &module;
+  FunctionKey key;
+  mlir::func::FuncOp function;
+  Emitter emitter;
+
+  struct Binding {
+    Value address; // or
+    Parts value;   // a parameter that is never assigned
+  };
+  llvm::DenseMap<const typed::Variable *, Binding> variables;
+  Value resultAddress; // where a struct, array or matrix is returned
+
+  // In `intersect` and on its behalf
+  llvm::DenseMap<const typed::Member *, Value> scratch;
+  Value accepted; // address of a bool: has this intersection reported a hit that counts?
+  bool commitsScratch = false;
+
+  // Constant arrays and structs, made once at the start of the function.
+  std::map<std::pair<const Type *, std::vector<std::uint32_t>>, Value> constantAggregates;
+  std::map<const typed::Variable *, Value> globalAggregates;
+};
+
+inline bool isAggregate(const Type *type) {
+  return type->is(TypeKind::Struct) || type->is(TypeKind::Array) || type->is(TypeKind::Buffer);
+}
+/// Passed to functions by address.
+inline bool livesInMemory(const Type *type) {
+  return isAggregate(type) || type->isMatrix();
+}
+
+} // namespace rtsl::lowering
