@@ -1,0 +1,35 @@
+//===- Builtins.h - the signatures of the built-in functions --------------===//
+#pragma once
+
+#include "sema/Overload.h"
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace rtsl {
+
+/// The overloads of one name.
+struct BuiltinOverloads {
+  std::vector<Signature> signatures;
+  std::vector<typed::Builtin> builtins; // of each signature
+};
+
+/// Expands signatures by name when they are first asked for, so that a file pays only for what it
+/// uses.
+class BuiltinTable {
+public:
+  explicit BuiltinTable(TypeContext &types) : types(types) {}
+
+  /// Null if no built-in function has this name. `trace` and `print` list only their fixed forms.
+  const BuiltinOverloads *find(const std::string &name);
+
+private:
+  TypeContext &types;
+  std::unordered_map<std::string, BuiltinOverloads> expanded;
+};
+
+/// All names, for suggestions.
+const std::vector<std::string> &builtinNames();
+
+} // namespace rtsl

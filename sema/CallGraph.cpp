@@ -1,0 +1,352 @@
+//===- CallGraph.cpp - what follows from who calls whom -------------------===//
+//
+// Functions must not call themselves, a function may trace if something that it calls does, and a
+// helper may use what the methods that lead to it may use. All walks are loops: chains of calls may
+// be long.
+//
+//===----------------------------------------------------------------------===//
+#include "sema/Program.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace rtsl {
+
+//===----------------------------------------------------------------------===//
+// Is a use allowed?
+//===----------------------------------------------------------------------===//
+
+static std::string inMethod(const MethodModel &method) {
+  return "`" + method.name + "`";
+}
+
+static bool judgeState(const Use &use, const RootModel &root, const MethodModel &method,
+                       Diagnostics &diagnostics, const typed::Function *through) {
+  const std::string variable = typed::name(use.variable);
+  auto finish = [&](Diagnostic &diagnostic) {
+    if (through)
+      diagnostic.label(through->range,
+                       "reached from " + inMethod(method) + " of " + withArticle(root.name));
+    return false;
+  };
+  if (!root.sees.has(use.variable)) {
+    const std::string classes = classesThatSee(use.variable);
+    Diagnostic &diagnostic = diagnostics.report(Code::stateNotVisible, use.range,
+                                                withArticle(root.name), "rt_" + variable);
+    diagnostic.note("`rt_" + variable + "` belongs to " + classes);
+    return finish(diagnostic);
+  }
+  if (use.kind == Use::Kind::ReadState) {
+    if (method.reads.has(use.variable))
+      return true;
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::stateWithoutRay, use.range, "rt_" + variable, method.name);
+    diagnostic.note(
+        method.name == "constructor"
+            ? "the constructor runs when the scene is built: there is no ray yet"
+        : method.name == "computeBounds"
+            ? "`computeBounds` runs when the acceleration structure is built: there is no ray yet"
+            : "no ray of the classic engine is under way here");
+    return finish(diagnostic);
+  }
+  if (method.writes.has(use.variable))
+    return true;
+  const std::string writers = methodsThatWrite(use.variable);
+  if (writers.empty())
+    return finish(diagnostics.report(Code::stateSetByEngine, use.range, "rt_" + variable));
+  return finish(diagnostics.report(Code::stateReadOnly, use.range, "rt_" + variable, writers));
+}
+
+static bool judgeSpecial(const Use &use, const RootModel &root, const MethodModel &method,
+                         Diagnostics &diagnostics, const typed::Function *through) {
+  if (method.abilities.has(use.ability))
+    return true;
+  auto finish = [&](Diagnostic &diagnostic) {
+    if (through)
+      diagnostic.label(through->range,
+                       "reached from " + inMethod(method) + " of " + withArticle(root.name));
+    if (use.member)
+      diagnostic.label(use.member->range, "declared here");
+    return false;
+  };
+  switch (use.ability) {
+  case Ability::WriteMembers: {
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::memberReadOnly, use.range, use.what,
+                           use.member->access == ast::Access::Public ? "public" : "private");
+    diagnostic.note("all rays share the object; use a local variable");
+    return finish(diagnostic);
+  }
+  case Ability::WriteScratch: {
+    if (root.name == "rt_Material") {
+      Diagnostic &diagnostic = diagnostics.report(Code::attributeReadOnly, use.range, use.what);
+      diagnostic.note(
+          "a scratch member of a material shows what the primitive that was hit wrote to its own");
+      return finish(diagnostic);
+    }
+    Diagnostic &diagnostic = diagnostics.report(Code::scratchReadOnly, use.range, use.what);
+    diagnostic.note("a scratch value is what the `intersect` that found the hit left behind");
+    return finish(diagnostic);
+  }
+  case Ability::ReadScratch: {
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::scratchWithoutValue, use.range, use.what, method.name);
+    diagnostic.note("scratch members have values from `intersect` on, for the hit that won");
+    return finish(diagnostic);
+  }
+  case Ability::Trace: {
+    Diagnostic &diagnostic = diagnostics.report(Code::misplacedTrace, use.range, inMethod(method));
+    diagnostic.note("`trace` may stand in " + methodsWith(Ability::Trace) +
+                    ", and in functions that these call");
+    return finish(diagnostic);
+  }
+  case Ability::Illuminance: {
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::misplacedIlluminance, use.range, use.what, inMethod(method));
+    diagnostic.note("lights are gathered in " + methodsWith(Ability::Illuminance));
+    return finish(diagnostic);
+  }
+  case Ability::Lookup: {
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::misplacedLookup, use.range, use.what, inMethod(method));
+    diagnostic.note("textures are looked up in " + methodsWith(Ability::Lookup));
+    return finish(diagnostic);
+  }
+  default: {
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::misplacedCall, use.range, use.what, inMethod(method));
+    diagnostic.note("`" + use.what + "` may stand in " + methodsWith(use.ability));
+    return finish(diagnostic);
+  }
+  }
+}
+
+bool judgeUse(Diagnostics &diagnostics, const Use &use, const RootModel &root,
+              const MethodModel &method, const typed::Function *through) {
+  return use.kind == Use::Kind::Special ? judgeSpecial(use, root, method, diagnostics, through)
+                                        : judgeState(use, root, method, diagnostics, through);
+}
+
+//===----------------------------------------------------------------------===//
+// The graph
+//===----------------------------------------------------------------------===//
+
+namespace {
+
+class CallGraph {
+public:
+  CallGraph(Program &program, const std::vector<ClassScope *> &baseFirst)
+      : program(program), baseFirst(baseFirst) {}
+
+  void findOverriders();
+  void refuseRecursion();
+  void judgeHelpers();
+
+private:
+  using Functions = std::vector<const typed::Function *>;
+
+  /// What a call may run, whatever the object.
+  Functions targets(const CallEdge &edge) const;
+  /// What a call runs when the object is of this class.
+  Functions targetsFor(const CallEdge &edge, const ClassScope &scope) const;
+  void reportCycle(const Functions &path, const std::vector<SourceRange> &calls,
+                   const typed::Function *again, SourceRange closing);
+  void judgeFrom(const typed::Function &method, const ClassScope &scope, const MethodModel &rules);
+  const FunctionFacts &factsOf(const typed::Function *function) const {
+    static const FunctionFacts none;
+    auto found = program.facts.find(function);
+    return found == program.facts.end() ? none : found->second;
+  }
+
+  Program &program;
+  const std::vector<ClassScope *> &baseFirst;
+  std::unordered_map<const typed::Function *, Functions> overriders; // directly
+  std::unordered_set<const ClassScope *> overridesHelper;
+  std::unordered_set<const typed::Function *> reached;
+  std::unordered_set<const Use *> reported;
+};
+
+} // namespace
+
+void CallGraph::findOverriders() {
+  for (const ClassScope *scope : baseFirst)
+    for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
+      for (const typed::Function *other : program.findMethods(scope->base, function->name))
+        if (!function->isConstructor && sameParameters(*other, *function)) {
+          overriders[other].push_back(function.get());
+          if (!function->isStateMethod)
+            overridesHelper.insert(scope);
+        }
+}
+
+CallGraph::Functions CallGraph::targets(const CallEdge &edge) const {
+  Functions all = {edge.callee};
+  if (edge.dispatched)
+    for (std::size_t i = 0; i != all.size(); ++i)
+      if (auto found = overriders.find(all[i]); found != overriders.end())
+        all.insert(all.end(), found->second.begin(), found->second.end());
+  return all;
+}
+
+CallGraph::Functions CallGraph::targetsFor(const CallEdge &edge, const ClassScope &scope) const {
+  if (!edge.dispatched || edge.throughReference)
+    return targets(edge);
+  for (const typed::Function *candidate : program.findMethods(&scope, edge.callee->name))
+    if (sameParameters(*candidate, *edge.callee))
+      return {candidate};
+  return {edge.callee};
+}
+
+//===----------------------------------------------------------------------===//
+// Recursion, and who may trace
+//===----------------------------------------------------------------------===//
+
+void CallGraph::reportCycle(const Functions &path, const std::vector<SourceRange> &calls,
+                            const typed::Function *again, SourceRange closing) {
+  const auto first =
+      static_cast<std::size_t>(std::find(path.begin(), path.end(), again) - path.begin());
+  std::string chain = "`" + again->name + "`";
+  for (std::size_t i = first + 1; i < path.size(); ++i)
+    if (i - first <= 8)
+      chain += " calls `" + path[i]->name + "`, which";
+  chain += " calls `" + again->name + "`";
+  Diagnostic &diagnostic = program.diagnostics.report(Code::recursion, closing, again->name);
+  for (std::size_t i = first + 1; i < path.size() && i - first <= 8; ++i)
+    diagnostic.label(calls[i], "`" + path[i - 1]->name + "` calls `" + path[i]->name + "` here");
+  diagnostic.note(chain);
+  diagnostic.note("only `trace` recurses");
+}
+
+/// Depth first over all functions. Callees are finished before their callers, so that `mayTrace` is
+/// known.
+void CallGraph::refuseRecursion() {
+  enum class Mark : std::uint8_t { Open, Done };
+  std::unordered_map<const typed::Function *, Mark> marks;
+  struct Frame {
+    typed::Function *function;
+    std::vector<std::pair<const typed::Function *, SourceRange>> next;
+    std::size_t position = 0;
+  };
+  std::vector<Frame> stack;
+  Functions path;
+  std::vector<SourceRange> calls;
+  auto enter = [&](const typed::Function *function, SourceRange call) {
+    marks[function] = Mark::Open;
+    Frame frame{const_cast<typed::Function *>(function), {}, 0};
+    for (const CallEdge &edge : factsOf(function).calls)
+      for (const typed::Function *target : targets(edge))
+        frame.next.emplace_back(target, edge.range);
+    frame.function->mayTrace = factsOf(function).traces;
+    stack.push_back(std::move(frame));
+    path.push_back(function);
+    calls.push_back(call);
+  };
+  auto walk = [&](const typed::Function *root) {
+    if (marks.count(root))
+      return;
+    enter(root, root->range);
+    while (!stack.empty()) {
+      Frame &frame = stack.back();
+      if (frame.position == frame.next.size()) {
+        const bool traces = frame.function->mayTrace;
+        marks[frame.function] = Mark::Done;
+        stack.pop_back();
+        path.pop_back();
+        calls.pop_back();
+        if (!stack.empty())
+          stack.back().function->mayTrace |= traces;
+        continue;
+      }
+      const auto [target, range] = frame.next[frame.position++];
+      const auto mark = marks.find(target);
+      if (mark == marks.end())
+        enter(target, range);
+      else if (mark->second == Mark::Open)
+        reportCycle(path, calls, target, range);
+      else
+        frame.function->mayTrace |= target->mayTrace;
+    }
+  };
+  for (const std::unique_ptr<typed::Function> &function : program.module.functions)
+    walk(function.get());
+  for (const ClassScope *scope : baseFirst)
+    for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
+      walk(function.get());
+}
+
+//===----------------------------------------------------------------------===//
+// Helpers
+//===----------------------------------------------------------------------===//
+
+/// Judges what is used in the functions that a method of the table leads to, on an object of the
+/// class `scope`.
+void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope,
+                          const MethodModel &rules) {
+  std::unordered_set<const typed::Function *> seen = {&method};
+  struct Step {
+    const typed::Function *function;
+    bool onOtherObject;
+  };
+  std::vector<Step> pending = {{&method, false}};
+  while (!pending.empty()) {
+    const Step step = pending.back();
+    pending.pop_back();
+    const FunctionFacts &facts = factsOf(step.function);
+    if (step.function != &method) {
+      reached.insert(step.function);
+      for (const Use &use : facts.uses) {
+        // The members of another object are that object's affair.
+        const bool ofObject = use.kind == Use::Kind::Special && use.member && step.onOtherObject;
+        const bool writes =
+            use.ability == Ability::WriteMembers || use.ability == Ability::WriteScratch;
+        if (reported.count(&use) || (ofObject && !writes))
+          continue;
+        if (!judgeUse(program.diagnostics, use, *scope.root, rules, &method))
+          reported.insert(&use);
+      }
+    }
+    for (const CallEdge &edge : facts.calls)
+      for (const typed::Function *target :
+           step.onOtherObject ? targets(edge) : targetsFor(edge, scope))
+        if (seen.insert(target).second)
+          pending.push_back({target, step.onOtherObject || edge.throughReference});
+  }
+}
+
+void CallGraph::judgeHelpers() {
+  for (const ClassScope *scope : baseFirst) {
+    if (!scope->root)
+      continue;
+    // Inherited methods lead elsewhere only if this class overrides one of the functions on the
+    // way.
+    const bool withInherited = overridesHelper.count(scope) != 0;
+    for (const ClassScope *at = scope; at; at = withInherited ? at->base : nullptr)
+      for (const std::unique_ptr<typed::Function> &function : at->definition->functions) {
+        if (function->isConstructor)
+          judgeFrom(*function, *scope, constructorModel());
+        else if (function->isStateMethod)
+          if (const MethodModel *rules =
+                  scope->root->method(function->name, !function->parameters.empty()))
+            judgeFrom(*function, *scope, *rules);
+      }
+  }
+  // What nobody calls yet may at least do what some method of its class may.
+  for (const ClassScope *scope : baseFirst) {
+    if (!scope->root)
+      continue;
+    MethodModel most = unionOfMethods(*scope->root);
+    for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
+      if (!function->isConstructor && !function->isStateMethod && !reached.count(function.get()))
+        for (const Use &use : factsOf(function.get()).uses)
+          judgeUse(program.diagnostics, use, *scope->root, most, nullptr);
+  }
+}
+
+void Program::judgeCalls() {
+  CallGraph graph(*this, baseFirst);
+  graph.findOverriders();
+  graph.refuseRecursion();
+  graph.judgeHelpers();
+}
+
+} // namespace rtsl

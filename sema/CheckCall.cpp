@@ -1,0 +1,471 @@
+//===- CheckCall.cpp - calls ----------------------------------------------===//
+#include "sema/FunctionChecker.h"
+#include "sema/Suggest.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+using typed::Builtin;
+using typed::ExprPtr;
+
+static Signature signatureOf(const typed::Function &function) {
+  Signature signature;
+  signature.result = function.returnType;
+  for (const std::unique_ptr<typed::Variable> &parameter : function.parameters)
+    signature.parameters.push_back({parameter->type, parameter->direction});
+  return signature;
+}
+
+static bool anyBroken(const std::vector<ExprPtr> &args) {
+  return std::any_of(args.begin(), args.end(),
+                     [](const ExprPtr &arg) { return arg->type->isError(); });
+}
+
+ExprPtr FunctionChecker::checkCall(const ast::CallExpr &expr) {
+  return expr.receiver ? checkReceiverCall(expr) : checkPlainCall(expr);
+}
+
+//===----------------------------------------------------------------------===//
+// Which function
+//===----------------------------------------------------------------------===//
+
+ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
+  const std::string &name = expr.callee.text;
+  auto notAFunction = [&](const char *what, SourceRange where) {
+    Diagnostic &diagnostic = diagnostics.report(Code::notAFunction, expr.callee.range, name, what);
+    diagnostic.label(where, "declared here");
+    if (program.builtins.find(name))
+      diagnostic.note("it hides the built-in function `" + name + "`");
+    return errorExpr(expr.range);
+  };
+  if (const typed::Variable *variable = locals.find(name))
+    return notAFunction(variable->kind == typed::Variable::Kind::Parameter ? "a parameter"
+                                                                           : "a variable",
+                        variable->range);
+  if (scope) {
+    if (const typed::Member *member = program.findMember(scope, name))
+      return notAFunction("a member", member->range);
+    const std::vector<const typed::Function *> methods = program.findMethods(scope, name);
+    if (!methods.empty())
+      return checkUserCall(expr, methods, nullptr);
+  }
+  if (const Type *type = types.named(name))
+    return checkConstruct(type, expr.callee.range, expr.args, expr.range);
+  if (const Symbol *symbol = program.findSymbol(name)) {
+    if (symbol->kind == Symbol::Kind::Struct) {
+      const typed::Struct *structure = program.structure(name, expr.callee.range);
+      const Type *type = structure ? types.structure(structure) : types.error;
+      return checkConstruct(type, expr.callee.range, expr.args, expr.range);
+    }
+    if (symbol->kind == Symbol::Kind::Class)
+      return checkConstruct(types.reference(program.classes.at(name)->definition),
+                            expr.callee.range, expr.args, expr.range);
+    if (symbol->kind == Symbol::Kind::Constant)
+      return notAFunction("a constant", symbol->range);
+    const std::vector<typed::Function *> &overloads = program.functions.at(name);
+    return checkUserCall(expr, {overloads.begin(), overloads.end()}, nullptr);
+  }
+  if (rootModel(name))
+    return checkConstruct(types.reference(name), expr.callee.range, expr.args, expr.range);
+  if (name == "print")
+    return checkPrint(expr);
+  if (name == "trace" && expr.args.size() > 2)
+    return checkTracePayload(expr);
+  if (const BuiltinOverloads *overloads = program.builtins.find(name))
+    return checkBuiltinCall(expr, *overloads);
+  reportUnknownFunction(expr.callee);
+  for (const ast::ExprPtr &arg : expr.args)
+    checkExpr(*arg);
+  return errorExpr(expr.range);
+}
+
+void FunctionChecker::reportUnknownFunction(const ast::Name &callee) {
+  Diagnostic &diagnostic = diagnostics.report(Code::unknownFunction, callee.range, callee.text);
+  if (const ForeignSpelling *foreign = foreignSpelling(callee.text)) {
+    if (!foreign->replacement.empty())
+      diagnostic.fix(callee.range, foreign->replacement);
+    if (!foreign->advice.empty())
+      diagnostic.note(foreign->advice);
+    return;
+  }
+  std::vector<std::string> candidates = builtinNames();
+  for (const auto &entry : program.functions)
+    candidates.push_back(entry.first);
+  for (const ClassScope *at = scope; at; at = at->base)
+    for (const auto &entry : at->functions)
+      candidates.push_back(entry.first);
+  candidates.insert(candidates.end(), program.structOrder.begin(), program.structOrder.end());
+  std::sort(candidates.begin(), candidates.end());
+  if (const std::string closest = closestName(callee.text, candidates); !closest.empty())
+    diagnostic.fix(callee.range, closest);
+}
+
+//===----------------------------------------------------------------------===//
+// Arguments and the choice between overloads
+//===----------------------------------------------------------------------===//
+
+std::vector<ExprPtr> FunctionChecker::checkArguments(const std::vector<ast::ExprPtr> &args,
+                                                     const std::vector<Signature> &candidates) {
+  std::vector<ExprPtr> values;
+  for (std::size_t i = 0; i != args.size(); ++i) {
+    Access access = Access::Read;
+    for (const Signature &candidate : candidates) {
+      if (candidate.parameters.size() != args.size())
+        continue;
+      if (candidate.parameters[i].direction == ast::Direction::Out && access == Access::Read)
+        access = Access::Write;
+      else if (candidate.parameters[i].direction == ast::Direction::InOut)
+        access = Access::ReadWrite;
+    }
+    values.push_back(checkValue(*args[i], access));
+  }
+  return values;
+}
+
+int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature> &candidates,
+                            const std::vector<ExprPtr> &args,
+                            const std::vector<SourceRange> &places, SourceRange range) {
+  if (anyBroken(args))
+    return -1;
+  std::vector<const Type *> argTypes;
+  for (const ExprPtr &arg : args)
+    argTypes.push_back(arg->type);
+  const Resolution resolution = resolveOverload(candidates, argTypes);
+  if (resolution.chosen >= 0)
+    return resolution.chosen;
+
+  const bool ambiguous = !resolution.ties.empty();
+  if (!ambiguous && candidates.size() == 1 && candidates[0].parameters.size() == args.size()) {
+    // Only one function can be meant: say which argument is wrong.
+    for (std::size_t i = 0; i != args.size(); ++i) {
+      const Signature::Parameter &parameter = candidates[0].parameters[i];
+      const Conversion conversion = implicitConversion(args[i]->type, parameter.type);
+      if (conversion == Conversion::Exact ||
+          (conversion == Conversion::Implicit && parameter.direction == ast::Direction::In))
+        continue;
+      Diagnostic &diagnostic =
+          diagnostics.report(Code::badArgument, args[i]->range, i + 1, callee.text,
+                             toString(parameter.type), toString(args[i]->type));
+      if (!places.empty())
+        diagnostic.label(places[0],
+                         "`" + describe(callee.text, candidates[0]) + "` is defined here");
+      if (parameter.direction == ast::Direction::In)
+        explainConversion(diagnostic, *args[i], parameter.type);
+      else
+        diagnostic.note("an `out` or `inout` argument has exactly the type of the parameter");
+    }
+    return -1;
+  }
+
+  Diagnostic &diagnostic = ambiguous ? diagnostics.report(Code::ambiguousCall, callee.range,
+                                                          callee.text, describe(argTypes))
+                                     : diagnostics.report(Code::noMatchingFunction, callee.range,
+                                                          callee.text, describe(argTypes));
+  std::vector<int> shown = resolution.ties;
+  for (std::size_t i = 0; !ambiguous && i != candidates.size(); ++i)
+    if (candidates[i].parameters.size() == args.size())
+      shown.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; shown.empty() && i != candidates.size(); ++i)
+    shown.push_back(static_cast<int>(i));
+  constexpr std::size_t maxShown = 8;
+  for (std::size_t i = 0; i != std::min(shown.size(), maxShown); ++i) {
+    const auto candidate = static_cast<std::size_t>(shown[i]);
+    const std::string text = "candidate: `" + describe(callee.text, candidates[candidate]) + "`";
+    if (candidate < places.size())
+      diagnostic.label(places[candidate], text);
+    else
+      diagnostic.note(text);
+  }
+  if (shown.size() > maxShown)
+    diagnostic.note("and " + std::to_string(shown.size() - maxShown) + " more");
+  if (std::any_of(argTypes.begin(), argTypes.end(),
+                  [](const Type *type) { return type->is(TypeKind::Color); }) &&
+      places.empty())
+    diagnostic.note("of the built-in functions, a color has `pow`, `exp`, `sqrt`, `mix`, `min`, "
+                    "`max` and `luminance`");
+  return -1;
+}
+
+void FunctionChecker::convertArguments(const Signature &signature, std::vector<ExprPtr> &args) {
+  for (std::size_t i = 0; i != args.size(); ++i)
+    args[i] = convertTo(std::move(args[i]), signature.parameters[i].type);
+}
+
+//===----------------------------------------------------------------------===//
+// Functions of the author
+//===----------------------------------------------------------------------===//
+
+ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
+                                       const std::vector<const typed::Function *> &candidates,
+                                       ExprPtr receiver) {
+  std::vector<Signature> signatures;
+  std::vector<SourceRange> places;
+  bool broken = false;
+  for (const typed::Function *candidate : candidates) {
+    signatures.push_back(signatureOf(*candidate));
+    places.push_back(candidate->range);
+    broken |= candidate->returnType->isError();
+    for (const Signature::Parameter &parameter : signatures.back().parameters)
+      broken |= parameter.type->isError();
+  }
+  std::vector<ExprPtr> args = checkArguments(expr.args, signatures);
+  if (broken && candidates.size() == 1)
+    return errorExpr(expr.range);
+  const int chosen = choose(expr.callee, signatures, args, places, expr.range);
+  if (chosen < 0)
+    return errorExpr(expr.range);
+  const typed::Function &callee = *candidates[static_cast<std::size_t>(chosen)];
+  const Signature &signature = signatures[static_cast<std::size_t>(chosen)];
+  if (signature.result->isError())
+    return errorExpr(expr.range);
+  if (callee.isConstructor || callee.isStateMethod) {
+    diagnostics.report(Code::engineCalls, expr.callee.range, callee.name)
+        .label(callee.range, "defined here")
+        .note(callee.isConstructor ? "the constructor runs once, when the scene makes the object"
+                                   : "put what both need into a function of its own");
+    return errorExpr(expr.range);
+  }
+  for (std::size_t i = 0; i != args.size(); ++i)
+    if (signature.parameters[i].direction != ast::Direction::In &&
+        !requireTarget(*expr.args[i], *args[i], "pass as `out` argument"))
+      return errorExpr(expr.range);
+  if (!facts) {
+    diagnostics.report(Code::useOutsideFunction, expr.callee.range, callee.name);
+    return errorExpr(expr.range);
+  }
+  facts->calls.push_back(
+      {&callee, callee.owner != nullptr, receiver != nullptr, expr.callee.range});
+  convertArguments(signature, args);
+  if (receiver) {
+    auto node = makeExpr<typed::MethodCallExpr>(signature.result, expr.range);
+    node->receiver = std::move(receiver);
+    node->method = callee.name;
+    node->function = &callee;
+    node->args = std::move(args);
+    return node;
+  }
+  auto node = makeExpr<typed::CallExpr>(signature.result, expr.range);
+  node->function = &callee;
+  node->onSelf = callee.owner != nullptr;
+  node->args = std::move(args);
+  return node;
+}
+
+//===----------------------------------------------------------------------===//
+// Built-in functions
+//===----------------------------------------------------------------------===//
+
+/// What a method must be able to do for this function to stand in it.
+static bool neededAbility(Builtin builtin, Ability &ability) {
+  switch (builtin) {
+  case Builtin::Trace:
+  case Builtin::TracePayload:
+    ability = Ability::Trace;
+    return true;
+  case Builtin::Hit:
+    ability = Ability::Hit;
+    return true;
+  case Builtin::Ambient:
+    ability = Ability::Illuminance;
+    return true;
+  case Builtin::IgnoreIntersection:
+  case Builtin::TerminateRay:
+    ability = Ability::AnyHit;
+    return true;
+  case Builtin::VisitChild:
+    ability = Ability::VisitChild;
+    return true;
+  case Builtin::Rand:
+    ability = Ability::Random;
+    return true;
+  default:
+    return false;
+  }
+}
+
+ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
+                                          const BuiltinOverloads &overloads) {
+  std::vector<ExprPtr> args = checkArguments(expr.args, overloads.signatures);
+  const int chosen = choose(expr.callee, overloads.signatures, args, {}, expr.range);
+  if (chosen < 0)
+    return errorExpr(expr.range);
+  const Signature &signature = overloads.signatures[static_cast<std::size_t>(chosen)];
+  const Builtin builtin = overloads.builtins[static_cast<std::size_t>(chosen)];
+  for (std::size_t i = 0; i != args.size(); ++i)
+    if (signature.parameters[i].direction != ast::Direction::In &&
+        !requireTarget(*expr.args[i], *args[i], "pass as `out` argument"))
+      return errorExpr(expr.range);
+  Ability ability;
+  if (neededAbility(builtin, ability))
+    recordSpecial(ability, expr.callee.text, expr.callee.range);
+  convertArguments(signature, args);
+  auto node = makeExpr<typed::BuiltinExpr>(signature.result, expr.range);
+  node->builtin = builtin;
+  node->args = std::move(args);
+  return node;
+}
+
+/// `trace(origin, direction, tmin, tmax, payload [, root, mask, time])`.
+ExprPtr FunctionChecker::checkTracePayload(const ast::CallExpr &expr) {
+  const Type *vec3 = types.vector(types.floatType, 3);
+  struct Parameter {
+    const char *name;
+    const Type *type; // null: the payload
+  };
+  const Parameter parameters[] = {{"origin", vec3},          {"direction", vec3},
+                                  {"tmin", types.floatType}, {"tmax", types.floatType},
+                                  {"payload", nullptr},      {"root", types.intType},
+                                  {"mask", types.uintType},  {"time", types.floatType}};
+  const std::size_t count = expr.args.size();
+  constexpr std::size_t payloadIndex = 4;
+  if (count < 5 || count > 8) {
+    diagnostics.report(Code::badTrace, expr.callee.range, count)
+        .note("`color trace(vec3 origin, vec3 direction)`")
+        .note("`void trace(vec3 origin, vec3 direction, float tmin, float tmax, inout P payload [, "
+              "int root, uint "
+              "mask, float time])`");
+    for (const ast::ExprPtr &arg : expr.args)
+      checkExpr(*arg);
+    return errorExpr(expr.range);
+  }
+  recordSpecial(Ability::Trace, "trace", expr.callee.range);
+  auto node = makeExpr<typed::BuiltinExpr>(types.voidType, expr.range);
+  node->builtin = Builtin::TracePayload;
+  bool broken = false;
+  for (std::size_t i = 0; i != count; ++i) {
+    ExprPtr arg = checkValue(*expr.args[i], i == payloadIndex ? Access::ReadWrite : Access::Read);
+    if (arg->type->isError()) {
+      broken = true;
+    } else if (i == payloadIndex) {
+      if (!arg->type->is(TypeKind::Struct)) {
+        diagnostics.report(Code::payloadNotAStruct, arg->range, toString(arg->type));
+        broken = true;
+      } else {
+        broken |= !requireTarget(*expr.args[i], *arg, "pass as payload");
+      }
+    } else if (implicitConversion(arg->type, parameters[i].type) == Conversion::None) {
+      Diagnostic &diagnostic =
+          diagnostics.report(Code::badArgument, arg->range, i + 1, "trace",
+                             toString(parameters[i].type), toString(arg->type));
+      diagnostic.note(std::string("this is its `") + parameters[i].name + "`");
+      explainConversion(diagnostic, *arg, parameters[i].type);
+      broken = true;
+    } else {
+      arg = convertTo(std::move(arg), parameters[i].type);
+    }
+    node->args.push_back(std::move(arg));
+  }
+  return broken ? errorExpr(expr.range) : std::move(node);
+}
+
+ExprPtr FunctionChecker::checkPrint(const ast::CallExpr &expr) {
+  auto node = makeExpr<typed::BuiltinExpr>(types.voidType, expr.range);
+  node->builtin = Builtin::Print;
+  bool broken = false;
+  for (const ast::ExprPtr &argument : expr.args) {
+    ExprPtr arg = checkExpr(*argument);
+    const Type *type = arg->type;
+    if (type->isError()) {
+      broken = true;
+    } else if (!type->scalar() && !type->is(TypeKind::Color) && !type->is(TypeKind::String)) {
+      diagnostics.report(Code::cannotPrint, arg->range, toString(type))
+          .note("`print` takes text, numbers, vectors, matrices and colors");
+      broken = true;
+    }
+    node->args.push_back(std::move(arg));
+  }
+  return broken ? errorExpr(expr.range) : std::move(node);
+}
+
+//===----------------------------------------------------------------------===//
+// receiver.function(...)
+//===----------------------------------------------------------------------===//
+
+ExprPtr FunctionChecker::checkReceiverCall(const ast::CallExpr &expr) {
+  ExprPtr receiver = checkExpr(*expr.receiver);
+  const Type *type = receiver->type;
+  if (type->isError()) {
+    for (const ast::ExprPtr &arg : expr.args)
+      checkExpr(*arg);
+    return errorExpr(expr.range);
+  }
+  if (type->is(TypeKind::Class))
+    return checkReferenceCall(expr, std::move(receiver));
+  const bool hasLength = type->is(TypeKind::Array) || type->is(TypeKind::Buffer) ||
+                         type->isVector() || type->isMatrix();
+  if (hasLength && expr.callee.text == "length")
+    return checkLength(expr, std::move(receiver));
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::noFunctions, expr.callee.range, toString(type), expr.callee.text);
+  if (hasLength && (expr.callee.text == "size" || expr.callee.text == "count"))
+    diagnostic.fix(expr.callee.range, "length");
+  return errorExpr(expr.range);
+}
+
+ExprPtr FunctionChecker::checkLength(const ast::CallExpr &expr, ExprPtr receiver) {
+  if (!expr.args.empty()) {
+    diagnostics.report(Code::wrongArgumentCount, expr.range, "length", "0 arguments",
+                       expr.args.size());
+    return errorExpr(expr.range);
+  }
+  if (!receiver->type->is(TypeKind::Buffer)) {
+    typed::Constant value;
+    value.scalars.resize(1);
+    value.scalars[0].i = static_cast<std::int32_t>(receiver->type->count);
+    return literal(types.intType, expr.range, std::move(value));
+  }
+  auto node = makeExpr<typed::LengthExpr>(types.intType, expr.range);
+  node->base = std::move(receiver);
+  return node;
+}
+
+ExprPtr FunctionChecker::checkReferenceCall(const ast::CallExpr &expr, ExprPtr receiver) {
+  const Type *type = receiver->type;
+  const std::string &method = expr.callee.text;
+  const std::string &root = type->classType ? type->classType->root : type->builtinClass;
+  if (root == "rt_Texture" && (method == "lookup" || method == "lookupFloat")) {
+    if (!expr.args.empty()) {
+      diagnostics
+          .report(Code::wrongArgumentCount, expr.range, method, "0 arguments", expr.args.size())
+          .note("a texture reads `rt_TextureUV` and `rt_TextureUVW`");
+      return errorExpr(expr.range);
+    }
+    recordSpecial(Ability::Lookup, method, expr.callee.range);
+    auto node = makeExpr<typed::MethodCallExpr>(method == "lookup" ? types.color : types.floatType,
+                                                expr.range);
+    node->receiver = std::move(receiver);
+    node->method = method;
+    return node;
+  }
+  std::vector<const typed::Function *> candidates;
+  if (type->classType)
+    candidates = program.findMethods(program.scopeOf.at(type->classType), method);
+  if (!candidates.empty())
+    return checkUserCall(expr, candidates, std::move(receiver));
+
+  const RootModel *model = rootModel(root);
+  if (model && model->method(method)) {
+    diagnostics.report(Code::engineCalls, expr.callee.range, method)
+        .note("of the methods that the engine calls, only a texture's `lookup` may be called by "
+              "shaders");
+    return errorExpr(expr.range);
+  }
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::unknownMethod, expr.callee.range, toString(type), method);
+  std::vector<std::string> names;
+  if (root == "rt_Texture")
+    names = {"lookup", "lookupFloat"};
+  for (const ClassScope *at = type->classType ? program.scopeOf.at(type->classType) : nullptr; at;
+       at = at->base)
+    for (const auto &entry : at->functions)
+      names.push_back(entry.first);
+  std::sort(names.begin(), names.end());
+  if (const std::string closest = closestName(method, names); !closest.empty())
+    diagnostic.fix(expr.callee.range, closest);
+  if (type->classType)
+    diagnostic.label(type->classType->range, "`" + type->classType->name + "` is defined here");
+  return errorExpr(expr.range);
+}
+
+} // namespace rtsl

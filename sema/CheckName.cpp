@@ -1,0 +1,407 @@
+//===- CheckName.cpp - names, fields, swizzles and indices ----------------===//
+#include "sema/ConstantFold.h"
+#include "sema/FunctionChecker.h"
+#include "sema/Suggest.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+using typed::ExprPtr;
+
+//===----------------------------------------------------------------------===//
+// Uses that only some methods may make
+//===----------------------------------------------------------------------===//
+
+void FunctionChecker::record(Use use) {
+  if (!facts) {
+    // Outside of functions nothing is running that could have a state.
+    diagnostics.report(Code::useOutsideFunction, use.range, use.what);
+    return;
+  }
+  // In a method of the table the rules are known; elsewhere the calls decide, once all are known.
+  if (rules && scope->root)
+    judgeUse(diagnostics, use, *scope->root, *rules, nullptr);
+  else
+    facts->uses.push_back(std::move(use));
+}
+
+void FunctionChecker::recordState(Use::Kind kind, typed::StateVariable variable,
+                                  SourceRange range) {
+  Use use;
+  use.kind = kind;
+  use.variable = variable;
+  const bool ofALight = variable == typed::StateVariable::LightDirection ||
+                        variable == typed::StateVariable::LightDistance ||
+                        variable == typed::StateVariable::LightColor;
+  if (kind == Use::Kind::ReadState && ofALight && rules && rules->name == "shade" &&
+      illuminances == 0)
+    diagnostics.report(Code::lightOutsideIlluminance, range,
+                       std::string("rt_") + typed::name(variable));
+  use.what = std::string("rt_") + typed::name(variable);
+  use.range = range;
+  record(std::move(use));
+}
+
+void FunctionChecker::recordSpecial(Ability ability, const std::string &what, SourceRange range,
+                                    const typed::Member *member) {
+  Use use;
+  use.ability = ability;
+  use.what = what;
+  use.range = range;
+  use.member = member;
+  if (facts &&
+      (ability == Ability::Trace || (ability == Ability::Illuminance && what == "illuminance")))
+    facts->traces = true;
+  record(std::move(use));
+}
+
+//===----------------------------------------------------------------------===//
+// Names
+//===----------------------------------------------------------------------===//
+
+ExprPtr FunctionChecker::checkName(const ast::NameExpr &expr, Access access) {
+  if (const typed::Variable *variable = locals.find(expr.name))
+    return variableAccess(variable, expr.range, access);
+  if (scope)
+    if (const typed::Member *member = program.findMember(scope, expr.name))
+      return memberAccess(member, expr.range, access);
+  if (expr.name.compare(0, 3, "rt_") == 0)
+    return checkState(expr.name, expr.range, access);
+  if (scope && !program.findMethods(scope, expr.name).empty()) {
+    diagnostics.report(Code::notAValue, expr.range, expr.name, "a function");
+    return errorExpr(expr.range);
+  }
+  if (const Symbol *symbol = program.findSymbol(expr.name)) {
+    if (symbol->kind == Symbol::Kind::Constant) {
+      if (const typed::Variable *constant = program.constant(expr.name, expr.range))
+        return variableAccess(constant, expr.range, access);
+      return errorExpr(expr.range);
+    }
+    const char *what = symbol->kind == Symbol::Kind::Struct  ? "a struct"
+                       : symbol->kind == Symbol::Kind::Class ? "a class"
+                                                             : "a function";
+    diagnostics.report(Code::notAValue, expr.range, expr.name, what)
+        .label(symbol->range, "defined here");
+    return errorExpr(expr.range);
+  }
+  if (program.builtins.find(expr.name)) {
+    diagnostics.report(Code::notAValue, expr.range, expr.name, "a built-in function");
+    return errorExpr(expr.range);
+  }
+  reportUnknownName(expr.name, expr.range);
+  return errorExpr(expr.range);
+}
+
+void FunctionChecker::reportUnknownName(const std::string &name, SourceRange range) {
+  Diagnostic &diagnostic = diagnostics.report(Code::unknownName, range, name);
+  if (const ForeignSpelling *foreign = foreignSpelling(name)) {
+    if (!foreign->replacement.empty())
+      diagnostic.fix(range, foreign->replacement);
+    if (!foreign->advice.empty())
+      diagnostic.note(foreign->advice);
+    return;
+  }
+  std::vector<std::string> candidates = locals.names();
+  for (const ClassScope *at = scope; at; at = at->base)
+    for (const auto &member : at->members)
+      candidates.push_back(member.first);
+  candidates.insert(candidates.end(), program.constantOrder.begin(), program.constantOrder.end());
+  // The maps have no order of their own; messages have.
+  std::sort(candidates.begin(), candidates.end());
+  const std::string closest = closestName(name, candidates);
+  typed::StateVariable state;
+  if (!closest.empty())
+    diagnostic.fix(range, closest);
+  else if (findStateVariable(name, state))
+    diagnostic.fix(range, "rt_" + name);
+}
+
+ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, Access access) {
+  typed::StateVariable variable;
+  if (!findStateVariable(name.substr(3), variable)) {
+    if (rootModel(name)) {
+      diagnostics.report(Code::notAValue, range, name, "a class");
+      return errorExpr(range);
+    }
+    Diagnostic &diagnostic = diagnostics.report(Code::unknownState, range, name);
+    const std::string closest = closestName(name, stateVariableNames());
+    if (!closest.empty())
+      diagnostic.fix(range, closest);
+    return errorExpr(range);
+  }
+  if (access != Access::Read)
+    recordState(Use::Kind::WriteState, variable, range);
+  if (access != Access::Write)
+    recordState(Use::Kind::ReadState, variable, range);
+  auto node = makeExpr<typed::StateExpr>(typeOf(variable, types), range);
+  node->variable = variable;
+  return node;
+}
+
+ExprPtr FunctionChecker::memberAccess(const typed::Member *member, SourceRange range,
+                                      Access access) {
+  if (member->type->isError())
+    return errorExpr(range);
+  if (member->isConst) {
+    if (member->constant && access == Access::Read)
+      return literal(member->type, range, *member->constant);
+  } else if (member->access == ast::Access::Scratch) {
+    if (access != Access::Read)
+      recordSpecial(Ability::WriteScratch, member->name, range, member);
+    if (access != Access::Write)
+      recordSpecial(Ability::ReadScratch, member->name, range, member);
+  } else if (access != Access::Read &&
+             !member->type->is(TypeKind::Buffer)) { // buffers: `requireTarget`
+    recordSpecial(Ability::WriteMembers, member->name, range, member);
+  } else if (!facts) {
+    diagnostics.report(Code::useOutsideFunction, range, member->name);
+    return errorExpr(range);
+  }
+  auto node = makeExpr<typed::MemberExpr>(member->type, range);
+  node->member = member;
+  return node;
+}
+
+ExprPtr FunctionChecker::variableAccess(const typed::Variable *variable, SourceRange range,
+                                        Access access) {
+  mentioned.insert(variable);
+  if (variable->type->isError())
+    return errorExpr(range);
+  if (variable->constant && access == Access::Read)
+    return literal(variable->type, range, *variable->constant);
+  auto node = makeExpr<typed::VariableExpr>(variable->type, range);
+  node->variable = variable;
+  return node;
+}
+
+//===----------------------------------------------------------------------===//
+// Fields and swizzles
+//===----------------------------------------------------------------------===//
+
+ExprPtr FunctionChecker::checkMember(const ast::MemberExpr &expr, Access access) {
+  ExprPtr base = checkExpr(*expr.base, access);
+  const Type *type = base->type;
+  if (type->isError())
+    return errorExpr(expr.range);
+  if (type->isVector() || type->isNumericScalar() || type->is(TypeKind::Bool))
+    return checkSwizzle(std::move(base), expr.member, expr.range, access);
+  if (type->is(TypeKind::Struct)) {
+    const std::vector<typed::Field> &fields = type->structure->fields;
+    std::vector<std::string> names;
+    for (std::uint32_t i = 0; i != fields.size(); ++i) {
+      if (fields[i].name == expr.member.text) {
+        if (fields[i].type->isError())
+          return errorExpr(expr.range);
+        auto node = makeExpr<typed::FieldExpr>(fields[i].type, expr.range);
+        node->base = std::move(base);
+        node->field = i;
+        return node;
+      }
+      names.push_back(fields[i].name);
+    }
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::unknownField, expr.member.range, toString(type), expr.member.text);
+    diagnostic.label(type->structure->range, "`" + type->structure->name + "` is defined here");
+    if (const std::string closest = closestName(expr.member.text, names); !closest.empty())
+      diagnostic.fix(expr.member.range, closest);
+    return errorExpr(expr.range);
+  }
+  if (type->is(TypeKind::Color)) {
+    diagnostics.report(Code::colorHasNoComponents, expr.member.range, expr.member.text)
+        .note("a color has as many components as the target chooses; `luminance(c)` gives one "
+              "number");
+    return errorExpr(expr.range);
+  }
+  if (type->is(TypeKind::Class)) {
+    diagnostics
+        .report(Code::memberOfOtherObject, expr.member.range, toString(type), expr.member.text)
+        .note("only functions of another object can be used: `reference.function()`");
+    return errorExpr(expr.range);
+  }
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::noMembers, expr.member.range, toString(type), expr.member.text);
+  if (expr.member.text == "length" || expr.member.text == "size")
+    diagnostic.fix(expr.member.range, "length()");
+  return errorExpr(expr.range);
+}
+
+/// Which of the sets of letters a letter belongs to, and which component it means.
+static int componentOf(char letter, int &set) {
+  static const char *const sets[] = {"xyzw", "rgba", "stpq"};
+  for (set = 0; set != 3; ++set)
+    for (int i = 0; i != 4; ++i)
+      if (sets[set][i] == letter)
+        return i;
+  return -1;
+}
+
+ExprPtr FunctionChecker::checkSwizzle(ExprPtr base, const ast::Name &letters, SourceRange range,
+                                      Access access) {
+  const Type *type = base->type;
+  const std::uint32_t available = type->componentCount();
+  std::vector<std::uint8_t> components;
+  int firstSet = -1;
+  for (char letter : letters.text) {
+    int set = 0;
+    const int component = componentOf(letter, set);
+    if (component < 0 || letters.text.size() > 4) {
+      Diagnostic &diagnostic =
+          diagnostics.report(Code::badSwizzle, letters.range, toString(type), letters.text);
+      if (letters.text == "length" || letters.text == "size")
+        diagnostic.fix(letters.range, "length()");
+      else
+        diagnostic.note("components are named by one to four letters of `xyzw`, `rgba` or `stpq`");
+      return errorExpr(range);
+    }
+    if (firstSet >= 0 && set != firstSet) {
+      diagnostics.report(Code::mixedSwizzle, letters.range, letters.text)
+          .note("take all letters from one of `xyzw`, `rgba` and `stpq`");
+      return errorExpr(range);
+    }
+    firstSet = set;
+    if (static_cast<std::uint32_t>(component) >= available) {
+      diagnostics.report(Code::swizzleOutOfRange, letters.range, toString(type),
+                         std::string(1, letter));
+      return errorExpr(range);
+    }
+    components.push_back(static_cast<std::uint8_t>(component));
+  }
+  if (access != Access::Read) {
+    std::vector<std::uint8_t> sorted = components;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+      diagnostics.report(Code::duplicateSwizzle, letters.range, letters.text);
+      return errorExpr(range);
+    }
+  }
+  if (type->isScalar()) { // `f.x` is `f`, `f.xxx` is `vec3(f)`
+    base->range = range;
+    if (components.size() == 1)
+      return base;
+    auto node = makeExpr<typed::ConstructExpr>(
+        types.vector(type, static_cast<std::uint32_t>(components.size())), range);
+    node->args.push_back(std::move(base));
+    return node;
+  }
+  const Type *result =
+      components.size() == 1
+          ? type->element
+          : types.vector(type->element, static_cast<std::uint32_t>(components.size()));
+  auto node = makeExpr<typed::SwizzleExpr>(result, range);
+  node->base = std::move(base);
+  node->components = std::move(components);
+  return node;
+}
+
+//===----------------------------------------------------------------------===//
+// Indices
+//===----------------------------------------------------------------------===//
+
+ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
+  ExprPtr base = checkExpr(*expr.base, access);
+  ExprPtr index = checkValue(*expr.index);
+  const Type *type = base->type;
+  if (type->isError() || index->type->isError())
+    return errorExpr(expr.range);
+  const bool isBuffer = type->is(TypeKind::Buffer);
+  if (!type->isVector() && !type->isMatrix() && !type->is(TypeKind::Array) && !isBuffer) {
+    Diagnostic &diagnostic = diagnostics.report(Code::notIndexable, base->range, toString(type));
+    if (type->is(TypeKind::Color))
+      diagnostic.note(
+          "a color has as many components as the target chooses; `luminance(c)` gives one number");
+    return errorExpr(expr.range);
+  }
+  if (!index->type->is(TypeKind::Int) && !index->type->is(TypeKind::UInt)) {
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::indexNotInteger, index->range, toString(index->type));
+    if (index->type->is(TypeKind::Float))
+      diagnostic.fix(index->range, "int(" + sourceText(index->range) + ")");
+    return errorExpr(expr.range);
+  }
+  if (std::optional<std::int64_t> value = evaluateInteger(*index)) {
+    if (*value < 0 || (!isBuffer && *value >= std::int64_t(type->count))) {
+      Diagnostic &diagnostic =
+          diagnostics.report(Code::indexOutOfRange, index->range, *value, toString(type));
+      if (!isBuffer)
+        diagnostic.note(type->count == 1
+                            ? std::string("the only index is 0")
+                            : "indices run from 0 to " + std::to_string(type->count - 1));
+      return errorExpr(expr.range);
+    }
+  }
+  const Type *element =
+      isBuffer && type->count > 1 ? types.buffer(type->element, type->count - 1) : type->element;
+  auto node = makeExpr<typed::IndexExpr>(element, expr.range);
+  node->base = std::move(base);
+  node->index = std::move(index);
+  return node;
+}
+
+//===----------------------------------------------------------------------===//
+// Targets
+//===----------------------------------------------------------------------===//
+
+/// Does the text name a place? What `+x` or `color(c)` turn into may be no more than a name.
+static bool namesAPlace(const ast::Expr &expr) {
+  const ast::Expr *at = &expr;
+  for (;;) {
+    if (const auto *paren = dynCast<ast::ParenExpr>(at))
+      at = paren->inner.get();
+    else if (const auto *member = dynCast<ast::MemberExpr>(at))
+      at = member->base.get();
+    else if (const auto *index = dynCast<ast::IndexExpr>(at))
+      at = index->base.get();
+    else
+      return at->kind == ast::ExprKind::Name;
+  }
+}
+
+bool FunctionChecker::requireTarget(const ast::Expr &source, const typed::Expr &target,
+                                    const char *action) {
+  if (!namesAPlace(source)) {
+    diagnostics.report(Code::notATarget, target.range, action);
+    return false;
+  }
+  const typed::Expr *at = &target;
+  bool throughBuffer = false;
+  for (;;) {
+    if (const auto *field = dynCast<typed::FieldExpr>(at))
+      at = field->base.get();
+    else if (const auto *swizzle = dynCast<typed::SwizzleExpr>(at))
+      at = swizzle->base.get();
+    else if (const auto *index = dynCast<typed::IndexExpr>(at)) {
+      throughBuffer |= index->base->type->is(TypeKind::Buffer);
+      at = index->base.get();
+    } else
+      break;
+  }
+  if (at->type->isError())
+    return false;
+  if (const auto *variable = dynCast<typed::VariableExpr>(at)) {
+    if (!variable->variable->isConst)
+      return true;
+    diagnostics.report(Code::constTarget, target.range, action, variable->variable->name)
+        .label(variable->variable->range, "declared `const` here");
+    return false;
+  }
+  if (const auto *member = dynCast<typed::MemberExpr>(at)) {
+    if (member->member->isConst) {
+      diagnostics.report(Code::constTarget, target.range, action, member->member->name)
+          .label(member->member->range, "declared `const` here");
+      return false;
+    }
+    if (throughBuffer || member->type->is(TypeKind::Buffer)) {
+      diagnostics.report(Code::bufferReadOnly, target.range, action, member->member->name)
+          .label(member->member->range, "declared here");
+      return false;
+    }
+    return true;
+  }
+  if (at->kind == typed::ExprKind::State)
+    return true;
+  diagnostics.report(Code::notATarget, target.range, action);
+  return false;
+}
+
+} // namespace rtsl

@@ -1,0 +1,284 @@
+//===- ClassModel.cpp - who may define, read, write and call what ---------===//
+#include "sema/ClassModel.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+using S = typed::StateVariable;
+using A = Ability;
+using Payload = MethodModel::Payload;
+
+//===----------------------------------------------------------------------===//
+// The table
+//===----------------------------------------------------------------------===//
+
+// What every method that runs for a ray sees, whatever its class.
+static constexpr StateSet everyRay = {S::LaunchIndex, S::LaunchSize, S::Time, S::Depth,
+                                      S::TimeSeed};
+// Where the thing that is hit stands.
+static constexpr StateSet placement = {S::ObjectToWorld, S::WorldToObject, S::PrimitiveIndex,
+                                       S::InstanceIndex};
+static constexpr StateSet ray = {S::RayOrigin, S::RayDirection, S::InverseRayDirection, S::Epsilon,
+                                 S::HitDistance};
+static constexpr StateSet textureDerivatives = {S::dsdu, S::dsdv, S::dtdu, S::dtdv};
+static constexpr StateSet surfaceDerivatives = {S::dPdu, S::dPdv};
+static constexpr StateSet textureCoordinates = {S::TextureUV, S::TextureUVW};
+static constexpr StateSet normals = {S::GeometricNormal, S::ShadingNormal};
+
+static RootModel cameraModel() {
+  const StateSet sees = everyRay | ray | StateSet{S::ScreenCoord, S::LensCoord, S::du, S::dv};
+  return {"rt_Camera",
+          sees,
+          {{"generateRay", sees, {S::RayOrigin, S::RayDirection}, {A::Random}}},
+          false};
+}
+
+static RootModel primitiveModel() {
+  const StateSet bounds = {S::BoundMin, S::BoundMax};
+  const StateSet sees = everyRay | placement | ray | bounds | normals | surfaceDerivatives |
+                        textureCoordinates | textureDerivatives | StateSet{S::HitPoint, S::PDF};
+  const AbilitySet ofAHit = {A::Random, A::ReadScratch};
+  return {"rt_Primitive",
+          sees,
+          {
+              {"intersect", sees, {}, ofAHit | AbilitySet{A::Hit, A::WriteScratch}},
+              // Runs while the acceleration structure is built: there is no ray.
+              {"computeBounds", bounds, bounds, {}},
+              {"computeNormal", sees, normals, ofAHit},
+              {"computeTextureCoordinates", sees, textureCoordinates, ofAHit},
+              {"computeDerivatives", sees, surfaceDerivatives | textureDerivatives, ofAHit},
+              // These two choose and weigh a point on the primitive: there is no hit that could
+              // have left scratch values.
+              {"generateSample", sees, {S::HitPoint, S::GeometricNormal, S::PDF}, {A::Random}},
+              {"samplePDF", sees, {S::PDF}, {A::Random}},
+          },
+          true};
+}
+
+static RootModel textureModel() {
+  const StateSet sees = everyRay | textureCoordinates | surfaceDerivatives | textureDerivatives |
+                        StateSet{S::TextureColor, S::FloatTextureValue, S::du, S::dv};
+  return {"rt_Texture",
+          sees,
+          {{"lookup", sees, {S::TextureColor, S::FloatTextureValue}, {A::Lookup, A::Random}}},
+          false};
+}
+
+static RootModel materialModel() {
+  const StateSet sees = everyRay | placement | ray | normals | textureCoordinates |
+                        surfaceDerivatives |
+                        StateSet{S::HitPoint,
+                                 S::LightDirection,
+                                 S::LightDistance,
+                                 S::LightColor,
+                                 S::EmissionColor,
+                                 S::BSDFSeed,
+                                 S::PDF,
+                                 S::SampleColor,
+                                 S::BSDFValue,
+                                 S::du,
+                                 S::dv};
+  const AbilitySet common = {A::Lookup, A::Random, A::ReadScratch};
+  return {"rt_Material",
+          sees,
+          {
+              {"shade", sees, {S::SampleColor}, common | AbilitySet{A::Trace, A::Illuminance}},
+              {"BSDF", sees, {S::BSDFValue}, common},
+              {"sampleBSDF", sees, {S::LightDirection, S::BSDFValue, S::PDF}, common},
+              {"evaluatePDF", sees, {S::PDF}, common},
+              {"emission", sees, {S::EmissionColor}, common},
+              {"closestHit", sees, {}, common | AbilitySet{A::Trace}, Payload::Required},
+              {"anyHit", sees, {}, common | AbilitySet{A::AnyHit}, Payload::Required},
+          },
+          true};
+}
+
+static RootModel lightModel() {
+  const StateSet sees = everyRay | normals |
+                        StateSet{S::HitPoint, S::LightDirection, S::LightDistance, S::LightColor};
+  return {"rt_Light",
+          sees,
+          {{"illumination",
+            sees,
+            {S::LightDirection, S::LightColor, S::LightDistance},
+            {A::Lookup, A::Random}}},
+          false};
+}
+
+static RootModel rayGenerationModel() {
+  const StateSet sees = everyRay | StateSet{S::ScreenCoord, S::LensCoord, S::SampleColor};
+  return {"rt_RayGeneration",
+          sees,
+          {{"generate", sees, {S::SampleColor}, {A::Trace, A::Random}}},
+          false};
+}
+
+static RootModel missModel() {
+  const StateSet rayOnly =
+      everyRay | StateSet{S::RayOrigin, S::RayDirection, S::InverseRayDirection};
+  const StateSet classic = rayOnly | StateSet{S::SampleColor};
+  const AbilitySet abilities = {A::Trace, A::Lookup, A::Random};
+  return {"rt_Miss",
+          classic,
+          {
+              {"miss", classic, {S::SampleColor}, abilities, Payload::None},
+              {"miss", rayOnly, {}, abilities, Payload::Required},
+          },
+          false};
+}
+
+static RootModel selectorModel() {
+  const StateSet sees = everyRay | StateSet{S::RayOrigin, S::RayDirection, S::InverseRayDirection,
+                                            S::ObjectToWorld, S::WorldToObject};
+  return {"rt_Selector", sees, {{"visit", sees, {}, {A::VisitChild, A::Random}}}, false};
+}
+
+static RootModel exceptionModel() {
+  const StateSet sees = {S::LaunchIndex, S::LaunchSize, S::Depth, S::SampleColor};
+  return {"rt_Exception", sees, {{"exception", sees, {S::SampleColor}, {}}}, false};
+}
+
+const std::vector<RootModel> &rootModels() {
+  static const std::vector<RootModel> models = {
+      cameraModel(),        primitiveModel(), textureModel(),  materialModel(), lightModel(),
+      rayGenerationModel(), missModel(),      selectorModel(), exceptionModel()};
+  return models;
+}
+
+const MethodModel &constructorModel() {
+  static const MethodModel model = {"constructor", {}, {}, {A::WriteMembers}, Payload::None};
+  return model;
+}
+
+//===----------------------------------------------------------------------===//
+// Questions to the table
+//===----------------------------------------------------------------------===//
+
+const RootModel *rootModel(const std::string &name) {
+  for (const RootModel &model : rootModels())
+    if (model.name == name)
+      return &model;
+  return nullptr;
+}
+
+std::string MethodModel::signature() const {
+  return "void " + name + (payload == Payload::Required ? "(inout P)" : "()");
+}
+
+const MethodModel *RootModel::method(const std::string &methodName) const {
+  for (const MethodModel &candidate : methods)
+    if (candidate.name == methodName)
+      return &candidate;
+  return nullptr;
+}
+
+const MethodModel *RootModel::method(const std::string &methodName, bool withPayload) const {
+  for (const MethodModel &candidate : methods)
+    if (candidate.name == methodName && (candidate.payload == Payload::Required) == withPayload)
+      return &candidate;
+  return method(methodName);
+}
+
+MethodModel unionOfMethods(const RootModel &root) {
+  MethodModel all;
+  all.name = root.name;
+  all.reads = root.sees;
+  for (const MethodModel &method : root.methods) {
+    all.writes = all.writes | method.writes;
+    all.abilities = all.abilities | method.abilities;
+  }
+  return all;
+}
+
+std::string withArticle(const std::string &noun) {
+  // "rt_" is read letter by letter: an are-tee.
+  const bool vowel =
+      noun.compare(0, 3, "rt_") == 0 ||
+      (!noun.empty() && std::string("aeiouAEIOU").find(noun[0]) != std::string::npos);
+  return (vowel ? "an " : "a ") + noun;
+}
+
+std::string joinWords(const std::vector<std::string> &words, const char *last) {
+  std::string text;
+  for (std::size_t i = 0; i != words.size(); ++i) {
+    if (i != 0)
+      text += i + 1 == words.size() ? " " + std::string(last) + " " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+std::string classesThatSee(typed::StateVariable variable) {
+  std::vector<std::string> names;
+  for (const RootModel &model : rootModels())
+    if (model.sees.has(variable))
+      names.push_back(model.name);
+  return joinWords(names);
+}
+
+/// "`a` and `b` of an rt_X, `c` of an rt_Y" for the methods that `chosen` picks.
+template <typename Predicate>
+static std::string listMethods(const Predicate &chosen) {
+  std::vector<std::string> groups;
+  for (const RootModel &model : rootModels()) {
+    std::vector<std::string> names;
+    for (const MethodModel &method : model.methods) {
+      const std::string quoted = "`" + method.name + "`";
+      if (chosen(method) && std::find(names.begin(), names.end(), quoted) == names.end())
+        names.push_back(quoted);
+    }
+    if (!names.empty())
+      groups.push_back(joinWords(names) + " of " + withArticle(model.name));
+  }
+  return joinWords(groups);
+}
+
+std::string methodsThatWrite(typed::StateVariable variable) {
+  return listMethods([&](const MethodModel &method) { return method.writes.has(variable); });
+}
+
+std::string methodsWith(Ability ability) {
+  if (ability == Ability::WriteMembers)
+    return "`constructor`";
+  return listMethods([&](const MethodModel &method) { return method.abilities.has(ability); });
+}
+
+std::vector<std::string> classesWithMethod(const std::string &methodName) {
+  std::vector<std::string> names;
+  for (const RootModel &model : rootModels())
+    if (model.method(methodName))
+      names.push_back(model.name);
+  return names;
+}
+
+bool findStateVariable(const std::string &name, typed::StateVariable &variable) {
+  static const std::map<std::string, typed::StateVariable> all = {
+#define RTSL_STATE_VARIABLE(name, type) {#name, typed::StateVariable::name},
+#include "runtime/device/StateVariables.def"
+  };
+  auto found = all.find(name);
+  if (found == all.end())
+    return false;
+  variable = found->second;
+  return true;
+}
+
+const Type *typeOf(typed::StateVariable variable, TypeContext &types) {
+  static const char *const keywords[] = {
+#define RTSL_STATE_VARIABLE(name, type) #type,
+#include "runtime/device/StateVariables.def"
+  };
+  const std::string keyword = keywords[static_cast<std::size_t>(variable)];
+  return types.named(keyword == "uint2" ? "uvec2" : keyword);
+}
+
+const std::vector<std::string> &stateVariableNames() {
+  static const std::vector<std::string> names = {
+#define RTSL_STATE_VARIABLE(name, type) "rt_" #name,
+#include "runtime/device/StateVariables.def"
+  };
+  return names;
+}
+
+} // namespace rtsl

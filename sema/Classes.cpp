@@ -1,0 +1,247 @@
+//===- Classes.cpp - bases and members ------------------------------------===//
+#include "sema/FunctionChecker.h"
+#include "sema/Suggest.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+//===----------------------------------------------------------------------===//
+// Lookup
+//===----------------------------------------------------------------------===//
+
+const typed::Member *Program::findMember(const ClassScope *scope, const std::string &name) const {
+  if (!memberNames.count(name)) // chains of bases may be long
+    return nullptr;
+  for (const ClassScope *at = scope; at; at = at->base)
+    if (auto found = at->members.find(name); found != at->members.end())
+      return found->second;
+  return nullptr;
+}
+
+bool sameParameters(const typed::Function &a, const typed::Function &b) {
+  return std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
+                    b.parameters.end(),
+                    [](const auto &x, const auto &y) { return x->type == y->type; });
+}
+
+std::vector<const typed::Function *> Program::findMethods(const ClassScope *scope,
+                                                          const std::string &name) const {
+  std::vector<const typed::Function *> result;
+  if (!methodNames.count(name))
+    return result;
+  for (const ClassScope *at = scope; at; at = at->base) {
+    auto found = at->functions.find(name);
+    if (found == at->functions.end())
+      continue;
+    for (const typed::Function *function : found->second) {
+      const bool overridden =
+          std::any_of(result.begin(), result.end(), [&](const typed::Function *other) {
+            return sameParameters(*function, *other);
+          });
+      if (!overridden)
+        result.push_back(function);
+    }
+  }
+  return result;
+}
+
+//===----------------------------------------------------------------------===//
+// Bases
+//===----------------------------------------------------------------------===//
+
+void Program::linkBase(ClassScope &scope) {
+  const ast::Name &base = scope.declaration->base;
+  if (const RootModel *root = rootModel(base.text)) {
+    scope.root = root;
+    scope.definition->root = root->name;
+    return;
+  }
+  if (auto found = classes.find(base.text); found != classes.end()) {
+    scope.base = found->second.get();
+    scope.definition->base = found->second->definition;
+    return;
+  }
+  if (base.text.empty())
+    return; // reported by the parser
+  if (const Symbol *symbol = findSymbol(base.text)) {
+    diagnostics.report(Code::notAClass, base.range, base.text).label(symbol->range, "defined here");
+    return;
+  }
+  if (types.named(base.text)) {
+    diagnostics.report(Code::notAClass, base.range, base.text);
+    return;
+  }
+  std::vector<std::string> candidates = classOrder;
+  for (const RootModel &root : rootModels())
+    candidates.push_back(root.name);
+  Diagnostic &diagnostic = diagnostics.report(Code::unknownBase, base.range, base.text);
+  std::string closest = closestName(base.text, candidates);
+  if (closest.empty() && rootModel("rt_" + base.text))
+    closest = "rt_" + base.text;
+  if (!closest.empty())
+    diagnostic.fix(base.range, closest);
+  else
+    diagnostic.note(
+        "the base classes are rt_Camera, rt_Primitive, rt_Texture, rt_Material, rt_Light, "
+        "rt_RayGeneration, rt_Miss, rt_Selector and rt_Exception");
+}
+
+/// Cuts every cycle of bases at one class, after saying so.
+void Program::breakCycles() {
+  std::unordered_map<const ClassScope *, unsigned> visitedBy; // number of the walk
+  unsigned walk = 0;
+  for (const std::string &name : classOrder) {
+    ++walk;
+    ClassScope *at = classes[name].get();
+    for (; at && visitedBy.emplace(at, walk).second; at = const_cast<ClassScope *>(at->base))
+      ;
+    if (!at || visitedBy[at] != walk)
+      continue;
+    Diagnostic &diagnostic = diagnostics.report(Code::inheritanceCycle, at->declaration->base.range,
+                                                at->definition->name);
+    unsigned shown = 0;
+    for (const ClassScope *other = at->base; other != at && shown != 8;
+         other = other->base, ++shown)
+      diagnostic.label(other->declaration->base.range, "`" + other->definition->name +
+                                                           "` derives from `" +
+                                                           other->declaration->base.text + "`");
+    at->base = nullptr;
+    at->definition->base = nullptr;
+  }
+}
+
+std::vector<ClassScope *> Program::classesBaseFirst() {
+  std::vector<ClassScope *> order;
+  std::unordered_map<const ClassScope *, bool> placed;
+  for (const std::string &name : classOrder) {
+    std::vector<ClassScope *> path;
+    for (ClassScope *at = classes[name].get(); at && !placed[at];
+         at = const_cast<ClassScope *>(at->base))
+      path.push_back(at);
+    for (auto at = path.rbegin(); at != path.rend(); ++at) {
+      placed[*at] = true;
+      order.push_back(*at);
+    }
+  }
+  return order;
+}
+
+void Program::resolveClasses() {
+  for (const std::string &name : classOrder)
+    linkBase(*classes[name]);
+  breakCycles();
+  baseFirst = classesBaseFirst();
+  for (ClassScope *scope : baseFirst) {
+    if (scope->base) {
+      scope->root = scope->base->root;
+      scope->definition->root = scope->base->definition->root;
+    }
+    module.classes.push_back(std::move(scope->owned));
+  }
+  for (ClassScope *scope : baseFirst)
+    declareMembers(*scope);
+}
+
+//===----------------------------------------------------------------------===//
+// Members
+//===----------------------------------------------------------------------===//
+
+void Program::declareMembers(ClassScope &scope) {
+  for (const ast::VariableDecl &declaration : scope.declaration->members)
+    declareMember(scope, declaration);
+}
+
+void Program::declareMember(ClassScope &scope, const ast::VariableDecl &declaration) {
+  FunctionChecker checker(*this, &scope, nullptr);
+  auto member = std::make_unique<typed::Member>();
+  member->name = declaration.name.text;
+  member->range = declaration.name.range;
+  member->comment = declaration.comment;
+  member->owner = scope.definition;
+  member->isConst = declaration.isConst;
+  member->access = declaration.isConst                       ? ast::Access::None
+                   : declaration.access == ast::Access::None ? ast::Access::Private
+                                                             : declaration.access;
+  const bool unsized =
+      std::any_of(declaration.type.dimensions.begin(), declaration.type.dimensions.end(),
+                  [](const ast::ArrayDimension &dimension) { return !dimension.size; });
+  if (declaration.isConst && unsized)
+    member->type = checker.deduceUnsized(declaration, member->init);
+  else
+    member->type = checker.resolveType(declaration.type, &declaration.name, true);
+  if (member->type->is(TypeKind::Void)) {
+    diagnostics.report(Code::voidVariable, declaration.type.range, member->name);
+    member->type = types.error;
+  }
+  checkMemberQualifiers(scope, declaration, member->type);
+
+  if (declaration.isConst) {
+    if (!declaration.init) {
+      diagnostics.report(Code::constNeedsValue, member->range, member->name);
+      member->type = types.error;
+    } else {
+      if (!unsized)
+        member->init = checker.checkInitializer(*declaration.init, member->type);
+      if (member->init && !member->init->type->isError())
+        member->constant =
+            checker.requireConstant(*member->init, "the value of `" + member->name + "`");
+      if (!member->constant)
+        member->type = types.error;
+    }
+  } else if (declaration.init) {
+    const bool takesDefault = member->access != ast::Access::Scratch &&
+                              !member->type->is(TypeKind::Buffer) &&
+                              !member->type->is(TypeKind::Class);
+    if (takesDefault)
+      member->init = checker.checkInitializer(*declaration.init, member->type);
+    else
+      diagnostics.report(Code::noDefault, declaration.init->range,
+                         member->access == ast::Access::Scratch ? "a scratch member"
+                         : member->type->is(TypeKind::Buffer)   ? "a buffer"
+                                                                : "a reference");
+    if (member->init && member->init->type->isError())
+      member->init.reset();
+  }
+
+  if (member->name.compare(0, 3, "rt_") == 0)
+    diagnostics.report(Code::reservedName, member->range, member->name);
+  if (const typed::Member *other = findMember(&scope, member->name)) {
+    Diagnostic &diagnostic = diagnostics.report(Code::redefinition, member->range, member->name);
+    diagnostic.label(other->range, "first defined here");
+    if (other->owner != scope.definition)
+      diagnostic.note("`" + scope.definition->name + "` has it from `" + other->owner->name + "`");
+    return;
+  }
+  scope.members.emplace(member->name, member.get());
+  scope.definition->members.push_back(std::move(member));
+}
+
+void Program::checkMemberQualifiers(const ClassScope &scope, const ast::VariableDecl &declaration,
+                                    const Type *type) {
+  const std::string &name = declaration.name.text;
+  if (declaration.isConst) {
+    if (declaration.access == ast::Access::Public || declaration.access == ast::Access::Scratch)
+      diagnostics.report(Code::constMemberAccess, declaration.accessRange,
+                         std::string(diagnostics.sources().text(declaration.accessRange)), name);
+    return;
+  }
+  if (declaration.access == ast::Access::None) {
+    diagnostics.report(Code::memberWithoutAccess, declaration.name.range, name)
+        .note("`public` is set by the scene, `private` by the constructor, `scratch` by "
+              "`intersect`, `const` never")
+        .fix({declaration.range.file, declaration.range.begin, declaration.range.begin},
+             "private ");
+  } else if (declaration.access == ast::Access::Scratch && scope.root && !scope.root->hasScratch) {
+    diagnostics
+        .report(Code::scratchWithoutHit, declaration.accessRange, withArticle(scope.root->name))
+        .note("scratch members carry what `intersect` finds out to the later methods of the same "
+              "hit: an "
+              "rt_Primitive writes them, an rt_Material reads them");
+  }
+  if (type->is(TypeKind::Buffer) && declaration.access != ast::Access::Public)
+    diagnostics.report(Code::bufferNotPublic, declaration.name.range, name)
+        .note("only the scene can give a buffer its size");
+}
+
+} // namespace rtsl

@@ -1,0 +1,96 @@
+//===- Collect.cpp - the files of a compilation and their names -----------===//
+//
+// All files share one space of names: an import brings in a file once, and the order in which
+// things are declared does not matter.
+//
+//===----------------------------------------------------------------------===//
+#include "sema/Program.h"
+
+#include <unordered_set>
+
+namespace rtsl {
+
+const Symbol *Program::findSymbol(const std::string &name) const {
+  auto found = symbols.find(name);
+  return found == symbols.end() ? nullptr : &found->second;
+}
+
+void Program::collect(const std::vector<const ast::TranslationUnit *> &roots,
+                      const ImportResolver &resolver) {
+  std::unordered_set<const ast::TranslationUnit *> seen;
+  for (const ast::TranslationUnit *root : roots)
+    if (root && seen.insert(root).second)
+      units.push_back(root);
+  for (std::size_t i = 0; i != units.size(); ++i)
+    for (const ast::ImportDecl &import : units[i]->imports)
+      if (const ast::TranslationUnit *imported = resolver(import, units[i]->file))
+        if (seen.insert(imported).second)
+          units.push_back(imported);
+  for (const ast::TranslationUnit *unit : units)
+    collectUnit(*unit);
+}
+
+/// Enters a name; false (reported) if it stands for something else already. Functions may share
+/// one.
+bool Program::declareSymbol(const ast::Name &name, Symbol::Kind kind) {
+  if (name.text.compare(0, 3, "rt_") == 0) {
+    diagnostics.report(Code::reservedName, name.range, name.text);
+    return false;
+  }
+  auto [entry, fresh] = symbols.emplace(name.text, Symbol{kind, name.range});
+  if (fresh || (kind == Symbol::Kind::Function && entry->second.kind == kind))
+    return true;
+  diagnostics.report(Code::redefinition, name.range, name.text)
+      .label(entry->second.range, "first defined here");
+  return false;
+}
+
+void Program::collectUnit(const ast::TranslationUnit &unit) {
+  for (const ast::StructDecl &declaration : unit.structs) {
+    if (!declareSymbol(declaration.name, Symbol::Kind::Struct))
+      continue;
+    StructEntry &entry = structs[declaration.name.text];
+    entry.declaration = &declaration;
+    entry.owned = std::make_unique<typed::Struct>();
+    entry.definition = entry.owned.get();
+    entry.definition->name = declaration.name.text;
+    entry.definition->range = declaration.name.range;
+    entry.definition->comment = declaration.comment;
+    structOrder.push_back(declaration.name.text);
+  }
+  for (const ast::VariableDecl &declaration : unit.constants) {
+    if (!declareSymbol(declaration.name, Symbol::Kind::Constant))
+      continue;
+    GlobalConstant &entry = constants[declaration.name.text];
+    entry.declaration = &declaration;
+    entry.owned = std::make_unique<typed::Variable>();
+    entry.variable = entry.owned.get();
+    entry.variable->kind = typed::Variable::Kind::Global;
+    entry.variable->name = declaration.name.text;
+    entry.variable->range = declaration.name.range;
+    entry.variable->comment = declaration.comment;
+    entry.variable->isConst = true;
+    entry.variable->type = types.error;
+    constantOrder.push_back(declaration.name.text);
+  }
+  for (const ast::ClassDecl &declaration : unit.classes) {
+    if (!declareSymbol(declaration.name, Symbol::Kind::Class))
+      continue;
+    auto scope = std::make_unique<ClassScope>();
+    scope->declaration = &declaration;
+    scope->owned = std::make_unique<typed::Class>();
+    scope->definition = scope->owned.get();
+    scope->definition->name = declaration.name.text;
+    scope->definition->range = declaration.name.range;
+    scope->definition->comment = declaration.comment;
+    scopeOf[scope->definition] = scope.get();
+    for (const ast::VariableDecl &member : declaration.members)
+      ++memberNames[member.name.text];
+    for (const ast::FunctionDecl &function : declaration.functions)
+      ++methodNames[function.name.text];
+    classes.emplace(declaration.name.text, std::move(scope));
+    classOrder.push_back(declaration.name.text);
+  }
+}
+
+} // namespace rtsl

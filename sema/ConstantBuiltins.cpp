@@ -1,0 +1,252 @@
+//===- ConstantBuiltins.cpp - folding of built-in functions ---------------===//
+//
+// Componentwise functions whose result is exact or correctly rounded on every machine. Elementary
+// functions are left to the code generator, which calls the same implementation as the shaders do.
+//
+//===----------------------------------------------------------------------===//
+#include "sema/ConstantFold.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace rtsl {
+
+using typed::Builtin;
+using typed::Constant;
+using Scalar = Constant::Scalar;
+
+// The same choice between operands as at run time: a NaN is passed over only where the comparison
+// says so.
+static float minimum(float x, float y) {
+  return y < x ? y : x;
+}
+static float maximum(float x, float y) {
+  return x < y ? y : x;
+}
+
+static std::optional<float> foldFloat1(Builtin builtin, float x) {
+  switch (builtin) {
+  case Builtin::Radians:
+    return x * 0.017453292519943295f;
+  case Builtin::Degrees:
+    return x * 57.29577951308232f;
+  case Builtin::Abs:
+    return std::fabs(x);
+  case Builtin::Sign:
+    return x > 0.0f ? 1.0f : x < 0.0f ? -1.0f : 0.0f;
+  case Builtin::Floor:
+    return std::floor(x);
+  case Builtin::Trunc:
+    return std::trunc(x);
+  case Builtin::Ceil:
+    return std::ceil(x);
+  case Builtin::Fract:
+    return x - std::floor(x);
+  case Builtin::Round:
+    return std::round(x); // halves away from zero
+  case Builtin::RoundEven:
+    return std::nearbyint(x);
+  case Builtin::Sqrt:
+    return std::sqrt(x);
+  default:
+    return std::nullopt;
+  }
+}
+
+static std::optional<float> foldFloat2(Builtin builtin, float x, float y) {
+  switch (builtin) {
+  case Builtin::Mod:
+    return x - y * std::floor(x / y);
+  case Builtin::Min:
+    return minimum(x, y);
+  case Builtin::Max:
+    return maximum(x, y);
+  case Builtin::Step:
+    return y < x ? 0.0f : 1.0f;
+  default:
+    return std::nullopt;
+  }
+}
+
+static std::optional<float> foldFloat3(Builtin builtin, float x, float y, float z) {
+  switch (builtin) {
+  case Builtin::Clamp:
+    return minimum(maximum(x, y), z);
+  case Builtin::Mix:
+    return x * (1.0f - z) + y * z;
+  case Builtin::Fma:
+    return std::fma(x, y, z);
+  default:
+    return std::nullopt;
+  }
+}
+
+static std::optional<Scalar> foldInteger(Builtin builtin, bool isSigned, const Scalar *v,
+                                         std::size_t count) {
+  auto less = [&](Scalar a, Scalar b) { return isSigned ? a.i < b.i : a.u < b.u; };
+  switch (builtin) {
+  case Builtin::Abs:
+    return v[0].i < 0 ? makeUInt(0u - v[0].u) : v[0];
+  case Builtin::Sign:
+    return makeInt(v[0].i > 0 ? 1 : v[0].i < 0 ? -1 : 0);
+  case Builtin::Min:
+    return less(v[1], v[0]) ? v[1] : v[0];
+  case Builtin::Max:
+    return less(v[0], v[1]) ? v[1] : v[0];
+  case Builtin::Clamp: {
+    const Scalar low = less(v[0], v[1]) ? v[1] : v[0];
+    return less(v[2], low) ? v[2] : low;
+  }
+  case Builtin::BitCount:
+    return makeInt(__builtin_popcount(v[0].u));
+  default:
+    return std::nullopt;
+  }
+}
+
+static std::optional<Scalar> foldComponent(Builtin builtin, TypeKind kind, const Scalar *v,
+                                           std::size_t count) {
+  switch (builtin) {
+  case Builtin::IsNan:
+    return makeBool(std::isnan(v[0].f));
+  case Builtin::IsInf:
+    return makeBool(std::isinf(v[0].f));
+  case Builtin::FloatBitsToInt:
+  case Builtin::FloatBitsToUint:
+  case Builtin::IntBitsToFloat:
+  case Builtin::UintBitsToFloat:
+    return v[0]; // the same 32 bits
+  case Builtin::Not:
+    return makeBool(!v[0].b);
+  case Builtin::MixSelect:
+    return v[2].b ? v[1] : v[0];
+  case Builtin::LessThan:
+    return makeBool(kind == TypeKind::Float ? v[0].f < v[1].f
+                    : kind == TypeKind::Int ? v[0].i < v[1].i
+                                            : v[0].u < v[1].u);
+  case Builtin::GreaterThan:
+    return makeBool(kind == TypeKind::Float ? v[0].f > v[1].f
+                    : kind == TypeKind::Int ? v[0].i > v[1].i
+                                            : v[0].u > v[1].u);
+  case Builtin::LessThanEqual:
+    return makeBool(kind == TypeKind::Float ? v[0].f <= v[1].f
+                    : kind == TypeKind::Int ? v[0].i <= v[1].i
+                                            : v[0].u <= v[1].u);
+  case Builtin::GreaterThanEqual:
+    return makeBool(kind == TypeKind::Float ? v[0].f >= v[1].f
+                    : kind == TypeKind::Int ? v[0].i >= v[1].i
+                                            : v[0].u >= v[1].u);
+  case Builtin::Equal:
+    return makeBool(kind == TypeKind::Float  ? v[0].f == v[1].f
+                    : kind == TypeKind::Bool ? v[0].b == v[1].b
+                                             : v[0].u == v[1].u);
+  case Builtin::NotEqual:
+    return makeBool(kind == TypeKind::Float  ? v[0].f != v[1].f
+                    : kind == TypeKind::Bool ? v[0].b != v[1].b
+                                             : v[0].u != v[1].u);
+  default:
+    break;
+  }
+  if (kind == TypeKind::Int || kind == TypeKind::UInt)
+    return foldInteger(builtin, kind == TypeKind::Int, v, count);
+  if (kind != TypeKind::Float)
+    return std::nullopt;
+  const std::optional<float> result = count == 1   ? foldFloat1(builtin, v[0].f)
+                                      : count == 2 ? foldFloat2(builtin, v[0].f, v[1].f)
+                                      : count == 3 ? foldFloat3(builtin, v[0].f, v[1].f, v[2].f)
+                                                   : std::nullopt;
+  if (!result)
+    return std::nullopt;
+  return makeFloat(*result);
+}
+
+/// Functions of whole vectors and matrices.
+static std::optional<Constant> foldWhole(const typed::BuiltinExpr &call,
+                                         const std::vector<Constant> &args) {
+  if (args.empty())
+    return std::nullopt;
+  const std::vector<Scalar> &v = args[0].scalars;
+  const Type *type = call.args[0]->type;
+  switch (call.builtin) {
+  case Builtin::Any:
+    return Constant{{makeBool(std::any_of(v.begin(), v.end(), [](Scalar s) { return s.b; }))}};
+  case Builtin::All:
+    return Constant{{makeBool(std::all_of(v.begin(), v.end(), [](Scalar s) { return s.b; }))}};
+  case Builtin::MinComponent:
+  case Builtin::MaxComponent: {
+    const Builtin pair = call.builtin == Builtin::MinComponent ? Builtin::Min : Builtin::Max;
+    Scalar result = v[0];
+    for (std::size_t i = 1; i < v.size(); ++i) {
+      const Scalar both[] = {result, v[i]};
+      if (std::optional<Scalar> next = foldComponent(pair, type->scalar()->kind, both, 2))
+        result = *next;
+    }
+    return Constant{{result}};
+  }
+  case Builtin::Inside: {
+    bool inside = true;
+    for (std::size_t i = 0; i != v.size(); ++i)
+      for (unsigned bound = 1; bound <= 2; ++bound) {
+        const std::vector<Scalar> &limit = args[bound].scalars;
+        const Scalar both[] = {v[i], limit[limit.size() == 1 ? 0 : i]};
+        const Builtin test = bound == 1 ? Builtin::GreaterThanEqual : Builtin::LessThanEqual;
+        inside = inside && foldComponent(test, type->scalar()->kind, both, 2)->b;
+      }
+    return Constant{{makeBool(inside)}};
+  }
+  case Builtin::DominantAxis: {
+    int axis = 0;
+    for (std::size_t i = 1; i < v.size(); ++i)
+      if (std::fabs(v[i].f) > std::fabs(v[static_cast<std::size_t>(axis)].f))
+        axis = static_cast<int>(i);
+    return Constant{{makeInt(axis)}};
+  }
+  case Builtin::Transpose: {
+    Constant result;
+    for (std::uint32_t r = 0; r != type->rows(); ++r)
+      for (std::uint32_t c = 0; c != type->columns(); ++c)
+        result.scalars.push_back(v[c * type->rows() + r]);
+    return result;
+  }
+  case Builtin::MatrixCompMult: {
+    Constant result;
+    for (std::size_t i = 0; i != v.size(); ++i)
+      result.scalars.push_back(makeFloat(v[i].f * args[1].scalars[i].f));
+    return result;
+  }
+  default:
+    return std::nullopt;
+  }
+}
+
+std::optional<Constant> evaluateBuiltin(const typed::BuiltinExpr &call,
+                                        const std::vector<Constant> &args) {
+  if (call.type->is(TypeKind::Color))
+    return std::nullopt;
+  for (const typed::ExprPtr &arg : call.args)
+    if (!arg->type->scalar())
+      return std::nullopt;
+  if (std::optional<Constant> whole = foldWhole(call, args))
+    return whole;
+  if (args.empty() || args.size() > 3 || call.type->isMatrix() || !call.type->scalar())
+    return std::nullopt;
+  // The arguments beside `mix`'s selector have one scalar type; scalars beside vectors count for
+  // all components.
+  const TypeKind kind = call.args[0]->type->scalar()->kind;
+  Constant result;
+  for (std::uint32_t i = 0; i != call.type->componentCount(); ++i) {
+    Scalar component[3];
+    for (std::size_t a = 0; a != args.size(); ++a) {
+      if (args[a].scalars.size() != 1 && args[a].scalars.size() != call.type->componentCount())
+        return std::nullopt;
+      component[a] = args[a].scalars[args[a].scalars.size() == 1 ? 0 : i];
+    }
+    std::optional<Scalar> value = foldComponent(call.builtin, kind, component, args.size());
+    if (!value)
+      return std::nullopt;
+    result.scalars.push_back(*value);
+  }
+  return result;
+}
+
+} // namespace rtsl

@@ -1,0 +1,460 @@
+//===- ConstantFold.cpp - the value of a constant expression --------------===//
+#include "sema/ConstantFold.h"
+
+#include "sema/Casting.h"
+#include "sema/TypeProperties.h"
+
+#include <limits>
+
+namespace rtsl {
+
+using typed::Constant;
+using Scalar = Constant::Scalar;
+using ast::BinaryOp;
+
+/// Larger values than this are not folded: a table of a million entries belongs into a buffer.
+static constexpr std::uint64_t maxFoldedScalars = 1u << 16;
+
+//===----------------------------------------------------------------------===//
+// Scalars
+//===----------------------------------------------------------------------===//
+
+Scalar convertScalar(Scalar value, TypeKind from, TypeKind to) {
+  if (from == to)
+    return value;
+  switch (to) {
+  case TypeKind::Bool:
+    return makeBool(from == TypeKind::Float ? value.f != 0.0f : value.u != 0);
+  case TypeKind::Float:
+    if (from == TypeKind::Bool)
+      return makeFloat(value.b ? 1.0f : 0.0f);
+    return makeFloat(from == TypeKind::Int ? static_cast<float>(value.i)
+                                           : static_cast<float>(value.u));
+  case TypeKind::Int:
+    if (from == TypeKind::Bool)
+      return makeInt(value.b ? 1 : 0);
+    if (from == TypeKind::UInt)
+      return makeInt(static_cast<std::int32_t>(value.u));
+    if (std::isnan(value.f))
+      return makeInt(0);
+    if (value.f >= 2147483648.0f)
+      return makeInt(std::numeric_limits<std::int32_t>::max());
+    if (value.f <= -2147483648.0f)
+      return makeInt(std::numeric_limits<std::int32_t>::min());
+    return makeInt(static_cast<std::int32_t>(value.f));
+  case TypeKind::UInt:
+    if (from == TypeKind::Bool)
+      return makeUInt(value.b ? 1 : 0);
+    if (from == TypeKind::Int)
+      return makeUInt(static_cast<std::uint32_t>(value.i));
+    if (std::isnan(value.f) || value.f <= 0.0f)
+      return makeUInt(0);
+    if (value.f >= 4294967296.0f)
+      return makeUInt(std::numeric_limits<std::uint32_t>::max());
+    return makeUInt(static_cast<std::uint32_t>(value.f));
+  default:
+    return value;
+  }
+}
+
+static Scalar foldFloat(BinaryOp op, float a, float b) {
+  switch (op) {
+  case BinaryOp::Add:
+    return makeFloat(a + b);
+  case BinaryOp::Sub:
+    return makeFloat(a - b);
+  case BinaryOp::Mul:
+    return makeFloat(a * b);
+  case BinaryOp::Div:
+    return makeFloat(a / b);
+  case BinaryOp::Less:
+    return makeBool(a < b);
+  case BinaryOp::Greater:
+    return makeBool(a > b);
+  case BinaryOp::LessEqual:
+    return makeBool(a <= b);
+  case BinaryOp::GreaterEqual:
+    return makeBool(a >= b);
+  case BinaryOp::NotEqual:
+    return makeBool(a != b);
+  default:
+    return makeBool(a == b);
+  }
+}
+
+static Scalar foldInteger(BinaryOp op, TypeKind kind, Scalar left, Scalar right) {
+  const std::uint32_t a = left.u, b = right.u;
+  const bool isSigned = kind == TypeKind::Int;
+  switch (op) {
+  case BinaryOp::Add:
+    return makeUInt(a + b);
+  case BinaryOp::Sub:
+    return makeUInt(a - b);
+  case BinaryOp::Mul:
+    return makeUInt(a * b);
+  case BinaryOp::Div:
+    if (b == 0)
+      return makeUInt(0);
+    if (isSigned) // in 64 bits: the quotient of the smallest int and -1 wraps
+      return makeUInt(static_cast<std::uint32_t>(std::int64_t(left.i) / right.i));
+    return makeUInt(a / b);
+  case BinaryOp::Mod:
+    if (b == 0)
+      return makeUInt(0);
+    if (isSigned)
+      return makeUInt(static_cast<std::uint32_t>(std::int64_t(left.i) % right.i));
+    return makeUInt(a % b);
+  case BinaryOp::Shl:
+    return makeUInt(a << (b & 31));
+  case BinaryOp::Shr:
+    return isSigned ? makeInt(left.i >> (b & 31)) : makeUInt(a >> (b & 31));
+  case BinaryOp::BitAnd:
+    return makeUInt(a & b);
+  case BinaryOp::BitOr:
+    return makeUInt(a | b);
+  case BinaryOp::BitXor:
+    return makeUInt(a ^ b);
+  case BinaryOp::Less:
+    return makeBool(isSigned ? left.i < right.i : a < b);
+  case BinaryOp::Greater:
+    return makeBool(isSigned ? left.i > right.i : a > b);
+  case BinaryOp::LessEqual:
+    return makeBool(isSigned ? left.i <= right.i : a <= b);
+  case BinaryOp::GreaterEqual:
+    return makeBool(isSigned ? left.i >= right.i : a >= b);
+  case BinaryOp::NotEqual:
+    return makeBool(a != b);
+  default:
+    return makeBool(a == b);
+  }
+}
+
+static Scalar foldScalar(BinaryOp op, TypeKind kind, Scalar left, Scalar right) {
+  if (kind == TypeKind::Float)
+    return foldFloat(op, left.f, right.f);
+  if (kind != TypeKind::Bool)
+    return foldInteger(op, kind, left, right);
+  switch (op) {
+  case BinaryOp::LogicalAnd:
+    return makeBool(left.b && right.b);
+  case BinaryOp::LogicalOr:
+    return makeBool(left.b || right.b);
+  case BinaryOp::LogicalXor:
+  case BinaryOp::NotEqual:
+    return makeBool(left.b != right.b);
+  default:
+    return makeBool(left.b == right.b);
+  }
+}
+
+//===----------------------------------------------------------------------===//
+// Whole values
+//===----------------------------------------------------------------------===//
+
+/// Equal in every scalar; `kinds` of the scalars follow from the type.
+static bool equalValues(const Type *type, const Scalar *a, const Scalar *b) {
+  if (type->is(TypeKind::Array)) {
+    const std::uint64_t stride = scalarCount(type->element);
+    for (std::uint32_t i = 0; i != type->count; ++i)
+      if (!equalValues(type->element, a + i * stride, b + i * stride))
+        return false;
+    return true;
+  }
+  if (type->is(TypeKind::Struct)) {
+    for (const typed::Field &field : type->structure->fields) {
+      if (!equalValues(field.type, a, b))
+        return false;
+      a += scalarCount(field.type);
+      b += scalarCount(field.type);
+    }
+    return true;
+  }
+  for (std::uint32_t i = 0; i != type->componentCount(); ++i)
+    if (!foldScalar(BinaryOp::Equal, type->scalar()->kind, a[i], b[i]).b)
+      return false;
+  return true;
+}
+
+/// The products of linear algebra; sums run from the first term to the last.
+static Constant foldMatrixProduct(const Type *leftType, const Constant &left, const Type *rightType,
+                                  const Constant &right) {
+  // A row vector on the left has one row; a column vector on the right has one column. Values lie
+  // by column.
+  const std::uint32_t rows = leftType->isMatrix() ? leftType->rows() : 1;
+  const std::uint32_t inner = leftType->isMatrix() ? leftType->columns() : leftType->count;
+  const std::uint32_t columns = rightType->isMatrix() ? rightType->columns() : 1;
+  Constant result;
+  for (std::uint32_t c = 0; c != columns; ++c)
+    for (std::uint32_t r = 0; r != rows; ++r) {
+      float sum = left.scalars[r].f * right.scalars[c * inner].f;
+      for (std::uint32_t k = 1; k != inner; ++k)
+        sum = sum + left.scalars[k * rows + r].f * right.scalars[c * inner + k].f;
+      result.scalars.push_back(makeFloat(sum));
+    }
+  return result;
+}
+
+static bool isLinearAlgebra(BinaryOp op, const Type *left, const Type *right) {
+  return op == BinaryOp::Mul && ((left->isMatrix() && (right->isMatrix() || right->isVector())) ||
+                                 (left->isVector() && right->isMatrix()));
+}
+
+/// Colors fold only where the result does not depend on how many components the target gives them:
+/// grey with grey, and anything times or divided by a number.
+static std::optional<Constant> foldColor(BinaryOp op, bool leftIsColor, const Constant &left,
+                                         bool rightIsColor, const Constant &right) {
+  if (leftIsColor && rightIsColor && left.scalars.size() + right.scalars.size() > 2)
+    return std::nullopt;
+  Constant result;
+  const std::size_t count = std::max(left.scalars.size(), right.scalars.size());
+  for (std::size_t i = 0; i != count; ++i)
+    result.scalars.push_back(foldFloat(op, left.scalars[left.scalars.size() == 1 ? 0 : i].f,
+                                       right.scalars[right.scalars.size() == 1 ? 0 : i].f));
+  return result;
+}
+
+static std::optional<Constant> foldBinary(const typed::BinaryExpr &expr, const Constant &left,
+                                          const Constant &right) {
+  const Type *leftType = expr.left->type, *rightType = expr.right->type;
+  if (leftType->is(TypeKind::Color) || rightType->is(TypeKind::Color))
+    return foldColor(expr.op, leftType->is(TypeKind::Color), left, rightType->is(TypeKind::Color),
+                     right);
+  if (expr.op == BinaryOp::Equal || expr.op == BinaryOp::NotEqual) {
+    const bool equal = equalValues(leftType, left.scalars.data(), right.scalars.data());
+    return Constant{{makeBool(equal == (expr.op == BinaryOp::Equal))}};
+  }
+  if (isLinearAlgebra(expr.op, leftType, rightType))
+    return foldMatrixProduct(leftType, left, rightType, right);
+  Constant result;
+  const TypeKind kind = leftType->scalar()->kind;
+  const std::size_t count = std::max(left.scalars.size(), right.scalars.size());
+  for (std::size_t i = 0; i != count; ++i)
+    result.scalars.push_back(foldScalar(expr.op, kind,
+                                        left.scalars[left.scalars.size() == 1 ? 0 : i],
+                                        right.scalars[right.scalars.size() == 1 ? 0 : i]));
+  return result;
+}
+
+static std::optional<Constant> foldConstruct(const Type *type, const typed::ConstructExpr &expr,
+                                             const std::vector<Constant> &args) {
+  Constant result;
+  if (type->isMatrix() && args.size() == 1 && !expr.args[0]->type->isVector()) {
+    const bool fromMatrix = expr.args[0]->type->isMatrix();
+    const Type *source = expr.args[0]->type;
+    for (std::uint32_t c = 0; c != type->columns(); ++c)
+      for (std::uint32_t r = 0; r != type->rows(); ++r) {
+        if (!fromMatrix)
+          result.scalars.push_back(c == r ? args[0].scalars[0] : makeFloat(0.0f));
+        else if (c < source->columns() && r < source->rows())
+          result.scalars.push_back(args[0].scalars[c * source->rows() + r]);
+        else
+          result.scalars.push_back(makeFloat(c == r ? 1.0f : 0.0f));
+      }
+    return result;
+  }
+  for (const Constant &arg : args)
+    result.scalars.insert(result.scalars.end(), arg.scalars.begin(), arg.scalars.end());
+  if (type->isVector() && result.scalars.size() == 1)
+    result.scalars.assign(type->count, result.scalars[0]);
+  else if (type->componentCount() != 0) // the last piece may have more than is needed
+    result.scalars.resize(type->componentCount());
+  return result;
+}
+
+static Constant foldUnary(typed::UnaryOp op, const Type *type, const Constant &operand) {
+  Constant result;
+  const TypeKind kind = type->is(TypeKind::Color) ? TypeKind::Float : type->scalar()->kind;
+  for (Scalar scalar : operand.scalars) {
+    if (op == typed::UnaryOp::Not)
+      result.scalars.push_back(makeBool(!scalar.b));
+    else if (op == typed::UnaryOp::BitNot)
+      result.scalars.push_back(makeUInt(~scalar.u));
+    else if (kind == TypeKind::Float)
+      result.scalars.push_back(makeFloat(-scalar.f));
+    else
+      result.scalars.push_back(makeUInt(0u - scalar.u));
+  }
+  return result;
+}
+
+static Constant slice(const Constant &value, std::uint64_t first, std::uint64_t count) {
+  Constant result;
+  result.scalars.assign(value.scalars.begin() + static_cast<std::ptrdiff_t>(first),
+                        value.scalars.begin() + static_cast<std::ptrdiff_t>(first + count));
+  return result;
+}
+
+//===----------------------------------------------------------------------===//
+// Expressions
+//===----------------------------------------------------------------------===//
+
+namespace {
+
+class Evaluator {
+public:
+  explicit Evaluator(const typed::Expr **obstacle) : obstacle(obstacle) {}
+
+  std::optional<Constant> evaluate(const typed::Expr &expr);
+
+private:
+  std::optional<Constant> evaluateIndex(const typed::IndexExpr &expr);
+  bool evaluateAll(const std::vector<typed::ExprPtr> &exprs, std::vector<Constant> &values);
+
+  std::nullopt_t notConstant(const typed::Expr &expr) {
+    if (obstacle && !*obstacle)
+      *obstacle = &expr;
+    return std::nullopt;
+  }
+
+  const typed::Expr **obstacle;
+};
+
+} // namespace
+
+bool Evaluator::evaluateAll(const std::vector<typed::ExprPtr> &exprs,
+                            std::vector<Constant> &values) {
+  for (const typed::ExprPtr &expr : exprs) {
+    std::optional<Constant> value = evaluate(*expr);
+    if (!value)
+      return false;
+    values.push_back(std::move(*value));
+  }
+  return true;
+}
+
+std::optional<Constant> Evaluator::evaluateIndex(const typed::IndexExpr &expr) {
+  std::optional<Constant> base = evaluate(*expr.base);
+  if (!base)
+    return std::nullopt;
+  std::optional<Constant> index = evaluate(*expr.index);
+  if (!index)
+    return std::nullopt;
+  const Type *type = expr.base->type;
+  if (type->count == 0 || type->is(TypeKind::Buffer))
+    return notConstant(expr);
+  // An index out of range is clamped, as it is when the program runs.
+  std::int64_t at =
+      expr.index->type->is(TypeKind::Int) ? index->scalars[0].i : std::int64_t(index->scalars[0].u);
+  at = std::max<std::int64_t>(0, std::min<std::int64_t>(at, std::int64_t(type->count) - 1));
+  const std::uint64_t stride = scalarCount(type->element);
+  return slice(*base, static_cast<std::uint64_t>(at) * stride, stride);
+}
+
+std::optional<Constant> Evaluator::evaluate(const typed::Expr &expr) {
+  if (expr.type->isError())
+    return std::nullopt;
+  switch (expr.kind) {
+  case typed::ExprKind::Literal:
+    return cast<typed::LiteralExpr>(expr).value;
+  case typed::ExprKind::Variable: {
+    const typed::Variable *variable = cast<typed::VariableExpr>(expr).variable;
+    if (variable->constant)
+      return *variable->constant;
+    return notConstant(expr);
+  }
+  case typed::ExprKind::Member: {
+    const typed::Member *member = cast<typed::MemberExpr>(expr).member;
+    if (member->constant)
+      return *member->constant;
+    return notConstant(expr);
+  }
+  case typed::ExprKind::Field: {
+    const auto &field = cast<typed::FieldExpr>(expr);
+    std::optional<Constant> base = evaluate(*field.base);
+    if (!base)
+      return std::nullopt;
+    std::uint64_t first = 0;
+    const typed::Struct &structure = *field.base->type->structure;
+    for (std::uint32_t i = 0; i != field.field; ++i)
+      first += scalarCount(structure.fields[i].type);
+    return slice(*base, first, scalarCount(expr.type));
+  }
+  case typed::ExprKind::Swizzle: {
+    const auto &swizzle = cast<typed::SwizzleExpr>(expr);
+    std::optional<Constant> base = evaluate(*swizzle.base);
+    if (!base)
+      return std::nullopt;
+    Constant result;
+    for (std::uint8_t component : swizzle.components)
+      result.scalars.push_back(base->scalars[component]);
+    return result;
+  }
+  case typed::ExprKind::Index:
+    return evaluateIndex(cast<typed::IndexExpr>(expr));
+  case typed::ExprKind::Unary: {
+    const auto &unary = cast<typed::UnaryExpr>(expr);
+    std::optional<Constant> operand = evaluate(*unary.operand);
+    if (!operand)
+      return std::nullopt;
+    return foldUnary(unary.op, expr.type, *operand);
+  }
+  case typed::ExprKind::Binary: {
+    const auto &binary = cast<typed::BinaryExpr>(expr);
+    std::optional<Constant> left = evaluate(*binary.left);
+    if (!left)
+      return std::nullopt;
+    std::optional<Constant> right = evaluate(*binary.right);
+    if (!right)
+      return std::nullopt;
+    if (std::optional<Constant> result = foldBinary(binary, *left, *right))
+      return result;
+    return notConstant(expr);
+  }
+  case typed::ExprKind::Conditional: {
+    const auto &conditional = cast<typed::ConditionalExpr>(expr);
+    std::optional<Constant> condition = evaluate(*conditional.condition);
+    if (!condition)
+      return std::nullopt;
+    return evaluate(condition->scalars[0].b ? *conditional.whenTrue : *conditional.whenFalse);
+  }
+  case typed::ExprKind::Convert: {
+    const auto &convert = cast<typed::ConvertExpr>(expr);
+    std::optional<Constant> operand = evaluate(*convert.operand);
+    if (!operand || !expr.type->scalar())
+      return operand ? std::optional<Constant>(notConstant(expr)) : std::nullopt;
+    for (Scalar &scalar : operand->scalars)
+      scalar =
+          convertScalar(scalar, convert.operand->type->scalar()->kind, expr.type->scalar()->kind);
+    return operand;
+  }
+  case typed::ExprKind::Construct: {
+    const auto &construct = cast<typed::ConstructExpr>(expr);
+    // A color inside of an aggregate has no fixed number of scalars.
+    const bool isAggregate = expr.type->is(TypeKind::Array) || expr.type->is(TypeKind::Struct);
+    if (isAggregate &&
+        (contains(expr.type, TypeKind::Color) || scalarCount(expr.type) > maxFoldedScalars))
+      return notConstant(expr);
+    std::vector<Constant> args;
+    if (!evaluateAll(construct.args, args))
+      return std::nullopt;
+    return foldConstruct(expr.type, construct, args);
+  }
+  case typed::ExprKind::Builtin: {
+    const auto &call = cast<typed::BuiltinExpr>(expr);
+    std::vector<Constant> args;
+    if (!evaluateAll(call.args, args))
+      return std::nullopt;
+    if (std::optional<Constant> result = evaluateBuiltin(call, args))
+      return result;
+    return notConstant(expr);
+  }
+  default:
+    return notConstant(expr);
+  }
+}
+
+std::optional<Constant> evaluate(const typed::Expr &expr, const typed::Expr **obstacle) {
+  if (obstacle)
+    *obstacle = nullptr;
+  return Evaluator(obstacle).evaluate(expr);
+}
+
+std::optional<std::int64_t> evaluateInteger(const typed::Expr &expr, const typed::Expr **obstacle) {
+  std::optional<Constant> value = evaluate(expr, obstacle);
+  if (!value || (!expr.type->is(TypeKind::Int) && !expr.type->is(TypeKind::UInt)))
+    return std::nullopt;
+  return expr.type->is(TypeKind::Int) ? std::int64_t(value->scalars[0].i)
+                                      : std::int64_t(value->scalars[0].u);
+}
+
+} // namespace rtsl

@@ -1,0 +1,55 @@
+//===- ConstantFold.h - the value of a constant expression ----------------===//
+//
+// Folding follows the rules of docs/language.md to the bit: single precision, integers that wrap,
+// division by zero that gives zero, minima that prefer their first operand. What a target may
+// compute differently from the machine that compiles is not folded here.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "sema/TypedAst.h"
+
+#include <cmath>
+#include <optional>
+
+namespace rtsl {
+
+/// The value of `expr` if it is a constant expression. Otherwise none, and `obstacle` (if asked
+/// for) is the innermost part that is not constant.
+std::optional<typed::Constant> evaluate(const typed::Expr &expr,
+                                        const typed::Expr **obstacle = nullptr);
+
+/// The value of a constant int or uint expression.
+std::optional<std::int64_t> evaluateInteger(const typed::Expr &expr,
+                                            const typed::Expr **obstacle = nullptr);
+
+/// A built-in function of constant arguments; none if it is not folded.
+std::optional<typed::Constant> evaluateBuiltin(const typed::BuiltinExpr &call,
+                                               const std::vector<typed::Constant> &args);
+
+/// A scalar's change of type: float to integer truncates and saturates, NaN gives 0.
+typed::Constant::Scalar convertScalar(typed::Constant::Scalar value, TypeKind from, TypeKind to);
+
+inline typed::Constant::Scalar makeFloat(float value) {
+  typed::Constant::Scalar scalar;
+  scalar.f = value;
+  return scalar;
+}
+inline typed::Constant::Scalar makeUInt(std::uint32_t value) {
+  typed::Constant::Scalar scalar;
+  scalar.u = value;
+  return scalar;
+}
+inline typed::Constant::Scalar makeInt(std::int32_t value) {
+  typed::Constant::Scalar scalar;
+  scalar.i = value;
+  return scalar;
+}
+inline typed::Constant::Scalar makeBool(bool value) {
+  typed::Constant::Scalar scalar;
+  scalar.u = 0;
+  scalar.b = value;
+  return scalar;
+}
+
+} // namespace rtsl

@@ -1,0 +1,433 @@
+//===- Dump.cpp - the typed module as text --------------------------------===//
+//
+// One node a line, indented below what holds it: `kind details : type`. The text depends on the
+// source alone.
+//
+//===----------------------------------------------------------------------===//
+#include "sema/Casting.h"
+#include "sema/ConstantFold.h"
+#include "sema/Sema.h"
+#include "sema/TypeProperties.h"
+
+#include <fmt/format.h>
+
+namespace rtsl::typed {
+
+namespace {
+
+class Dumper {
+public:
+  std::string text;
+
+  void module(const Module &module);
+
+private:
+  void line(const std::string &content) { text += std::string(2 * depth, ' ') + content + "\n"; }
+  void comment(const std::string &comment);
+  void member(const Member &member);
+  void function(const Function &function);
+  void stmt(const Stmt &stmt);
+  void optional(const char *label, const Stmt *stmt);
+  void optional(const char *label, const Expr *expr);
+  void expr(const Expr &expr);
+  void exprs(const std::vector<ExprPtr> &list);
+  void node(const std::string &content, const Expr &expr) {
+    line(content + " : " + toString(expr.type));
+  }
+
+  unsigned depth = 0;
+
+  struct Indent {
+    explicit Indent(Dumper &dumper) : dumper(dumper) { ++dumper.depth; }
+    ~Indent() { --dumper.depth; }
+    Dumper &dumper;
+  };
+};
+
+std::string scalarText(Constant::Scalar scalar, TypeKind kind) {
+  switch (kind) {
+  case TypeKind::Bool:
+    return scalar.b ? "true" : "false";
+  case TypeKind::Int:
+    return fmt::format("{}", scalar.i);
+  case TypeKind::UInt:
+    return fmt::format("{}u", scalar.u);
+  default: {
+    std::string text = fmt::format("{}", scalar.f); // the shortest text that gives the same float
+    if (text.find_first_of(".einf") == std::string::npos)
+      text += ".0";
+    return text;
+  }
+  }
+}
+
+void scalarKinds(const Type *type, std::vector<TypeKind> &kinds) {
+  if (type->is(TypeKind::Array)) {
+    for (std::uint32_t i = 0; i != type->count; ++i)
+      scalarKinds(type->element, kinds);
+  } else if (type->is(TypeKind::Struct)) {
+    for (const Field &field : type->structure->fields)
+      scalarKinds(field.type, kinds);
+  } else if (type->scalar()) {
+    kinds.insert(kinds.end(), type->componentCount(), type->scalar()->kind);
+  }
+}
+
+std::string constantText(const Constant &constant, const Type *type) {
+  std::vector<TypeKind> kinds;
+  scalarKinds(type, kinds);
+  kinds.resize(std::max(kinds.size(), constant.scalars.size()), TypeKind::Float); // colors
+  std::string text;
+  for (std::size_t i = 0; i != constant.scalars.size(); ++i)
+    text += (i == 0 ? "" : ", ") + scalarText(constant.scalars[i], kinds[i]);
+  return constant.scalars.size() == 1 ? text : "{" + text + "}";
+}
+
+const char *accessText(ast::Access access) {
+  static const char *const texts[] = {"const", "public", "private", "scratch"};
+  return texts[static_cast<int>(access)];
+}
+
+std::string parameterText(const Variable &parameter) {
+  static const char *const directions[] = {"", "out ", "inout "};
+  return std::string(parameter.isConst ? "const " : "") +
+         directions[static_cast<int>(parameter.direction)] + toString(parameter.type) +
+         (parameter.name.empty() ? "" : " " + parameter.name);
+}
+
+const char *opText(ast::BinaryOp op) {
+  static const char *const spellings[] = {"*",  "/",  "%",  "+", "-", "<<", ">>", "<",  ">", "<=",
+                                          ">=", "==", "!=", "&", "^", "|",  "&&", "^^", "||"};
+  return spellings[static_cast<int>(op)];
+}
+
+} // namespace
+
+void Dumper::comment(const std::string &comment) {
+  for (std::size_t begin = 0; begin < comment.size();) {
+    const std::size_t end = std::min(comment.find('\n', begin), comment.size());
+    line(comment.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+void Dumper::module(const Module &module) {
+  for (const std::unique_ptr<Struct> &structure : module.structs) {
+    comment(structure->comment);
+    line("struct " + structure->name);
+    Indent indent(*this);
+    for (const Field &field : structure->fields)
+      line("field " + field.name + " : " + toString(field.type));
+  }
+  for (const std::unique_ptr<Variable> &constant : module.constants) {
+    comment(constant->comment);
+    line("const " + constant->name +
+         (constant->constant ? " = " + constantText(*constant->constant, constant->type) : "") +
+         " : " + toString(constant->type));
+  }
+  for (const std::unique_ptr<Function> &free : module.functions)
+    function(*free);
+  for (const std::unique_ptr<Class> &type : module.classes) {
+    comment(type->comment);
+    line("class " + type->name + " : " + (type->base ? type->base->name + " : " : "") + type->root);
+    Indent indent(*this);
+    for (const std::unique_ptr<Member> &each : type->members)
+      member(*each);
+    for (const std::unique_ptr<Function> &each : type->functions)
+      function(*each);
+  }
+}
+
+void Dumper::member(const Member &member) {
+  comment(member.comment);
+  std::string value;
+  if (member.constant)
+    value = " = " + constantText(*member.constant, member.type);
+  line(fmt::format("member {} {}{} : {}",
+                   accessText(member.isConst ? ast::Access::None : member.access), member.name,
+                   value, toString(member.type)));
+  if (!member.constant && member.init) {
+    Indent indent(*this);
+    expr(*member.init);
+  }
+}
+
+void Dumper::function(const Function &function) {
+  comment(function.comment);
+  std::string parameters;
+  for (const std::unique_ptr<Variable> &parameter : function.parameters)
+    parameters += (parameters.empty() ? "" : ", ") + parameterText(*parameter);
+  const char *kind = function.isConstructor ? "" : function.isStateMethod ? "method " : "function ";
+  line(fmt::format("{}{}({}) : {}{}", kind, function.name, parameters,
+                   toString(function.returnType), function.mayTrace ? " traces" : ""));
+  Indent indent(*this);
+  if (function.body)
+    for (const StmtPtr &inner : static_cast<const CompoundStmt &>(*function.body).body)
+      stmt(*inner);
+}
+
+void Dumper::optional(const char *label, const Stmt *inner) {
+  if (!inner)
+    return;
+  line(label);
+  Indent indent(*this);
+  stmt(*inner);
+}
+
+void Dumper::optional(const char *label, const Expr *inner) {
+  if (!inner)
+    return;
+  line(label);
+  Indent indent(*this);
+  expr(*inner);
+}
+
+void Dumper::stmt(const Stmt &node) {
+  comment(node.comment);
+  switch (node.kind) {
+  case ast::StmtKind::Compound: {
+    line("block");
+    Indent indent(*this);
+    for (const StmtPtr &inner : cast<CompoundStmt>(node).body)
+      stmt(*inner);
+    return;
+  }
+  case ast::StmtKind::Declaration:
+    for (const Variable *variable : cast<DeclarationStmt>(node).variables) {
+      const std::string value =
+          variable->constant ? " = " + constantText(*variable->constant, variable->type) : "";
+      line(fmt::format("{} {}{} : {}", variable->isConst ? "const" : "var", variable->name, value,
+                       toString(variable->type)));
+      Indent indent(*this);
+      if (variable->init && !variable->constant)
+        expr(*variable->init);
+    }
+    return;
+  case ast::StmtKind::Expression:
+    return expr(*cast<ExpressionStmt>(node).expr);
+  case ast::StmtKind::If: {
+    const auto &branch = cast<IfStmt>(node);
+    line("if");
+    Indent indent(*this);
+    expr(*branch.condition);
+    optional("then", branch.thenStmt.get());
+    optional("else", branch.elseStmt.get());
+    return;
+  }
+  case ast::StmtKind::For: {
+    const auto &loop = cast<ForStmt>(node);
+    line("for");
+    Indent indent(*this);
+    optional("init", loop.init.get());
+    optional("condition", loop.condition.get());
+    optional("step", loop.step.get());
+    optional("body", loop.body.get());
+    return;
+  }
+  case ast::StmtKind::While: {
+    const auto &loop = cast<WhileStmt>(node);
+    line("while");
+    Indent indent(*this);
+    expr(*loop.condition);
+    optional("body", loop.body.get());
+    return;
+  }
+  case ast::StmtKind::DoWhile: {
+    const auto &loop = cast<DoWhileStmt>(node);
+    line("do");
+    Indent indent(*this);
+    optional("body", loop.body.get());
+    optional("condition", loop.condition.get());
+    return;
+  }
+  case ast::StmtKind::Switch: {
+    const auto &choice = cast<SwitchStmt>(node);
+    line("switch");
+    Indent indent(*this);
+    expr(*choice.value);
+    for (const SwitchStmt::Arm &arm : choice.arms) {
+      std::string labels;
+      for (std::int64_t value : arm.values)
+        labels += (labels.empty() ? "case " : ", ") + std::to_string(value);
+      if (arm.isDefault)
+        labels += labels.empty() ? "default" : ", default";
+      line(labels);
+      Indent inner(*this);
+      for (const StmtPtr &each : arm.body)
+        stmt(*each);
+    }
+    return;
+  }
+  case ast::StmtKind::Break:
+    return line("break");
+  case ast::StmtKind::Continue:
+    return line("continue");
+  case ast::StmtKind::Return: {
+    line("return");
+    Indent indent(*this);
+    if (const ExprPtr &value = cast<ReturnStmt>(node).value)
+      expr(*value);
+    return;
+  }
+  case ast::StmtKind::Illuminance: {
+    const auto &loop = cast<IlluminanceStmt>(node);
+    line("illuminance");
+    Indent indent(*this);
+    optional("point", loop.point.get());
+    optional("normal", loop.normal.get());
+    optional("angle", loop.angle.get());
+    optional("body", loop.body.get());
+    return;
+  }
+  default:
+    return;
+  }
+}
+
+void Dumper::exprs(const std::vector<ExprPtr> &list) {
+  for (const ExprPtr &each : list)
+    expr(*each);
+}
+
+void Dumper::expr(const Expr &e) {
+  if (e.type->isError())
+    return line("<error>");
+  switch (e.kind) {
+  case ExprKind::Literal: {
+    const auto &literal = cast<LiteralExpr>(e);
+    return node("literal " + constantText(literal.value, e.type), e);
+  }
+  case ExprKind::Variable:
+    node("variable " + cast<VariableExpr>(e).variable->name, e);
+    break;
+  case ExprKind::State:
+    node(std::string("state rt_") + name(cast<StateExpr>(e).variable), e);
+    break;
+  case ExprKind::Member:
+    node("member " + cast<MemberExpr>(e).member->name, e);
+    break;
+  case ExprKind::Field: {
+    const auto &field = cast<FieldExpr>(e);
+    node("field ." + field.base->type->structure->fields[field.field].name, e);
+    Indent indent(*this);
+    expr(*field.base);
+    break;
+  }
+  case ExprKind::Swizzle: {
+    const auto &swizzle = cast<SwizzleExpr>(e);
+    std::string letters;
+    for (std::uint8_t component : swizzle.components)
+      letters += "xyzw"[component];
+    node("swizzle ." + letters, e);
+    Indent indent(*this);
+    expr(*swizzle.base);
+    break;
+  }
+  case ExprKind::Index: {
+    const auto &index = cast<IndexExpr>(e);
+    node("index", e);
+    Indent indent(*this);
+    expr(*index.base);
+    expr(*index.index);
+    break;
+  }
+  case ExprKind::Length: {
+    node("length", e);
+    Indent indent(*this);
+    expr(*cast<LengthExpr>(e).base);
+    break;
+  }
+  case ExprKind::Unary: {
+    const auto &unary = cast<UnaryExpr>(e);
+    node(std::string("unary ") + "-!~"[static_cast<int>(unary.op)], e);
+    Indent indent(*this);
+    expr(*unary.operand);
+    break;
+  }
+  case ExprKind::IncDec: {
+    const auto &incDec = cast<IncDecExpr>(e);
+    node(std::string(incDec.prefix ? "prefix " : "postfix ") + (incDec.increment ? "++" : "--"), e);
+    Indent indent(*this);
+    expr(*incDec.target);
+    break;
+  }
+  case ExprKind::Binary: {
+    const auto &binary = cast<BinaryExpr>(e);
+    node(std::string("binary ") + opText(binary.op), e);
+    Indent indent(*this);
+    expr(*binary.left);
+    expr(*binary.right);
+    break;
+  }
+  case ExprKind::Assign: {
+    const auto &assign = cast<AssignExpr>(e);
+    node(std::string("assign ") + (assign.compound ? opText(assign.op) : "") + "=", e);
+    Indent indent(*this);
+    expr(*assign.target);
+    expr(*assign.value);
+    break;
+  }
+  case ExprKind::Conditional: {
+    const auto &conditional = cast<ConditionalExpr>(e);
+    node("conditional", e);
+    Indent indent(*this);
+    expr(*conditional.condition);
+    expr(*conditional.whenTrue);
+    expr(*conditional.whenFalse);
+    break;
+  }
+  case ExprKind::Comma: {
+    node("comma", e);
+    Indent indent(*this);
+    expr(*cast<CommaExpr>(e).left);
+    expr(*cast<CommaExpr>(e).right);
+    break;
+  }
+  case ExprKind::Convert: {
+    const auto &convert = cast<ConvertExpr>(e);
+    node(convert.isImplicit ? "convert implicit" : "convert", e);
+    Indent indent(*this);
+    expr(*convert.operand);
+    break;
+  }
+  case ExprKind::Construct: {
+    node("construct", e);
+    Indent indent(*this);
+    exprs(cast<ConstructExpr>(e).args);
+    break;
+  }
+  case ExprKind::Builtin: {
+    const auto &call = cast<BuiltinExpr>(e);
+    node(std::string("builtin ") + name(call.builtin), e);
+    Indent indent(*this);
+    exprs(call.args);
+    break;
+  }
+  case ExprKind::Call: {
+    const auto &call = cast<CallExpr>(e);
+    node((call.onSelf ? "call self." : "call ") + call.function->name, e);
+    Indent indent(*this);
+    exprs(call.args);
+    break;
+  }
+  case ExprKind::MethodCall: {
+    const auto &call = cast<MethodCallExpr>(e);
+    node("call ." + call.method, e);
+    Indent indent(*this);
+    expr(*call.receiver);
+    exprs(call.args);
+    break;
+  }
+  case ExprKind::String:
+    line("string \"" + cast<StringExpr>(e).value + "\"");
+    break;
+  }
+}
+
+std::string dump(const Module &module) {
+  Dumper dumper;
+  dumper.module(module);
+  return std::move(dumper.text);
+}
+
+} // namespace rtsl::typed

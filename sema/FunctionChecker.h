@@ -1,0 +1,178 @@
+//===- FunctionChecker.h - checking the inside of a function --------------===//
+//
+// Turns statements and expressions of the syntax tree into typed ones. The same class checks
+// expressions outside of functions: array sizes, constants, members' defaults. Its parts stand in
+// Check*.cpp, one concept each.
+//
+// An expression that cannot be understood is reported once and has the type `error` from then on,
+// about which nothing more is said.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "sema/Conversion.h"
+#include "sema/Program.h"
+#include "sema/Scope.h"
+
+#include <unordered_set>
+
+namespace rtsl {
+
+class FunctionChecker {
+public:
+  /// `scope` is the class whose names are in sight, or null; `function` the one whose body is
+  /// checked, or null.
+  FunctionChecker(Program &program, const ClassScope *scope, typed::Function *function);
+
+  /// Checks the body into `function`.
+  void checkBody(const ast::FunctionDecl &declaration);
+
+  /// A type as spelled. `name` is the declared name, if any: dimensions behind it come first
+  /// (`float[2] a[3]` is an array of three arrays of two). `allowUnsized` permits `[]` in front;
+  /// then the result is a buffer.
+  const Type *resolveType(const ast::TypeName &typeName, const ast::Name *name,
+                          bool allowUnsized = false);
+
+  /// An initialiser for something of type `type`; converts, and understands `{...}`.
+  typed::ExprPtr checkInitializer(const ast::Expr &init, const Type *type);
+
+  /// The type of `float a[] = ...`: the length comes from the initialiser, which is put into
+  /// `init`.
+  const Type *deduceUnsized(const ast::VariableDecl &declaration, typed::ExprPtr &init);
+
+  /// Folds `init` if a constant is required there; reports what is not constant.
+  std::unique_ptr<typed::Constant> requireConstant(const typed::Expr &init,
+                                                   const std::string &what);
+
+private:
+  /// What the surroundings do with the thing that an expression names.
+  enum class Access : std::uint8_t { Read, Write, ReadWrite };
+
+  // CheckExpr.cpp
+  typed::ExprPtr checkExpr(const ast::Expr &expr, Access access = Access::Read);
+  typed::ExprPtr dispatch(const ast::Expr &expr, Access access);
+  /// An expression whose value is used: not void, not a whole buffer, not a string.
+  typed::ExprPtr checkValue(const ast::Expr &expr, Access access = Access::Read);
+  typed::ExprPtr requireValue(typed::ExprPtr expr);
+  typed::ExprPtr checkCondition(const ast::Expr &expr);
+  typed::ExprPtr errorExpr(SourceRange range);
+  typed::ExprPtr checkIntLiteral(const ast::IntLiteral &literal, bool negated);
+  typed::ExprPtr checkFloatLiteral(const ast::FloatLiteral &literal);
+  typed::ExprPtr literal(const Type *type, SourceRange range, typed::Constant value,
+                         std::string spelling = "");
+  typed::ExprPtr checkConditional(const ast::ConditionalExpr &expr);
+  /// Converts or says why not. `label` (if its text is not empty) points to what asked for the
+  /// type.
+  typed::ExprPtr coerce(typed::ExprPtr expr, const Type *to, const Label &label = {});
+  void explainConversion(Diagnostic &diagnostic, const typed::Expr &expr, const Type *to);
+  std::string sourceText(SourceRange range) const {
+    return std::string(diagnostics.sources().text(range));
+  }
+
+  // CheckName.cpp
+  typed::ExprPtr checkName(const ast::NameExpr &expr, Access access);
+  typed::ExprPtr checkState(const std::string &name, SourceRange range, Access access);
+  typed::ExprPtr memberAccess(const typed::Member *member, SourceRange range, Access access);
+  typed::ExprPtr variableAccess(const typed::Variable *variable, SourceRange range, Access access);
+  void reportUnknownName(const std::string &name, SourceRange range);
+  typed::ExprPtr checkMember(const ast::MemberExpr &expr, Access access);
+  typed::ExprPtr checkSwizzle(typed::ExprPtr base, const ast::Name &letters, SourceRange range,
+                              Access access);
+  typed::ExprPtr checkIndex(const ast::IndexExpr &expr, Access access);
+  /// Reports if `target` cannot be stored to.
+  bool requireTarget(const ast::Expr &source, const typed::Expr &target, const char *action);
+  void recordState(Use::Kind kind, typed::StateVariable variable, SourceRange range);
+  void recordSpecial(Ability ability, const std::string &what, SourceRange range,
+                     const typed::Member *member = nullptr);
+  void record(Use use);
+
+  // CheckOperators.cpp
+  typed::ExprPtr checkUnary(const ast::UnaryExpr &expr);
+  typed::ExprPtr checkIncDec(const ast::UnaryExpr &expr);
+  typed::ExprPtr checkBinaryChain(const ast::BinaryExpr &expr);
+  typed::ExprPtr combine(const ast::BinaryExpr &expr, typed::ExprPtr left, typed::ExprPtr right);
+  /// Converts both operands to what the operator takes and gives the result's type; null if it
+  /// takes none such.
+  const Type *operandTypes(ast::BinaryOp op, typed::ExprPtr &left, typed::ExprPtr &right,
+                           bool leftFixed);
+  const Type *arithmeticTypes(ast::BinaryOp op, typed::ExprPtr &left, typed::ExprPtr &right,
+                              bool leftFixed);
+  const Type *colorTypes(ast::BinaryOp op, typed::ExprPtr &left, typed::ExprPtr &right);
+  void reportOperands(ast::BinaryOp op, SourceRange opRange, const typed::Expr &left,
+                      const typed::Expr &right);
+  void warnAboutConstants(ast::BinaryOp op, const typed::Expr &right);
+  typed::ExprPtr checkAssign(const ast::AssignExpr &expr);
+
+  // CheckConstruct.cpp
+  typed::ExprPtr checkConstruct(const Type *type, SourceRange typeRange,
+                                const std::vector<ast::ExprPtr> &args, SourceRange range);
+  typed::ExprPtr constructScalar(const Type *type, typed::ExprPtr arg, SourceRange range);
+  typed::ExprPtr constructVector(const Type *type, std::vector<typed::ExprPtr> args,
+                                 SourceRange range);
+  typed::ExprPtr constructMatrix(const Type *type, std::vector<typed::ExprPtr> args,
+                                 SourceRange range);
+  typed::ExprPtr constructColor(std::vector<typed::ExprPtr> args, SourceRange range);
+  typed::ExprPtr constructAggregate(const Type *type, std::vector<typed::ExprPtr> args,
+                                    SourceRange range);
+  typed::ExprPtr constructUnsizedArray(const ast::ConstructExpr &expr);
+  typed::ExprPtr checkInitializerList(const ast::InitializerListExpr &list, const Type *type);
+  bool requirePieces(const Type *type, std::vector<typed::ExprPtr> &args, SourceRange range,
+                     bool exact);
+  typed::ExprPtr convertScalars(typed::ExprPtr arg, const Type *scalar);
+  void rejectColorPiece(const Type *type, const typed::Expr &arg);
+
+  // CheckCall.cpp
+  typed::ExprPtr checkCall(const ast::CallExpr &expr);
+  typed::ExprPtr checkPlainCall(const ast::CallExpr &expr);
+  typed::ExprPtr checkReceiverCall(const ast::CallExpr &expr);
+  typed::ExprPtr checkLength(const ast::CallExpr &expr, typed::ExprPtr receiver);
+  typed::ExprPtr checkReferenceCall(const ast::CallExpr &expr, typed::ExprPtr receiver);
+  typed::ExprPtr checkUserCall(const ast::CallExpr &expr,
+                               const std::vector<const typed::Function *> &candidates,
+                               typed::ExprPtr receiver);
+  typed::ExprPtr checkBuiltinCall(const ast::CallExpr &expr, const BuiltinOverloads &overloads);
+  typed::ExprPtr checkTracePayload(const ast::CallExpr &expr);
+  typed::ExprPtr checkPrint(const ast::CallExpr &expr);
+  void reportUnknownFunction(const ast::Name &callee);
+  /// Checks the arguments. Those that some candidate takes as `out` or `inout` are checked as
+  /// targets.
+  std::vector<typed::ExprPtr> checkArguments(const std::vector<ast::ExprPtr> &args,
+                                             const std::vector<Signature> &candidates);
+  /// The chosen candidate, or -1 after a report (silent if an argument is broken).
+  int choose(const ast::Name &callee, const std::vector<Signature> &candidates,
+             const std::vector<typed::ExprPtr> &args, const std::vector<SourceRange> &places,
+             SourceRange range);
+  void convertArguments(const Signature &signature, std::vector<typed::ExprPtr> &args);
+
+  // CheckStmt.cpp
+  typed::StmtPtr checkStmt(const ast::Stmt &stmt);
+  typed::StmtPtr dispatchStmt(const ast::Stmt &stmt);
+  typed::StmtPtr checkScoped(const ast::Stmt &stmt);
+  typed::StmtPtr checkCompound(const ast::CompoundStmt &stmt, bool ownScope);
+  typed::StmtPtr checkDeclaration(const ast::DeclarationStmt &stmt);
+  const typed::Variable *checkVariable(const ast::VariableDecl &declaration);
+  typed::StmtPtr checkIf(const ast::IfStmt &stmt);
+  typed::StmtPtr checkFor(const ast::ForStmt &stmt);
+  typed::StmtPtr checkSwitch(const ast::SwitchStmt &stmt);
+  typed::StmtPtr checkReturn(const ast::ReturnStmt &stmt);
+  typed::StmtPtr checkIlluminance(const ast::IlluminanceStmt &stmt);
+  typed::StmtPtr checkJump(const ast::Stmt &stmt);
+  void checkLocalSize(const typed::Variable &variable);
+
+  Program &program;
+  Diagnostics &diagnostics;
+  TypeContext &types;
+  const ClassScope *scope;
+  typed::Function *function;
+  const MethodModel *rules = nullptr; // of a method of the table and of the constructor
+  FunctionFacts *facts = nullptr;
+  LocalScopes locals;
+  std::unordered_set<const typed::Variable *> mentioned;
+  unsigned recursion = 0, treeDepth = 0;
+  unsigned loops = 0, switches = 0, illuminances = 0;
+};
+
+/// `+`, `<<`, ...
+const char *spelling(ast::BinaryOp op);
+
+} // namespace rtsl

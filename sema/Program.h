@@ -1,0 +1,181 @@
+//===- Program.h - what sema knows of the whole compilation ---------------===//
+//
+// The names at file level, the classes with their members, and the facts about each function that
+// are judged once all bodies were seen. Shared by the steps of `check`.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "frontend/Diagnostics.h"
+#include "sema/Builtins.h"
+#include "sema/ClassModel.h"
+#include "sema/Sema.h"
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace rtsl {
+
+/// Depth to which the checker itself recurses: brackets, unary operators, right-hand sides, nested
+/// statements.
+constexpr unsigned maxRecursion = 1000;
+/// Depth of an expression tree. Chains of binary operators lean to the left and are walked without
+/// recursion, but everything behind the checker may recurse over what it made.
+constexpr unsigned maxTreeDepth = 2000;
+
+/// A place in a function where something stands that not every method may do.
+struct Use {
+  enum class Kind : std::uint8_t { ReadState, WriteState, Special };
+  Kind kind = Kind::Special;
+  typed::StateVariable variable{}; // of ReadState and WriteState
+  Ability ability{};               // of Special
+  const typed::Member *member =
+      nullptr;      // that is read or written, for the abilities that concern one
+  std::string what; // as the author wrote it: "trace", "hit"
+  SourceRange range;
+};
+
+/// A call of a function of the user's.
+struct CallEdge {
+  const typed::Function *callee = nullptr;
+  bool dispatched = false;       // a method: definitions that override the callee may run
+  bool throughReference = false; // on another object
+  SourceRange range;             // of the callee's name
+};
+
+struct FunctionFacts {
+  std::vector<Use>
+      uses; // that calls decide about; those of methods of the table were judged at once
+  std::vector<CallEdge> calls;
+  bool traces = false; // trace or illuminance stand in it
+};
+
+/// A class with its names. `own` functions and members are those that it declares itself.
+struct ClassScope {
+  const ast::ClassDecl *declaration = nullptr;
+  std::unique_ptr<typed::Class> owned; // until the module takes it
+  typed::Class *definition = nullptr;
+  const ClassScope *base = nullptr;
+  const RootModel *root = nullptr; // null: its base is broken, and little is said about it
+  std::unordered_map<std::string, typed::Member *> members;
+  std::unordered_map<std::string, std::vector<typed::Function *>> functions;
+};
+
+/// What a name at file level stands for.
+struct Symbol {
+  enum class Kind : std::uint8_t { Struct, Class, Constant, Function };
+  Kind kind{};
+  SourceRange range; // of the name
+};
+
+/// A `const` at file level: checked when it is first needed.
+struct GlobalConstant {
+  enum class State : std::uint8_t { Unchecked, InProgress, Checked };
+  const ast::VariableDecl *declaration = nullptr;
+  std::unique_ptr<typed::Variable> owned; // until the module takes it
+  typed::Variable *variable = nullptr;
+  State state = State::Unchecked;
+};
+
+struct StructEntry {
+  enum class State : std::uint8_t { Unchecked, InProgress, Checked };
+  const ast::StructDecl *declaration = nullptr;
+  std::unique_ptr<typed::Struct> owned; // until the module takes it
+  typed::Struct *definition = nullptr;
+  State state = State::Unchecked;
+};
+
+class Program {
+public:
+  Program(typed::Module &module, Diagnostics &diagnostics)
+      : module(module), types(module.types), diagnostics(diagnostics), builtins(module.types) {}
+
+  typed::Module &module;
+  TypeContext &types;
+  Diagnostics &diagnostics;
+  BuiltinTable builtins;
+
+  std::unordered_map<std::string, Symbol> symbols;
+  std::unordered_map<std::string, StructEntry> structs;
+  std::unordered_map<std::string, GlobalConstant> constants;
+  std::unordered_map<std::string, std::unique_ptr<ClassScope>> classes;
+  std::unordered_map<std::string, std::vector<typed::Function *>> functions;
+  std::vector<std::string> structOrder, constantOrder, classOrder; // as in the sources
+  std::unordered_map<const typed::Function *, FunctionFacts> facts;
+  std::unordered_map<const typed::Class *, ClassScope *> scopeOf;
+
+  const Symbol *findSymbol(const std::string &name) const;
+  /// In the class or one of its bases.
+  const typed::Member *findMember(const ClassScope *scope, const std::string &name) const;
+  /// All functions of that name that an object of the class has: own ones, and inherited ones that
+  /// are not overridden.
+  std::vector<const typed::Function *> findMethods(const ClassScope *scope,
+                                                   const std::string &name) const;
+
+  /// The checked constant, or null if it is broken or depends on itself (reported).
+  const typed::Variable *constant(const std::string &name, SourceRange usedAt);
+  /// The struct with its fields resolved, or null if it contains itself (reported).
+  const typed::Struct *structure(const std::string &name, SourceRange usedAt);
+
+  // The steps of `check`, in order.
+  void collect(const std::vector<const ast::TranslationUnit *> &units,
+               const ImportResolver &resolver);
+  void resolveStructs();
+  void resolveConstants();
+  void resolveClasses();
+  void declareFunctions();
+  void checkBodies();
+  void judgeCalls(); // CallGraph.cpp
+
+private:
+  struct PendingBody {
+    const ast::FunctionDecl *declaration;
+    typed::Function *function;
+    const ClassScope *scope;
+  };
+
+  // Collect.cpp
+  void collectUnit(const ast::TranslationUnit &unit);
+  bool declareSymbol(const ast::Name &name, Symbol::Kind kind);
+  // Structs.cpp
+  void resolveFields(StructEntry &entry);
+  void checkConstant(GlobalConstant &entry);
+  // Classes.cpp
+  void linkBase(ClassScope &scope);
+  void breakCycles();
+  std::vector<ClassScope *> classesBaseFirst();
+  void declareMembers(ClassScope &scope);
+  void declareMember(ClassScope &scope, const ast::VariableDecl &declaration);
+  void checkMemberQualifiers(const ClassScope &scope, const ast::VariableDecl &declaration,
+                             const Type *type);
+  // Functions.cpp
+  void declareMethods(ClassScope &scope);
+  std::unique_ptr<typed::Function> declareFunction(const ast::FunctionDecl &declaration,
+                                                   const ClassScope *scope);
+  void checkTableMethod(const ClassScope &scope, const ast::FunctionDecl &declaration,
+                        typed::Function &function);
+  void checkOverride(const ClassScope &scope, const typed::Function &function);
+  void declareFreeFunction(const ast::FunctionDecl &declaration);
+
+  std::vector<const ast::TranslationUnit *> units;
+  std::vector<ClassScope *> baseFirst;
+  std::vector<PendingBody> bodies;
+  std::unordered_map<std::string, unsigned> memberNames, methodNames; // in how many classes
+  std::unordered_map<const typed::Function *, const ast::FunctionDecl *> prototypes;
+  unsigned constantDepth = 0, structDepth = 0;
+};
+
+/// The same parameter types, in order.
+bool sameParameters(const typed::Function &a, const typed::Function &b);
+
+/// Says that `use` is not allowed by `method` of `root`, if so. `through` (if not null) is the
+/// method whose calls lead to the function that holds the use. Returns whether it was allowed.
+bool judgeUse(Diagnostics &diagnostics, const Use &use, const RootModel &root,
+              const MethodModel &method, const typed::Function *through);
+
+/// Control flow of a checked body: missing returns, statements that are never reached, variables
+/// that are read before they were written or never read (FlowCheck.cpp).
+void checkFlow(const typed::Function &function, Diagnostics &diagnostics);
+
+} // namespace rtsl

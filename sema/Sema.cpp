@@ -1,0 +1,22 @@
+//===- Sema.cpp - checking: syntax trees to one typed module --------------===//
+#include "sema/Sema.h"
+
+#include "sema/Program.h"
+
+namespace rtsl {
+
+std::unique_ptr<typed::Module> check(const std::vector<const ast::TranslationUnit *> &units,
+                                     const ImportResolver &resolver, Diagnostics &diagnostics) {
+  auto module = std::make_unique<typed::Module>();
+  Program program(*module, diagnostics);
+  program.collect(units, resolver);
+  program.resolveStructs();
+  program.resolveConstants();
+  program.resolveClasses();
+  program.declareFunctions();
+  program.checkBodies();
+  program.judgeCalls();
+  return module;
+}
+
+} // namespace rtsl

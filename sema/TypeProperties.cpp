@@ -1,0 +1,79 @@
+//===- TypeProperties.cpp - questions about types -------------------------===//
+//
+// All of these recurse over the nesting of a type, which `maxTypeNesting` bounds.
+//
+//===----------------------------------------------------------------------===//
+#include "sema/TypeProperties.h"
+
+#include "sema/TypedAst.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+static constexpr std::uint64_t saturated = 1ull << 62;
+
+static std::uint64_t saturatingMultiply(std::uint64_t a, std::uint64_t b) {
+  std::uint64_t product = 0;
+  return __builtin_mul_overflow(a, b, &product) ? saturated : std::min(product, saturated);
+}
+
+/// The sum over the parts of a type of what `leaf` says about a part that is no struct and no
+/// array.
+template <typename Leaf>
+static std::uint64_t sumOverParts(const Type *type, const Leaf &leaf) {
+  if (type->is(TypeKind::Array))
+    return saturatingMultiply(type->count, sumOverParts(type->element, leaf));
+  if (!type->is(TypeKind::Struct))
+    return leaf(type);
+  std::uint64_t sum = 0;
+  for (const typed::Field &field : type->structure->fields)
+    sum = std::min(saturated, sum + sumOverParts(field.type, leaf));
+  return sum;
+}
+
+std::uint64_t sizeInBytes(const Type *type) {
+  return sumOverParts(type, [](const Type *part) -> std::uint64_t {
+    switch (part->kind) {
+    case TypeKind::Color:
+      return 12;
+    case TypeKind::Class:
+      return 4;
+    case TypeKind::Buffer:
+      return 20;
+    default:
+      return 4ull * part->componentCount();
+    }
+  });
+}
+
+std::uint64_t scalarCount(const Type *type) {
+  return sumOverParts(type,
+                      [](const Type *part) -> std::uint64_t { return part->componentCount(); });
+}
+
+bool contains(const Type *type, TypeKind kind) {
+  if (type->is(kind))
+    return true;
+  if (type->is(TypeKind::Array) || type->is(TypeKind::Buffer) || type->is(TypeKind::Vector))
+    return contains(type->element, kind);
+  if (type->is(TypeKind::Struct))
+    for (const typed::Field &field : type->structure->fields)
+      if (contains(field.type, kind))
+        return true;
+  return false;
+}
+
+std::uint32_t nestingDepth(const Type *type) {
+  if (type->is(TypeKind::Array) || type->is(TypeKind::Buffer))
+    return 1 + nestingDepth(type->element);
+  std::uint32_t depth = 0;
+  if (type->is(TypeKind::Struct)) {
+    for (const typed::Field &field : type->structure->fields)
+      depth = std::max(depth, nestingDepth(field.type));
+    ++depth;
+  }
+  return depth;
+}
+
+} // namespace rtsl
