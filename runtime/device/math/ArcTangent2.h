@@ -11,7 +11,7 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// Relative error of fastAngle().
+/// Relative error of fastAngle(). roundsSafely() would bear 2^-53.
 inline constexpr double arcTangent2Bound = 0x1p-56;
 
 /// The angle of (x, y), or of (-x, y) if `behind`, for finite x, y >= 0 that are not both zero.
@@ -36,7 +36,7 @@ inline float roundedAngle(double y, double x, bool behind) {
     return float(fma(q, -0x1p-52, q));
   }
   float result;
-  if (roundsSafely(fastAngle(y, x, behind), arcTangent2Bound, result))
+  if (roundsSafely(fastAngle(y, x, behind), result))
     return result;
   return roundToFloat(accurateAngle(y, x, behind));
 }

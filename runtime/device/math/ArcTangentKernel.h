@@ -59,7 +59,9 @@ inline Double2 complement(Double2 whole, Double2 part) {
 
 /// The angle from the x axis to (x, y), for x, y >= 0 and not both 0.
 inline Double2 firstQuadrantAngle(Double2 y, Double2 x) {
-  return y.hi <= x.hi ? firstOctantAngle(y, x) : complement(halfPi, firstOctantAngle(x, y));
+  bool steep = y.hi > x.hi;
+  Double2 angle = firstOctantAngle(steep ? x : y, steep ? y : x);
+  return steep ? complement(halfPi, angle) : angle;
 }
 
 } // namespace rtsl::device::detail

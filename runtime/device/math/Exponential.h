@@ -16,7 +16,7 @@ inline float exp(float x) {
   if (x < -104.0f) // e^-104 < 2^-150
     return 0.0f;
   Double2 y = exponential(x);
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 /// 2^x. Exact for integers.
@@ -32,7 +32,7 @@ inline float exp2(float x) {
   double fraction = fma(step.asDouble, -1.0 / exponentialTableSize, x); // exact
   double remainder = fma(fraction, ln2.hi, fraction * ln2.lo);
   Double2 y = scaledExponential(step.asInt, exponentialTail(remainder));
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 namespace detail {
@@ -62,7 +62,7 @@ inline float expm1(float x) {
   if (x == 0.0f)
     return x;
   Double2 y = exponentialMinusOne(x);
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 } // namespace rtsl::device

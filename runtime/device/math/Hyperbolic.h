@@ -8,7 +8,7 @@ namespace rtsl::device {
 namespace detail {
 
 /// sinh(x) for 0 <= x < 1 by Taylor's series up to x^19/19!; what is left out is below 2^-65.
-inline double hyperbolicSineSeries(double x) {
+inline Double2 hyperbolicSineSeries(double x) {
   double z = x * x;
   double q = fma(z, 1.0 / 121645100408832000, 1.0 / 355687428096000);
   q = fma(z, q, 1.0 / 1307674368000);
@@ -18,7 +18,7 @@ inline double hyperbolicSineSeries(double x) {
   q = fma(z, q, 1.0 / 5040);
   q = fma(z, q, 1.0 / 120);
   q = fma(z, q, 1.0 / 6);
-  return fma(x * z, q, x);
+  return {x, x * z * q};
 }
 
 } // namespace detail
@@ -32,11 +32,11 @@ inline float sinh(float x) {
   if (a > 90.0f) // sinh(90) > 2^128
     return withSignOf(infinity(), x);
   if (a < 1.0f)
-    return withSignOf(float(hyperbolicSineSeries(a)), x);
+    return withSignOf(roundToFloat(hyperbolicSineSeries(a)), x);
   Double2 growing = exponential(a), decaying = exponential(-double(a));
   Double2 difference = fastTwoSum(growing.hi, -decaying.hi);
-  double twice = difference.hi + (difference.lo + (growing.lo - decaying.lo));
-  return withSignOf(float(0.5 * twice), x);
+  difference.lo += growing.lo - decaying.lo;
+  return withSignOf(roundToFloat(half(difference)), x);
 }
 
 /// Hyperbolic cosine.
@@ -49,8 +49,8 @@ inline float cosh(float x) {
     return infinity();
   Double2 growing = exponential(a), decaying = exponential(-double(a));
   Double2 sum = fastTwoSum(growing.hi, decaying.hi);
-  double twice = sum.hi + (sum.lo + (growing.lo + decaying.lo));
-  return float(0.5 * twice);
+  sum.lo += growing.lo + decaying.lo;
+  return roundToFloat(half(sum));
 }
 
 /// Hyperbolic tangent, as E/(E + 2) with E = e^(2x) - 1.
@@ -64,7 +64,7 @@ inline float tanh(float x) {
   Double2 numerator = normalized(exponentialMinusOne(2.0 * a));
   Double2 denominator = twoSum(numerator.hi, 2.0);
   denominator = normalized({denominator.hi, denominator.lo + numerator.lo});
-  return withSignOf(float(quotient(numerator, denominator)), x);
+  return withSignOf(roundToFloat(quotient(numerator, denominator)), x);
 }
 
 } // namespace rtsl::device

@@ -19,7 +19,7 @@ inline float asinh(float x) {
   double root = squareRoot(fma(a, a, 1.0));
   Double2 t = twoSum(a, a * a / (1.0 + root));
   Double2 y = naturalLogarithmOfOnePlus(t);
-  return withSignOf(float(y.hi + y.lo), x);
+  return withSignOf(roundToFloat(y), x);
 }
 
 /// Inverse hyperbolic cosine: ln(1 + w + sqrt(w (x + 1))), w = x - 1. NaN below 1.
@@ -36,7 +36,7 @@ inline float acosh(float x) {
   Double2 t = twoSum(root.hi, w);
   t.lo += root.lo;
   Double2 y = naturalLogarithmOfOnePlus(t);
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 /// Inverse hyperbolic tangent: ln(1 + 2a/(1 - a))/2, a = |x|. Infinite at 1, NaN beyond.
@@ -55,7 +55,7 @@ inline float atanh(float x) {
   double t = 2.0 * a * inverse;
   double remainder = fma(-t, denominator.lo, fma(-t, denominator.hi, 2.0 * a));
   Double2 y = naturalLogarithmOfOnePlus({t, remainder * inverse});
-  return withSignOf(float(0.5 * (y.hi + y.lo)), x);
+  return withSignOf(roundToFloat(half(y)), x);
 }
 
 } // namespace rtsl::device

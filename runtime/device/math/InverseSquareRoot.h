@@ -8,8 +8,12 @@ namespace rtsl::device {
 /// The IEEE square root.
 inline float sqrt(float x) {
   using namespace detail;
-  float y = squareRoot(x);
-  return isNaN(y) ? canonicalNaN() : y;
+  // Asked of the bits, because LLVM drops a choice between a NaN and sqrt(x) that depends on x < 0:
+  // all NaNs are the same to it.
+  uint32_t bits = bitsOf(x);
+  if (bits > floatInfinityBits && bits != floatSignBit)
+    return canonicalNaN();
+  return squareRoot(x);
 }
 
 /// 1/sqrt(x). As C's rSqrt of TS 18661-4: infinity with the sign of a zero, zero at infinity, NaN
@@ -26,7 +30,7 @@ inline float inversesqrt(float x) {
   double y = 1.0 / squareRoot(a);
   Double2 square = twoProduct(y, y);
   double residual = fma(-a, square.lo, fma(-a, square.hi, 1.0)); // 1 - a y^2
-  return float(fma(0.5 * y, residual, y));                       // one step of Newton's iteration
+  return roundToFloat({y, 0.5 * y * residual});                  // one step of Newton's iteration
 }
 
 } // namespace rtsl::device

@@ -23,7 +23,7 @@ inline float asin(float x) {
   if (!(a <= 1.0f))
     return canonicalNaN();
   Double2 y = firstQuadrantAngle({a, 0.0}, otherLeg(a));
-  return withSignOf(float(y.hi + y.lo), x);
+  return withSignOf(roundToFloat(y), x);
 }
 
 /// Arc cosine, in [0, pi]. NaN outside [-1, 1].
@@ -35,7 +35,7 @@ inline float acos(float x) {
   Double2 y = firstQuadrantAngle(otherLeg(a), {a, 0.0});
   if (x < 0.0f)
     y = complement(pi, y);
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 /// Arc tangent of one argument, in [-pi/2, pi/2].
@@ -47,7 +47,7 @@ inline float atan(float x) {
   if (a == infinity())
     return withSignOf(float(halfPi.hi), x);
   Double2 y = firstQuadrantAngle({a, 0.0}, {1.0, 0.0});
-  return withSignOf(float(y.hi + y.lo), x);
+  return withSignOf(roundToFloat(y), x);
 }
 
 } // namespace rtsl::device

@@ -16,7 +16,7 @@ inline float log(float x) {
   if (x == infinity())
     return x;
   Double2 y = naturalLogarithm({x, 0.0});
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 /// Logarithm to base 2. Exact for powers of two.
@@ -29,7 +29,7 @@ inline float log2(float x) {
   if (x == infinity())
     return x;
   Double2 y = binaryLogarithm(x);
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 /// ln(1 + x), accurate near zero. -infinity at -1, NaN below.
@@ -42,7 +42,7 @@ inline float log1p(float x) {
   if (x == infinity() || x == 0.0f)
     return x;
   Double2 y = naturalLogarithmOfOnePlus({x, 0.0});
-  return float(y.hi + y.lo);
+  return roundToFloat(y);
 }
 
 } // namespace rtsl::device

@@ -67,7 +67,7 @@ inline Double2 naturalLogarithmOfOnePlus(Double2 t) {
 inline Double2 binaryLogarithm(double x) {
   LogarithmReduction reduced = reduceLogarithm({x, 0.0});
   Double2 fraction = multiply(normalized(logarithm(reduced, 0)), inverseLn2);
-  Double2 sum = twoSum(double(reduced.exponent), fraction.hi);
+  Double2 sum = fastTwoSum(double(reduced.exponent), fraction.hi); // |fraction| < 0.6
   return {sum.hi, sum.lo + fraction.lo};
 }
 

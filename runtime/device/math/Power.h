@@ -15,7 +15,7 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// Relative error of the fast path of pow.
+/// Relative error of e^fastPowerExponent(). roundsSafely() would bear 2^-53.
 inline constexpr double powerBound = 0x1p-57;
 
 /// ln(x) for a positive float x, relative error below 2^-66. Unlike logarithm(), the square term is
@@ -74,28 +74,27 @@ inline bool exactPower(double x, double y, double &result) {
   return true;
 }
 
-/// x^y in double with a low part, relative error below powerBound, for -104 <= y ln x <= 89.
-inline Double2 fastPower(double x, double y) {
+/// y ln(x), relative error below 2^-66.
+inline Double2 fastPowerExponent(double x, double y) {
   Double2 logarithm = logarithmForPower(x);
   Double2 exponent = twoProduct(y, logarithm.hi);
-  exponent.lo = fma(y, logarithm.lo, exponent.lo);
-  return exponential(exponent);
+  return {exponent.hi, fma(y, logarithm.lo, exponent.lo)};
 }
 
-/// x^y in double-double, relative error below 2^-90, in the same range.
+/// x^y in double-double, relative error below 2^-90, for -104 <= y ln x <= 89.
 inline Double2 accuratePower(double x, double y) {
   return accurateExponential(multiply(accurateLogarithm(x), {y, 0.0}));
 }
 
 /// x^y for finite x > 0, x != 1, and finite y != 0.
 inline float positivePower(double x, double y) {
-  double exponent = y * logarithmForPower(x).hi;
-  if (exponent > 89.0) // e^89 > 2^128
+  Double2 exponent = fastPowerExponent(x, y);
+  if (exponent.hi > 89.0) // e^89 > 2^128
     return infinity();
-  if (exponent < -104.0) // e^-104 < 2^-150
+  if (exponent.hi < -104.0) // e^-104 < 2^-150
     return 0.0f;
   float result;
-  if (roundsSafely(fastPower(x, y), powerBound, result))
+  if (roundsSafely(exponential(exponent), result))
     return result;
   double exact;
   if (exactPower(x, y, exact))

@@ -47,7 +47,7 @@ inline float sin(float x) {
     return canonicalNaN();
   QuadrantReduction reduced = reduceToQuadrant(a);
   Double2 y = (reduced.quadrant & 1) != 0 ? cosineKernel(reduced.rest) : sineKernel(reduced.rest);
-  float magnitude = float(y.hi + y.lo);
+  float magnitude = roundToFloat(y);
   bool negative = ((reduced.quadrant & 2) != 0) != (bitsOf(x) >= floatSignBit);
   return negative ? -magnitude : magnitude;
 }
@@ -60,7 +60,7 @@ inline float cos(float x) {
     return canonicalNaN();
   QuadrantReduction reduced = reduceToQuadrant(a);
   Double2 y = (reduced.quadrant & 1) != 0 ? sineKernel(reduced.rest) : cosineKernel(reduced.rest);
-  float magnitude = float(y.hi + y.lo);
+  float magnitude = roundToFloat(y);
   bool negative = ((reduced.quadrant + 1) & 2) != 0;
   return negative ? -magnitude : magnitude;
 }
@@ -75,7 +75,7 @@ inline float tan(float x) {
   Double2 sine = normalized(sineKernel(reduced.rest));
   Double2 cosine = normalized(cosineKernel(reduced.rest));
   bool odd = (reduced.quadrant & 1) != 0;
-  float magnitude = float(odd ? quotient(negate(cosine), sine) : quotient(sine, cosine));
+  float magnitude = roundToFloat(odd ? quotient(negate(cosine), sine) : quotient(sine, cosine));
   return bitsOf(x) >= floatSignBit ? -magnitude : magnitude;
 }
 

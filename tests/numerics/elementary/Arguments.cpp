@@ -1,6 +1,10 @@
 #include "Arguments.h"
 
+#include "HardArguments.h"
+
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace rtsl::elementary {
 
@@ -165,6 +169,19 @@ const std::vector<float> &specialArguments() {
     return found;
   }();
   return all;
+}
+
+const std::vector<float> &hardArguments(std::string_view function) {
+  static const auto all = [] {
+    std::map<std::string_view, std::vector<float>> found;
+    for (const auto &[name, bits] : hardArgumentBits)
+      for (std::uint32_t argument : bits)
+        found[name].push_back(floatOf(argument));
+    return found;
+  }();
+  static const std::vector<float> none;
+  auto found = all.find(function);
+  return found == all.end() ? none : found->second;
 }
 
 Pair argumentPair(std::string_view function, std::uint64_t index) {

@@ -18,6 +18,10 @@ inline std::uint32_t bitsOf(float x) {
 /// method, all with their neighbours and in both signs.
 const std::vector<float> &specialArguments();
 
+/// Arguments of a function of one argument whose results lie closest to a midpoint between floats,
+/// among all 2^32: where a wrong rounding is most likely.
+const std::vector<float> &hardArguments(std::string_view function);
+
 struct Pair {
   float first, second;
 };

@@ -72,7 +72,8 @@ MeasuredBounds measureBounds(std::string_view function, std::uint64_t count) {
     ++measured;
     if (isPower) {
       ruler.setExact(mpfr_pow, x, y);
-      fast = std::max(fast, ruler.relativeError(detail::fastPower(x, y)));
+      fast =
+          std::max(fast, ruler.relativeError(detail::exponential(detail::fastPowerExponent(x, y))));
       accurate = std::max(accurate, ruler.relativeError(detail::accuratePower(x, y)));
     } else {
       double height = std::fabs(x), width = std::fabs(y);

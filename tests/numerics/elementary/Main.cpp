@@ -9,6 +9,8 @@
 
 #include <unistd.h>
 
+#include <cmath>
+
 using namespace rtsl::elementary;
 using nlohmann::json;
 
@@ -20,6 +22,7 @@ struct Options {
   unsigned threads = 1;
   bool asJson = false, testSystem = false, bench = false;
   std::uint64_t bounds = 0;
+  std::size_t hardest = 0;
 };
 
 std::string inHex(const Mismatch &mismatch, const std::string &function) {
@@ -53,11 +56,25 @@ void print(const Report &report) {
     fmt::print("  {}\n", inHex(mismatch, report.function));
 }
 
+/// As an entry of HardArguments.h.
+void printHardest(const Report &report) {
+  fmt::print("    {{\"{}\",\n     {{", report.function);
+  const char *separator = "";
+  for (const HardArgument &hard : report.hardest) {
+    fmt::print("{}{:#010x}", separator, __builtin_bit_cast(unsigned, hard.argument));
+    separator = ", ";
+  }
+  fmt::print("}}}},\n");
+  fmt::print(stderr, "{}: {} wrong, closest 2^{:.2f}\n", report.function, report.mismatches,
+             report.hardest.empty() ? 0.0 : std::log2(report.hardest.front().distance));
+}
+
 SweepOptions sweepOptions(const Options &options, const char *name) {
   SweepOptions result;
   result.step = options.step;
   result.threads = options.threads;
   result.testSystem = options.testSystem;
+  result.hardest = options.hardest;
   if (isatty(STDERR_FILENO) != 0)
     result.progress = [name](double fraction) {
       fmt::print(stderr, "\r{} {:3.0f} % ", name, 100.0 * fraction);
@@ -71,7 +88,9 @@ bool runSweep(const Function &function, const Options &options) {
   Report report = sweep(function, sweepOptions(options, function.name));
   if (isatty(STDERR_FILENO) != 0)
     fmt::print(stderr, "\r{:40}\r", "");
-  if (options.asJson)
+  if (options.hardest > 0)
+    printHardest(report);
+  else if (options.asJson)
     fmt::print("{}\n", asJson(report).dump());
   else
     print(report);
@@ -152,6 +171,8 @@ int main(int argc, char **argv) {
   app.add_flag("--bench", options.bench, "measure the time of a call");
   app.add_option("--bounds", options.bounds,
                  "measure the error of pow's and atan2's two paths over N pairs");
+  app.add_option("--hardest", options.hardest,
+                 "print the N arguments that are hardest to round, for HardArguments.h");
   CLI11_PARSE(app, argc, argv);
 
   bool right = true;

@@ -14,10 +14,24 @@ Oracle::Oracle() {
   mpfr_set_emin(-148); // binary32, subnormal numbers included, in MPFR's convention
   mpfr_set_emax(128);
   mpfr_inits2(24, first, second, result, static_cast<mpfr_ptr>(nullptr));
+  mpfr_init2(precise, 200);
+  mpfr_init2(midpoint, 25);
 }
 
 Oracle::~Oracle() {
-  mpfr_clears(first, second, result, static_cast<mpfr_ptr>(nullptr));
+  mpfr_clears(first, second, result, precise, midpoint, static_cast<mpfr_ptr>(nullptr));
+}
+
+double Oracle::distanceToMidpoint(const Unary &function, float x) {
+  mpfr_set_flt(first, x, MPFR_RNDN);
+  function.exact(precise, first, MPFR_RNDN);
+  mpfr_abs(precise, precise, MPFR_RNDN);
+  mpfr_set(result, precise, MPFR_RNDZ); // the float below, and half a unit of its last place
+  mpfr_set(midpoint, result, MPFR_RNDN);
+  mpfr_nextabove(midpoint);
+  double magnitude = mpfr_get_d(precise, MPFR_RNDN);
+  mpfr_sub(precise, precise, midpoint, MPFR_RNDN);
+  return std::fabs(mpfr_get_d(precise, MPFR_RNDN)) / magnitude;
 }
 
 template <typename Evaluate>

@@ -26,6 +26,10 @@ public:
   Answer operator()(const Unary &function, float x);
   Answer operator()(const Binary &function, float x, float y);
 
+  /// How far f(x) lies from the nearest point midway between two floats, relative to f(x). For
+  /// results that are normal floats.
+  double distanceToMidpoint(const Unary &function, float x);
+
   /// How often MPFR was asked.
   std::uint64_t timesAsked() const { return asked; }
 
@@ -34,6 +38,7 @@ private:
   Answer round(double approximation, Evaluate evaluate);
 
   mpfr_t first, second, result;
+  mpfr_t precise, midpoint;
   std::uint64_t asked = 0;
 };
 

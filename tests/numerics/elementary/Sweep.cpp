@@ -3,6 +3,7 @@
 #include "Arguments.h"
 #include "Oracle.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -42,7 +43,7 @@ void note(Report &report, std::vector<float> arguments, float result, Oracle::An
     report.first.push_back(std::move(mismatch));
 }
 
-void merge(Report &total, const Report &part) {
+void merge(Report &total, const Report &part, std::size_t hardest) {
   total.tested += part.tested;
   total.askedMpfr += part.askedMpfr;
   total.worstError = std::max(total.worstError, part.worstError);
@@ -52,6 +53,10 @@ void merge(Report &total, const Report &part) {
   for (const Mismatch &mismatch : part.first)
     if (total.first.size() < shownMismatches)
       total.first.push_back(mismatch);
+  total.hardest.insert(total.hardest.end(), part.hardest.begin(), part.hardest.end());
+  std::sort(total.hardest.begin(), total.hardest.end(),
+            [](const HardArgument &a, const HardArgument &b) { return a.distance < b.distance; });
+  total.hardest.resize(std::min(total.hardest.size(), hardest));
 }
 
 /// Tests one call; `arguments` are one float or two.
@@ -95,7 +100,7 @@ Report runSweep(const char *name, const SweepOptions &options, CheckOne checkOne
     }
     report.askedMpfr = oracle.timesAsked();
     std::lock_guard<std::mutex> lock(mutex);
-    merge(total, report);
+    merge(total, report, options.hardest);
   };
   std::vector<std::thread> threads;
   for (unsigned i = 1; i < options.threads; ++i)
@@ -114,10 +119,15 @@ Report sweep(const Unary &function, const SweepOptions &options) {
   return runSweep(
       function.name, options,
       [&](std::uint64_t number, Oracle &oracle, Report &report) {
-        check(function, options.testSystem, oracle, report,
-              floatOf(static_cast<std::uint32_t>(number)));
+        float x = floatOf(static_cast<std::uint32_t>(number));
+        std::uint64_t askedBefore = oracle.timesAsked();
+        check(function, options.testSystem, oracle, report, x);
+        if (options.hardest > 0 && oracle.timesAsked() != askedBefore)
+          report.hardest.push_back({oracle.distanceToMidpoint(function, x), x});
       },
       [&](Oracle &oracle, Report &report) {
+        for (float x : hardArguments(function.name))
+          check(function, options.testSystem, oracle, report, x);
         for (float x : specialArguments())
           check(function, options.testSystem, oracle, report, x);
       });

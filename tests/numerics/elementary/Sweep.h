@@ -16,18 +16,27 @@ struct Mismatch {
   double error; ///< in units of the last place of `right`
 };
 
+/// An argument whose result is hard to round.
+struct HardArgument {
+  double distance; ///< of the result to a midpoint between floats, relative
+  float argument;
+};
+
 struct Report {
   std::string function;
   std::uint64_t tested = 0, mismatches = 0, askedMpfr = 0;
   double worstError = 0.0; ///< largest distance from the exact value, in units of the last place
   Mismatch worst;          ///< the mismatch with the largest error, if there is one
-  std::vector<Mismatch> first; ///< the first few mismatches
+  std::vector<Mismatch> first;       ///< the first few mismatches
+  std::vector<HardArgument> hardest; ///< in the order of their distance
   double seconds = 0.0;
 };
 
 struct SweepOptions {
   std::uint64_t step = 1; ///< every how manieth of the 2^32 arguments (or pairs)
   unsigned threads = 1;
+  std::size_t hardest =
+      0; ///< how many of the hardest arguments to collect (one-argument functions)
   bool testSystem = false; ///< test the C library instead of our code
   std::function<void(double)> progress = [](double) {};
 };
