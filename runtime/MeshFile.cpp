@@ -1,6 +1,7 @@
 //===- MeshFile.cpp - meshes from files, by assimp ------------------------===//
 #include "runtime/AtomicFile.h"
 #include "runtime/Mesh.h"
+#include "runtime/PlyCheck.h"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <sys/stat.h>
@@ -37,6 +39,17 @@ void checkReadable(const std::string &path) {
 std::string extensionOf(const std::string &path) {
   std::size_t dot = path.find_last_of("./");
   return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
+}
+
+void checkWhole(const std::string &path, std::string extension) {
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  if (extension != ".ply")
+    return;
+  std::string missing = findMissingPlyElements(readFile(path));
+  if (!missing.empty())
+    throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` is truncated: it {}", path, missing),
+                Place{path});
 }
 
 /// Appends one of the file's meshes, moved by its node's transform.
@@ -106,6 +119,7 @@ Mesh loadMesh(const std::string &path) {
         fmt::format("cannot read mesh `{}`: no reader for `{}` files; OBJ, PLY and glTF work", path,
                     extension),
         Place{path});
+  checkWhole(path, extension);
   const aiScene *scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
   if (!scene || !scene->mRootNode) {
     std::string reason = importer.GetErrorString();

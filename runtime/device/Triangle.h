@@ -95,12 +95,12 @@ inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2,
     float scale = powerOfTwo(up);
     ax *= scale, ay *= scale, bx *= scale, by *= scale, cx *= scale, cy *= scale;
   }
-  if (!(depth < 0x1p30f)) {
+  if (!(depth > 0x1p-30f && depth < 0x1p30f) && depth != 0) {
     if (!(depth < infinity))
       return false;
     depthExponent = exponentOf(depth);
-    float scale = powerOfTwo(depthExponent > 126 ? -126 : -depthExponent);
     depthExponent = depthExponent > 126 ? 126 : depthExponent;
+    float scale = powerOfTwo(-depthExponent);
     az *= scale, bz *= scale, cz *= scale;
   }
 

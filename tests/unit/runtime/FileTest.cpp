@@ -1,0 +1,296 @@
+#include "runtime/AtomicFile.h"
+#include "runtime/Image.h"
+#include "runtime/Mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace rtsl::runtime;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder that is gone after the test.
+class Files : public ::testing::Test {
+protected:
+  Files() : folder(fs::path(::testing::TempDir()) / ("rtslFiles" + std::to_string(::getpid()))) {
+    fs::create_directories(folder);
+  }
+  ~Files() override { fs::remove_all(folder); }
+
+  std::string path(const std::string &name) const { return (folder / name).string(); }
+  std::string put(const std::string &name, const std::string &text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+  std::size_t fileCount() const {
+    return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+
+  fs::path folder;
+};
+
+template <typename Action>
+std::string errorOf(Action action) {
+  try {
+    action();
+  } catch (const Error &error) {
+    return std::string(name(error.code)) + ": " + error.what();
+  }
+  return "no error";
+}
+
+Image gradient(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+  Image image(width, height, channels);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = float(i) / float(image.pixels.size());
+  return image;
+}
+
+} // namespace
+
+//===----------------------------------------------------------------------===//
+// Atomic files
+//===----------------------------------------------------------------------===//
+
+using AtomicFile = Files;
+
+TEST_F(AtomicFile, WritesReplacesAndKeepsRights) {
+  std::string file = put("a.txt", "old");
+  ::chmod(file.c_str(), 0640);
+  writeFileAtomically(file, "new");
+  EXPECT_EQ(readFile(file), "new");
+  struct stat status;
+  ::stat(file.c_str(), &status);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(AtomicFile, FollowsLinks) {
+  std::string file = put("target.txt", "old");
+  fs::create_symlink("target.txt", path("link.txt"));
+  writeFileAtomically(path("link.txt"), "new");
+  EXPECT_EQ(readFile(file), "new");
+  EXPECT_TRUE(fs::is_symlink(path("link.txt")));
+}
+
+TEST_F(AtomicFile, SaysWhyItCannotWrite) {
+  EXPECT_EQ(errorOf([&] { writeFileAtomically(path("no/such/a.png"), "x"); }),
+            "fileUnwritable: cannot write `" + path("no/such/a.png") +
+                "`: No such file or directory");
+  EXPECT_EQ(errorOf([&] { checkFileWritable(folder.string()); }),
+            "fileUnwritable: cannot write `" + folder.string() + "`: Is a directory");
+  EXPECT_EQ(errorOf([&] { checkFileWritable(put("file", "") + "/a.png"); }),
+            "fileUnwritable: cannot write `" + path("file/a.png") + "`: Not a directory");
+  EXPECT_EQ(errorOf([&] { checkFileWritable(path("fine.png")); }), "no error");
+  EXPECT_FALSE(fs::exists(path("fine.png")));
+  EXPECT_EQ(errorOf([&] { writeFileAtomically("/dev/full", "x"); }),
+            "fileUnwritable: cannot write `/dev/full`: No space left on device");
+}
+
+// A limit on the size of files stands in for a full disk.
+TEST_F(AtomicFile, AFullDiskLeavesTheOldFileAndNoOther) {
+  std::string file = put("a.exr", "old");
+  rlimit before;
+  getrlimit(RLIMIT_FSIZE, &before);
+  auto *handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit = before;
+  limit.rlim_cur = 10000;
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::string error = errorOf([&] { writeFileAtomically(file, std::string(100000, 'x')); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(error, "fileUnwritable: cannot write `" + file + "`: File too large");
+  EXPECT_EQ(readFile(file), "old");
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+//===----------------------------------------------------------------------===//
+// Pictures
+//===----------------------------------------------------------------------===//
+
+using Pictures = Files;
+
+TEST_F(Pictures, ExrKeepsEveryBit) {
+  for (std::uint32_t channels : {1u, 3u, 4u, 12u}) {
+    Image image = gradient(37, 11, channels);
+    image.pixels[5] = 1e30f;
+    image.pixels[6] = -0.0f;
+    writeImage(path("a.exr"), image);
+    Image back = readImage(path("a.exr"));
+    EXPECT_EQ(compareImages(image, back).pixelsThatDiffer, 0u) << channels;
+  }
+}
+
+TEST_F(Pictures, PngIsSrgb) {
+  Image image(4, 1, 3);
+  float values[12] = {0, 0.5f, 1, 2, -1, NAN, 0.2f, 0.002f, 0.9f, 1e-9f, INFINITY, 0.04f};
+  std::copy_n(values, 12, image.pixels.begin());
+  writeImage(path("a.PNG"), image);
+  std::string bytes = readFile(path("a.PNG"));
+  EXPECT_EQ(bytes.substr(1, 3), "PNG");
+  EXPECT_NE(bytes.find("sRGB"), std::string::npos);
+  Image back = readImage(path("a.PNG"));
+  ASSERT_EQ(back.channels, 3u);
+  float expected[12] = {0, 0.5f, 1, 1, 0, 0, 0.2f, 0.002f, 0.9f, 0, 1, 0.04f};
+  for (int i = 0; i < 12; ++i) // half a step of 8 bits
+    EXPECT_NEAR(encodeSrgb(back.pixels[std::size_t(i)]), encodeSrgb(expected[i]),
+                0.5f / 255 + 1e-5f)
+        << i;
+}
+
+TEST_F(Pictures, GreyAndSpectralColors) {
+  Image grey = gradient(8, 8, 1);
+  writeImage(path("g.png"), grey);
+  EXPECT_EQ(readImage(path("g.png")).channels, 1u);
+  Image rgb = toRgb(grey);
+  EXPECT_EQ(rgb.at(3, 3)[0], grey.at(3, 3)[0]);
+  EXPECT_EQ(rgb.at(3, 3)[2], grey.at(3, 3)[0]);
+  Image white(2, 2, 8);
+  std::fill(white.pixels.begin(), white.pixels.end(), 1.0f);
+  for (float component : toRgb(white).pixels)
+    EXPECT_NEAR(component, 1, 1e-6);
+}
+
+TEST_F(Pictures, BadFiles) {
+  EXPECT_EQ(errorOf([&] { checkWritable(path("a.jpg")); }),
+            "unsupportedFormat: cannot tell the format of `" + path("a.jpg") +
+                "`: a picture's name ends in `.png` or `.exr`");
+  EXPECT_EQ(errorOf([&] { checkWritable(path("png")); }).substr(0, 17), "unsupportedFormat");
+  EXPECT_EQ(errorOf([&] { readImage(put("junk.png", "junk")); }).substr(0, 8), "badImage");
+  EXPECT_EQ(errorOf([&] { readImage(put("junk.exr", "junk")); }).substr(0, 8), "badImage");
+  EXPECT_EQ(errorOf([&] { readImage(path("none.exr")); }).substr(0, 12), "fileNotFound");
+  writeImage(path("a.png"), gradient(64, 64, 3));
+  writeImage(path("a.exr"), gradient(64, 64, 3));
+  for (const char *file : {"a.png", "a.exr"}) {
+    std::string bytes = readFile(path(file));
+    put(file, bytes.substr(0, bytes.size() / 2));
+    EXPECT_EQ(errorOf([&] { readImage(path(file)); }).substr(0, 8), "badImage") << file;
+  }
+  EXPECT_EQ(errorOf([] { compareImages(Image(2, 2, 3), Image(2, 3, 3)); }),
+            "badImage: the pictures differ in shape: 2x2 with 3 channels, and 2x3 with 3");
+}
+
+TEST(Srgb, RoundTrips) {
+  for (int i = 0; i <= 255; ++i)
+    EXPECT_EQ(int(encodeSrgb(decodeSrgb(float(i) / 255)) * 255 + 0.5f), i);
+}
+
+//===----------------------------------------------------------------------===//
+// Meshes
+//===----------------------------------------------------------------------===//
+
+using Meshes = Files;
+
+namespace {
+
+const char *plyHeader = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float "
+                        "y\nproperty float z\n"
+                        "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 "
+                        "0\n1 0 0\n0 1 0\n1 1 0\n";
+
+} // namespace
+
+TEST_F(Meshes, ReadsObjWithPolygonsNormalsAndUvs) {
+  Mesh mesh = loadMesh(
+      put("q.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
+                   "f 1/1/1 2/2/1 3/3/1 4/4/1\n"));
+  EXPECT_EQ(mesh.triangleCount(), 2u);
+  ASSERT_EQ(mesh.normals.size(), 3 * mesh.vertexCount());
+  ASSERT_EQ(mesh.uvs.size(), 2 * mesh.vertexCount());
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    EXPECT_EQ(mesh.normals[3 * i + 2], 1);
+    EXPECT_EQ(mesh.uvs[2 * i], mesh.positions[3 * i]);
+    EXPECT_EQ(mesh.uvs[2 * i + 1], mesh.positions[3 * i + 1]);
+  }
+}
+
+TEST_F(Meshes, ReadsPlyAndGltf) {
+  EXPECT_EQ(loadMesh(put("a.ply", std::string(plyHeader) + "3 0 1 2\n3 1 2 3\n")).triangleCount(),
+            2u);
+  // One triangle in a buffer, under a node that moves it.
+  Mesh mesh = loadMesh(
+      put("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0, "translation": [5, 0, 0]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})"));
+  ASSERT_EQ(mesh.triangleCount(), 1u);
+  EXPECT_EQ(mesh.positions[0], 5);
+}
+
+TEST_F(Meshes, BadFilesAreRefusedByName) {
+  auto error = [&](const std::string &name, const std::string &text) {
+    std::string file = put(name, text), message = errorOf([&] { loadMesh(file); });
+    std::size_t at = message.find(file);
+    return at == std::string::npos ? message : message.replace(at, file.size(), name);
+  };
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(error("empty.obj", ""), "badMesh: mesh `empty.obj` is empty");
+  EXPECT_EQ(error("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"),
+            "badMesh: mesh `points.obj` has no triangles");
+  EXPECT_EQ(error("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"),
+            "badMesh: mesh `nan.obj` has a vertex that is not finite: x of vertex 1 is nan");
+  EXPECT_EQ(error("range.obj", triangle + "f 1 2 9\n").substr(0, 8), "badMesh:");
+  EXPECT_EQ(error("range.ply", std::string(plyHeader) + "3 0 1 2\n3 0 1 7\n").substr(0, 8),
+            "badMesh:");
+  EXPECT_EQ(error("short.ply", std::string(plyHeader) + "3 0 1 2\n").substr(0, 8), "badMesh:");
+  EXPECT_EQ(error("shorter.ply", std::string(plyHeader).substr(0, 200)).substr(0, 8), "badMesh:");
+  EXPECT_EQ(
+      error("far.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n"),
+      "badMesh: mesh `far.obj` has a vertex too far out: x of vertex 1 is 1e+30, more than 1e+18");
+  EXPECT_EQ(error("junk.gltf", "{\"asset\":").substr(0, 8), "badMesh:");
+  EXPECT_EQ(error("a.xyzzy", "x"), "unsupportedFormat: cannot read mesh `a.xyzzy`: no reader for "
+                                   "`.xyzzy` files; OBJ, PLY and glTF work");
+  EXPECT_EQ(errorOf([&] { loadMesh(path("none.obj")); }),
+            "fileNotFound: cannot read mesh `" + path("none.obj") + "`: No such file or directory");
+  EXPECT_EQ(errorOf([&] { loadMesh(folder.string()); }),
+            "fileUnreadable: cannot read mesh `" + folder.string() + "`: it is a folder");
+}
+
+TEST_F(Meshes, BinaryPlyThatEndsTooEarly) {
+  std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float "
+                       "x\nproperty float y\nproperty float z\n"
+                       "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::string body(reinterpret_cast<char *>(positions), sizeof positions);
+  std::int32_t indices[3] = {0, 1, 2};
+  std::string face =
+      std::string(1, '\3') + std::string(reinterpret_cast<char *>(indices), sizeof indices);
+  EXPECT_EQ(loadMesh(put("good.ply", header + body + face + face)).triangleCount(), 2u);
+  for (std::size_t cut : {1u, 12u, 13u, 20u, 30u}) {
+    std::string whole = header + body + face + face;
+    EXPECT_EQ(errorOf([&] {
+                loadMesh(put("cut.ply", whole.substr(0, whole.size() - cut)));
+              }).substr(0, 8),
+              "badMesh:")
+        << cut;
+  }
+}
+
+TEST(MeshTransform, MovesNormalsAndKeepsSides) {
+  Mesh mesh;
+  mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0.6f, 0.8f};
+  mesh.indices = {0, 1, 2};
+  mesh.apply(Transform::scale(1, 2, -1));
+  EXPECT_EQ(mesh.positions[7], 2);
+  EXPECT_EQ(mesh.indices[1],
+            2u); // turned round, so that the geometric normal goes with the shading normal
+  EXPECT_EQ(mesh.normals[2], -1);
+  EXPECT_NEAR(mesh.normals[7], 0.3f / std::hypot(0.3f, 0.8f),
+              1e-6); // by the inverse transpose, not by the matrix
+  mesh.apply(Transform::rotate({0, 0, 5}, 90).then(Transform::translate(10, 0, 0)));
+  EXPECT_EQ(mesh.positions[3], 10);
+  EXPECT_EQ(mesh.positions[4], 1);
+}
