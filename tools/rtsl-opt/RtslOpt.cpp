@@ -4,6 +4,7 @@
 // passes in the order of the command line, verifies after each and prints IR.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -20,6 +21,7 @@ int main(int argc, char **argv) {
                   mlir::math::MathDialect, mlir::vector::VectorDialect>();
   rtsl::codegen::registerPassDependencies(registry);
   rtsl::codegen::registerPasses();
+  rtsl::codegen::registerLlvmPasses();
   mlir::registerTransformsPasses();
   return mlir::asMainReturnCode(
       mlir::MlirOptMain(argc, argv, "runs passes on the IR of the shading language\n", registry));

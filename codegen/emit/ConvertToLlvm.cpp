@@ -1,0 +1,231 @@
+//===- ConvertToLlvm.cpp - level 2 to MLIR's LLVM dialect -----------------===//
+#include "codegen/emit/ConvertToLlvm.h"
+
+#include "codegen/emit/Patterns.h"
+#include "codegen/emit/RuntimeFunctions.h"
+#include "codegen/ir/Layout.h"
+#include "codegen/ir/RtslDialect.h"
+#include "codegen/ir/RtslOps.h"
+#include "runtime/device/Abi.h"
+
+#include "mlir/Conversion/ArithToLLVM/ArithToLLVM.h"
+#include "mlir/Conversion/ControlFlowToLLVM/ControlFlowToLLVM.h"
+#include "mlir/Conversion/FuncToLLVM/ConvertFuncToLLVM.h"
+#include "mlir/Conversion/LLVMCommon/ConversionTarget.h"
+#include "mlir/Conversion/MathToLLVM/MathToLLVM.h"
+#include "mlir/Conversion/UBToLLVM/UBToLLVM.h"
+#include "mlir/Conversion/VectorToLLVM/ConvertVectorToLLVM.h"
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/Dialect/UB/IR/UBOps.h"
+#include "mlir/Pass/Pass.h"
+#include "mlir/Pass/PassManager.h"
+#include "mlir/Pass/PassRegistry.h"
+#include "mlir/Transforms/Passes.h"
+
+namespace rtsl::codegen {
+
+namespace LLVM = mlir::LLVM;
+using mlir::LogicalResult;
+using mlir::func::CallOp;
+using mlir::func::FuncOp;
+
+namespace {
+
+//===----------------------------------------------------------------------===//
+// 1. What linking was to supply
+//===----------------------------------------------------------------------===//
+
+LogicalResult checkLinked(mlir::ModuleOp module) {
+  bool isComplete = true;
+  module.walk([&](mlir::Operation *op) {
+    if (auto call = llvm::dyn_cast<ir::CallMethodOp>(op)) {
+      call.emitError() << "`" << call.getMethod()
+                       << "` is a dispatch slot that no linking has resolved";
+      isComplete = false;
+    } else if (auto attribute = llvm::dyn_cast<ir::AttributeOp>(op);
+               attribute && !attribute.getOffset()) {
+      attribute.emitError() << "attribute `" << attribute.getName()
+                            << "` has no `offset`: linking has not given it a place";
+      isComplete = false;
+    } else if (llvm::isa<ir::IfOp, ir::LoopOp, ir::SwitchOp, ir::IlluminanceOp, ir::ReturnOp>(op)) {
+      op->emitError() << "is of level 1; run `rtsl-to-cf` first";
+      isComplete = false;
+    }
+  });
+  return mlir::success(isComplete);
+}
+
+//===----------------------------------------------------------------------===//
+// 2. Where members may change
+//===----------------------------------------------------------------------===//
+
+/// Marks constructors and everything that they call, directly or not.
+void markWriters(mlir::ModuleOp module) {
+  llvm::SmallVector<FuncOp> worklist;
+  auto mark = [&](FuncOp function) {
+    if (!function || function->hasAttr(writesMembers))
+      return;
+    function->setAttr(writesMembers, mlir::UnitAttr::get(module.getContext()));
+    worklist.push_back(function);
+  };
+  for (FuncOp function : module.getOps<FuncOp>())
+    if (function->hasAttr("rtsl.constructor"))
+      mark(function);
+  while (!worklist.empty())
+    worklist.pop_back_val().walk(
+        [&](CallOp call) { mark(module.lookupSymbol<FuncOp>(call.getCallee())); });
+}
+
+//===----------------------------------------------------------------------===//
+// 3. Names
+//===----------------------------------------------------------------------===//
+
+void renameFunctions(mlir::ModuleOp module) {
+  mlir::MLIRContext *context = module.getContext();
+  llvm::StringMap<std::string> renamed;
+  for (FuncOp function : module.getOps<FuncOp>()) {
+    llvm::StringRef name = function.getName();
+    if (!function->hasAttr("rtsl.export") && !name.contains('.'))
+      renamed[name] = "function." + name.str();
+  }
+  for (FuncOp function : module.getOps<FuncOp>())
+    if (auto name = renamed.find(function.getName()); name != renamed.end())
+      function.setName(name->second);
+  module.walk([&](CallOp call) {
+    if (auto name = renamed.find(call.getCallee()); name != renamed.end())
+      call.setCalleeAttr(mlir::FlatSymbolRefAttr::get(context, name->second));
+  });
+}
+
+//===----------------------------------------------------------------------===//
+// 4. The state as a parameter
+//===----------------------------------------------------------------------===//
+
+/// Says that a pointer parameter is valid for `size` bytes and that nothing else points there.
+void describePointer(FuncOp function, unsigned index, uint64_t size, unsigned alignment,
+                     bool isCaptured) {
+  mlir::Builder builder(function.getContext());
+  auto set = [&](llvm::StringRef name, mlir::Attribute value) {
+    function.setArgAttr(index, name, value);
+  };
+  set(LLVM::LLVMDialect::getNonNullAttrName(), builder.getUnitAttr());
+  set(LLVM::LLVMDialect::getNoAliasAttrName(), builder.getUnitAttr());
+  if (!isCaptured)
+    set(LLVM::LLVMDialect::getNoCaptureAttrName(), builder.getUnitAttr());
+  set(LLVM::LLVMDialect::getAlignAttrName(), builder.getI64IntegerAttr(alignment));
+  set(LLVM::LLVMDialect::getDereferenceableAttrName(), builder.getI64IntegerAttr(size));
+}
+
+void addStateParameter(mlir::ModuleOp module) {
+  mlir::Type pointer = LLVM::LLVMPointerType::get(module.getContext());
+  for (FuncOp function : module.getOps<FuncOp>()) {
+    for (auto [index, type] : llvm::enumerate(function.getArgumentTypes()))
+      if (auto address = llvm::dyn_cast<ir::PtrType>(type))
+        // Arguments in memory are copies of the caller's (in) or temporaries (out, inout, results).
+        describePointer(function, index, ir::sizeInBytes(address.getPointee()), ir::memoryAlignment,
+                        /*isCaptured=*/false);
+    // The runtime may keep the state: a child ray could know its parent.
+    (void)function.insertArgument(0, pointer, {}, function.getLoc());
+    describePointer(function, 0, sizeof(RtslState), alignof(RtslState), /*isCaptured=*/true);
+  }
+  for (FuncOp function : module.getOps<FuncOp>())
+    function.walk([&](CallOp call) { call->insertOperands(0, {function.getArgument(0)}); });
+}
+
+//===----------------------------------------------------------------------===//
+// 5. Operations
+//===----------------------------------------------------------------------===//
+
+void declareNullRecord(mlir::ModuleOp module) {
+  if (!module.walk([](ir::ClassIdOp) { return mlir::WalkResult::interrupt(); }).wasInterrupted())
+    return;
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
+  LLVM::GlobalOp::create(builder, module.getLoc(), builder.getI32Type(), /*isConstant=*/true,
+                         LLVM::Linkage::Internal, nullRecord, builder.getI32IntegerAttr(0));
+}
+
+LogicalResult convertOperations(mlir::ModuleOp module) {
+  mlir::MLIRContext *context = module.getContext();
+  mlir::LLVMTypeConverter converter(context);
+  converter.addConversion(
+      [](ir::RefType type) -> mlir::Type { return mlir::IntegerType::get(type.getContext(), 32); });
+  converter.addConversion(
+      [](ir::PtrType type) -> mlir::Type { return LLVM::LLVMPointerType::get(type.getContext()); });
+
+  mlir::RewritePatternSet patterns(context);
+  addMemoryPatterns(converter, patterns);
+  addRayPatterns(converter, patterns);
+  addNumberPatterns(converter, patterns);
+  mlir::arith::populateArithToLLVMConversionPatterns(converter, patterns);
+  mlir::cf::populateControlFlowToLLVMConversionPatterns(converter, patterns);
+  mlir::populateFuncToLLVMConversionPatterns(converter, patterns);
+  mlir::populateMathToLLVMConversionPatterns(converter, patterns);
+  mlir::populateVectorToLLVMConversionPatterns(converter, patterns);
+  mlir::ub::populateUBToLLVMConversionPatterns(converter, patterns);
+
+  mlir::LLVMConversionTarget target(*context);
+  target.addLegalOp<mlir::ModuleOp, ir::ClassOp, ir::MemberDeclOp>();
+  return mlir::applyFullConversion(module, target, std::move(patterns));
+}
+
+//===----------------------------------------------------------------------===//
+// The whole
+//===----------------------------------------------------------------------===//
+
+struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir::ModuleOp>> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(ConvertToLlvm)
+  llvm::StringRef getArgument() const override { return "rtsl-to-llvm"; }
+  llvm::StringRef getDescription() const override { return "level 2 becomes the LLVM dialect"; }
+  void getDependentDialects(mlir::DialectRegistry &registry) const override {
+    registry.insert<LLVM::LLVMDialect, mlir::ub::UBDialect>();
+  }
+
+  void runOnOperation() override {
+    mlir::ModuleOp module = getOperation();
+    if (mlir::failed(checkLinked(module)))
+      return signalPassFailure();
+    markWriters(module);
+    renameFunctions(module);
+    addStateParameter(module);
+    declareRuntimeFunctions(module);
+    declareNullRecord(module);
+    // Members find their classes by name, so the declarations go last; members are converted by
+    // then or not at all.
+    llvm::SmallVector<ir::ClassOp> classes(module.getOps<ir::ClassOp>());
+    if (mlir::failed(convertOperations(module)))
+      return signalPassFailure();
+    for (ir::ClassOp classOp : classes)
+      classOp.erase();
+    for (auto function : module.getOps<LLVM::LLVMFuncOp>())
+      finish(function);
+  }
+
+  /// What holds for every function: it throws nothing. Our own attributes have done their work.
+  static void finish(LLVM::LLVMFuncOp function) {
+    function.setNoUnwind(true);
+    llvm::SmallVector<mlir::StringAttr> ours;
+    for (mlir::NamedAttribute attribute : function->getDiscardableAttrs())
+      if (attribute.getName().strref().starts_with("rtsl."))
+        ours.push_back(attribute.getName());
+    for (mlir::StringAttr name : ours)
+      function->removeAttr(name);
+  }
+};
+
+} // namespace
+
+std::unique_ptr<mlir::Pass> createConvertToLlvmPass() {
+  return std::make_unique<ConvertToLlvm>();
+}
+
+void buildLlvmPipeline(mlir::OpPassManager &module) {
+  module.addPass(createConvertToLlvmPass());
+  module.addPass(mlir::createCSEPass());
+}
+
+void registerLlvmPasses() {
+  mlir::registerPass(createConvertToLlvmPass);
+  mlir::PassPipelineRegistration<>("rtsl-llvm", "level 2 to the LLVM dialect", buildLlvmPipeline);
+}
+
+} // namespace rtsl::codegen

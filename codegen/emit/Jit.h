@@ -1,0 +1,39 @@
+//===- Jit.h - LLVM IR that runs in this process --------------------------===//
+#pragma once
+
+#include "codegen/emit/LlvmModule.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rtsl::codegen {
+
+/// A function of this process that code may call, by name.
+struct HostSymbol {
+  std::string name;
+  void *address = nullptr;
+};
+
+/// Machine code in this process; the code lives as long as the object. Beside `symbols` the code
+/// may call what compilers take for granted (memcpy, memset, ...) and nothing else.
+class Jit {
+public:
+  /// Compiles all of the module at once, on this thread. An error names the symbols that nobody
+  /// defines.
+  static llvm::Expected<std::unique_ptr<Jit>> create(std::unique_ptr<llvm::LLVMContext> context,
+                                                     std::unique_ptr<llvm::Module> module,
+                                                     std::unique_ptr<llvm::TargetMachine> machine,
+                                                     const std::vector<HostSymbol> &symbols);
+  ~Jit();
+
+  /// Address of an exported function; null if the module defines none of that name.
+  void *lookup(const std::string &name) const;
+
+private:
+  Jit();
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation;
+};
+
+} // namespace rtsl::codegen

@@ -1,0 +1,210 @@
+//===- LlvmModule.cpp - LLVM IR and what is done with it ------------------===//
+#include "codegen/emit/LlvmModule.h"
+
+#include "mlir/IR/BuiltinOps.h"
+#include "mlir/Target/LLVMIR/Dialect/Builtin/BuiltinToLLVMIRTranslation.h"
+#include "mlir/Target/LLVMIR/Dialect/LLVMIR/LLVMToLLVMIRTranslation.h"
+#include "mlir/Target/LLVMIR/Export.h"
+#include "llvm/ADT/StringSet.h"
+#include "llvm/Bitcode/BitcodeReader.h"
+#include "llvm/IR/DiagnosticInfo.h"
+#include "llvm/IR/DiagnosticPrinter.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Linker/Linker.h"
+#include "llvm/MC/TargetRegistry.h"
+#include "llvm/Passes/PassBuilder.h"
+#include "llvm/Support/TargetSelect.h"
+#include "llvm/Support/raw_ostream.h"
+#include "llvm/Target/TargetMachine.h"
+#include "llvm/TargetParser/Host.h"
+#include "llvm/TargetParser/SubtargetFeature.h"
+#include "llvm/Transforms/IPO/Internalize.h"
+
+#include <mutex>
+
+namespace rtsl::codegen {
+
+void registerLlvmTranslation(mlir::DialectRegistry &registry) {
+  mlir::registerBuiltinDialectTranslation(registry);
+  mlir::registerLLVMDialectTranslation(registry);
+}
+
+//===----------------------------------------------------------------------===//
+// The machine
+//===----------------------------------------------------------------------===//
+
+static llvm::CodeGenOptLevel codeGenLevel(unsigned optimization) {
+  switch (optimization) {
+  case 0:
+    return llvm::CodeGenOptLevel::None;
+  case 1:
+    return llvm::CodeGenOptLevel::Less;
+  case 2:
+    return llvm::CodeGenOptLevel::Default;
+  default:
+    return llvm::CodeGenOptLevel::Aggressive;
+  }
+}
+
+/// "+avx2,-avx512f,..." for the processor that this runs on.
+static std::string hostFeatures() {
+  llvm::SubtargetFeatures features;
+  for (const auto &feature : llvm::sys::getHostCPUFeatures())
+    features.AddFeature(feature.getKey(), feature.getValue());
+  return features.getString();
+}
+
+llvm::Expected<std::unique_ptr<llvm::TargetMachine>>
+createTargetMachine(const MachineOptions &options) {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    LLVMInitializeX86TargetInfo();
+    LLVMInitializeX86Target();
+    LLVMInitializeX86TargetMC();
+    LLVMInitializeX86AsmPrinter();
+  });
+
+  llvm::Triple triple(llvm::sys::getProcessTriple());
+  std::string error;
+  const llvm::Target *target = llvm::TargetRegistry::lookupTarget(triple, error);
+  if (!target)
+    return llvm::createStringError("no code generator for `%s`: %s", triple.str().c_str(),
+                                   error.c_str());
+  llvm::TargetOptions targetOptions;
+  targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Strict;
+  std::unique_ptr<llvm::TargetMachine> machine(target->createTargetMachine(
+      triple, options.hostCpu ? llvm::sys::getHostCPUName() : "x86-64-v3",
+      options.hostCpu ? hostFeatures() : "", targetOptions, llvm::Reloc::PIC_,
+      llvm::CodeModel::Small, codeGenLevel(options.optimization), /*JIT=*/true));
+  if (!machine)
+    return llvm::createStringError("no machine for `%s`", triple.str().c_str());
+  return machine;
+}
+
+/// Functions are inlined only where their features allow it, so all of them say the same.
+static void setProcessor(llvm::Module &module, llvm::StringRef cpu, llvm::StringRef features) {
+  for (llvm::Function &function : module) {
+    if (function.isDeclaration())
+      continue;
+    function.addFnAttr("target-cpu", cpu);
+    if (features.empty())
+      function.removeFnAttr("target-features");
+    else
+      function.addFnAttr("target-features", features);
+    function.removeFnAttr("tune-cpu");
+  }
+}
+
+//===----------------------------------------------------------------------===//
+// The module
+//===----------------------------------------------------------------------===//
+
+llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp module,
+                                                              llvm::LLVMContext &context,
+                                                              const llvm::TargetMachine &machine) {
+  std::unique_ptr<llvm::Module> result =
+      mlir::translateModuleToLLVMIR(module, context, module.getName().value_or("shaders"));
+  if (!result)
+    return llvm::createStringError("the module has no translation to LLVM IR");
+  result->setDataLayout(machine.createDataLayout());
+  result->setTargetTriple(machine.getTargetTriple());
+  setProcessor(*result, machine.getTargetCPU(), machine.getTargetFeatureString());
+  return result;
+}
+
+namespace {
+
+/// Keeps what the linker has to say, for it reports through the context and returns a mere bool.
+struct CollectMessages : llvm::DiagnosticHandler {
+  explicit CollectMessages(std::string &messages) : messages(messages) {}
+  bool handleDiagnostics(const llvm::DiagnosticInfo &info) override {
+    if (info.getSeverity() == llvm::DS_Error) {
+      llvm::raw_string_ostream stream(messages);
+      llvm::DiagnosticPrinterRawOStream printer(stream);
+      info.print(printer);
+    }
+    return true;
+  }
+  std::string &messages;
+};
+
+} // namespace
+
+llvm::Error linkDeviceCode(llvm::Module &module, std::string_view bitcode,
+                           llvm::ArrayRef<std::string> exports) {
+  llvm::LLVMContext &context = module.getContext();
+  std::string cpu, features;
+  for (const llvm::Function &function : module)
+    if (!function.isDeclaration()) {
+      cpu = function.getFnAttribute("target-cpu").getValueAsString();
+      features = function.getFnAttribute("target-features").getValueAsString();
+      break;
+    }
+
+  // Read lazily: a function that nobody calls is never looked at.
+  llvm::Expected<std::unique_ptr<llvm::Module>> device = llvm::getLazyBitcodeModule(
+      llvm::MemoryBufferRef(llvm::StringRef(bitcode.data(), bitcode.size()), "device"), context);
+  if (!device)
+    return device.takeError();
+  (*device)->setDataLayout(module.getDataLayout());
+  (*device)->setTargetTriple(module.getTargetTriple());
+
+  std::string messages;
+  std::unique_ptr<llvm::DiagnosticHandler> previous = context.getDiagnosticHandler();
+  context.setDiagnosticHandler(std::make_unique<CollectMessages>(messages));
+  // An exported function of the device code is needed though the module does not call it.
+  for (const std::string &name : exports)
+    if (llvm::Function *function = (*device)->getFunction(name);
+        function && !function->isDeclaration() && !module.getFunction(name))
+      llvm::Function::Create(function->getFunctionType(), llvm::Function::ExternalLinkage, name,
+                             module);
+  bool failed = llvm::Linker::linkModules(module, std::move(*device), llvm::Linker::LinkOnlyNeeded);
+  context.setDiagnosticHandler(std::move(previous));
+  if (failed)
+    return llvm::createStringError("device code does not fit: %s", messages.c_str());
+
+  if (!cpu.empty())
+    setProcessor(module, cpu, features);
+  llvm::StringSet<> kept;
+  for (const std::string &name : exports)
+    kept.insert(name);
+  llvm::internalizeModule(
+      module, [&](const llvm::GlobalValue &value) { return kept.contains(value.getName()); });
+  return llvm::Error::success();
+}
+
+void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
+  llvm::PipelineTuningOptions tuning;
+  tuning.LoopVectorization = options.optimization > 1;
+  tuning.SLPVectorization = options.optimization > 1;
+  tuning.LoopInterleaving = tuning.LoopUnrolling = options.optimization > 0;
+
+  llvm::LoopAnalysisManager loops;
+  llvm::FunctionAnalysisManager functions;
+  llvm::CGSCCAnalysisManager components;
+  llvm::ModuleAnalysisManager modules;
+  llvm::PassBuilder builder(&machine, tuning);
+  builder.registerModuleAnalyses(modules);
+  builder.registerCGSCCAnalyses(components);
+  builder.registerFunctionAnalyses(functions);
+  builder.registerLoopAnalyses(loops);
+  builder.crossRegisterProxies(loops, functions, components, modules);
+
+  static constexpr const llvm::OptimizationLevel *levels[] = {
+      &llvm::OptimizationLevel::O0, &llvm::OptimizationLevel::O1, &llvm::OptimizationLevel::O2,
+      &llvm::OptimizationLevel::O3};
+  llvm::OptimizationLevel level = *levels[std::min(options.optimization, 3u)];
+  llvm::ModulePassManager passes = options.optimization == 0
+                                       ? builder.buildO0DefaultPipeline(level)
+                                       : builder.buildPerModuleDefaultPipeline(level);
+  passes.run(module, modules);
+}
+
+std::string printLlvm(const llvm::Module &module) {
+  std::string text;
+  llvm::raw_string_ostream stream(text);
+  module.print(stream, nullptr);
+  return text;
+}
+
+} // namespace rtsl::codegen

@@ -1,0 +1,65 @@
+//===- LlvmModule.h - LLVM IR and what is done with it --------------------===//
+//
+// The steps from the LLVM dialect to optimised LLVM IR, each a function:
+//
+//   auto machine = createTargetMachine(options);
+//   auto module = translateToLlvm(ir, context, *machine);
+//   linkDeviceCode(*module, runtime::deviceBitcode(), exports);
+//   optimize(*module, *machine, options);
+//
+// Then printLlvm shows it and Jit.h runs it.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "llvm/ADT/ArrayRef.h"
+#include "llvm/Support/Error.h"
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace llvm {
+class LLVMContext;
+class Module;
+class TargetMachine;
+} // namespace llvm
+namespace mlir {
+class DialectRegistry;
+class ModuleOp;
+} // namespace mlir
+
+namespace rtsl::codegen {
+
+struct MachineOptions {
+  unsigned optimization = 2; // 0 to 3, as clang's -O
+  /// Code for the processor that this runs on, rather than for every x86-64-v3. Results are the
+  /// same.
+  bool hostCpu = false;
+};
+
+/// What MLIR needs to be translated; call before the context is made, or append the registry to it.
+void registerLlvmTranslation(mlir::DialectRegistry &registry);
+
+/// Strict floating point: nothing is fused that the program does not fuse.
+llvm::Expected<std::unique_ptr<llvm::TargetMachine>>
+createTargetMachine(const MachineOptions &options);
+
+/// Translates a module of the LLVM dialect; every function gets the attributes of the machine's
+/// processor.
+llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp module,
+                                                              llvm::LLVMContext &context,
+                                                              const llvm::TargetMachine &machine);
+
+/// Links those functions of `bitcode` that the module calls, and what these call. After that
+/// everything is internal but `exports`: names of functions that stay visible. A name that is not
+/// defined is no error.
+llvm::Error linkDeviceCode(llvm::Module &module, std::string_view bitcode,
+                           llvm::ArrayRef<std::string> exports);
+
+/// LLVM's default pipeline at the options' level, with clang's settings.
+void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options);
+
+std::string printLlvm(const llvm::Module &module);
+
+} // namespace rtsl::codegen

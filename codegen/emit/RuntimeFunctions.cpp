@@ -1,0 +1,66 @@
+//===- RuntimeFunctions.cpp - what compiled code calls --------------------===//
+#include "codegen/emit/RuntimeFunctions.h"
+
+#include "codegen/ir/RtslOps.h"
+
+#include "llvm/ADT/TypeSwitch.h"
+
+namespace rtsl::codegen {
+
+namespace LLVM = mlir::LLVM;
+
+std::string runtimeFunction(mlir::Operation *op) {
+  return llvm::TypeSwitch<mlir::Operation *, std::string>(op)
+      .Case([](ir::ElementaryOp elementary) {
+        return "rtsl_" + ir::stringifyElementary(elementary.getFunction()).str();
+      })
+      .Case([](ir::TraceOp) { return "rtsl_trace"; })
+      .Case([](ir::HitOp) { return "rtsl_hit"; })
+      .Case([](ir::RandOp) { return "rtsl_rand"; })
+      .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
+      .Default([](mlir::Operation *) { return ""; });
+}
+
+/// The signatures are those of runtime/device/Abi.h.
+static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
+  mlir::MLIRContext *context = op->getContext();
+  mlir::Type pointer = LLVM::LLVMPointerType::get(context);
+  mlir::Type f32 = mlir::Float32Type::get(context);
+  mlir::Type i32 = mlir::IntegerType::get(context, 32);
+  mlir::Type nothing = LLVM::LLVMVoidType::get(context);
+  auto function = [](mlir::Type result, llvm::ArrayRef<mlir::Type> arguments) {
+    return LLVM::LLVMFunctionType::get(result, arguments);
+  };
+  return llvm::TypeSwitch<mlir::Operation *, LLVM::LLVMFunctionType>(op)
+      .Case([&](ir::ElementaryOp elementary) {
+        return function(f32, llvm::SmallVector<mlir::Type>(elementary.getOperands().size(), f32));
+      })
+      .Case([&](ir::TraceOp) {
+        return function(nothing, {pointer, f32, f32, f32, f32, f32, f32, pointer});
+      })
+      .Case([&](ir::HitOp) { return function(i32, {pointer, f32}); })
+      .Case([&](ir::RandOp) { return function(f32, {pointer}); })
+      .Case([&](ir::IlluminateOp) {
+        return function(i32, {pointer, i32, f32, f32, f32, f32, f32, f32, f32});
+      });
+}
+
+void declareRuntimeFunctions(mlir::ModuleOp module) {
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
+  module.walk([&](mlir::Operation *op) {
+    std::string name = runtimeFunction(op);
+    if (name.empty() || module.lookupSymbol(name))
+      return;
+    auto function = LLVM::LLVMFuncOp::create(builder, module.getLoc(), name, signature(op));
+    function.setNoUnwind(true);
+    if (llvm::isa<ir::ElementaryOp>(op)) {
+      // A function of its arguments and nothing else.
+      llvm::SmallVector<LLVM::ModRefInfo> nowhere(6, LLVM::ModRefInfo::NoModRef);
+      function.setMemoryEffectsAttr(
+          LLVM::MemoryEffectsAttr::get(module.getContext(), llvm::ArrayRef(nowhere)));
+      function.setWillReturn(true);
+    }
+  });
+}
+
+} // namespace rtsl::codegen
