@@ -1,0 +1,21 @@
+# How lit runs the golden tests: every file with a RUN line in this folder. `rtsl-opt`, `rtslc` and `FileCheck` on RUN
+# lines are the programs of the build that is tested.
+import os
+
+import lit.formats
+
+config.name = "golden"
+config.test_format = lit.formats.ShTest(execute_external=False)
+config.suffixes = [".mlir", ".rtsl", ".test"]
+config.excludes = ["Inputs"]
+config.test_source_root = os.path.dirname(__file__)
+config.test_exec_root = config.binary_root
+
+for name, path in config.programs.items():
+    config.substitutions.append((r"(?<![\w/.-])" + name + r"(?![\w/.-])", path))
+config.substitutions.append(("%inputs", os.path.join(config.test_source_root, "Inputs")))
+config.environment["FILECHECK_OPTS"] = "--dump-input=fail"
+# A stack trace with names, where a tool crashes.
+config.environment["LLVM_SYMBOLIZER_PATH"] = os.path.join(config.llvm_tools, "llvm-symbolizer")
+if not os.path.exists(config.programs["rtslc"]):
+    config.excludes += [name for name in os.listdir(config.test_source_root) if name in ("compile",)]
