@@ -107,7 +107,7 @@ def Rtsl_NextOp : Rtsl_Op<"next", [Pure]> {
   let arguments = (ins EnumAttr<Rtsl_Dialect, Rtsl_Transition, "transition">:$transition,
                        OptionalAttr<FlatSymbolRefAttr>:$state);
   let results = (outs I32:$result);
-  let assemblyFormat = "$transition ($state^)? attr-dict";
+  let assemblyFormat = "`` $transition ($state^)? attr-dict"; // the attribute prints a space before itself
   let hasVerifier = 1;
 }
 

@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
+#include "codegen/passes/continuation/Passes.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlow.h"
@@ -21,6 +22,7 @@ int main(int argc, char **argv) {
                   mlir::math::MathDialect, mlir::vector::VectorDialect>();
   rtsl::codegen::registerPassDependencies(registry);
   rtsl::codegen::registerPasses();
+  rtsl::registerContinuationPasses();
   rtsl::codegen::registerLlvmPasses();
   mlir::registerTransformsPasses();
   return mlir::asMainReturnCode(

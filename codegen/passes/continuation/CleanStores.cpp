@@ -1,0 +1,103 @@
+//===- CleanStores.cpp - do not store what the slot already holds ---------===//
+//
+//   %i = rtsl.frame_load "i"[0]
+//   ...                                 a store less, and the load too, if nothing else reads it
+//   rtsl.frame_store %i, "i"[0]   ==>
+//
+// Stores come only at the ends of states, so between a load and a store of a state nothing else
+// writes the slot; what has to be followed is the value, through arguments of blocks.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Steps.h"
+
+#include "mlir/IR/PatternMatch.h"
+#include "mlir/Interfaces/ControlFlowInterfaces.h"
+#include "mlir/Transforms/RegionUtils.h"
+#include "llvm/ADT/DenseSet.h"
+
+namespace rtsl::continuation {
+
+namespace {
+
+class SlotContents {
+public:
+  explicit SlotContents(ir::FrameStoreOp store) : store(store) {}
+
+  bool isHeldAlready() { return holdsBefore(store, store.getValue()); }
+
+private:
+  /// Does the slot hold `value` just before `op`, however control came there?
+  bool holdsBefore(mlir::Operation *op, mlir::Value value);
+  bool overlaps(std::uint32_t offset, mlir::Type type, std::optional<std::uint32_t> bit);
+
+  ir::FrameStoreOp store;
+  // What is being asked: true round a loop, for then it is what came into the loop.
+  llvm::DenseSet<std::pair<mlir::Block *, mlir::Value>> asked;
+};
+
+bool SlotContents::overlaps(std::uint32_t offset, mlir::Type type,
+                            std::optional<std::uint32_t> bit) {
+  auto words = [](mlir::Type type) -> std::uint32_t {
+    auto vector = llvm::dyn_cast<mlir::VectorType>(type);
+    return vector ? 4 * vector.getNumElements() : 4;
+  };
+  if (bit && store.getBit() && offset == store.getOffset())
+    return *bit == *store.getBit();
+  return offset < store.getOffset() + words(store.getValue().getType()) &&
+         store.getOffset() < offset + words(type);
+}
+
+bool SlotContents::holdsBefore(mlir::Operation *op, mlir::Value value) {
+  mlir::Block *block = op->getBlock();
+  for (mlir::Operation *at = op->getPrevNode(); at; at = at->getPrevNode()) {
+    if (auto load = llvm::dyn_cast<ir::FrameLoadOp>(at)) {
+      if (load.getResult() == value)
+        return load.getOffset() == store.getOffset() && load.getBit() == store.getBit();
+    } else if (auto earlier = llvm::dyn_cast<ir::FrameStoreOp>(at)) {
+      if (overlaps(earlier.getOffset(), earlier.getValue().getType(), earlier.getBit()))
+        return earlier.getValue() == value && earlier.getOffset() == store.getOffset() &&
+               earlier.getBit() == store.getBit();
+    }
+  }
+  if (value.getParentBlock() == block && !llvm::isa<mlir::BlockArgument>(value))
+    return false; // computed here
+  if (block->isEntryBlock() || block->hasNoPredecessors())
+    return false;
+  if (!asked.insert({block, value}).second)
+    return true;
+  auto argument = llvm::dyn_cast<mlir::BlockArgument>(value);
+  bool merges = argument && argument.getOwner() == block;
+  for (mlir::Block *predecessor : block->getPredecessors()) {
+    mlir::Operation *terminator = predecessor->getTerminator();
+    auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(terminator);
+    for (unsigned i = 0; i < predecessor->getNumSuccessors(); ++i) {
+      if (predecessor->getSuccessor(i) != block)
+        continue;
+      mlir::Value incoming = value;
+      if (merges)
+        incoming = branch ? branch.getSuccessorOperands(i)[argument.getArgNumber()] : mlir::Value();
+      if (!incoming || !holdsBefore(terminator, incoming))
+        return false;
+    }
+  }
+  return true;
+}
+
+} // namespace
+
+void cleanStores(FuncOp state) {
+  if (state.isExternal())
+    return;
+  llvm::SmallVector<ir::FrameStoreOp> stores;
+  state.walk([&](ir::FrameStoreOp store) { stores.push_back(store); });
+  llvm::SmallVector<ir::FrameStoreOp> idle;
+  for (ir::FrameStoreOp store : stores)
+    if (SlotContents(store).isHeldAlready())
+      idle.push_back(store);
+  for (ir::FrameStoreOp store : idle)
+    store.erase();
+  mlir::IRRewriter rewriter(state.getContext());
+  (void)mlir::runRegionDCE(rewriter, state->getRegions());
+}
+
+} // namespace rtsl::continuation

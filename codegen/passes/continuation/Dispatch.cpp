@@ -1,0 +1,216 @@
+//===- Dispatch.cpp - from states to a machine ----------------------------===//
+//
+// Makes the frame a parameter and numbers the states, and adds what runtime/device/Machine.h calls:
+//
+//   func @rtsl_run_state(%state: i32, %object, %frame) -> i32     runs a state and gives what comes
+//   next func @rtsl_frame_size() -> i32                                bytes of the largest frame
+//   func @rtsl_rt_Material_shade_first() -> i32                   the state in which an entry
+//   begins
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Steps.h"
+
+#include "mlir/Dialect/Arith/IR/Arith.h"
+#include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
+#include "llvm/ADT/StringMap.h"
+
+#include <algorithm>
+
+namespace rtsl::continuation {
+
+namespace arith = mlir::arith;
+
+namespace {
+
+class Dispatcher {
+public:
+  explicit Dispatcher(mlir::ModuleOp module) : module(module), builder(module.getContext()) {}
+  mlir::LogicalResult run();
+
+private:
+  void passFrame(FuncOp state);
+  mlir::Value address(mlir::Location location, mlir::Value frame, std::uint32_t offset,
+                      mlir::Type type);
+  void expand(ir::FrameLoadOp load, mlir::Value frame);
+  void expand(ir::FrameStoreOp store, mlir::Value frame);
+  mlir::LogicalResult number(ir::NextOp next);
+  FuncOp makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type> inputs);
+  void makeConstant(llvm::StringRef name, std::int32_t value);
+  void makeRunState();
+
+  mlir::Value constant(mlir::Location location, std::int32_t value) {
+    return arith::ConstantOp::create(builder, location, builder.getI32IntegerAttr(value));
+  }
+
+  mlir::ModuleOp module;
+  mlir::OpBuilder builder;
+  std::vector<FuncOp> states;
+  llvm::StringMap<std::int32_t> numbers;
+};
+
+mlir::Value Dispatcher::address(mlir::Location location, mlir::Value frame, std::uint32_t offset,
+                                mlir::Type type) {
+  return ir::FrameSlotOp::create(builder, location, ir::PtrType::get(type), frame, offset);
+}
+
+/// A bool is bit `bit` of its word.
+void Dispatcher::expand(ir::FrameLoadOp load, mlir::Value frame) {
+  builder.setInsertionPoint(load);
+  mlir::Location location = load.getLoc();
+  mlir::Type type = load.getResult().getType();
+  bool isBit = load.getBit().has_value();
+  mlir::Value slot =
+      address(location, frame, load.getOffset(), isBit ? builder.getI32Type() : type);
+  mlir::Value value = ir::LoadOp::create(builder, location, slot);
+  if (isBit) {
+    mlir::Value mask = constant(location, static_cast<std::int32_t>(1u << *load.getBit()));
+    mlir::Value masked = arith::AndIOp::create(builder, location, value, mask);
+    value = arith::CmpIOp::create(builder, location, arith::CmpIPredicate::ne, masked,
+                                  constant(location, 0));
+  }
+  load.getResult().replaceAllUsesWith(value);
+  load.erase();
+}
+
+void Dispatcher::expand(ir::FrameStoreOp store, mlir::Value frame) {
+  builder.setInsertionPoint(store);
+  mlir::Location location = store.getLoc();
+  mlir::Value value = store.getValue();
+  bool isBit = store.getBit().has_value();
+  mlir::Value slot =
+      address(location, frame, store.getOffset(), isBit ? builder.getI32Type() : value.getType());
+  if (isBit) {
+    std::int32_t mask = static_cast<std::int32_t>(1u << *store.getBit());
+    mlir::Value word = ir::LoadOp::create(builder, location, slot);
+    mlir::Value set = arith::OrIOp::create(builder, location, word, constant(location, mask));
+    mlir::Value cleared = arith::AndIOp::create(builder, location, word, constant(location, ~mask));
+    value = arith::SelectOp::create(builder, location, value, set, cleared);
+  }
+  ir::StoreOp::create(builder, location, value, slot);
+  store.erase();
+}
+
+void Dispatcher::passFrame(FuncOp state) {
+  mlir::Type frameType = ir::PtrType::get(builder.getI32Type());
+  (void)state.insertArgument(state.getNumArguments(), frameType, {}, state.getLoc());
+  mlir::Value frame = state.getArgument(state.getNumArguments() - 1);
+  state.walk([&](mlir::Operation *op) {
+    if (auto load = llvm::dyn_cast<ir::FrameLoadOp>(op)) {
+      expand(load, frame);
+    } else if (auto store = llvm::dyn_cast<ir::FrameStoreOp>(op)) {
+      expand(store, frame);
+    } else if (auto object = llvm::dyn_cast<ir::FrameObjectOp>(op)) {
+      builder.setInsertionPoint(object);
+      mlir::Type type = llvm::cast<ir::PtrType>(object.getType()).getPointee();
+      object.replaceAllUsesWith(address(object.getLoc(), frame, object.getOffset(), type));
+      object.erase();
+    } else if (auto end = llvm::dyn_cast<ir::EndOp>(op)) {
+      builder.setInsertionPoint(end);
+      mlir::func::ReturnOp::create(builder, end.getLoc(), end.getNext());
+      end.erase();
+    }
+  });
+}
+
+mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
+  std::int32_t value = 0;
+  if (next.getTransition() != ir::Transition::Done) {
+    value = numbers.lookup(*next.getState());
+    if (value == 0)
+      return next.emitOpError() << "names `" << *next.getState() << "`, which is no state";
+    if (next.getTransition() == ir::Transition::Jump)
+      value = -value;
+  }
+  builder.setInsertionPoint(next);
+  next.replaceAllUsesWith(constant(next.getLoc(), value));
+  next.erase();
+  return mlir::success();
+}
+
+FuncOp Dispatcher::makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type> inputs) {
+  builder.setInsertionPointToEnd(module.getBody());
+  auto function = FuncOp::create(builder, builder.getUnknownLoc(), name,
+                                 builder.getFunctionType(inputs, {builder.getI32Type()}));
+  function->setAttr("rtsl.export", builder.getUnitAttr());
+  builder.setInsertionPointToEnd(function.addEntryBlock());
+  return function;
+}
+
+void Dispatcher::makeConstant(llvm::StringRef name, std::int32_t value) {
+  makeFunction(name, {});
+  mlir::Location location = builder.getUnknownLoc();
+  mlir::func::ReturnOp::create(builder, location, constant(location, value));
+}
+
+/// A switch over all states. A number that is none ends the method.
+void Dispatcher::makeRunState() {
+  mlir::Location location = builder.getUnknownLoc();
+  mlir::Type object = ir::RefType::get(builder.getContext(), "object");
+  FuncOp function = makeFunction(
+      "rtsl_run_state", {builder.getI32Type(), object, ir::PtrType::get(builder.getI32Type())});
+  mlir::Block *entry = &function.getBody().front();
+
+  mlir::Block *none = function.addBlock();
+  builder.setInsertionPointToEnd(none);
+  mlir::func::ReturnOp::create(builder, location, constant(location, 0));
+  llvm::SmallVector<std::int32_t> values;
+  llvm::SmallVector<mlir::Block *> blocks;
+  for (auto [index, state] : llvm::enumerate(states)) {
+    mlir::Block *block = function.addBlock();
+    builder.setInsertionPointToEnd(block);
+    llvm::SmallVector<mlir::Value> arguments;
+    if (mlir::Value own = objectOf(state))
+      arguments.push_back(
+          builder.createOrFold<ir::CastRefOp>(location, own.getType(), entry->getArgument(1)));
+    arguments.push_back(entry->getArgument(2));
+    auto call = mlir::func::CallOp::create(builder, location, state, arguments);
+    mlir::func::ReturnOp::create(builder, location, call.getResults());
+    values.push_back(static_cast<std::int32_t>(index) + 1);
+    blocks.push_back(block);
+  }
+  builder.setInsertionPointToEnd(entry);
+  llvm::SmallVector<mlir::ValueRange> noOperands(blocks.size());
+  mlir::cf::SwitchOp::create(builder, location, entry->getArgument(0), none, mlir::ValueRange{},
+                             llvm::ArrayRef<std::int32_t>(values), blocks, noOperands);
+}
+
+mlir::LogicalResult Dispatcher::run() {
+  std::int32_t frameSize = 0;
+  std::vector<std::pair<std::string, std::int32_t>> entries;
+  for (FuncOp state : module.getOps<FuncOp>()) {
+    if (!state->hasAttr("rtsl.state"))
+      continue;
+    unsigned ownArguments = objectOf(state) ? 1 : 0;
+    if (state.getNumArguments() != ownArguments)
+      return state.emitError() << "`" << state.getSymName()
+                               << "` takes more than its object, which the machine cannot pass";
+    states.push_back(state);
+    std::int32_t number = states.size();
+    numbers[state.getSymName()] = number;
+    if (auto size = state->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_size"))
+      frameSize = std::max(frameSize, static_cast<std::int32_t>(size.getInt()));
+    if (auto entry = state->getAttrOfType<mlir::StringAttr>("rtsl.entry"))
+      entries.push_back({(entry.getValue() + "_first").str(), number});
+  }
+  for (FuncOp state : states) {
+    passFrame(state);
+    llvm::SmallVector<ir::NextOp> nexts;
+    state.walk([&](ir::NextOp next) { nexts.push_back(next); });
+    for (ir::NextOp next : nexts)
+      if (mlir::failed(number(next)))
+        return mlir::failure();
+  }
+  makeRunState();
+  makeConstant("rtsl_frame_size", frameSize);
+  for (const auto &[name, number] : entries)
+    makeConstant(name, number);
+  return mlir::success();
+}
+
+} // namespace
+
+mlir::LogicalResult makeDispatch(mlir::ModuleOp module) {
+  return Dispatcher(module).run();
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,241 @@
+//===- FrameLayout.cpp - places in the frame ------------------------------===//
+//
+//     rtsl.suspend %o, %d, ^r(%i) names ["i"]        rtsl.frame_store %i, "i"[0]
+//   ^r(%i'):                                ==>      rtsl.suspend %o, %d, ^r
+//                                                  ^r:
+//                                                    %i' = rtsl.frame_load "i"[0]
+//
+// One slot a value over all traces, so that nothing is ever copied from slot to slot. Values that
+// are never saved at the same trace may share words. Bools take a bit each. Words are given first
+// fit, to the largest values first, to those that are saved most often first, or as they come,
+// whichever frame is smallest.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Layout.h"
+#include "codegen/passes/continuation/Steps.h"
+
+#include "llvm/ADT/BitVector.h"
+#include "llvm/ADT/StringMap.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace rtsl::continuation {
+
+namespace {
+
+/// Something that wants words of its own at some traces.
+struct Item {
+  std::string name;
+  std::uint32_t size = 4; // bytes
+  llvm::BitVector traces; // at which it is saved
+  bool isObject = false;  // wants its words always
+  std::uint32_t offset = 0;
+  std::vector<unsigned> bools = {}; // of a word of bools: their indices, one a bit
+};
+
+struct SavedBool {
+  std::string name;
+  llvm::BitVector traces;
+  unsigned bit = 0; // over all words of bools
+};
+
+bool interfere(const Item &a, const Item &b) {
+  return a.isObject || b.isObject || a.traces.anyCommon(b.traces);
+}
+
+class Layouter {
+public:
+  explicit Layouter(FuncOp function) : function(function), suspends(suspendsOf(function)) {}
+  FrameLayout run();
+
+private:
+  void collect();
+  void placeBools();
+  std::uint32_t place(const std::vector<unsigned> &order,
+                      std::vector<std::uint32_t> &offsets) const;
+  void placeWords();
+  FrameLayout describe() const;
+  void rewrite();
+
+  FuncOp function;
+  llvm::SmallVector<ir::SuspendOp> suspends;
+  std::vector<Item> items;
+  std::vector<SavedBool> bools;
+  llvm::StringMap<unsigned> itemOf, boolOf;
+  std::uint32_t size = 0;
+};
+
+void Layouter::collect() {
+  for (auto [index, suspend] : llvm::enumerate(suspends))
+    for (auto [value, nameAttr] : llvm::zip(suspend.getSaved(), suspend.getNames())) {
+      llvm::StringRef name = llvm::cast<mlir::StringAttr>(nameAttr).getValue();
+      if (value.getType().isInteger(1)) {
+        auto [at, isNew] = boolOf.try_emplace(name, bools.size());
+        if (isNew)
+          bools.push_back({name.str(), llvm::BitVector(suspends.size())});
+        bools[at->second].traces.set(index);
+        continue;
+      }
+      auto [at, isNew] = itemOf.try_emplace(name, items.size());
+      if (isNew)
+        items.push_back(
+            {name.str(), ir::sizeInBytes(value.getType()), llvm::BitVector(suspends.size())});
+      items[at->second].traces.set(index);
+    }
+  // The same object stands in several blocks, once it is recomputed; its name is unique.
+  function.walk([&](ir::FrameObjectOp object) {
+    auto [at, isNew] = itemOf.try_emplace(("object " + object.getName()).str(), items.size());
+    if (!isNew)
+      return;
+    mlir::Type type = llvm::cast<ir::PtrType>(object.getType()).getPointee();
+    items.push_back({object.getName().str(), ir::sizeInBytes(type),
+                     llvm::BitVector(suspends.size(), true), true});
+  });
+}
+
+/// Gives each bool the lowest bit that is free at all its traces; 32 make a word.
+void Layouter::placeBools() {
+  for (unsigned i = 0; i < bools.size(); ++i) {
+    llvm::BitVector taken(bools.size());
+    for (unsigned j = 0; j < i; ++j)
+      if (bools[i].traces.anyCommon(bools[j].traces))
+        taken.set(bools[j].bit);
+    unsigned bit = 0;
+    while (taken.test(bit))
+      ++bit;
+    bools[i].bit = bit;
+    unsigned word = bit / 32;
+    auto [at, isNew] = itemOf.try_emplace("bools " + std::to_string(word), items.size());
+    if (isNew)
+      items.push_back({"", 4, llvm::BitVector(suspends.size())});
+    items[at->second].traces |= bools[i].traces;
+    items[at->second].bools.push_back(i);
+  }
+}
+
+/// First fit in this order; returns the size of the frame.
+std::uint32_t Layouter::place(const std::vector<unsigned> &order,
+                              std::vector<std::uint32_t> &offsets) const {
+  std::uint32_t end = 0;
+  std::vector<unsigned> placed;
+  for (unsigned index : order) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> taken; // from, to
+    for (unsigned other : placed)
+      if (interfere(items[index], items[other]))
+        taken.push_back({offsets[other], offsets[other] + items[other].size});
+    std::sort(taken.begin(), taken.end());
+    std::uint32_t offset = 0;
+    for (auto [from, to] : taken) {
+      if (offset + items[index].size <= from)
+        break;
+      offset = std::max(offset, to);
+    }
+    offsets[index] = offset;
+    end = std::max(end, offset + items[index].size);
+    placed.push_back(index);
+  }
+  return end;
+}
+
+void Layouter::placeWords() {
+  std::vector<unsigned> asTheyCome(items.size());
+  std::iota(asTheyCome.begin(), asTheyCome.end(), 0u);
+  std::vector<unsigned> bySize = asTheyCome, byTraces = asTheyCome;
+  std::stable_sort(bySize.begin(), bySize.end(),
+                   [&](unsigned a, unsigned b) { return items[a].size > items[b].size; });
+  std::stable_sort(byTraces.begin(), byTraces.end(), [&](unsigned a, unsigned b) {
+    return items[a].traces.count() > items[b].traces.count();
+  });
+  size = ~0u;
+  for (const std::vector<unsigned> &order : {asTheyCome, bySize, byTraces}) {
+    std::vector<std::uint32_t> offsets(items.size());
+    std::uint32_t needed = place(order, offsets);
+    if (needed >= size)
+      continue;
+    size = needed;
+    for (unsigned i = 0; i < items.size(); ++i)
+      items[i].offset = offsets[i];
+  }
+}
+
+FrameLayout Layouter::describe() const {
+  FrameLayout layout;
+  layout.size = size;
+  std::uint32_t objects = 0;
+  std::vector<std::uint32_t> atTrace(suspends.size());
+  for (const Item &item : items) {
+    if (item.isObject)
+      objects += item.size;
+    else
+      for (unsigned trace : item.traces.set_bits())
+        atTrace[trace] += item.size;
+    if (item.bools.empty())
+      layout.slots.push_back({item.name, item.offset, item.size, -1, item.isObject});
+    for (unsigned index : item.bools)
+      layout.slots.push_back(
+          {bools[index].name, item.offset, 4, static_cast<int>(bools[index].bit % 32), false});
+  }
+  for (std::uint32_t bytes : atTrace)
+    layout.lowerBound = std::max(layout.lowerBound, bytes);
+  layout.lowerBound += objects;
+  std::stable_sort(layout.slots.begin(), layout.slots.end(),
+                   [](const FrameSlot &a, const FrameSlot &b) {
+                     return std::make_pair(a.offset, a.bit) < std::make_pair(b.offset, b.bit);
+                   });
+  return layout;
+}
+
+void Layouter::rewrite() {
+  mlir::OpBuilder builder(function.getContext());
+  for (ir::SuspendOp suspend : suspends) {
+    mlir::Block *resume = suspend.getResume();
+    mlir::Operation *last = &resume->front(); // the trace's result; loads follow in order
+    for (auto [value, argument, nameAttr] :
+         llvm::zip(suspend.getSaved(), resume->getArguments(), suspend.getNames())) {
+      auto name = llvm::cast<mlir::StringAttr>(nameAttr);
+      std::uint32_t offset;
+      mlir::IntegerAttr bit;
+      if (value.getType().isInteger(1)) {
+        unsigned number = bools[boolOf.lookup(name.getValue())].bit;
+        offset = items[itemOf.lookup("bools " + std::to_string(number / 32))].offset;
+        bit = builder.getI32IntegerAttr(number % 32);
+      } else {
+        offset = items[itemOf.lookup(name.getValue())].offset;
+      }
+      mlir::IntegerAttr offsetAttr = builder.getI32IntegerAttr(offset);
+      builder.setInsertionPoint(suspend);
+      ir::FrameStoreOp::create(builder, value.getLoc(), value, name, offsetAttr, bit);
+      builder.setInsertionPointAfter(last);
+      auto load = ir::FrameLoadOp::create(builder, argument.getLoc(), value.getType(), name,
+                                          offsetAttr, bit);
+      argument.replaceAllUsesWith(load.getResult());
+      last = load;
+    }
+    suspend.getSavedMutable().clear();
+    suspend.setNamesAttr(builder.getArrayAttr({}));
+    resume->eraseArguments(0, resume->getNumArguments());
+  }
+  function.walk([&](ir::FrameObjectOp object) {
+    object.setOffset(items[itemOf.lookup(("object " + object.getName()).str())].offset);
+  });
+  function->setAttr("rtsl.frame_size", builder.getI32IntegerAttr(size));
+}
+
+FrameLayout Layouter::run() {
+  collect();
+  placeBools();
+  placeWords();
+  rewrite();
+  return describe();
+}
+
+} // namespace
+
+FrameLayout layoutFrame(FuncOp function) {
+  if (function.isExternal() || suspendsOf(function).empty())
+    return {};
+  return Layouter(function).run();
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,54 @@
+//===- FrameObjects.cpp - variables in memory that outlive a trace --------===//
+//
+//   %table = rtsl.var "table"             %table = rtsl.frame_object "table"
+//   ...                            ==>    rtsl.clear %table
+//   a trace                               ...
+//   use %table[%i]                        a trace, use %table[%i]
+//
+// What mem2reg left in memory is indexed at run time. Its address is that of a place in the frame,
+// on both sides of a trace.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Liveness.h"
+#include "codegen/passes/continuation/Names.h"
+
+namespace rtsl::continuation {
+
+/// Collects an address and what is computed from it.
+static void addDerived(mlir::Value address, llvm::SmallVectorImpl<mlir::Value> &derived) {
+  derived.push_back(address);
+  for (mlir::Operation *user : address.getUsers())
+    if (llvm::isa<ir::FieldOp, ir::ElementOp>(user))
+      addDerived(user->getResult(0), derived);
+}
+
+void moveVariablesToFrame(FuncOp function) {
+  llvm::SmallVector<ir::SuspendOp> suspends = suspendsOf(function);
+  if (suspends.empty())
+    return;
+  Liveness liveness(function);
+  liveness.compute();
+  llvm::BitVector acrossTraces = liveness.none();
+  for (ir::SuspendOp suspend : suspends)
+    acrossTraces |= liveness.into(suspend.getResume());
+
+  UniqueNames names;
+  llvm::SmallVector<ir::VarOp> variables;
+  function.walk([&](ir::VarOp variable) { variables.push_back(variable); });
+  for (ir::VarOp variable : variables) {
+    llvm::SmallVector<mlir::Value> derived;
+    addDerived(variable.getResult(), derived);
+    if (llvm::none_of(derived, [&](mlir::Value value) {
+          return acrossTraces.test(liveness.numberOf(value));
+        }))
+      continue;
+    mlir::OpBuilder builder(variable);
+    auto object = ir::FrameObjectOp::create(builder, variable.getLoc(), variable.getType(),
+                                            names.unique(variable.getName().str()), 0u);
+    ir::ClearOp::create(builder, variable.getLoc(), object);
+    variable.replaceAllUsesWith(object.getResult());
+    variable.erase();
+  }
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,198 @@
+//===- InlineTracing.cpp - calls of functions that trace ------------------===//
+//
+// A state is a piece of one function, so what a function calls and what may trace becomes part of
+// it. Only a call behind which nothing happens, on the caller's own object, stays: it is marked
+// `rtsl.tail` and later a jump from state to state. That is what an entry is that switches over the
+// classes of a scene.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Steps.h"
+
+#include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
+#include "mlir/IR/IRMapping.h"
+#include "mlir/IR/SymbolTable.h"
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/SetVector.h"
+
+namespace rtsl::continuation {
+
+using mlir::func::CallOp;
+
+llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
+  llvm::SmallSetVector<mlir::Operation *, 16> tracing;
+  mlir::SymbolTable symbols(module);
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (FuncOp function : module.getOps<FuncOp>()) {
+      if (tracing.contains(function))
+        continue;
+      bool traces = function
+                        .walk([&](mlir::Operation *op) {
+                          auto call = llvm::dyn_cast<CallOp>(op);
+                          bool here = llvm::isa<ir::TraceOp, ir::SuspendOp>(op) ||
+                                      (call && tracing.contains(symbols.lookup(call.getCallee())));
+                          return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+                        })
+                        .wasInterrupted();
+      if (traces)
+        changed |= tracing.insert(function);
+    }
+  }
+  llvm::SmallVector<FuncOp> inOrder;
+  for (FuncOp function : module.getOps<FuncOp>())
+    if (tracing.contains(function))
+      inOrder.push_back(function);
+  return inOrder;
+}
+
+namespace {
+
+class Inliner {
+public:
+  explicit Inliner(mlir::ModuleOp module) : module(module), symbols(module) {
+    for (FuncOp function : tracingFunctions(module))
+      tracing.insert(function);
+  }
+  mlir::LogicalResult run();
+
+private:
+  enum class Visit { New, Open, Done };
+  mlir::LogicalResult visit(FuncOp function);
+  FuncOp tracingCallee(CallOp call) {
+    auto callee = symbols.lookup<FuncOp>(call.getCallee());
+    return callee && tracing.contains(callee) ? callee : FuncOp();
+  }
+  bool isTail(CallOp call, FuncOp callee);
+  void inlineCall(CallOp call, FuncOp callee);
+
+  mlir::ModuleOp module;
+  mlir::SymbolTable symbols;
+  llvm::SmallSetVector<mlir::Operation *, 16> tracing;
+  llvm::DenseMap<mlir::Operation *, Visit> visits;
+};
+
+/// Is the caller over when the call is, and is the callee's object the caller's?
+bool Inliner::isTail(CallOp call, FuncOp callee) {
+  auto caller = call->getParentOfType<FuncOp>();
+  mlir::Value object = objectOf(caller);
+  if (callee.getNumResults() != 0 || caller.getNumResults() != 0 || call.getNumOperands() != 1 ||
+      !object || !objectOf(callee))
+    return false;
+  mlir::Value passed = call.getOperand(0);
+  while (auto cast = passed.getDefiningOp<ir::CastRefOp>())
+    passed = cast.getObject();
+  if (passed != object)
+    return false;
+  mlir::Operation *next = call->getNextNode();
+  llvm::SmallPtrSet<mlir::Block *, 4> seen;
+  while (auto branch = llvm::dyn_cast<mlir::cf::BranchOp>(next)) {
+    if (!seen.insert(branch.getDest()).second)
+      return false;
+    next = &branch.getDest()->front();
+  }
+  return llvm::isa<mlir::func::ReturnOp>(next);
+}
+
+/// ^a: x; call @f(%v); y      ==>      ^a: x; br ^f(%v)   ^f(%p): ...; br ^b(%results)   ^b(...): y
+void Inliner::inlineCall(CallOp call, FuncOp callee) {
+  mlir::Block *before = call->getBlock();
+  mlir::Block *after = before->splitBlock(call);
+  mlir::OpBuilder builder(call.getContext());
+  for (mlir::Value result : call.getResults())
+    result.replaceAllUsesWith(after->addArgument(result.getType(), result.getLoc()));
+
+  mlir::IRMapping mapping;
+  for (mlir::Block &block : callee.getBody()) {
+    mlir::Block *copy = new mlir::Block;
+    before->getParent()->getBlocks().insert(after->getIterator(), copy);
+    mapping.map(&block, copy);
+    for (mlir::BlockArgument argument : block.getArguments())
+      mapping.map(argument, copy->addArgument(argument.getType(), argument.getLoc()));
+  }
+  // Blocks need not stand in an order in which definitions come first; clone maps operands when all
+  // are there.
+  llvm::SmallVector<mlir::Operation *> clones;
+  for (mlir::Block &block : callee.getBody()) {
+    builder.setInsertionPointToEnd(mapping.lookup(&block));
+    for (mlir::Operation &op : block) {
+      if (auto returned = llvm::dyn_cast<mlir::func::ReturnOp>(op)) {
+        clones.push_back(
+            mlir::cf::BranchOp::create(builder, call.getLoc(), after, returned.getOperands()));
+      } else {
+        mlir::Operation *clone = builder.clone(op, mapping);
+        clone->setLoc(mlir::CallSiteLoc::get(op.getLoc(), call.getLoc()));
+        clone->removeAttr("rtsl.tail");
+        clones.push_back(clone);
+      }
+    }
+  }
+  for (mlir::Operation *clone : clones)
+    for (mlir::OpOperand &operand : clone->getOpOperands())
+      operand.set(mapping.lookupOrDefault(operand.get()));
+  builder.setInsertionPointToEnd(before);
+  mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()),
+                             call.getOperands());
+  call.erase();
+}
+
+mlir::LogicalResult Inliner::visit(FuncOp function) {
+  Visit &state = visits[function];
+  if (state == Visit::Done)
+    return mlir::success();
+  if (state == Visit::Open)
+    return function.emitError()
+           << "`" << function.getSymName()
+           << "` traces and may be called by itself, through references; such a call has no bound";
+  state = Visit::Open;
+  while (true) {
+    CallOp found;
+    FuncOp callee;
+    function.walk([&](CallOp call) {
+      callee = tracingCallee(call);
+      if (!callee || call->hasAttr("rtsl.tail"))
+        return mlir::WalkResult::advance();
+      found = call;
+      return mlir::WalkResult::interrupt();
+    });
+    if (!found)
+      break;
+    if (mlir::failed(visit(callee)))
+      return mlir::failure();
+    if (isTail(found, callee))
+      found->setAttr("rtsl.tail", mlir::UnitAttr::get(module.getContext()));
+    else
+      inlineCall(found, callee);
+  }
+  visits[function] = Visit::Done;
+  return mlir::success();
+}
+
+mlir::LogicalResult Inliner::run() {
+  for (mlir::Operation *function : tracing)
+    if (mlir::failed(visit(llvm::cast<FuncOp>(function))))
+      return mlir::failure();
+  // What was only called from where it is now inlined has done its work.
+  llvm::SmallVector<mlir::Operation *> callersFirst(tracing.begin(), tracing.end());
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (mlir::Operation *&op : callersFirst) {
+      if (!op || !llvm::cast<FuncOp>(op).isPrivate() ||
+          !mlir::SymbolTable::symbolKnownUseEmpty(op, module))
+        continue;
+      op->erase();
+      op = nullptr;
+      changed = true;
+    }
+  }
+  return mlir::success();
+}
+
+} // namespace
+
+mlir::LogicalResult inlineTracingCalls(mlir::ModuleOp module) {
+  return Inliner(module).run();
+}
+
+} // namespace rtsl::continuation

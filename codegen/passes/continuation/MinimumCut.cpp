@@ -1,0 +1,141 @@
+//===- MinimumCut.cpp - what to save and what to recompute ----------------===//
+//
+// Maximum flow by blocking flows (Dinic, "Algorithm for solution of a problem of maximum flow in a
+// network with power estimation", 1970). The graphs are small and shallow: some hundred values for
+// a large shader.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/MinimumCut.h"
+
+#include <algorithm>
+
+namespace rtsl::continuation {
+
+namespace {
+
+class Network {
+public:
+  explicit Network(unsigned nodes) : edgesOf(nodes), level(nodes), next(nodes) {}
+
+  void connect(unsigned from, unsigned to, std::int64_t capacity) {
+    edgesOf[from].push_back(edges.size());
+    edges.push_back({to, capacity});
+    edgesOf[to].push_back(edges.size());
+    edges.push_back({from, 0});
+  }
+
+  std::int64_t maximumFlow(unsigned source, unsigned sink);
+  /// Nodes to which more could flow from the source: the smallest source side of a minimum cut.
+  std::vector<bool> sourceSide(unsigned source);
+
+private:
+  struct Edge {
+    unsigned to;
+    std::int64_t capacity; // what is left of it; edge i ^ 1 goes back
+  };
+  bool measure(unsigned source, unsigned sink);
+  std::int64_t augment(unsigned node, unsigned sink, std::int64_t limit);
+
+  std::vector<Edge> edges;
+  std::vector<std::vector<unsigned>> edgesOf;
+  std::vector<int> level;
+  std::vector<unsigned> next;
+};
+
+/// Distances from the source along edges that have capacity left; true if the sink can be reached.
+bool Network::measure(unsigned source, unsigned sink) {
+  std::fill(level.begin(), level.end(), -1);
+  std::vector<unsigned> queue = {source};
+  level[source] = 0;
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    for (unsigned index : edgesOf[queue[i]]) {
+      const Edge &edge = edges[index];
+      if (edge.capacity > 0 && level[edge.to] < 0) {
+        level[edge.to] = level[queue[i]] + 1;
+        queue.push_back(edge.to);
+      }
+    }
+  return level[sink] >= 0;
+}
+
+std::int64_t Network::augment(unsigned node, unsigned sink, std::int64_t limit) {
+  if (node == sink)
+    return limit;
+  for (; next[node] < edgesOf[node].size(); ++next[node]) {
+    unsigned index = edgesOf[node][next[node]];
+    unsigned to = edges[index].to;
+    if (edges[index].capacity <= 0 || level[to] != level[node] + 1)
+      continue;
+    if (std::int64_t sent = augment(to, sink, std::min(limit, edges[index].capacity))) {
+      edges[index].capacity -= sent;
+      edges[index ^ 1].capacity += sent;
+      return sent;
+    }
+  }
+  return 0;
+}
+
+std::int64_t Network::maximumFlow(unsigned source, unsigned sink) {
+  std::int64_t flow = 0;
+  // With infinite capacity all the way nothing separates source and sink.
+  while (flow < impossible && measure(source, sink)) {
+    std::fill(next.begin(), next.end(), 0u);
+    while (std::int64_t sent = augment(source, sink, impossible)) {
+      flow += sent;
+      if (flow >= impossible)
+        break;
+    }
+  }
+  return flow;
+}
+
+std::vector<bool> Network::sourceSide(unsigned source) {
+  std::vector<bool> reached(edgesOf.size());
+  std::vector<unsigned> stack = {source};
+  reached[source] = true;
+  while (!stack.empty()) {
+    unsigned node = stack.back();
+    stack.pop_back();
+    for (unsigned index : edgesOf[node])
+      if (edges[index].capacity > 0 && !reached[edges[index].to]) {
+        reached[edges[index].to] = true;
+        stack.push_back(edges[index].to);
+      }
+  }
+  return reached;
+}
+
+} // namespace
+
+Choice chooseSaved(const std::vector<ValueNode> &values) {
+  const unsigned count = values.size(), source = 2 * count, sink = source + 1;
+  auto needed = [](unsigned value) { return 2 * value; };
+  auto recomputed = [](unsigned value) { return 2 * value + 1; };
+
+  Network network(2 * count + 2);
+  for (unsigned v = 0; v < count; ++v) {
+    if (values[v].needed)
+      network.connect(source, needed(v), impossible);
+    network.connect(needed(v), recomputed(v), values[v].saveCost);
+    network.connect(recomputed(v), sink, values[v].recomputeCost);
+    for (unsigned operand : values[v].operands)
+      network.connect(recomputed(v), needed(operand), impossible);
+  }
+  std::int64_t flow = network.maximumFlow(source, sink);
+
+  Choice choice;
+  choice.saved.resize(count);
+  choice.recomputed.resize(count);
+  choice.feasible = flow < impossible;
+  if (!choice.feasible)
+    return choice;
+  choice.cost = flow;
+  std::vector<bool> side = network.sourceSide(source);
+  for (unsigned v = 0; v < count; ++v) {
+    choice.recomputed[v] = side[recomputed(v)] && side[needed(v)];
+    choice.saved[v] = side[needed(v)] && !side[recomputed(v)];
+  }
+  return choice;
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,123 @@
+//===- Names.cpp - what values are called in the source -------------------===//
+#include "codegen/passes/continuation/Names.h"
+
+#include "codegen/ir/Rtsl.h"
+
+#include "mlir/Dialect/Vector/IR/VectorOps.h"
+#include "mlir/Interfaces/ControlFlowInterfaces.h"
+#include "llvm/ADT/SmallPtrSet.h"
+
+namespace rtsl::continuation {
+
+static std::string nameInLocation(mlir::Location location) {
+  if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
+    return name.getName().str();
+  if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location)) {
+    for (mlir::Location part : fused.getLocations()) {
+      std::string name = nameInLocation(part);
+      if (!name.empty())
+        return name;
+    }
+  }
+  // The name in an inlined function, not that of the place it was inlined at.
+  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location))
+    return nameInLocation(call.getCallee());
+  return {};
+}
+
+static std::string nameOfAddress(mlir::Value address) {
+  mlir::Operation *op = address.getDefiningOp();
+  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
+    return state.getName().str();
+  if (auto member = llvm::dyn_cast_or_null<ir::MemberOp>(op))
+    return member.getMember().str();
+  if (auto attribute = llvm::dyn_cast_or_null<ir::AttributeOp>(op))
+    return attribute.getName().str();
+  if (auto variable = llvm::dyn_cast_or_null<ir::VarOp>(op))
+    return variable.getName().str();
+  if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
+    return object.getName().str();
+  if (auto field = llvm::dyn_cast_or_null<ir::FieldOp>(op))
+    return nameOfAddress(field.getBase()) + "." + field.getField().str();
+  if (auto element = llvm::dyn_cast_or_null<ir::ElementOp>(op))
+    return nameOfAddress(element.getBase()) + ".element";
+  if (auto element = llvm::dyn_cast_or_null<ir::BufferElementOp>(op))
+    return nameOfAddress(element.getBuffer()) + ".element";
+  return "address";
+}
+
+/// The first name among what flows into a block argument.
+static std::string nameOfArgument(mlir::BlockArgument argument,
+                                  llvm::SmallPtrSetImpl<mlir::Block *> &seen) {
+  mlir::Block *block = argument.getOwner();
+  if (!seen.insert(block).second)
+    return {};
+  for (mlir::Block *predecessor : block->getPredecessors()) {
+    auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(predecessor->getTerminator());
+    if (!branch)
+      continue;
+    for (unsigned i = 0; i < predecessor->getNumSuccessors(); ++i) {
+      if (predecessor->getSuccessor(i) != block)
+        continue;
+      mlir::Value value = branch.getSuccessorOperands(i)[argument.getArgNumber()];
+      if (!value || value == argument)
+        continue;
+      std::string name = nameInLocation(value.getLoc());
+      if (auto outer = llvm::dyn_cast<mlir::BlockArgument>(value); outer && name.empty())
+        name = nameOfArgument(outer, seen);
+      if (!name.empty())
+        return name;
+    }
+  }
+  return {};
+}
+
+std::string sourceName(mlir::Value value) {
+  std::string name = nameInLocation(value.getLoc());
+  if (!name.empty())
+    return name;
+  if (auto argument = llvm::dyn_cast<mlir::BlockArgument>(value)) {
+    llvm::SmallPtrSet<mlir::Block *, 8> seen;
+    name = nameOfArgument(argument, seen);
+    return name.empty() ? "merged" : name;
+  }
+  mlir::Operation *op = value.getDefiningOp();
+  if (llvm::isa<ir::PtrType>(value.getType()))
+    return nameOfAddress(value);
+  if (auto load = llvm::dyn_cast<ir::LoadOp>(op))
+    return nameOfAddress(load.getAddress());
+  if (llvm::isa<ir::TraceResultOp>(op))
+    return "traced";
+  if (auto extract = llvm::dyn_cast<mlir::vector::ExtractOp>(op)) {
+    std::string component = ".component";
+    if (!extract.hasDynamicPosition() && extract.getStaticPosition().size() == 1 &&
+        extract.getStaticPosition().front() < 4)
+      component = std::string(".") + "xyzw"[extract.getStaticPosition().front()];
+    return sourceName(extract.getSource()) + component;
+  }
+  return op->getName().stripDialect().str();
+}
+
+std::string UniqueNames::unique(const std::string &name) {
+  unsigned count = ++used[name];
+  if (count == 1)
+    return name;
+  std::string numbered;
+  do
+    numbered = name + "." + std::to_string(count);
+  while (used.count(numbered) && (count = ++used[name]));
+  used[numbered] = 1;
+  return numbered;
+}
+
+const std::string &UniqueNames::of(mlir::Value value) {
+  auto [at, isNew] = names.try_emplace(value);
+  if (isNew) {
+    std::string name = unique(sourceName(value));
+    at = names.find(value);
+    at->second = name;
+  }
+  return at->second;
+}
+
+} // namespace rtsl::continuation

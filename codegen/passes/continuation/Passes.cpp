@@ -1,0 +1,182 @@
+//===- Passes.cpp - the steps of splitting as passes ----------------------===//
+//
+// For rtsl-opt: thin covers over Steps.h.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Passes.h"
+
+#include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/Split.h"
+
+#include "mlir/Pass/Pass.h"
+#include "mlir/Pass/PassRegistry.h"
+
+namespace rtsl {
+
+using namespace continuation;
+
+namespace {
+
+/// A step on one function.
+template <typename Derived>
+struct FunctionStep : mlir::PassWrapper<Derived, mlir::OperationPass<FuncOp>> {
+  llvm::StringRef getArgument() const override { return Derived::argument; }
+  llvm::StringRef getDescription() const override { return Derived::description; }
+  void getDependentDialects(mlir::DialectRegistry &registry) const override {
+    registry.insert<ir::RtslDialect>();
+  }
+  void runOnOperation() override {
+    if (this->getOperation().isExternal())
+      return;
+    if (mlir::failed(static_cast<Derived *>(this)->step(this->getOperation())))
+      this->signalPassFailure();
+  }
+};
+
+#define RTSL_FUNCTION_STEP(Name, text, what, body)                                                 \
+  struct Name : FunctionStep<Name> {                                                               \
+    MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(Name)                                             \
+    static constexpr llvm::StringLiteral argument = text;                                          \
+    static constexpr llvm::StringLiteral description = what;                                       \
+    mlir::LogicalResult step(FuncOp function) body                                                 \
+  };
+
+RTSL_FUNCTION_STEP(InsertSuspendsPass, "rtsl-insert-suspends", "ends blocks at their traces", {
+  insertSuspends(function);
+  return mlir::success();
+})
+RTSL_FUNCTION_STEP(FrameObjectsPass, "rtsl-frame-objects",
+                   "moves variables that outlive a trace to the frame", {
+                     moveVariablesToFrame(function);
+                     return mlir::success();
+                   })
+RTSL_FUNCTION_STEP(TrimVectorsPass, "rtsl-trim-vectors", "takes parts of vectors before a trace", {
+  trimVectors(function);
+  return mlir::success();
+})
+RTSL_FUNCTION_STEP(SaveLivePass, "rtsl-save-live",
+                   "passes what is live across a trace to its resume block",
+                   { return saveLive(function); })
+RTSL_FUNCTION_STEP(LayoutFramePass, "rtsl-layout-frame",
+                   "gives what is saved its place in the frame", {
+                     layoutFrame(function);
+                     return mlir::success();
+                   })
+RTSL_FUNCTION_STEP(CleanStoresPass, "rtsl-clean-stores",
+                   "removes stores of what a slot already holds", {
+                     cleanStores(function);
+                     return mlir::success();
+                   })
+RTSL_FUNCTION_STEP(SinkLoadsPass, "rtsl-sink-loads", "moves loads of the frame to their uses", {
+  sinkLoads(function);
+  return mlir::success();
+})
+
+struct RematerialisePass : FunctionStep<RematerialisePass> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(RematerialisePass)
+  static constexpr llvm::StringLiteral argument = "rtsl-rematerialise";
+  static constexpr llvm::StringLiteral description =
+      "recomputes behind a trace what is cheaper than to save";
+  RematerialisePass() = default;
+  RematerialisePass(const RematerialisePass &other) : FunctionStep(other) {}
+  Option<bool> onlyAddresses{*this, "only-addresses",
+                             llvm::cl::desc("recompute only what cannot be saved")};
+  mlir::LogicalResult step(FuncOp function) {
+    RematerialiseOptions options;
+    options.onlyAddresses = onlyAddresses;
+    auto plans = planContinuations(function, options);
+    if (mlir::succeeded(plans))
+      rematerialise(function, *plans);
+    return plans;
+  }
+};
+
+/// A step on the module.
+template <typename Derived>
+struct ModuleStep : mlir::PassWrapper<Derived, mlir::OperationPass<mlir::ModuleOp>> {
+  llvm::StringRef getArgument() const override { return Derived::argument; }
+  llvm::StringRef getDescription() const override { return Derived::description; }
+  void getDependentDialects(mlir::DialectRegistry &registry) const override {
+    registry.insert<ir::RtslDialect>();
+  }
+  void runOnOperation() override {
+    if (mlir::failed(static_cast<Derived *>(this)->step(this->getOperation())))
+      this->signalPassFailure();
+  }
+};
+
+struct InlineTracingPass : ModuleStep<InlineTracingPass> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(InlineTracingPass)
+  static constexpr llvm::StringLiteral argument = "rtsl-inline-tracing";
+  static constexpr llvm::StringLiteral description = "inlines calls of functions that trace";
+  mlir::LogicalResult step(mlir::ModuleOp module) { return inlineTracingCalls(module); }
+};
+
+struct SplitStatesPass : ModuleStep<SplitStatesPass> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(SplitStatesPass)
+  static constexpr llvm::StringLiteral argument = "rtsl-split-states";
+  static constexpr llvm::StringLiteral description = "a function for each resume point";
+  mlir::LogicalResult step(mlir::ModuleOp module) {
+    for (FuncOp function : tracingFunctions(module))
+      if (mlir::failed(splitStates(function)))
+        return mlir::failure();
+    return mlir::success();
+  }
+};
+
+struct DispatchPass : ModuleStep<DispatchPass> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(DispatchPass)
+  static constexpr llvm::StringLiteral argument = "rtsl-dispatch";
+  static constexpr llvm::StringLiteral description =
+      "numbers states and makes what the machine calls";
+  mlir::LogicalResult step(mlir::ModuleOp module) { return makeDispatch(module); }
+};
+
+struct SplitPass : ModuleStep<SplitPass> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(SplitPass)
+  static constexpr llvm::StringLiteral argument = "rtsl-split";
+  static constexpr llvm::StringLiteral description = "splits functions at their traces: all steps";
+  SplitPass() = default;
+  SplitPass(const SplitPass &other) : ModuleStep(other) {}
+  Option<bool> noRematerialise{*this, "no-rematerialise",
+                               llvm::cl::desc("save everything that is live")};
+  Option<bool> noTrim{*this, "no-trim", llvm::cl::desc("save whole vectors")};
+  Option<bool> noCleanUp{*this, "no-clean-up", llvm::cl::desc("leave all stores and loads")};
+  Option<bool> noDispatch{*this, "no-dispatch", llvm::cl::desc("leave states without numbers")};
+  Option<std::string> reportAs{
+      *this, "report", llvm::cl::desc("what was saved: `text` or `json`, to standard error")};
+  mlir::LogicalResult step(mlir::ModuleOp module) {
+    SplitOptions options;
+    options.rematerialise = !noRematerialise;
+    options.trim = !noTrim;
+    options.cleanUp = !noCleanUp;
+    options.dispatch = !noDispatch;
+    options.verifyEach = true;
+    SplitReport report;
+    bool done = splitAtTrace(module, options, report);
+    if (reportAs == "text")
+      llvm::errs() << toText(report);
+    else if (reportAs == "json")
+      llvm::errs() << toJson(report);
+    return mlir::success(done);
+  }
+};
+
+} // namespace
+
+void registerContinuationPasses() {
+  mlir::PassRegistration<InlineTracingPass>();
+  mlir::PassRegistration<InsertSuspendsPass>();
+  mlir::PassRegistration<FrameObjectsPass>();
+  mlir::PassRegistration<TrimVectorsPass>();
+  mlir::PassRegistration<RematerialisePass>();
+  mlir::PassRegistration<SaveLivePass>();
+  mlir::PassRegistration<LayoutFramePass>();
+  mlir::PassRegistration<SplitStatesPass>();
+  mlir::PassRegistration<CleanStoresPass>();
+  mlir::PassRegistration<SinkLoadsPass>();
+  mlir::PassRegistration<DispatchPass>();
+  mlir::PassRegistration<SplitPass>();
+}
+
+} // namespace rtsl

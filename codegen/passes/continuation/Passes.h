@@ -1,0 +1,10 @@
+//===- Passes.h - the steps of splitting as passes ------------------------===//
+#pragma once
+
+namespace rtsl {
+
+/// Makes the steps of Steps.h known to a command line, each under its own name, and all together as
+/// `--rtsl-split`.
+void registerContinuationPasses();
+
+} // namespace rtsl

@@ -1,0 +1,162 @@
+//===- Recompute.cpp - what gives the same value again behind a trace -----===//
+#include "codegen/passes/continuation/Recompute.h"
+
+#include "mlir/Interfaces/SideEffectInterfaces.h"
+#include "llvm/ADT/SmallPtrSet.h"
+
+namespace rtsl::continuation {
+
+/// State that only the runtime writes, before a shader runs: not even an unknown method changes it.
+static constexpr llvm::StringLiteral fixedState[] = {
+    "Epsilon",       "HitDistance",    "ScreenCoord",  "LensCoord", "TimeSeed",
+    "LaunchIndex",   "LaunchSize",     "Time",         "Depth",     "ObjectToWorld",
+    "WorldToObject", "PrimitiveIndex", "InstanceIndex"};
+
+void StateWrites::add(const StateWrites &other) {
+  any |= other.any;
+  for (const auto &entry : other.names)
+    names.insert(entry.getKey());
+}
+
+/// The operation that an address comes from, without its path through fields and elements.
+static mlir::Value baseOf(mlir::Value address) {
+  while (mlir::Operation *op = address.getDefiningOp()) {
+    if (auto field = llvm::dyn_cast<ir::FieldOp>(op))
+      address = field.getBase();
+    else if (auto element = llvm::dyn_cast<ir::ElementOp>(op))
+      address = element.getBase();
+    else
+      break;
+  }
+  return address;
+}
+
+static StateWrites writesThrough(mlir::Value address) {
+  StateWrites writes;
+  mlir::Operation *base = baseOf(address).getDefiningOp();
+  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
+    writes.names.insert(state.getName());
+  else if (!llvm::isa_and_nonnull<ir::VarOp, ir::FrameObjectOp, ir::MemberOp, ir::AttributeOp,
+                                  ir::BufferElementOp>(base))
+    writes.any = true; // an argument: whatever the caller passed
+  return writes;
+}
+
+WriteSummary::WriteSummary(mlir::ModuleOp module) {
+  for (llvm::StringRef name : {"LightDirection", "LightDistance", "LightColor"})
+    illumination.names.insert(name);
+  bool hasLights = false;
+  llvm::SmallVector<FuncOp> bodies;
+  for (FuncOp function : module.getOps<FuncOp>()) {
+    functions[function.getSymNameAttr()].any = function.isExternal();
+    if (!function.isExternal())
+      bodies.push_back(function);
+  }
+  auto isLight = [](FuncOp function) {
+    auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    return (method && method.getValue() == "illumination") ||
+           function.getSymName() == "rtsl_rt_Light_illumination";
+  };
+  // Calls go round in circles through references, so until nothing changes.
+  auto size = [](const StateWrites &writes) {
+    return writes.names.size() + (writes.any ? 1000 : 0);
+  };
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (FuncOp function : bodies) {
+      StateWrites &writes = functions[function.getSymNameAttr()];
+      unsigned before = size(writes);
+      StateWrites found;
+      function.walk([&](mlir::Operation *op) { found.add(of(op)); });
+      writes.add(found);
+      if (isLight(function)) {
+        hasLights = true;
+        illumination.add(writes);
+      }
+      changed |= size(writes) != before;
+    }
+  }
+  if (!hasLights) // not linked yet: any light may come
+    illumination.any = true;
+}
+
+StateWrites WriteSummary::of(mlir::Operation *op) const {
+  StateWrites writes;
+  if (auto store = llvm::dyn_cast<ir::StoreOp>(op))
+    return writesThrough(store.getAddress());
+  if (auto copy = llvm::dyn_cast<ir::CopyOp>(op))
+    return writesThrough(copy.getTarget());
+  if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
+    return writesThrough(clear.getAddress());
+  if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
+    // Where the callee writes through addresses that it is given, it is the caller's state only if
+    // that is given.
+    auto callee = functions.find(call.getCalleeAttr().getAttr());
+    if (callee == functions.end()) {
+      writes.any = true;
+      return writes;
+    }
+    writes.add(callee->second);
+    return writes;
+  }
+  if (llvm::isa<ir::IlluminateOp>(op))
+    return illumination;
+  if (llvm::isa<ir::CallMethodOp, ir::HitOp>(op))
+    writes.any = true;
+  return writes;
+}
+
+/// Walks from the suspend backwards until the load; nothing on the way may write what was loaded.
+bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendOp suspend) {
+  auto [known, isNew] = unchanged.try_emplace({load, suspend}, false);
+  if (!isNew)
+    return known->second;
+  bool fixed = llvm::is_contained(fixedState, state);
+  auto writes = [&](mlir::Operation *op) {
+    StateWrites found = summary.of(op);
+    return found.names.contains(state) || (found.any && !fixed);
+  };
+  llvm::SmallPtrSet<mlir::Block *, 16> seen;
+  llvm::SmallVector<mlir::Operation *> ends = {suspend};
+  while (!ends.empty()) {
+    mlir::Operation *op = ends.pop_back_val();
+    mlir::Block *block = op->getBlock();
+    while (op && op != load) {
+      if (writes(op))
+        return false;
+      op = op->getPrevNode();
+    }
+    if (op == load)
+      continue;
+    for (mlir::Block *predecessor : block->getPredecessors())
+      if (seen.insert(predecessor).second)
+        ends.push_back(predecessor->getTerminator());
+  }
+  unchanged[{load, suspend}] = true;
+  return true;
+}
+
+bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
+  if (op->getNumRegions() != 0 || op->hasTrait<mlir::OpTrait::IsTerminator>() ||
+      llvm::isa<ir::FrameLoadOp>(op))
+    return false;
+  auto isConstantForLaunch = [&](mlir::Value address) {
+    return llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(
+               baseOf(address).getDefiningOp()) &&
+           !function->hasAttr("rtsl.constructor");
+  };
+  if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
+    mlir::Operation *base = baseOf(load.getAddress()).getDefiningOp();
+    if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
+      return isUnchanged(load, state.getName(), suspend);
+    return isConstantForLaunch(load.getAddress()) || llvm::isa_and_nonnull<ir::AttributeOp>(base);
+  }
+  if (auto element = llvm::dyn_cast<ir::BufferElementOp>(op))
+    return isConstantForLaunch(element.getBuffer());
+  if (auto length = llvm::dyn_cast<ir::BufferLengthOp>(op))
+    return isConstantForLaunch(length.getBuffer());
+  return mlir::isMemoryEffectFree(op);
+}
+
+} // namespace rtsl::continuation

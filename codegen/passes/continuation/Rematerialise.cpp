@@ -1,0 +1,238 @@
+//===- Rematerialise.cpp - recompute instead of saving --------------------===//
+//
+// A value that is needed behind a trace is saved before it and restored behind it, or computed
+// again there from other values, which are saved or computed again in turn:
+//
+//     %eta = rtsl.load %member                   %eta = rtsl.load %member
+//     %w = arith.mulf %x, %eta                   %w = arith.mulf %x, %eta
+//     rtsl.suspend ..., ^resume          ==>     rtsl.suspend ..., ^resume        // %x is live
+//     across
+//   ^resume:                                   ^resume:
+//     use %w                                     %eta' = rtsl.load %member
+//                                                %w' = arith.mulf %x, %eta'
+//                                                use %w'
+//
+// Which, is a minimum cut at each trace (MinimumCut.h) with the costs of CostTable.h. A value keeps
+// its identity: whether restored or recomputed, it is bit for bit what it was, so one trace may
+// save what another recomputes. What a trace saves has to be there when it suspends, so it is
+// needed behind the traces before it; therefore plans and liveness are computed in turn until
+// neither changes. Arguments of blocks are never recomputed.
+//
+// In strict SSA an operand of a value cannot be defined anew while the value is live (its
+// definition dominates that of the value, which dominates all uses), so what is recomputed from
+// operands as they are behind the trace is the same value, in loops too.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Layout.h"
+#include "codegen/passes/continuation/CostTable.h"
+#include "codegen/passes/continuation/Liveness.h"
+#include "codegen/passes/continuation/MinimumCut.h"
+#include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/Recompute.h"
+#include "codegen/passes/continuation/SsaRepair.h"
+
+#include "mlir/Analysis/CFGLoopInfo.h"
+#include "mlir/IR/Dominance.h"
+#include "mlir/IR/IRMapping.h"
+
+namespace rtsl::continuation {
+
+using llvm::BitVector;
+using mlir::Value;
+
+namespace {
+
+class Planner {
+public:
+  Planner(FuncOp function, const RematerialiseOptions &options)
+      : function(function), options(options), liveness(function),
+        summary(function->getParentOfType<mlir::ModuleOp>()), recompute(function, summary),
+        dominance(function), loops(dominance.getDomTree(&function.getBody())) {}
+
+  mlir::FailureOr<llvm::SmallVector<SuspendPlan>> run();
+
+private:
+  struct Decision {
+    BitVector needed, saved, recomputed;
+  };
+  mlir::LogicalResult decide(ir::SuspendOp suspend, Decision &decision);
+  BitVector operandsOf(unsigned value);
+  std::int64_t frequency(mlir::Block *block) { return loopFrequency(loops.getLoopDepth(block)); }
+  void dropUnneeded(Decision &decision, const BitVector &needed);
+
+  FuncOp function;
+  RematerialiseOptions options;
+  Liveness liveness;
+  WriteSummary summary;
+  Recompute recompute;
+  mlir::DominanceInfo dominance;
+  mlir::CFGLoopInfo loops;
+};
+
+BitVector Planner::operandsOf(unsigned value) {
+  BitVector operands = liveness.none();
+  mlir::Value object = objectOf(function);
+  for (Value operand : liveness.values()[value].getDefiningOp()->getOperands())
+    if (operand != object)
+      operands.set(liveness.numberOf(operand));
+  return operands;
+}
+
+/// The cheapest way to have `decision.needed` behind the suspend.
+mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
+  // Everything from which something needed can be recomputed.
+  BitVector possible = liveness.none(), reached = decision.needed;
+  llvm::SmallVector<unsigned> worklist(reached.set_bits_begin(), reached.set_bits_end());
+  while (!worklist.empty()) {
+    unsigned value = worklist.pop_back_val();
+    mlir::Operation *op = liveness.values()[value].getDefiningOp();
+    if (!op || !recompute.isPossible(op, suspend))
+      continue;
+    possible.set(value);
+    for (unsigned operand : operandsOf(value).set_bits())
+      if (!reached.test(operand)) {
+        reached.set(operand);
+        worklist.push_back(operand);
+      }
+  }
+
+  // As nodes, in program order: operands come first.
+  llvm::SmallVector<unsigned> values(reached.set_bits_begin(), reached.set_bits_end());
+  llvm::DenseMap<unsigned, unsigned> nodeOf;
+  std::vector<ValueNode> nodes(values.size());
+  const std::int64_t traceFrequency = frequency(suspend->getBlock());
+  for (auto [index, number] : llvm::enumerate(values)) {
+    Value value = liveness.values()[number];
+    bool isAddress = llvm::isa<ir::PtrType>(value.getType());
+    ValueNode &node = nodes[index];
+    nodeOf[number] = index;
+    node.needed = decision.needed.test(number);
+    if (!isAddress)
+      node.saveCost = saveCost(value.getType(), frequency(value.getParentBlock()), traceFrequency);
+    if (!possible.test(number))
+      continue;
+    node.recomputeCost = options.onlyAddresses && !isAddress
+                             ? impossible
+                             : recomputeCost(value.getDefiningOp()) * traceFrequency;
+    for (unsigned operand : operandsOf(number).set_bits())
+      node.operands.push_back(nodeOf.lookup(operand));
+  }
+
+  Choice choice = chooseSaved(nodes);
+  decision.saved = decision.recomputed = liveness.none();
+  if (!choice.feasible) {
+    for (auto [index, number] : llvm::enumerate(values)) {
+      Value value = liveness.values()[number];
+      if (nodes[index].saveCost == impossible && nodes[index].recomputeCost == impossible)
+        return mlir::emitError(suspend.getLoc())
+               << "the address `" << sourceName(value)
+               << "` is used after a trace and cannot be computed again there";
+    }
+    return mlir::emitError(suspend.getLoc()) << "an address cannot be kept across a trace";
+  }
+  for (auto [index, number] : llvm::enumerate(values)) {
+    if (choice.saved[index])
+      decision.saved.set(number);
+    if (choice.recomputed[index])
+      decision.recomputed.set(number);
+  }
+  return mlir::success();
+}
+
+/// Keeps of a decision what is needed in the end, directly or for something recomputed.
+void Planner::dropUnneeded(Decision &decision, const BitVector &needed) {
+  BitVector kept = needed;
+  llvm::SmallVector<unsigned> worklist(needed.set_bits_begin(), needed.set_bits_end());
+  while (!worklist.empty()) {
+    unsigned value = worklist.pop_back_val();
+    if (!decision.recomputed.test(value))
+      continue;
+    for (unsigned operand : operandsOf(value).set_bits())
+      if (!kept.test(operand)) {
+        kept.set(operand);
+        worklist.push_back(operand);
+      }
+  }
+  decision.needed = needed;
+  decision.saved &= kept;
+  decision.recomputed &= kept;
+}
+
+mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
+  llvm::SmallVector<ir::SuspendOp> suspends = suspendsOf(function);
+  llvm::SmallVector<Decision> decisions(suspends.size());
+  for (Decision &decision : decisions)
+    decision.needed = decision.saved = decision.recomputed = liveness.none();
+
+  auto computeLiveness = [&] {
+    Liveness::HandedOn handedOn;
+    for (auto [suspend, decision] : llvm::zip(suspends, decisions))
+      handedOn[suspend] = decision.saved;
+    liveness.compute(&handedOn);
+  };
+  // Needs only grow here, so this ends. Later traces first: what they save is a need of earlier
+  // ones.
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (size_t i = suspends.size(); i-- > 0;) {
+      computeLiveness();
+      BitVector needed = liveness.into(suspends[i].getResume());
+      needed |= decisions[i].needed;
+      if (needed == decisions[i].needed)
+        continue;
+      changed = true;
+      decisions[i].needed = needed;
+      if (mlir::failed(decide(suspends[i], decisions[i])))
+        return mlir::failure();
+    }
+  }
+  // And here they only shrink: on the way some plans may have wanted what the last ones do not.
+  changed = true;
+  while (changed) {
+    changed = false;
+    computeLiveness();
+    for (auto [suspend, decision] : llvm::zip(suspends, decisions)) {
+      BitVector saved = decision.saved;
+      dropUnneeded(decision, liveness.into(suspend.getResume()));
+      changed |= saved != decision.saved;
+    }
+  }
+
+  llvm::SmallVector<SuspendPlan> plans;
+  for (auto [suspend, decision] : llvm::zip(suspends, decisions))
+    plans.push_back(
+        {suspend, liveness.valuesOf(decision.saved), liveness.valuesOf(decision.recomputed)});
+  return plans;
+}
+
+} // namespace
+
+mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
+planContinuations(FuncOp function, const RematerialiseOptions &options) {
+  if (suspendsOf(function).empty())
+    return llvm::SmallVector<SuspendPlan>();
+  return Planner(function, options).run();
+}
+
+void rematerialise(FuncOp function, llvm::ArrayRef<SuspendPlan> plans) {
+  llvm::MapVector<Value, Redefinitions> redefinitions;
+  for (const SuspendPlan &plan : plans) {
+    mlir::Block *resume = ir::SuspendOp(plan.suspend).getResume();
+    mlir::OpBuilder builder(function.getContext());
+    builder.setInsertionPointAfter(&resume->front());
+    mlir::IRMapping mapping;
+    llvm::DenseMap<mlir::Operation *, mlir::Operation *> clones;
+    for (Value value : plan.recomputed) {
+      mlir::Operation *&clone = clones[value.getDefiningOp()];
+      if (!clone)
+        clone = builder.clone(*value.getDefiningOp(), mapping);
+      Value again = clone->getResult(llvm::cast<mlir::OpResult>(value).getResultNumber());
+      redefinitions[value][resume] = again;
+    }
+  }
+  for (auto &[value, ofValue] : redefinitions)
+    repairSsa(value, ofValue);
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,43 @@
+//===- Report.h - what splitting cost and saved ---------------------------===//
+#pragma once
+
+#include "codegen/passes/continuation/Steps.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rtsl {
+
+/// One trace of a function, in the order in which they stand.
+struct TraceReport {
+  std::string location;          // "glass.rtsl:40:20", or empty
+  std::string resumesAt;         // the state
+  std::vector<std::string> live; // what plain liveness would save, constants included
+  std::uint32_t liveBytes = 0;
+  std::vector<std::string> saved;
+  std::uint32_t savedBytes = 0;            // bools as bits of one word
+  std::vector<std::string> rematerialised; // of what was live; not what it is made from
+  std::int64_t rematerialisedCost =
+      0; // instructions, about (CostTable.h), of all that is recomputed
+};
+
+struct FunctionReport {
+  std::string name;
+  std::vector<TraceReport> traces;
+  continuation::FrameLayout frame;
+  std::vector<std::string> states;
+};
+
+struct SplitReport {
+  std::vector<FunctionReport> functions;
+  /// Bytes of the largest frame.
+  std::uint32_t frameSize() const;
+};
+
+/// For people: a block of lines a function.
+std::string toText(const SplitReport &report);
+/// For programs: {"version": 1, "frameSize": ..., "functions": [...]}.
+std::string toJson(const SplitReport &report);
+
+} // namespace rtsl

@@ -1,0 +1,54 @@
+//===- SinkLoads.cpp - load from the frame where it is needed -------------===//
+//
+//   ^entry:                              ^entry:
+//     %c = rtsl.trace_result               %c = rtsl.trace_result
+//     %w = rtsl.frame_load "w"[0]          cond_br %again, ^a, ^b
+//     cond_br %again, ^a, ^b       ==>   ^a:
+//   ^a:                                    %w = rtsl.frame_load "w"[0]
+//     use %w                               use %w
+//
+// Loads of the frame and what is recomputed stand at the beginning of a state. They move down to
+// the block that dominates all their uses, but never into a loop.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Steps.h"
+
+#include "mlir/Analysis/CFGLoopInfo.h"
+#include "mlir/IR/Dominance.h"
+#include "mlir/Interfaces/SideEffectInterfaces.h"
+
+namespace rtsl::continuation {
+
+/// Nothing between its place and its uses changes what it gives.
+static bool mayMove(mlir::Operation &op) {
+  if (llvm::isa<ir::FrameLoadOp>(
+          op)) // stores stand at the ends of states, behind the beginning of any block
+    return true;
+  if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) // constant for a launch
+    return llvm::isa_and_nonnull<ir::MemberOp>(load.getAddress().getDefiningOp());
+  return !op.hasTrait<mlir::OpTrait::IsTerminator>() && mlir::isMemoryEffectFree(&op);
+}
+
+void sinkLoads(FuncOp state) {
+  if (state.isExternal() || state.getBody().hasOneBlock())
+    return;
+  mlir::DominanceInfo dominance(state);
+  mlir::CFGLoopInfo loops(dominance.getDomTree(&state.getBody()));
+  mlir::Block &entry = state.getBody().front();
+
+  for (mlir::Operation &op : llvm::make_early_inc_range(llvm::reverse(entry))) {
+    if (!mayMove(op) || op.use_empty())
+      continue;
+    mlir::Block *target = nullptr;
+    for (mlir::Operation *user : op.getUsers())
+      target = target ? dominance.findNearestCommonDominator(target, user->getBlock())
+                      : user->getBlock();
+    while (target != &entry && loops.getLoopDepth(target) != 0)
+      target = dominance.getNode(target)->getIDom()->getBlock();
+    if (target == &entry)
+      continue;
+    op.moveBefore(&target->front());
+  }
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,203 @@
+//===- Split.cpp - shaders that trace become state machines ---------------===//
+#include "codegen/passes/continuation/Split.h"
+
+#include "codegen/ir/Layout.h"
+#include "codegen/passes/continuation/CostTable.h"
+#include "codegen/passes/continuation/Names.h"
+
+#include "mlir/IR/Verifier.h"
+#include "mlir/Pass/PassManager.h"
+#include "mlir/Transforms/Passes.h"
+#include "llvm/ADT/StringSet.h"
+#include "llvm/Support/Path.h"
+
+namespace rtsl {
+
+using namespace continuation;
+
+namespace {
+
+std::string locationText(mlir::Location location) {
+  if (auto file = llvm::dyn_cast<mlir::FileLineColLoc>(location))
+    return (llvm::sys::path::filename(file.getFilename().getValue()) + ":" +
+            llvm::Twine(file.getLine()) + ":" + llvm::Twine(file.getColumn()))
+        .str();
+  if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
+    return locationText(name.getChildLoc());
+  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location))
+    return locationText(call.getCallee());
+  if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location))
+    for (mlir::Location part : fused.getLocations())
+      if (std::string text = locationText(part); !text.empty())
+        return text;
+  return {};
+}
+
+/// Names and bytes of what would be or is saved at a trace.
+void describe(llvm::ArrayRef<mlir::Value> values, UniqueNames &uniqueNames,
+              std::vector<std::string> &names, std::uint32_t &bytes) {
+  unsigned bools = 0;
+  for (mlir::Value value : values) {
+    names.push_back(uniqueNames.of(value));
+    if (value.getType().isInteger(1))
+      ++bools;
+    else
+      bytes += ir::sizeInBytes(value.getType());
+  }
+  bytes += (bools + 31) / 32 * 4;
+}
+
+/// Takes one function through all steps.
+class FunctionSplitter {
+public:
+  FunctionSplitter(FuncOp function, const SplitOptions &options, FunctionReport &report)
+      : function(function), options(options), report(report) {}
+
+  mlir::LogicalResult run();
+
+private:
+  mlir::LogicalResult check(llvm::StringRef step);
+  mlir::LogicalResult reportPlainLiveness();
+  mlir::LogicalResult planAndRematerialise();
+  mlir::LogicalResult cleanUp(llvm::ArrayRef<FuncOp> states);
+
+  FuncOp function;
+  const SplitOptions &options;
+  FunctionReport &report;
+  UniqueNames plainNames;
+};
+
+mlir::LogicalResult FunctionSplitter::check(llvm::StringRef step) {
+  if (!options.verifyEach || mlir::succeeded(mlir::verify(function)))
+    return mlir::success();
+  return function.emitError() << "`" << function.getSymName() << "` is broken after the step `"
+                              << step << "`";
+}
+
+/// What would be saved if nothing were clever: the figure that all others are compared with.
+mlir::LogicalResult FunctionSplitter::reportPlainLiveness() {
+  RematerialiseOptions plain;
+  plain.onlyAddresses = true;
+  auto plans = planContinuations(function, plain);
+  if (mlir::failed(plans))
+    return mlir::failure();
+  for (const SuspendPlan &plan : *plans) {
+    TraceReport trace;
+    trace.location = locationText(ir::SuspendOp(plan.suspend).getLoc());
+    trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
+    describe(plan.saved, plainNames, trace.live, trace.liveBytes);
+    report.traces.push_back(std::move(trace));
+  }
+  return mlir::success();
+}
+
+mlir::LogicalResult FunctionSplitter::planAndRematerialise() {
+  RematerialiseOptions how;
+  how.onlyAddresses = !options.rematerialise;
+  auto plans = planContinuations(function, how);
+  if (mlir::failed(plans))
+    return mlir::failure();
+  UniqueNames names;
+  for (auto [plan, trace] : llvm::zip(*plans, report.traces)) {
+    describe(plan.saved, names, trace.saved, trace.savedBytes);
+    llvm::StringSet<> live;
+    for (const std::string &name : trace.live)
+      live.insert(name);
+    for (mlir::Value value : plan.recomputed) {
+      trace.rematerialisedCost += recomputeCost(value.getDefiningOp());
+      if (std::string name = plainNames.of(value); live.contains(name))
+        trace.rematerialised.push_back(name);
+    }
+  }
+  rematerialise(function, *plans);
+  return mlir::success();
+}
+
+mlir::LogicalResult FunctionSplitter::cleanUp(llvm::ArrayRef<FuncOp> states) {
+  mlir::PassManager simplify(function.getContext(), FuncOp::getOperationName());
+  simplify.enableVerifier(options.verifyEach);
+  simplify.addPass(mlir::createCanonicalizerPass());
+  simplify.addPass(mlir::createCSEPass());
+  for (FuncOp state : states) {
+    if (mlir::failed(simplify.run(state)))
+      return mlir::failure();
+    cleanStores(state);
+    sinkLoads(state);
+    if (mlir::failed(simplify.run(state)))
+      return mlir::failure();
+  }
+  return mlir::success();
+}
+
+mlir::LogicalResult FunctionSplitter::run() {
+  report.name = function.getSymName().str();
+
+  insertSuspends(function);
+  moveVariablesToFrame(function);
+  if (mlir::failed(check("suspend")) || mlir::failed(reportPlainLiveness()))
+    return mlir::failure();
+
+  if (options.trim)
+    trimVectors(function);
+  if (mlir::failed(check("trim")))
+    return mlir::failure();
+
+  if (mlir::failed(planAndRematerialise()) || mlir::failed(check("rematerialise")))
+    return mlir::failure();
+
+  if (mlir::failed(saveLive(function)) || mlir::failed(check("save")))
+    return mlir::failure();
+
+  report.frame = layoutFrame(function);
+  if (mlir::failed(check("layout")))
+    return mlir::failure();
+
+  auto states = splitStates(function);
+  if (mlir::failed(states))
+    return mlir::failure();
+  for (FuncOp state : *states) {
+    report.states.push_back(state.getSymName().str());
+    function = state;
+    if (mlir::failed(check("split")))
+      return mlir::failure();
+  }
+  return options.cleanUp ? cleanUp(*states) : mlir::success();
+}
+
+/// A function that the machine can run: nothing comes in but the object, and nothing goes out.
+bool isRunnable(FuncOp function) {
+  return function.getNumResults() == 0 &&
+         function.getNumArguments() == (objectOf(function) ? 1u : 0u);
+}
+
+} // namespace
+
+void keepTracingMethods(mlir::ModuleOp module) {
+  static constexpr llvm::StringLiteral startedByRuntime[] = {
+#define RTSL_SLOT(base, method) #method,
+#include "runtime/device/Slots.def"
+  };
+  for (FuncOp function : tracingFunctions(module)) {
+    auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    if (method && llvm::is_contained(startedByRuntime, method.getValue()))
+      function->setAttr("rtsl.noinline", mlir::UnitAttr::get(module.getContext()));
+  }
+}
+
+bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitReport &report) {
+  if (mlir::failed(inlineTracingCalls(module)))
+    return false;
+  for (FuncOp function : tracingFunctions(module)) {
+    if (!isRunnable(function))
+      continue; // a function of the author's that others could call, if they were in this program
+    FunctionReport ofFunction;
+    if (mlir::failed(FunctionSplitter(function, options, ofFunction).run()))
+      return false;
+    report.functions.push_back(std::move(ofFunction));
+  }
+  if (options.dispatch && mlir::failed(makeDispatch(module)))
+    return false;
+  return mlir::succeeded(mlir::verify(module));
+}
+
+} // namespace rtsl

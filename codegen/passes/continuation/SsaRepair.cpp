@@ -1,0 +1,173 @@
+//===- SsaRepair.cpp - one value with several definitions -----------------===//
+//
+// Which definition reaches the beginning of a block is found by iteration over the blocks where the
+// value is live; where two meet, the block gets an argument (Cytron et al., "Efficiently Computing
+// Static Single Assignment Form and the Control Dependence Graph", 1991, pruned by liveness).
+// Arguments that turn out to merge one definition with itself are taken back (Braun et al., "Simple
+// and Efficient Construction of Static Single Assignment Form", 2013).
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/SsaRepair.h"
+
+#include "mlir/IR/RegionGraphTraits.h"
+#include "mlir/Interfaces/ControlFlowInterfaces.h"
+#include "llvm/ADT/PostOrderIterator.h"
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/SmallVector.h"
+
+namespace rtsl::continuation {
+
+namespace {
+
+class Repair {
+public:
+  Repair(mlir::Value value, const Redefinitions &redefinitions)
+      : value(value), redefinitions(redefinitions), home(value.getParentBlock()) {}
+
+  void run();
+
+private:
+  /// What is the value at the end of a block? Null: not known yet.
+  mlir::Value atEnd(mlir::Block *block);
+  void findLiveBlocks(llvm::ArrayRef<mlir::OpOperand *> uses);
+  void findReaching(llvm::ArrayRef<mlir::Block *> order);
+  void placeArguments(llvm::ArrayRef<mlir::Block *> order);
+  bool dropTrivialArgument(llvm::ArrayRef<mlir::Block *> order);
+
+  mlir::Value value;
+  const Redefinitions &redefinitions;
+  mlir::Block *home;
+  llvm::SmallPtrSet<mlir::Block *, 16> liveInto;
+  // What the value is at the beginning of a block: a definition, or the block itself, which merges
+  // several.
+  llvm::DenseMap<mlir::Block *, mlir::Value> reaching;
+  llvm::SmallPtrSet<mlir::Block *, 16> merges;
+  llvm::DenseMap<mlir::Block *, mlir::Value> mergeValues;
+};
+
+/// Blocks at whose beginning the value is read before it is defined anew.
+void Repair::findLiveBlocks(llvm::ArrayRef<mlir::OpOperand *> uses) {
+  llvm::SmallVector<mlir::Block *> worklist;
+  auto add = [&](mlir::Block *block) {
+    if (block != home && !redefinitions.count(block) && liveInto.insert(block).second)
+      worklist.push_back(block);
+  };
+  for (mlir::OpOperand *use : uses)
+    add(use->getOwner()->getBlock());
+  while (!worklist.empty())
+    for (mlir::Block *predecessor : worklist.pop_back_val()->getPredecessors())
+      add(predecessor);
+}
+
+mlir::Value Repair::atEnd(mlir::Block *block) {
+  if (auto redefined = redefinitions.find(block); redefined != redefinitions.end())
+    return redefined->second;
+  if (block == home)
+    return value;
+  return reaching.lookup(block);
+}
+
+/// Gives every block where two definitions may meet an argument.
+void Repair::findReaching(llvm::ArrayRef<mlir::Block *> order) {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (mlir::Block *block : order) {
+      if (!liveInto.contains(block) || merges.contains(block))
+        continue;
+      mlir::Value unique;
+      bool several = false;
+      for (mlir::Block *predecessor : block->getPredecessors()) {
+        mlir::Value incoming = atEnd(predecessor);
+        if (!incoming)
+          continue;
+        several |= unique && unique != incoming;
+        unique = incoming;
+      }
+      if (several) {
+        merges.insert(block);
+        unique = block->addArgument(value.getType(), value.getLoc());
+        mergeValues[block] = unique;
+      }
+      if (unique && reaching.lookup(block) != unique) {
+        reaching[block] = unique;
+        changed = true;
+      }
+    }
+  }
+}
+
+/// An argument that every predecessor gives the same definition, or the argument itself, is that
+/// definition.
+bool Repair::dropTrivialArgument(llvm::ArrayRef<mlir::Block *> order) {
+  for (mlir::Block *block : order) {
+    if (!merges.contains(block))
+      continue;
+    mlir::Value own = mergeValues[block];
+    mlir::Value unique;
+    bool several = false;
+    for (mlir::Block *predecessor : block->getPredecessors()) {
+      mlir::Value incoming = atEnd(predecessor);
+      if (incoming == own)
+        continue;
+      several |= unique && unique != incoming;
+      unique = incoming;
+    }
+    if (several || !unique)
+      continue;
+    for (auto &entry : reaching)
+      if (entry.second == own)
+        entry.second = unique;
+    merges.erase(block);
+    mergeValues.erase(block);
+    block->eraseArgument(llvm::cast<mlir::BlockArgument>(own).getArgNumber());
+    return true;
+  }
+  return false;
+}
+
+/// Hands the definitions that reach the predecessors to the arguments.
+void Repair::placeArguments(llvm::ArrayRef<mlir::Block *> order) {
+  for (mlir::Block *block : order) {
+    if (!merges.contains(block))
+      continue;
+    llvm::SmallPtrSet<mlir::Block *, 4> seen; // a predecessor is listed once an edge
+    for (mlir::Block *predecessor : block->getPredecessors()) {
+      if (!seen.insert(predecessor).second)
+        continue;
+      auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
+      for (unsigned i = 0; i < predecessor->getNumSuccessors(); ++i)
+        if (predecessor->getSuccessor(i) == block)
+          branch.getSuccessorOperands(i).append(atEnd(predecessor));
+    }
+  }
+}
+
+void Repair::run() {
+  llvm::SmallVector<mlir::OpOperand *> uses;
+  for (mlir::OpOperand &use : value.getUses())
+    uses.push_back(&use);
+  findLiveBlocks(uses);
+
+  llvm::ReversePostOrderTraversal<mlir::Block *> traversal(&home->getParent()->front());
+  llvm::SmallVector<mlir::Block *> order(traversal.begin(), traversal.end());
+  findReaching(order);
+  while (dropTrivialArgument(order))
+    ;
+  for (mlir::OpOperand *use : uses) {
+    mlir::Block *block = use->getOwner()->getBlock();
+    if (auto redefined = redefinitions.find(block); redefined != redefinitions.end())
+      use->set(redefined->second);
+    else if (block != home)
+      use->set(reaching.lookup(block));
+  }
+  placeArguments(order);
+}
+
+} // namespace
+
+void repairSsa(mlir::Value value, const Redefinitions &redefinitions) {
+  Repair(value, redefinitions).run();
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,125 @@
+//===- Steps.h - how a function is split at its traces --------------------===//
+//
+// One function a step, in the order in which Split.cpp calls them; each lies in the file that is
+// named here, and each is a pass of its own in rtsl-opt (Passes.h). docs/continuations.md shows
+// what each makes of a small shader.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/ir/Rtsl.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/IR/BuiltinOps.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rtsl::continuation {
+
+using mlir::func::FuncOp;
+
+/// The suspends of a function, in the order in which their blocks stand.
+llvm::SmallVector<ir::SuspendOp> suspendsOf(FuncOp function);
+
+/// The object of a method: it comes with the ray and is never saved. Null if the first argument is
+/// no reference.
+mlir::Value objectOf(FuncOp function);
+
+/// The functions of the module that trace, or that call one that does.
+llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module);
+
+//===----------------------------------------------------------------------===//
+// Before the cut
+//===----------------------------------------------------------------------===//
+
+/// InlineTracing.cpp: a call of a function that may trace becomes that function's body, or, where
+/// nothing follows and the object is the caller's own, a jump (`rtsl.tail` on the call). Fails with
+/// a message if such functions call each other in a circle.
+mlir::LogicalResult inlineTracingCalls(mlir::ModuleOp module);
+
+/// InsertSuspends.cpp: ends blocks at their traces.
+void insertSuspends(FuncOp function);
+
+/// FrameObjects.cpp: variables that are still in memory and live across a trace move to the frame.
+void moveVariablesToFrame(FuncOp function);
+
+/// TrimVectors.cpp: parts that are taken out of a vector behind a trace are taken out before it.
+void trimVectors(FuncOp function);
+
+//===----------------------------------------------------------------------===//
+// What is saved
+//===----------------------------------------------------------------------===//
+
+/// What happens to the values that are needed behind one trace.
+struct SuspendPlan {
+  ir::SuspendOp suspend;
+  llvm::SmallVector<mlir::Value> saved; // in program order
+  llvm::SmallVector<mlir::Value>
+      recomputed; // in program order; operands before what is made of them
+};
+
+struct RematerialiseOptions {
+  /// Save everything that can be saved; recompute addresses only. What is compared with.
+  bool onlyAddresses = false;
+};
+
+/// Rematerialise.cpp: decides what is saved and what is recomputed at each trace. Fails with a
+/// message if something can neither be saved nor recomputed.
+mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
+planContinuations(FuncOp function, const RematerialiseOptions &options);
+
+/// Recomputes behind each trace what the plan says. What is still live across it afterwards is what
+/// the plan saves.
+void rematerialise(FuncOp function, llvm::ArrayRef<SuspendPlan> plan);
+
+/// SaveLive.cpp: passes what is live across a suspend to the arguments of its resume block, by
+/// name.
+mlir::LogicalResult saveLive(FuncOp function);
+
+//===----------------------------------------------------------------------===//
+// Where it is saved
+//===----------------------------------------------------------------------===//
+
+/// A place in the frame.
+struct FrameSlot {
+  std::string name;
+  std::uint32_t offset = 0; // bytes
+  std::uint32_t size = 0;   // bytes; a bool's is that of the word which it is in
+  int bit = -1;             // of a bool
+  bool isObject = false;
+};
+
+struct FrameLayout {
+  std::vector<FrameSlot> slots; // by offset, then bit, then first use
+  std::uint32_t size = 0;       // bytes
+  /// No frame is smaller: the most that is alive at one trace.
+  std::uint32_t lowerBound = 0;
+};
+
+/// FrameLayout.cpp: gives each saved value and each frame object its place, and turns what suspends
+/// pass into loads and stores. The function gets `rtsl.frame_size` in bytes.
+FrameLayout layoutFrame(FuncOp function);
+
+//===----------------------------------------------------------------------===//
+// The cut and what follows
+//===----------------------------------------------------------------------===//
+
+/// SplitStates.cpp: replaces a function by its states, `@f.state0` for its beginning and one for
+/// each trace.
+mlir::FailureOr<llvm::SmallVector<FuncOp>> splitStates(FuncOp function);
+
+/// CleanStores.cpp: removes stores of what the slot already holds.
+void cleanStores(FuncOp state);
+
+/// SinkLoads.cpp: moves loads of the frame, and what is recomputed, to where they are used, never
+/// into a loop.
+void sinkLoads(FuncOp state);
+
+/// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in the order in which they
+/// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`,
+/// and for each exported function `f` that was split, `@f.first`, as a symbol `f_first`.
+mlir::LogicalResult makeDispatch(mlir::ModuleOp module);
+
+} // namespace rtsl::continuation

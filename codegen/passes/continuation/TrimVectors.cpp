@@ -1,0 +1,136 @@
+//===- TrimVectors.cpp - save only the components that are read -----------===//
+//
+//   %v = ...                                   %v = ...
+//   a trace                                    %x = vector.extract %v[0]
+//   %x = vector.extract %v[0]        ==>       a trace
+//   use %x                                     use %x
+//
+// If nothing but parts of a vector is read behind a trace, the parts are what is live across it.
+// Where the whole vector is needed too, the minimum cut sees that a part costs nothing to take out
+// again. So that parts are seen through arithmetic, an operation on vectors of whose result only
+// some components are read is first done on those alone.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Liveness.h"
+
+#include "mlir/Dialect/Arith/IR/Arith.h"
+#include "mlir/Dialect/Vector/IR/VectorOps.h"
+
+#include <map>
+
+namespace rtsl::continuation {
+
+namespace vector = mlir::vector;
+
+/// The constant component that an extract takes; -1 if it is not constant.
+static std::int64_t componentOf(vector::ExtractOp extract) {
+  if (extract.hasDynamicPosition() || extract.getStaticPosition().size() != 1)
+    return -1;
+  return extract.getStaticPosition().front();
+}
+
+static bool isComponentwise(mlir::Operation *op) {
+  return op->getNumResults() == 1 && op->getNumRegions() == 0 &&
+         (mlir::OpTrait::hasElementwiseMappableTraits(op) || llvm::isa<ir::ElementaryOp>(op)) &&
+         llvm::all_of(op->getOperandTypes(),
+                      [](mlir::Type type) { return llvm::isa<mlir::VectorType>(type); });
+}
+
+/// Does `op` for the components that are read alone, if these are not all.
+static bool narrow(mlir::Operation *op) {
+  if (!isComponentwise(op) || op->use_empty())
+    return false;
+  auto type = llvm::dyn_cast<mlir::VectorType>(op->getResult(0).getType());
+  if (!type)
+    return false;
+  std::map<std::int64_t, mlir::Value> components;
+  for (mlir::Operation *user : op->getUsers()) {
+    auto extract = llvm::dyn_cast<vector::ExtractOp>(user);
+    std::int64_t component = extract ? componentOf(extract) : -1;
+    if (component < 0)
+      return false;
+    components[component];
+  }
+  if (static_cast<std::int64_t>(components.size()) == type.getNumElements())
+    return false;
+
+  mlir::OpBuilder builder(op);
+  for (auto &[component, value] : components) {
+    llvm::SmallVector<mlir::Value> operands;
+    for (mlir::Value operand : op->getOperands())
+      operands.push_back(builder.createOrFold<vector::ExtractOp>(op->getLoc(), operand, component));
+    mlir::OperationState state(op->getLoc(), op->getName(), operands, {type.getElementType()},
+                               op->getAttrs());
+    state.propertiesAttr = op->getPropertiesAsAttribute();
+    value = builder.create(state)->getResult(0);
+  }
+  for (mlir::Operation *user : llvm::make_early_inc_range(op->getUsers())) {
+    user->getResult(0).replaceAllUsesWith(
+        components[componentOf(llvm::cast<vector::ExtractOp>(user))]);
+    user->erase();
+  }
+  op->erase();
+  return true;
+}
+
+/// Whether taking `op` out of its operand early may make less live: parts, and of a vector alone.
+static bool isPart(mlir::Operation &op) {
+  if (auto extract = llvm::dyn_cast<vector::ExtractOp>(op))
+    return componentOf(extract) >= 0;
+  auto shuffle = llvm::dyn_cast<vector::ShuffleOp>(op);
+  return shuffle && shuffle.getV1() == shuffle.getV2() &&
+         shuffle.getResultVectorType().getNumElements() <
+             shuffle.getV1VectorType().getNumElements();
+}
+
+void trimVectors(FuncOp function) {
+  if (suspendsOf(function).empty())
+    return;
+  llvm::SmallVector<mlir::Operation *> operations;
+  function.walk([&](mlir::Operation *op) { operations.push_back(op); });
+  for (mlir::Operation *op :
+       llvm::reverse(operations))          // users first: what they read is extracts then
+    if (!llvm::isa<vector::ExtractOp>(op)) // those go with their operand
+      narrow(op);
+
+  Liveness liveness(function);
+  liveness.compute();
+  llvm::BitVector acrossTraces = liveness.none();
+  for (ir::SuspendOp suspend : suspendsOf(function))
+    acrossTraces |= liveness.into(suspend.getResume());
+
+  for (mlir::Value whole : liveness.valuesOf(acrossTraces)) {
+    llvm::SmallVector<mlir::Operation *> parts; // in program order: uses have none
+    for (mlir::Block &block : function.getBody())
+      for (mlir::Operation &op : block)
+        if (isPart(op) && op.getOperand(0) == whole && &block != whole.getParentBlock())
+          parts.push_back(&op);
+    for (mlir::Operation *part : parts) {
+      // The same part that is there already, or that moved before.
+      mlir::Operation *same = nullptr;
+      for (mlir::Operation *user : whole.getUsers())
+        if (user != part && user->getBlock() == whole.getParentBlock() &&
+            user->getName() == part->getName() && user->getOperands() == part->getOperands() &&
+            user->getAttrs() == part->getAttrs() &&
+            user->getPropertiesAsAttribute() == part->getPropertiesAsAttribute())
+          same = user;
+      if (same) {
+        part->getResult(0).replaceAllUsesWith(same->getResult(0));
+        part->erase();
+      } else if (mlir::Operation *definition = whole.getDefiningOp()) {
+        part->moveAfter(definition);
+      } else {
+        part->moveBefore(&whole.getParentBlock()->front());
+      }
+    }
+  }
+  // A result of a trace comes first in its block; it may have been pushed down.
+  for (ir::SuspendOp suspend : suspendsOf(function))
+    for (mlir::Operation &op : *suspend.getResume())
+      if (llvm::isa<ir::TraceResultOp>(op)) {
+        op.moveBefore(&suspend.getResume()->front());
+        break;
+      }
+}
+
+} // namespace rtsl::continuation
