@@ -265,18 +265,29 @@ ExprPtr FunctionChecker::checkConditional(const ast::ConditionalExpr &expr) {
   return node;
 }
 
-std::unique_ptr<typed::Constant> FunctionChecker::requireConstant(const typed::Expr &init,
-                                                                  const std::string &what) {
+bool FunctionChecker::requireConstant(const typed::Expr &init, const std::string &what,
+                                      std::unique_ptr<typed::Constant> *value) {
+  if (init.type->isError())
+    return false;
   const typed::Expr *obstacle = nullptr;
-  if (std::optional<typed::Constant> value = evaluate(init, &obstacle))
-    return std::make_unique<typed::Constant>(std::move(*value));
-  if (init.type->isError() || !obstacle)
-    return nullptr;
+  if (std::optional<typed::Constant> folded = evaluate(init, &obstacle)) {
+    if (value)
+      *value = std::make_unique<typed::Constant>(std::move(*folded));
+    return true;
+  }
+  // A constant without a value that is known here will do, unless the value itself is asked for.
+  const typed::Expr *notConstant = nullptr;
+  if (isConstantExpression(init, &notConstant) && value)
+    return true;
+  if (notConstant)
+    obstacle = notConstant;
+  if (!obstacle)
+    return false;
   Diagnostic &diagnostic = diagnostics.report(Code::notConstant, obstacle->range, what);
   if (const auto *variable = dynCast<typed::VariableExpr>(obstacle))
     diagnostic.label(variable->variable->range,
                      "`" + variable->variable->name + "` is not constant");
-  return nullptr;
+  return false;
 }
 
 } // namespace rtsl

@@ -139,12 +139,18 @@ ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, 
   return node;
 }
 
+/// Constants of these types keep their name: a table of a thousand numbers is not copied to every
+/// use.
+static bool isAggregate(const Type *type) {
+  return type->is(TypeKind::Array) || type->is(TypeKind::Struct);
+}
+
 ExprPtr FunctionChecker::memberAccess(const typed::Member *member, SourceRange range,
                                       Access access) {
   if (member->type->isError())
     return errorExpr(range);
   if (member->isConst) {
-    if (member->constant && access == Access::Read)
+    if (member->constant && access == Access::Read && !isAggregate(member->type))
       return literal(member->type, range, *member->constant);
   } else if (member->access == ast::Access::Scratch) {
     if (access != Access::Read)
@@ -168,7 +174,7 @@ ExprPtr FunctionChecker::variableAccess(const typed::Variable *variable, SourceR
   mentioned.insert(variable);
   if (variable->type->isError())
     return errorExpr(range);
-  if (variable->constant && access == Access::Read)
+  if (variable->constant && access == Access::Read && !isAggregate(variable->type))
     return literal(variable->type, range, *variable->constant);
   auto node = makeExpr<typed::VariableExpr>(variable->type, range);
   node->variable = variable;

@@ -183,10 +183,9 @@ void Program::declareMember(ClassScope &scope, const ast::VariableDecl &declarat
     } else {
       if (!unsized)
         member->init = checker.checkInitializer(*declaration.init, member->type);
-      if (member->init && !member->init->type->isError())
-        member->constant =
-            checker.requireConstant(*member->init, "the value of `" + member->name + "`");
-      if (!member->constant)
+      if (!member->init ||
+          !checker.requireConstant(*member->init, "the value of `" + member->name + "`",
+                                   &member->constant))
         member->type = types.error;
     }
   } else if (declaration.init) {

@@ -4,10 +4,11 @@
 // functions are left to the code generator, which calls the same implementation as the shaders do.
 //
 //===----------------------------------------------------------------------===//
+#include "runtime/device/math/Elementary.h"
 #include "sema/ConstantFold.h"
 
 #include <algorithm>
-#include <cstring>
+#include <limits>
 
 namespace rtsl {
 
@@ -24,6 +25,47 @@ static float maximum(float x, float y) {
   return x < y ? y : x;
 }
 
+static std::optional<float> foldElementary1(Builtin builtin, float x) {
+  switch (builtin) {
+  case Builtin::Sin:
+    return device::sin(x);
+  case Builtin::Cos:
+    return device::cos(x);
+  case Builtin::Tan:
+    return device::tan(x);
+  case Builtin::Asin:
+    return device::asin(x);
+  case Builtin::Acos:
+    return device::acos(x);
+  case Builtin::Atan:
+    return device::atan(x);
+  case Builtin::Sinh:
+    return device::sinh(x);
+  case Builtin::Cosh:
+    return device::cosh(x);
+  case Builtin::Tanh:
+    return device::tanh(x);
+  case Builtin::Asinh:
+    return device::asinh(x);
+  case Builtin::Acosh:
+    return device::acosh(x);
+  case Builtin::Atanh:
+    return device::atanh(x);
+  case Builtin::Exp:
+    return device::exp(x);
+  case Builtin::Exp2:
+    return device::exp2(x);
+  case Builtin::Log:
+    return device::log(x);
+  case Builtin::Log2:
+    return device::log2(x);
+  case Builtin::InverseSqrt:
+    return device::inversesqrt(x);
+  default:
+    return std::nullopt;
+  }
+}
+
 static std::optional<float> foldFloat1(Builtin builtin, float x) {
   switch (builtin) {
   case Builtin::Radians:
@@ -33,7 +75,7 @@ static std::optional<float> foldFloat1(Builtin builtin, float x) {
   case Builtin::Abs:
     return std::fabs(x);
   case Builtin::Sign:
-    return x > 0.0f ? 1.0f : x < 0.0f ? -1.0f : 0.0f;
+    return x > 0.0f ? 1.0f : x < 0.0f ? -1.0f : x;
   case Builtin::Floor:
     return std::floor(x);
   case Builtin::Trunc:
@@ -43,13 +85,12 @@ static std::optional<float> foldFloat1(Builtin builtin, float x) {
   case Builtin::Fract:
     return x - std::floor(x);
   case Builtin::Round:
-    return std::round(x); // halves away from zero
   case Builtin::RoundEven:
     return std::nearbyint(x);
   case Builtin::Sqrt:
     return std::sqrt(x);
   default:
-    return std::nullopt;
+    return foldElementary1(builtin, x);
   }
 }
 
@@ -63,6 +104,10 @@ static std::optional<float> foldFloat2(Builtin builtin, float x, float y) {
     return maximum(x, y);
   case Builtin::Step:
     return y < x ? 0.0f : 1.0f;
+  case Builtin::Pow:
+    return device::pow(x, y);
+  case Builtin::Atan2:
+    return device::atan2(x, y);
   default:
     return std::nullopt;
   }
@@ -74,6 +119,10 @@ static std::optional<float> foldFloat3(Builtin builtin, float x, float y, float 
     return minimum(maximum(x, y), z);
   case Builtin::Mix:
     return x * (1.0f - z) + y * z;
+  case Builtin::SmoothStep: {
+    const float t = minimum(maximum((z - x) / (y - x), 0.0f), 1.0f);
+    return (t * t) * (3.0f - 2.0f * t);
+  }
   case Builtin::Fma:
     return std::fma(x, y, z);
   default:
@@ -104,6 +153,19 @@ static std::optional<Scalar> foldInteger(Builtin builtin, bool isSigned, const S
   }
 }
 
+/// By squaring, from the lowest bit of the exponent on; the reciprocal at the end.
+static float foldIntegerPower(float x, std::int32_t exponent) {
+  float result = 1.0f, base = x;
+  for (std::uint32_t rest = exponent < 0 ? 0u - static_cast<std::uint32_t>(exponent)
+                                         : static_cast<std::uint32_t>(exponent);
+       rest != 0; rest >>= 1) {
+    if (rest & 1)
+      result = result * base;
+    base = base * base;
+  }
+  return exponent < 0 ? 1.0f / result : result;
+}
+
 static std::optional<Scalar> foldComponent(Builtin builtin, TypeKind kind, const Scalar *v,
                                            std::size_t count) {
   switch (builtin) {
@@ -112,7 +174,8 @@ static std::optional<Scalar> foldComponent(Builtin builtin, TypeKind kind, const
   case Builtin::IsInf:
     return makeBool(std::isinf(v[0].f));
   case Builtin::FloatBitsToInt:
-  case Builtin::FloatBitsToUint:
+  case Builtin::FloatBitsToUint: // there is one NaN to see
+    return std::isnan(v[0].f) ? makeUInt(0x7fc00000u) : v[0];
   case Builtin::IntBitsToFloat:
   case Builtin::UintBitsToFloat:
     return v[0]; // the same 32 bits
@@ -147,6 +210,8 @@ static std::optional<Scalar> foldComponent(Builtin builtin, TypeKind kind, const
   default:
     break;
   }
+  if (builtin == Builtin::PowInt)
+    return makeFloat(foldIntegerPower(v[0].f, v[1].i));
   if (kind == TypeKind::Int || kind == TypeKind::UInt)
     return foldInteger(builtin, kind == TypeKind::Int, v, count);
   if (kind != TypeKind::Float)
@@ -158,6 +223,64 @@ static std::optional<Scalar> foldComponent(Builtin builtin, TypeKind kind, const
   if (!result)
     return std::nullopt;
   return makeFloat(*result);
+}
+
+static float foldDot(const std::vector<Scalar> &a, const std::vector<Scalar> &b) {
+  float sum = a[0].f * b[0].f;
+  for (std::size_t i = 1; i != a.size(); ++i)
+    sum = sum + a[i].f * b[i].f;
+  return sum;
+}
+
+/// a b - c d with an error of 1.5 ulp (Kahan; Jeannerod, Louvet and Muller 2013).
+static float differenceOfProducts(float a, float b, float c, float d) {
+  const float product = c * d;
+  const float error = std::fma(-c, d, product);
+  return std::fma(a, b, -product) + error;
+}
+
+/// Geometric functions, where no scaling against overflow is called for.
+static std::optional<Constant> foldGeometric(Builtin builtin, const std::vector<Constant> &args) {
+  const std::vector<Scalar> &a = args[0].scalars;
+  const std::vector<Scalar> &b = args[args.size() > 1 ? 1 : 0].scalars;
+  // The sum of squares neither overflows nor loses digits that count.
+  auto isGoodSquare = [](float square) {
+    return square >= 0x1p-96f && square <= std::numeric_limits<float>::max();
+  };
+  Constant result;
+  switch (builtin) {
+  case Builtin::Dot:
+    return Constant{{makeFloat(foldDot(a, b))}};
+  case Builtin::Cross:
+    for (std::size_t i = 0; i != 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      result.scalars.push_back(makeFloat(differenceOfProducts(a[j].f, b[k].f, a[k].f, b[j].f)));
+    }
+    return result;
+  case Builtin::Length:
+  case Builtin::Distance: {
+    std::vector<Scalar> v = a;
+    for (std::size_t i = 0; builtin == Builtin::Distance && i != v.size(); ++i)
+      v[i] = makeFloat(a[i].f - b[i].f);
+    if (v.size() == 1)
+      return Constant{{makeFloat(std::fabs(v[0].f))}};
+    const float square = foldDot(v, v);
+    if (!isGoodSquare(square))
+      return std::nullopt;
+    return Constant{{makeFloat(std::sqrt(square))}};
+  }
+  case Builtin::Normalize: {
+    const float square = foldDot(a, a);
+    if (a.size() == 1 || !isGoodSquare(square))
+      return std::nullopt;
+    const float length = std::sqrt(square);
+    for (const Scalar &component : a)
+      result.scalars.push_back(makeFloat(component.f / length));
+    return result;
+  }
+  default:
+    return std::nullopt;
+  }
 }
 
 /// Functions of whole vectors and matrices.
@@ -228,6 +351,9 @@ std::optional<Constant> evaluateBuiltin(const typed::BuiltinExpr &call,
       return std::nullopt;
   if (std::optional<Constant> whole = foldWhole(call, args))
     return whole;
+  if (!args.empty())
+    if (std::optional<Constant> geometric = foldGeometric(call.builtin, args))
+      return geometric;
   if (args.empty() || args.size() > 3 || call.type->isMatrix() || !call.type->scalar())
     return std::nullopt;
   // The arguments beside `mix`'s selector have one scalar type; scalars beside vectors count for

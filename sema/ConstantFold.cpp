@@ -4,6 +4,7 @@
 #include "sema/Casting.h"
 #include "sema/TypeProperties.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace rtsl {
@@ -455,6 +456,76 @@ std::optional<std::int64_t> evaluateInteger(const typed::Expr &expr, const typed
     return std::nullopt;
   return expr.type->is(TypeKind::Int) ? std::int64_t(value->scalars[0].i)
                                       : std::int64_t(value->scalars[0].u);
+}
+
+/// Functions whose result depends on nothing but their arguments, and that write to none of them.
+static bool isPure(typed::Builtin builtin) {
+  using typed::Builtin;
+  switch (builtin) {
+  case Builtin::Modf:
+  case Builtin::Frexp:
+  case Builtin::UaddCarry:
+  case Builtin::UsubBorrow:
+  case Builtin::UmulExtended:
+  case Builtin::ImulExtended:
+    return false;
+  default:
+    return builtin < Builtin::Rand || builtin == Builtin::Luminance;
+  }
+}
+
+bool isConstantExpression(const typed::Expr &expr, const typed::Expr **obstacle) {
+  auto all = [&](const std::vector<typed::ExprPtr> &exprs) {
+    return std::all_of(exprs.begin(), exprs.end(), [&](const typed::ExprPtr &each) {
+      return isConstantExpression(*each, obstacle);
+    });
+  };
+  auto both = [&](const typed::ExprPtr &a, const typed::ExprPtr &b) {
+    return isConstantExpression(*a, obstacle) && isConstantExpression(*b, obstacle);
+  };
+  switch (expr.kind) {
+  case typed::ExprKind::Literal:
+    return true;
+  case typed::ExprKind::Variable: {
+    const typed::Variable &variable = *cast<typed::VariableExpr>(expr).variable;
+    if (variable.constant || variable.kind == typed::Variable::Kind::Global)
+      return true;
+    break;
+  }
+  case typed::ExprKind::Member:
+    if (cast<typed::MemberExpr>(expr).member->isConst)
+      return true;
+    break;
+  case typed::ExprKind::Field:
+    return isConstantExpression(*cast<typed::FieldExpr>(expr).base, obstacle);
+  case typed::ExprKind::Swizzle:
+    return isConstantExpression(*cast<typed::SwizzleExpr>(expr).base, obstacle);
+  case typed::ExprKind::Index:
+    return both(cast<typed::IndexExpr>(expr).base, cast<typed::IndexExpr>(expr).index);
+  case typed::ExprKind::Unary:
+    return isConstantExpression(*cast<typed::UnaryExpr>(expr).operand, obstacle);
+  case typed::ExprKind::Binary:
+    return both(cast<typed::BinaryExpr>(expr).left, cast<typed::BinaryExpr>(expr).right);
+  case typed::ExprKind::Conditional: {
+    const auto &conditional = cast<typed::ConditionalExpr>(expr);
+    return isConstantExpression(*conditional.condition, obstacle) &&
+           both(conditional.whenTrue, conditional.whenFalse);
+  }
+  case typed::ExprKind::Convert:
+    return isConstantExpression(*cast<typed::ConvertExpr>(expr).operand, obstacle);
+  case typed::ExprKind::Construct:
+    return all(cast<typed::ConstructExpr>(expr).args);
+  case typed::ExprKind::Builtin: {
+    const auto &call = cast<typed::BuiltinExpr>(expr);
+    if (isPure(call.builtin))
+      return all(call.args);
+    break;
+  }
+  default:
+    break;
+  }
+  *obstacle = &expr;
+  return false;
 }
 
 } // namespace rtsl

@@ -19,6 +19,11 @@ namespace rtsl {
 std::optional<typed::Constant> evaluate(const typed::Expr &expr,
                                         const typed::Expr **obstacle = nullptr);
 
+/// Is `expr` constant, whether or not its value is known here? What a color is, and a few
+/// functions, only the code generator knows. If not, `obstacle` is the innermost part that is not
+/// constant.
+bool isConstantExpression(const typed::Expr &expr, const typed::Expr **obstacle);
+
 /// The value of a constant int or uint expression.
 std::optional<std::int64_t> evaluateInteger(const typed::Expr &expr,
                                             const typed::Expr **obstacle = nullptr);

@@ -40,9 +40,11 @@ public:
   /// `init`.
   const Type *deduceUnsized(const ast::VariableDecl &declaration, typed::ExprPtr &init);
 
-  /// Folds `init` if a constant is required there; reports what is not constant.
-  std::unique_ptr<typed::Constant> requireConstant(const typed::Expr &init,
-                                                   const std::string &what);
+  /// Reports what is not constant in `init`, and says whether it is. With `value`, a constant will
+  /// do whose value only the target knows (it may hold colors); then `value` stays null. Without,
+  /// the value itself is needed.
+  bool requireConstant(const typed::Expr &init, const std::string &what,
+                       std::unique_ptr<typed::Constant> *value = nullptr);
 
 private:
   /// What the surroundings do with the thing that an expression names.

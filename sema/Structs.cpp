@@ -151,9 +151,8 @@ void Program::checkConstant(GlobalConstant &entry) {
     variable.init = checker.checkInitializer(*declaration.init, type);
   if (!variable.init || variable.init->type->isError() || !declaration.isConst)
     return;
-  variable.constant =
-      checker.requireConstant(*variable.init, "the value of `" + variable.name + "`");
-  if (variable.constant)
+  if (checker.requireConstant(*variable.init, "the value of `" + variable.name + "`",
+                              &variable.constant))
     variable.type = type;
 }
 

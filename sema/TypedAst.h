@@ -59,7 +59,7 @@ struct Variable {
   const Type *type = nullptr;
   bool isConst = false;
   ast::Direction direction = ast::Direction::In; // parameters
-  std::unique_ptr<Constant> constant;            // const with a constant initialiser: uses are folded to literals
+  std::unique_ptr<Constant> constant;            // const whose value is known: uses are literals, but of arrays and structs
   ExprPtr init;                                  // globals: always a constant expression
   SourceRange range;                             // of the name
   std::string comment;

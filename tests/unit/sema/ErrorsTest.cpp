@@ -1,0 +1,82 @@
+//===- ErrorsTest.cpp - every message, at its exact place -----------------===//
+//
+// The texts stand in tests/language/errors. Adding a case there adds a test here.
+//
+//===----------------------------------------------------------------------===//
+#include "Harness.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+
+using namespace rtsl;
+using namespace rtsl::test;
+
+namespace {
+
+struct NamedCase {
+  std::string name;
+  Case content;
+};
+
+std::vector<NamedCase> allCases() {
+  std::vector<NamedCase> cases;
+  for (const std::string &path : languageFiles("errors", ".rtsl"))
+    for (Case &each : splitCases(readFile(path)))
+      cases.push_back({std::filesystem::path(path).stem().string() + "_" + testName(each.title),
+                       std::move(each)});
+  return cases;
+}
+
+class Errors : public testing::TestWithParam<NamedCase> {};
+
+TEST_P(Errors, AreReportedWhereTheyAre) {
+  const std::string &text = GetParam().content.text;
+  EXPECT_EQ(withActualMessages(text), text) << render(*checkText(text));
+}
+
+INSTANTIATE_TEST_SUITE_P(Language, Errors, testing::ValuesIn(allCases()),
+                         [](const testing::TestParamInfo<NamedCase> &param) {
+                           return param.param.name;
+                         });
+
+// Codes that no text of reasonable length can provoke; LimitsTest.cpp does.
+const char *const provokedByLimitsTest[] = {"E0606", "E0608", "E0609", "E0611"};
+
+TEST(Errors, EveryMessageOfSemaHasATest) {
+  std::string expectations;
+  for (const std::string &path : languageFiles("errors", ".rtsl"))
+    expectations += readFile(path);
+  static const char *const numbers[] = {
+#define RTSL_DIAGNOSTIC(id, number, severity, message) #number,
+#include "frontend/DiagnosticCodes.def"
+  };
+  for (const char *number : numbers) {
+    const bool isSemas = std::strlen(number) == 5 &&
+                         (number[0] == 'E' ? number[1] == '0' : number[1] == '2') &&
+                         number[2] >= '2' && number[2] <= '6';
+    bool elsewhere = false;
+    for (const char *other : provokedByLimitsTest)
+      elsewhere |= std::strcmp(number, other) == 0;
+    if (isSemas && !elsewhere) {
+      EXPECT_NE(expectations.find(std::string("^ ") + number + " "), std::string::npos)
+          << number << " has no test in tests/language/errors";
+    }
+  }
+}
+
+// `RTSL_RENEW_GOLDEN=1` rewrites the expectations in place; what changed is then read as a
+// difference in version control.
+TEST(Errors, AreRenewedOnRequest) {
+  if (!renewing())
+    GTEST_SKIP() << "only with RTSL_RENEW_GOLDEN=1";
+  for (const std::string &path : languageFiles("errors", ".rtsl")) {
+    std::string renewed;
+    for (const Case &each : splitCases(readFile(path)))
+      renewed += "//--- " + each.title + "\n" + withActualMessages(each.text);
+    writeFile(path, renewed);
+  }
+}
+
+} // namespace

@@ -1,0 +1,196 @@
+//===- LimitsTest.cpp - long chains and deep nesting ----------------------===//
+//
+// What no author writes but a generator may: it is checked or refused, in reasonable time and
+// without overflowing the stack.
+//
+//===----------------------------------------------------------------------===//
+#include "Harness.h"
+
+#include "sema/Program.h"
+#include "sema/TypeProperties.h"
+
+#include <gtest/gtest.h>
+
+using namespace rtsl;
+using namespace rtsl::test;
+
+namespace {
+
+std::string repeat(unsigned count, const std::string &text) {
+  std::string result;
+  for (unsigned i = 0; i != count; ++i)
+    result += text;
+  return result;
+}
+
+/// Replaces every `#` by a number and every `@` by the number after it.
+std::string numbered(unsigned count, const std::string &pattern) {
+  std::string result;
+  for (unsigned i = 0; i != count; ++i)
+    for (char c : pattern)
+      result += c == '#' ? std::to_string(i) : c == '@' ? std::to_string(i + 1) : std::string(1, c);
+  return result;
+}
+
+TEST(Limits, ChainsOfOperatorsUpToALimit) {
+  EXPECT_EQ(render(*checkText("float f(float x) { return x" + repeat(200, " + x") + "; }")), "");
+}
+
+TEST(Limits, TooDeepTreesAreBuiltByHandAndRefused) {
+  // The parser has limits of its own; sema is given a tree that is deeper than its own limit all
+  // the same.
+  SourceManager sources;
+  Diagnostics diagnostics(sources);
+  const FileId file = sources.add("deep.rtsl", std::string(64, ' '));
+  const SourceRange range{file, 0, 8};
+  auto number = [&] {
+    auto literal = std::make_unique<ast::IntLiteral>();
+    literal->value = 1;
+    literal->spelling = "1";
+    literal->range = range;
+    return literal;
+  };
+  auto chain = [&](unsigned length) {
+    ast::ExprPtr expr = number();
+    for (unsigned i = 0; i != length; ++i) {
+      auto sum = std::make_unique<ast::BinaryExpr>();
+      sum->op = ast::BinaryOp::Add;
+      sum->left = std::move(expr);
+      sum->right = number();
+      sum->range = range;
+      expr = std::move(sum);
+    }
+    return expr;
+  };
+  auto constant = [&](const std::string &name, ast::ExprPtr value) {
+    ast::VariableDecl declaration;
+    declaration.isConst = true;
+    declaration.name = {name, range};
+    declaration.type.name = {"int", range};
+    declaration.type.range = range;
+    declaration.init = std::move(value);
+    declaration.range = range;
+    return declaration;
+  };
+  ast::TranslationUnit unit;
+  unit.file = file;
+  unit.constants.push_back(constant("good", chain(maxTreeDepth - 10)));
+  unit.constants.push_back(constant("bad", chain(maxTreeDepth + 10)));
+  ast::ExprPtr nested = number();
+  for (unsigned i = 0; i != maxRecursion + 10; ++i) {
+    auto minus = std::make_unique<ast::UnaryExpr>();
+    minus->op = ast::UnaryOp::BitNot;
+    minus->operand = std::move(nested);
+    minus->range = {file, 0, 20 + i % 7};
+    nested = std::move(minus);
+  }
+  unit.constants.push_back(constant("nested", std::move(nested)));
+  auto module = check({&unit}, {}, diagnostics);
+  ASSERT_EQ(diagnostics.all().size(), 2u);
+  EXPECT_EQ(diagnostics.all()[0].code, Code::expressionTooDeep);
+  EXPECT_EQ(diagnostics.all()[1].code, Code::expressionTooDeep);
+  ASSERT_EQ(module->constants.size(), 3u);
+  ASSERT_TRUE(module->constants[0]->constant);
+  EXPECT_EQ(module->constants[0]->constant->scalars[0].i, static_cast<int>(maxTreeDepth) - 9);
+  EXPECT_FALSE(module->constants[1]->constant);
+}
+
+TEST(Limits, TooDeepStatementsAreRefused) {
+  SourceManager sources;
+  Diagnostics diagnostics(sources);
+  const FileId file = sources.add("deep.rtsl", std::string(64, ' '));
+  const SourceRange range{file, 0, 8};
+  ast::TranslationUnit unit;
+  unit.file = file;
+  auto function = [&](const std::string &name, ast::StmtPtr inner) {
+    ast::FunctionDecl declaration;
+    declaration.name = {name, range};
+    declaration.returnType.name = {"void", range};
+    declaration.body = std::make_unique<ast::CompoundStmt>();
+    declaration.body->body.push_back(std::move(inner));
+    return declaration;
+  };
+  ast::StmtPtr blocks = std::make_unique<ast::CompoundStmt>();
+  for (unsigned i = 0; i != maxRecursion + 10; ++i) {
+    auto outer = std::make_unique<ast::CompoundStmt>();
+    outer->body.push_back(std::move(blocks));
+    outer->range = {file, 0, 9};
+    blocks = std::move(outer);
+  }
+  unit.functions.push_back(function("blocks", std::move(blocks)));
+  ast::StmtPtr branches;
+  for (unsigned i = 0; i != maxRecursion + 10; ++i) {
+    auto outer = std::make_unique<ast::IfStmt>();
+    auto condition = std::make_unique<ast::BoolLiteral>();
+    condition->range = range;
+    outer->condition = std::move(condition);
+    outer->thenStmt = std::make_unique<ast::CompoundStmt>();
+    outer->elseStmt = std::move(branches);
+    outer->range = {file, 0, 10};
+    branches = std::move(outer);
+  }
+  unit.functions.push_back(function("branches", std::move(branches)));
+  check({&unit}, {}, diagnostics);
+  ASSERT_EQ(diagnostics.all().size(), 2u);
+  EXPECT_EQ(diagnostics.all()[0].code, Code::statementTooDeep);
+  EXPECT_EQ(diagnostics.all()[1].code, Code::statementTooDeep);
+}
+
+TEST(Limits, StructsNestToALimit) {
+  const std::string flat = "struct S0 { float x; };\n";
+  EXPECT_EQ(checkText(flat + numbered(60, "struct S@ { S# inner; };\n"))->numbers(), "");
+  const std::unique_ptr<Checked> deep =
+      checkText(flat + numbered(maxTypeNesting + 5, "struct S@ { S# inner; };\n"));
+  EXPECT_EQ(deep->numbers().substr(0, 5), "E0606");
+}
+
+TEST(Limits, AThousandStructsInAChainDoNotOverflow) {
+  const std::unique_ptr<Checked> deep =
+      checkText("struct S0 { float x; };\n" + numbered(5000, "struct S@ { S# inner; };\n"));
+  EXPECT_TRUE(deep->diagnostics.hasErrors());
+}
+
+TEST(Limits, ArraysNestToALimit) {
+  EXPECT_EQ(checkText("void f() { float x" + repeat(maxTypeNesting + 1, "[1]") + "; }")->numbers(),
+            "E0606");
+}
+
+TEST(Limits, ConstantsThatComeInOrderMayDependOnOneAnother) {
+  EXPECT_EQ(
+      checkText("const int c0 = 1;\n" + numbered(3000, "const int c@ = c# + 1;\n"))->numbers(), "");
+}
+
+TEST(Limits, ConstantsInTheWrongOrderUpToALimit) {
+  const std::string last = "const int c1000 = 1;\n";
+  const std::unique_ptr<Checked> checked =
+      checkText(numbered(1000, "const int c# = c@ + 1;\n") + last);
+  EXPECT_NE(checked->numbers().find("E0611"), std::string::npos);
+}
+
+TEST(Limits, TenThousandClassesInAChain) {
+  const std::unique_ptr<Checked> checked = checkText(
+      "class C0 : rt_Light { public float power; };\n" + numbered(10000, "class C@ : C# { };\n") +
+      "class Last : C10000 { void illumination() { rt_LightColor = color(power); } };\n");
+  EXPECT_EQ(render(*checked), "");
+  EXPECT_TRUE(checked->module->findClass("Last")->derivesFrom(checked->module->findClass("C0")));
+  EXPECT_EQ(checked->module->findClass("Last")->root, "rt_Light");
+}
+
+TEST(Limits, TenThousandFunctionsInAChain) {
+  const std::unique_ptr<Checked> checked =
+      checkText("float f0() { return 1.0; }\n" + numbered(10000, "float f@() { return f#(); }\n"));
+  EXPECT_EQ(render(*checked), "");
+}
+
+TEST(Limits, ManyErrorsInOneRun) {
+  const std::unique_ptr<Checked> checked = checkText("void f() {\n" + repeat(50, "  x;\n") + "}\n");
+  EXPECT_EQ(checked->diagnostics.errorCount(), 50u);
+}
+
+TEST(Limits, ABodyWithManyVariables) {
+  EXPECT_EQ(
+      checkText("void f() {\n" + numbered(3000, "  float x# = 1.0; x#++;\n") + "}\n")->numbers(),
+      "");
+}
+
+} // namespace
