@@ -12,7 +12,7 @@ namespace rtsl::device {
 namespace detail {
 
 /// Relative error of fastAngle(). roundsSafely() would bear 2^-53.
-inline constexpr double arcTangent2Bound = 0x1p-56;
+inline constexpr double arcTangent2Bound = 0x1p-60;
 
 /// The angle of (x, y), or of (-x, y) if `behind`, for finite x, y >= 0 that are not both zero.
 inline Double2 fastAngle(double y, double x, bool behind) {

@@ -1,7 +1,7 @@
 // pow.
 //
-//     x^y = e^(y ln x), with ln x to 2^-66 so that the exponent, which may be as large as 104, is
-//     good to 2^-59.
+//     x^y = e^(y ln x), with ln x to 2^-65 so that the exponent, which may be as large as 104, is
+//     good to 2^-58.
 //
 // Error bound of the fast path: see docs/elementary-functions.md. Where the bound does not decide
 // the rounding, x^y is either exactly a midpoint between floats, which exactPower() finds out, or
@@ -18,7 +18,7 @@ namespace detail {
 /// Relative error of e^fastPowerExponent(). roundsSafely() would bear 2^-53.
 inline constexpr double powerBound = 0x1p-57;
 
-/// ln(x) for a positive float x, relative error below 2^-66. Unlike logarithm(), the square term is
+/// ln(x) for a positive float x, relative error below 2^-65. Unlike logarithm(), the square term is
 /// a double-double, too.
 inline Double2 logarithmForPower(double x) {
   LogarithmReduction reduced = reduceLogarithm({x, 0.0});
@@ -74,7 +74,7 @@ inline bool exactPower(double x, double y, double &result) {
   return true;
 }
 
-/// y ln(x), relative error below 2^-66.
+/// y ln(x), relative error below 2^-65.
 inline Double2 fastPowerExponent(double x, double y) {
   Double2 logarithm = logarithmForPower(x);
   Double2 exponent = twoProduct(y, logarithm.hi);

@@ -55,8 +55,8 @@ struct Comparison {
 
 class DeviceTest {
 public:
-  DeviceTest(const std::string &ptx, const Options &options)
-      : module(ptx), options(options), results(chunkSize),
+  DeviceTest(const std::string &ptx, const Options &chosen)
+      : module(ptx), options(chosen), results(chunkSize),
         deviceResults(module.allocate(chunkSize * sizeof(float))) {}
 
   /// Chunk c of n starts with argument number c 2^32 / n.

@@ -7,11 +7,12 @@ namespace rtsl::elementary {
 namespace {
 
 constexpr double decisive = 0x1p-42;
+constexpr mpfr_exp_t smallestExponent = -148; // binary32's subnormal numbers, in MPFR's convention
 
 } // namespace
 
 Oracle::Oracle() {
-  mpfr_set_emin(-148); // binary32, subnormal numbers included, in MPFR's convention
+  mpfr_set_emin(smallestExponent);
   mpfr_set_emax(128);
   mpfr_inits2(24, first, second, result, static_cast<mpfr_ptr>(nullptr));
   mpfr_init2(precise, 200);
@@ -23,6 +24,7 @@ Oracle::~Oracle() {
 }
 
 double Oracle::distanceToMidpoint(const Unary &function, float x) {
+  mpfr_set_emin(-1000); // the distance may be far below the floats
   mpfr_set_flt(first, x, MPFR_RNDN);
   function.exact(precise, first, MPFR_RNDN);
   mpfr_abs(precise, precise, MPFR_RNDN);
@@ -31,7 +33,9 @@ double Oracle::distanceToMidpoint(const Unary &function, float x) {
   mpfr_nextabove(midpoint);
   double magnitude = mpfr_get_d(precise, MPFR_RNDN);
   mpfr_sub(precise, precise, midpoint, MPFR_RNDN);
-  return std::fabs(mpfr_get_d(precise, MPFR_RNDN)) / magnitude;
+  double distance = std::fabs(mpfr_get_d(precise, MPFR_RNDN));
+  mpfr_set_emin(smallestExponent);
+  return distance / magnitude;
 }
 
 template <typename Evaluate>

@@ -122,7 +122,8 @@ Report sweep(const Unary &function, const SweepOptions &options) {
         float x = floatOf(static_cast<std::uint32_t>(number));
         std::uint64_t askedBefore = oracle.timesAsked();
         check(function, options.testSystem, oracle, report, x);
-        if (options.hardest > 0 && oracle.timesAsked() != askedBefore)
+        if (options.hardest > 0 && oracle.timesAsked() != askedBefore &&
+            std::isnormal(function.ours(x)))
           report.hardest.push_back({oracle.distanceToMidpoint(function, x), x});
       },
       [&](Oracle &oracle, Report &report) {

@@ -14,16 +14,28 @@ inline constexpr Double2 ln2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 /// 1/ln(2).
 inline constexpr Double2 inverseLn2 = {0x1.71547652b82fep+0, 0x1.777d0ffda0d24p-56};
 
-/// pi/2 = the sum of three doubles. The first is a multiple of 2^-33: its product with an integer below 2^19 is exact.
-inline constexpr double halfPiParts[3] = {0x1.921fb5448p+0, -0x1.e973dcb3b399dp-35, -0x1.d1fc8f8cbb5bfp-89};
+/// pi/2 = the sum of three doubles. The first is a multiple of 2^-33: its product with an integer
+/// below 2^19 is exact.
+inline constexpr double halfPiParts[3] = {
+    0x1.921fb5448p+0,
+    -0x1.e973dcb3b399dp-35,
+    -0x1.d1fc8f8cbb5bfp-89,
+};
 inline constexpr double twoOverPi = 0x1.45f306dc9c883p-1;
 
-/// ln(2) = the sum of three doubles. The first is a multiple of 2^-42: its product with a binary exponent is exact.
-inline constexpr double ln2Parts[3] = {0x1.62e42fefa38p-1, 0x1.ef35793c7673p-45, 0x1.f97b57a079a19p-103};
+/// ln(2) = the sum of three doubles. The first is a multiple of 2^-42: its product with a binary
+/// exponent is exact.
+inline constexpr double ln2Parts[3] = {
+    0x1.62e42fefa38p-1,
+    0x1.ef35793c7673p-45,
+    0x1.f97b57a079a19p-103,
+};
 
-/// 64 zero bits and then the first 256 bits of the binary fraction of 2/pi, most significant word first.
+/// 64 zero bits and then the first 256 bits of the binary fraction of 2/pi, most significant word
+/// first.
 inline constexpr uint64_t twoOverPiBits[5] = {
     0x0000000000000000, 0xa2f9836e4e441529, 0xfc2757d1f534ddc0,
-    0xdb6295993c439041, 0xfe5163abdebbc561};
+    0xdb6295993c439041, 0xfe5163abdebbc561,
+};
 
 } // namespace rtsl::device::detail

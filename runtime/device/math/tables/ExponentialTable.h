@@ -10,8 +10,13 @@ struct ExponentialEntry {
 
 inline constexpr int exponentialTableSize = 64;
 
-/// ln(2)/64 = the sum of three doubles. The first is a multiple of 2^-44: its product with an integer below 2^16 is exact.
-inline constexpr double exponentialStep[3] = {0x1.62e42fefap-7, 0x1.cf79abc9e3b3ap-46, -0x1.ff0342542fc33p-100};
+/// ln(2)/64 = the sum of three doubles. The first is a multiple of 2^-44: its product with an
+/// integer below 2^16 is exact.
+inline constexpr double exponentialStep[3] = {
+    0x1.62e42fefap-7,
+    0x1.cf79abc9e3b3ap-46,
+    -0x1.ff0342542fc33p-100,
+};
 
 inline constexpr ExponentialEntry exponentialTable[exponentialTableSize] = {
     {0x1p+0, 0.0},

@@ -3,8 +3,9 @@
 
 namespace rtsl::device::detail {
 
-/// For one cell of [11/16, 11/8): a short number `inverse` near 1/m for all m of the cell, and -ln(inverse) = hi + lo, where hi
-/// is a multiple of 2^-42 like ln2Parts[0], so that hi + k * ln2Parts[0] is exact for every exponent k. The cells either side of 1 have inverse = 1.
+/// For one cell of [11/16, 11/8): a number `inverse` of 13 bits near 1/m for all m of the cell, and
+/// -ln(inverse) = hi + lo, where hi is a multiple of 2^-42 like ln2Parts[0], so that
+/// hi + k * ln2Parts[0] is exact for every exponent k. The cells either side of 1 have inverse = 1.
 struct LogarithmEntry {
   double inverse, hi, lo;
 };
