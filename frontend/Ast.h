@@ -31,7 +31,7 @@ struct ArrayDimension {
   SourceRange range;
 };
 
-/// A type as spelled: `vec3`, `Sphere`, `float[3][2]`. Dimensions stand in source order.
+/// A type as spelled: `vec3`, `Sphere`, `float[3][2]`. The outermost dimension comes first.
 struct TypeName {
   Name name;
   std::vector<ArrayDimension> dimensions;
@@ -169,7 +169,7 @@ struct VariableDecl {
   SourceRange accessRange;
   bool isConst = false;
   Direction direction = Direction::In; // parameters only
-  TypeName type;                       // dimensions behind the name are appended to those behind the type
+  TypeName type;                       // dimensions behind the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
   Name name;                           // empty text: an unnamed parameter
   ExprPtr init;                        // null: none
   SourceRange range;

@@ -1,0 +1,289 @@
+//===- AstDeclarations.cpp - parse tree to syntax tree: declarations ------===//
+#include "frontend/AstBuilder.h"
+
+namespace rtsl {
+
+using namespace ast;
+
+void AstBuilder::addItem(Parser::FileItemContext *item) {
+  if (auto *import = item->importDeclaration()) {
+    addImport(import);
+  } else if (auto *declared = item->structDeclaration()) {
+    addStruct(declared);
+  } else if (auto *declared = item->classDeclaration()) {
+    addClass(declared);
+  } else if (auto *declaration = item->declaration()) {
+    if (hasFileClass) {
+      ClassDecl &owner = unit->classes.back();
+      addDeclaration(declaration, Place::Member, owner.members, &owner.functions);
+      owner.range.end = range(declaration).end;
+    } else {
+      addDeclaration(declaration, Place::File, unit->constants, &unit->functions);
+    }
+  }
+}
+
+/// `class Name : Base;` takes all that follows; what cannot be a member is reported.
+void AstBuilder::checkFollowsFileClass(SourceRange where, const char *what) {
+  if (!hasFileClass)
+    return;
+  const ClassDecl &owner = unit->classes.back();
+  diagnostics.report(Code::fileFormNotAlone, where, owner.name.text, owner.base.text, what)
+      .label(owner.name.range, "begins here")
+      .note(fmt::format("a file of several declarations is written `class {} : {} {{ ... }};`",
+                        owner.name.text, owner.base.text));
+}
+
+void AstBuilder::addImport(Parser::ImportDeclarationContext *context) {
+  checkFollowsFileClass(range(context->IMPORT()), "an import");
+  ImportDecl import;
+  import.range = range(context);
+  if (auto *path = context->modulePath()) {
+    if (path->exception)
+      return;
+    for (auto *part : path->IDENTIFIER())
+      import.path += (import.path.empty() ? "" : ".") + text(range(part));
+  } else if (auto *quoted = context->STRING_LITERAL()) {
+    const SourceRange where = range(quoted);
+    if (words[quoted->getSymbol()->getTokenIndex()].isBroken)
+      return;
+    import.path = text({file, where.begin + 1, where.end - 1});
+    import.isFile = true;
+  } else {
+    return;
+  }
+  unit->imports.push_back(std::move(import));
+}
+
+void AstBuilder::addStruct(Parser::StructDeclarationContext *context) {
+  checkFollowsFileClass(range(context->STRUCT()), "a struct");
+  if (!context->IDENTIFIER())
+    return;
+  StructDecl declared;
+  declared.comment = commentAbove(context);
+  declared.name = name(context->IDENTIFIER());
+  declared.range = range(context);
+  for (auto *field : context->declaration())
+    addDeclaration(field, Place::Field, declared.fields, nullptr);
+  unit->structs.push_back(std::move(declared));
+}
+
+void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
+  checkFollowsFileClass(range(context->CLASS()), "a class");
+  const auto names = context->IDENTIFIER();
+  if (names.size() < 2)
+    return;
+  ClassDecl declared;
+  declared.comment = commentAbove(context);
+  declared.name = name(names[0]);
+  declared.base = name(names[1]);
+  declared.fileForm = !context->LEFT_BRACE();
+  declared.range = range(context);
+  for (auto *member : context->declaration())
+    addDeclaration(member, Place::Member, declared.members, &declared.functions);
+  hasFileClass |= declared.fileForm;
+  unit->classes.push_back(std::move(declared));
+}
+
+//===----------------------------------------------------------------------===//
+// Qualifiers
+//===----------------------------------------------------------------------===//
+
+void AstBuilder::refuseQualifier(SourceRange where, const std::string &reason) {
+  // With the space behind it.
+  const std::string_view source = sources.text(file);
+  std::uint32_t end = where.end;
+  while (end < source.size() && source[end] == ' ')
+    ++end;
+  diagnostics.report(Code::misplacedQualifier, where, sources.text(where), reason)
+      .fix({file, where.begin, end}, "");
+}
+
+/// Reads qualifiers; those without a meaning at their place are reported, where the next stage
+/// could not see them.
+Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContext *> &contexts,
+                                       Place place) {
+  Qualifiers result;
+  for (auto *context : contexts) {
+    const SourceRange where = range(context);
+    const auto isSecond = [&](SourceRange first) {
+      if (first.isValid())
+        diagnostics.report(Code::repeatedQualifier, where, sources.text(where), sources.text(first))
+            .label(first, "the first one");
+      return first.isValid();
+    };
+    switch (const std::size_t type = context->start->getType()) {
+    case Parser::CONST:
+      if (isSecond(result.constRange))
+        break;
+      result.constRange = where;
+      if (place == Place::Field)
+        refuseQualifier(where, "the fields of a struct have no qualifiers");
+      else
+        result.isConst = true;
+      break;
+    case Parser::IN:
+    case Parser::OUT:
+    case Parser::INOUT:
+      if (isSecond(result.directionRange))
+        break;
+      result.directionRange = where;
+      if (place != Place::Parameter)
+        refuseQualifier(where, "it is for parameters");
+      else
+        result.direction = type == Parser::OUT     ? Direction::Out
+                           : type == Parser::INOUT ? Direction::InOut
+                                                   : Direction::In;
+      break;
+    default: // access
+      if (isSecond(result.accessRange))
+        break;
+      result.accessRange = where;
+      if (place == Place::Member || place == Place::Local)
+        result.access = type == Parser::PUBLIC    ? Access::Public
+                        : type == Parser::PRIVATE ? Access::Private
+                                                  : Access::Scratch;
+      else
+        refuseQualifier(where, "it is for members of classes");
+    }
+  }
+  return result;
+}
+
+//===----------------------------------------------------------------------===//
+// Variables
+//===----------------------------------------------------------------------===//
+
+void AstBuilder::addDimensions(const std::vector<Parser::DimensionContext *> &contexts,
+                               std::vector<ArrayDimension> &dimensions) {
+  for (auto *context : contexts) {
+    ArrayDimension dimension;
+    dimension.range = range(context);
+    if (context->exception)
+      dimension.size = error(dimension.range);
+    else if (auto *size = context->expr())
+      dimension.size = buildExpr(size);
+    dimensions.push_back(std::move(dimension));
+  }
+}
+
+TypeName AstBuilder::buildType(Parser::TypeNameContext *context,
+                               const std::vector<Parser::DimensionContext *> &outer) {
+  TypeName type;
+  type.name = name(context->IDENTIFIER());
+  type.range = range(context);
+  addDimensions(outer, type.dimensions);
+  addDimensions(context->dimension(), type.dimensions);
+  return type;
+}
+
+void AstBuilder::addVariables(const antlr4::ParserRuleContext *context,
+                              const std::vector<Parser::QualifierContext *> &qualifierContexts,
+                              Parser::TypeNameContext *typeName,
+                              const std::vector<Parser::DeclaratorContext *> &declarators,
+                              Place place, std::vector<VariableDecl> &variables) {
+  if (!typeName || typeName->exception)
+    return;
+  const Qualifiers qualifiers = buildQualifiers(qualifierContexts, place);
+  const std::string comment = commentAbove(context);
+  for (auto *declarator : declarators) {
+    if (!declarator->IDENTIFIER())
+      continue;
+    const bool isFirst = declarator == declarators.front();
+    VariableDecl variable;
+    variable.comment = isFirst ? comment : std::string();
+    variable.access = qualifiers.access;
+    variable.accessRange = qualifiers.accessRange;
+    variable.isConst = qualifiers.isConst;
+    variable.type = buildType(typeName, declarator->dimension());
+    variable.name = name(declarator->IDENTIFIER());
+    if (auto *initializer = declarator->initializer())
+      variable.init = buildInitializer(initializer);
+    variable.range = range(declarator);
+    if (isFirst)
+      variable.range.begin = range(context).begin;
+    variables.push_back(std::move(variable));
+  }
+}
+
+VariableDecl AstBuilder::buildParameter(Parser::ParameterContext *context) {
+  const Qualifiers qualifiers = buildQualifiers(context->qualifier(), Place::Parameter);
+  VariableDecl parameter;
+  parameter.isConst = qualifiers.isConst;
+  parameter.direction = qualifiers.direction;
+  parameter.type = buildType(context->typeName(), context->dimension());
+  if (auto *identifier = context->IDENTIFIER())
+    parameter.name = name(identifier);
+  if (auto *initializer = context->initializer())
+    parameter.init = buildInitializer(initializer);
+  parameter.range = range(context);
+  return parameter;
+}
+
+//===----------------------------------------------------------------------===//
+// Functions
+//===----------------------------------------------------------------------===//
+
+/// Adds what a declaration declares. `functions` is null where there can be none.
+bool AstBuilder::addDeclaration(Parser::DeclarationContext *context, Place place,
+                                std::vector<VariableDecl> &variables,
+                                std::vector<FunctionDecl> *functions) {
+  if (!context->typeName() || context->typeName()->exception)
+    return false; // broken, or a stray semicolon
+  if (!context->IDENTIFIER()) {
+    addVariables(context, context->qualifier(), context->typeName(), context->declarator(), place,
+                 variables);
+    return true;
+  }
+  if (!functions) {
+    diagnostics.report(Code::unexpectedToken, range(context->IDENTIFIER()), "a field",
+                       fmt::format("function `{}`", text(range(context->IDENTIFIER()))));
+    return false;
+  }
+  addFunction(context, place, *functions);
+  return true;
+}
+
+void AstBuilder::addFunction(Parser::DeclarationContext *context, Place place,
+                             std::vector<FunctionDecl> &functions) {
+  for (auto *qualifier : context->qualifier())
+    refuseQualifier(range(qualifier), "functions have no qualifiers");
+  FunctionDecl function;
+  function.comment = commentAbove(context);
+  function.returnType = buildType(context->typeName());
+  function.name = name(context->IDENTIFIER());
+  function.range = range(context);
+
+  auto *parameters = context->parameters();
+  if (!parameters)
+    return;
+  const auto list = parameters->parameter();
+  for (auto *parameter : list)
+    if (!parameter->exception && parameter->typeName())
+      function.parameters.push_back(buildParameter(parameter));
+  // `f(void)` is C for `f()`.
+  if (function.parameters.size() == 1) {
+    const VariableDecl &only = function.parameters.front();
+    if (only.type.name.text == "void" && only.name.text.empty() && only.type.dimensions.empty())
+      function.parameters.clear();
+  }
+
+  auto *body = context->functionBody();
+  if (body && body->block()) {
+    function.body = buildBlock(body->block());
+  } else if (!body || body->exception || place == Place::Member) {
+    const bool isPrototype = body && !body->exception;
+    if (isPrototype)
+      diagnostics.report(Code::missingFunctionBody, function.name.range, function.name.text);
+    // Reported: a body about which nobody complains.
+    auto result = std::make_unique<ReturnStmt>();
+    result->range = function.name.range;
+    result->value = error(function.name.range);
+    function.body = std::make_unique<CompoundStmt>();
+    function.body->range = function.name.range;
+    function.body->body.push_back(std::move(result));
+  }
+  functions.push_back(std::move(function));
+}
+
+} // namespace rtsl

@@ -1,0 +1,71 @@
+//===- Parser.cpp - RTSL text to syntax tree ------------------------------===//
+//
+//   text --Tokenizer--> words --TokenCheck--> balanced words --RtslParser--> parse tree
+//   --AstBuilder--> syntax tree
+//
+// (A preprocessor will stand between the first two.)
+//
+//===----------------------------------------------------------------------===//
+#include "frontend/Parser.h"
+#include "frontend/AstBuilder.h"
+#include "frontend/SyntaxErrors.h"
+#include "frontend/TokenCheck.h"
+#include "frontend/Tokenizer.h"
+
+#include "grammar/RtslParser.h"
+
+#include <Exceptions.h>
+
+namespace rtsl {
+
+namespace {
+
+using antlr4::atn::ParserATNSimulator;
+using antlr4::atn::PredictionMode;
+using generated::RtslParser;
+
+/// Parses with predictions that ignore the rules around a decision, which is fast and nearly always
+/// right. Only when that fails, for a mistake of the author as a rule, the text is parsed again
+/// with all that the parser can know, and then mistakes are reported.
+RtslParser::TranslationUnitContext *parseWords(RtslParser &parser, SyntaxErrors &errors) {
+  auto *simulator = parser.getInterpreter<ParserATNSimulator>();
+  try {
+    errors.isQuiet = true;
+    simulator->setPredictionMode(PredictionMode::SLL);
+    return parser.translationUnit();
+  } catch (const antlr4::ParseCancellationException &) {
+    errors.isQuiet = false;
+    parser.reset();
+    parser.getTreeTracker().reset();
+    simulator->setPredictionMode(PredictionMode::LL);
+    return parser.translationUnit();
+  }
+}
+
+} // namespace
+
+std::unique_ptr<ast::TranslationUnit> parse(FileId file, Diagnostics &diagnostics) {
+  const std::size_t errorsBefore = diagnostics.errorCount();
+  TokenList list = tokenize(file, diagnostics);
+  if (list.isUsable)
+    checkTokens(file, list, diagnostics);
+  if (list.isUsable && list.tokens.size() == 1 && diagnostics.errorCount() == errorsBefore)
+    diagnostics.report(Code::emptySource, SourceRange{file, 0, 0});
+  if (!list.isUsable) {
+    auto unit = std::make_unique<ast::TranslationUnit>();
+    unit->file = file;
+    return unit;
+  }
+
+  WordStream words(list.tokens);
+  RtslParser parser(&words);
+  const auto errors = std::make_shared<SyntaxErrors>(file, words, diagnostics);
+  parser.removeErrorListeners();
+  parser.setErrorHandler(errors);
+  AstBuilder builder(file, list.tokens, list.comments, diagnostics);
+  for (RtslParser::FileItemContext *item : parseWords(parser, *errors)->fileItem())
+    builder.addItem(item);
+  return builder.finish();
+}
+
+} // namespace rtsl

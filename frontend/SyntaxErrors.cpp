@@ -1,0 +1,400 @@
+//===- SyntaxErrors.cpp - what the parser says and does about mistakes ----===//
+#include "frontend/SyntaxErrors.h"
+
+#include "grammar/RtslLexer.h"
+#include "grammar/RtslParser.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+namespace {
+
+using generated::RtslLexer;
+using generated::RtslParser;
+
+constexpr std::size_t maxQuotedBytes = 30;
+
+std::size_t ruleOf(antlr4::Parser *parser) {
+  return parser->getContext()->getRuleIndex();
+}
+
+std::size_t startOf(antlr4::Parser *parser) {
+  return parser->getContext()->start->getTokenIndex();
+}
+
+bool isClosing(unsigned type) {
+  return type == RtslLexer::RIGHT_PAREN || type == RtslLexer::RIGHT_BRACKET ||
+         type == RtslLexer::RIGHT_BRACE;
+}
+
+/// Keywords that stand at the beginning of a statement or declaration and nowhere else.
+bool isStatementKeyword(unsigned type) {
+  return (type >= RtslLexer::IF && type <= RtslLexer::RETURN && type != RtslLexer::ELSE) ||
+         type == RtslLexer::ILLUMINANCE || (type >= RtslLexer::IMPORT && type <= RtslLexer::CONST);
+}
+
+} // namespace
+
+//===----------------------------------------------------------------------===//
+// Words in messages
+//===----------------------------------------------------------------------===//
+
+SourceRange SyntaxErrors::rangeOf(std::size_t index) const {
+  const Token &token = word(index);
+  if (token.type == Token::endOfFile && index > 0) // behind the last word, not behind empty lines
+    return {file, word(index - 1).end, word(index - 1).end};
+  return {file, token.begin, token.end};
+}
+
+std::string SyntaxErrors::describe(std::size_t index) const {
+  if (word(index).type == Token::endOfFile)
+    return "the end of the file";
+  const std::string_view text = textOf(index);
+  if (text.empty()) // a bracket that was put in
+    return "the end of the brackets";
+  return text.size() > maxQuotedBytes ? fmt::format("`{}...`", text.substr(0, maxQuotedBytes))
+                                      : fmt::format("`{}`", text);
+}
+
+/// True if a mistake at this word is explained by a message that was given before parsing.
+bool SyntaxErrors::isConsequence(std::size_t index) const {
+  return word(index).followsMistake || (index > 0 && word(index - 1).followsMistake) ||
+         (index > 0 && word(index - 1).isBroken);
+}
+
+/// True if a statement that lacks its semicolon ends in front of this word.
+bool SyntaxErrors::endsBefore(std::size_t index) const {
+  const Token &token = word(index);
+  return token.startsLine || token.type == RtslLexer::RIGHT_BRACE ||
+         token.type == Token::endOfFile || isStatementKeyword(token.type);
+}
+
+//===----------------------------------------------------------------------===//
+// Messages
+//===----------------------------------------------------------------------===//
+
+void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expected) {
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::unexpectedToken, rangeOf(index), expected, describe(index));
+  const auto type = [&](std::size_t back) {
+    return index >= back ? word(index - back).type : Token::endOfFile;
+  };
+  // Habits from C.
+  if (type(0) == RtslLexer::ELSE) {
+    diagnostic.note("there is no `if` that it could belong to");
+  } else if (type(0) == RtslLexer::GREATER && type(1) == RtslLexer::MINUS &&
+             word(index - 1).end == word(index).begin) {
+    diagnostic.fix(rangeOf(index - 1).to(rangeOf(index)), ".", true);
+  } else if (type(1) == RtslLexer::RIGHT_PAREN && type(2) == RtslLexer::IDENTIFIER &&
+             type(3) == RtslLexer::LEFT_PAREN && type(4) != RtslLexer::IDENTIFIER &&
+             type(4) != RtslLexer::IF && type(4) != RtslLexer::WHILE) {
+    diagnostic.note(
+        fmt::format("there are no casts: a value is converted by `{0}(...)`", textOf(index - 2)));
+  }
+}
+
+void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t index) {
+  const Token &previous = word(index > 0 ? index - 1 : 0);
+  std::string after = fmt::format("`{}`", textOf(index > 0 ? index - 1 : 0));
+  if (previous.end - previous.begin > maxQuotedBytes)
+    after = "this";
+  if (previous.type == RtslLexer::RIGHT_BRACE) {
+    const auto named = [&](const char *what, antlr4::tree::TerminalNode *name) {
+      if (name)
+        after = fmt::format("{} `{}`", what, textOf(name->getSymbol()->getTokenIndex()));
+    };
+    antlr4::ParserRuleContext *context = parser->getContext();
+    if (auto *declared = dynamic_cast<RtslParser::ClassDeclarationContext *>(context))
+      named("class", declared->IDENTIFIER(0));
+    if (auto *declared = dynamic_cast<RtslParser::StructDeclarationContext *>(context))
+      named("struct", declared->IDENTIFIER());
+  }
+  const SourceRange place{file, previous.end, previous.end};
+  diagnostics.report(Code::missingSemicolon, place, after).fix(place, ";", true);
+}
+
+/// What a declaration lacks behind its type: it has read the words from `start` on, and not the one
+/// at `index`.
+void SyntaxErrors::reportInDeclaration(antlr4::Parser *parser, std::size_t start,
+                                       std::size_t index) {
+  if (index > start) { // type and name are there
+    if (endsBefore(index))
+      reportMissingSemicolon(parser, index);
+    else
+      reportUnexpected(index, "`;`");
+  } else if (word(index).type == RtslLexer::LEFT_PAREN && index > 0 &&
+             word(index - 1).type == RtslLexer::IDENTIFIER) {
+    const SourceRange name = rangeOf(index - 1);
+    diagnostics.report(Code::missingReturnType, name, textOf(index - 1))
+        .fix({file, name.begin, name.begin}, "void ", textOf(index - 1) == "constructor");
+  } else {
+    reportUnexpected(index, "a name");
+  }
+}
+
+/// The one word that the parser needs next, as a message names it.
+std::string SyntaxErrors::expectedToken(antlr4::Parser *parser, std::size_t index) const {
+  const antlr4::atn::ATN &atn = parser->getATN();
+  const antlr4::misc::IntervalSet &expected = atn.nextTokens(atn.states[parser->getState()]);
+  const std::size_t rule = ruleOf(parser);
+  if (expected.contains(std::size_t{RtslLexer::IDENTIFIER}))
+    return rule == RtslParser::RuleTypeName     ? "a type"
+           : rule == RtslParser::RuleModulePath ? "the name of a module"
+                                                : "a name";
+  if (expected.contains(std::size_t{RtslLexer::RIGHT_PAREN})) {
+    if (word(index).type == RtslLexer::COMMA)
+      return rule == RtslParser::RuleParameters ? "a parameter" : "an expression";
+    return rule == RtslParser::RuleCondition || rule == RtslParser::RuleForStatement ? "`)`"
+                                                                                     : "`,` or `)`";
+  }
+  if (rule == RtslParser::RuleInitializer && expected.contains(std::size_t{RtslLexer::RIGHT_BRACE}))
+    return "`,` or `}`";
+  if (rule == RtslParser::RuleClassDeclaration && expected.contains(std::size_t{RtslLexer::COLON}))
+    return "`:` and the class that it derives from";
+  // Literal names are quoted, as in 'while'.
+  std::string name = expected.isEmpty() ? std::string()
+                                        : parser->getVocabulary().getLiteralName(
+                                              static_cast<std::size_t>(expected.getMinElement()));
+  if (name.size() < 2)
+    return "something else";
+  return fmt::format("`{}`", name.substr(1, name.size() - 2));
+}
+
+void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::RecognitionException &error) {
+  if (isQuiet)
+    throw antlr4::ParseCancellationException();
+  if (isRecovering)
+    return;
+  isRecovering = true;
+  const std::size_t index = error.getOffendingToken()->getTokenIndex();
+  resumeAt = index;
+  if (isConsequence(index))
+    return;
+
+  const auto *noAlternative = dynamic_cast<const antlr4::NoViableAltException *>(&error);
+  if (!noAlternative) {
+    reportUnexpected(index, expectedToken(parser, index));
+    return;
+  }
+  const std::size_t start = noAlternative->getStartToken()->getTokenIndex();
+  switch (ruleOf(parser)) {
+  case RtslParser::RuleDeclaration:
+    reportInDeclaration(parser, start, index);
+    return;
+  case RtslParser::RuleFunctionBody: {
+    // The words in front are the name and the parameters, which balance.
+    std::size_t open = index - 1;
+    while (open > 0 &&
+           !(word(open).type == RtslLexer::LEFT_PAREN && word(open).depth == word(index).depth))
+      --open;
+    if (endsBefore(index) && open > 0)
+      diagnostics.report(Code::missingFunctionBody, rangeOf(open - 1), textOf(open - 1));
+    else
+      reportUnexpected(index, "`{`");
+    return;
+  }
+  case RtslParser::RuleSimpleStatement:
+    if (index > start && endsBefore(index))
+      reportMissingSemicolon(parser, index);
+    else
+      reportUnexpected(index, index > start ? "`;`" : "an expression");
+    return;
+  case RtslParser::RuleStatement:
+    reportUnexpected(index, "a statement");
+    return;
+  case RtslParser::RuleImportDeclaration:
+    reportUnexpected(index, "a module or a file in quotes");
+    return;
+  case RtslParser::RuleFileItem:
+    reportUnexpected(index, "a declaration");
+    return;
+  case RtslParser::RuleParameter:
+    reportUnexpected(index, "a parameter");
+    return;
+  default:
+    reportUnexpected(index, "an expression");
+  }
+}
+
+//===----------------------------------------------------------------------===//
+// Where to go on
+//===----------------------------------------------------------------------===//
+
+/// Index of the word with which the next statement or declaration begins, after a mistake at `from`
+/// in the one that begins at `start`. Never leaves the brackets around it, and is behind `start` if
+/// it can.
+std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) const {
+  const unsigned depth = word(start).depth;
+  for (std::size_t index = from;; ++index) {
+    const Token &token = word(index);
+    if (token.type == Token::endOfFile)
+      return index;
+    if (token.depth > depth)
+      continue;
+    if (isClosing(token.type) && token.depth < depth)
+      return index;
+    if (token.type == RtslLexer::SEMICOLON)
+      return index + 1;
+    if (token.type == RtslLexer::RIGHT_BRACE && index > start) { // a block of the broken statement
+      const Token &next = word(index + 1);
+      if (next.type == RtslLexer::SEMICOLON)
+        return index + 2;
+      if (next.type != RtslLexer::ELSE)
+        return index + 1;
+    }
+    if (index == start || !token.startsLine)
+      continue;
+    const unsigned next = word(index + 1).type;
+    if (isStatementKeyword(token.type) ||
+        (token.type == RtslLexer::IDENTIFIER &&
+         (next == RtslLexer::IDENTIFIER || next == RtslLexer::ASSIGN)))
+      return index;
+  }
+}
+
+/// Index of the word behind an expression: a semicolon, a comma where one separates, or the bracket
+/// around it.
+std::size_t SyntaxErrors::endOfExpression(std::size_t start, std::size_t from,
+                                          bool endsAtComma) const {
+  const unsigned depth = word(start).depth;
+  for (std::size_t index = from;; ++index) {
+    const Token &token = word(index);
+    if (token.type == Token::endOfFile)
+      return index;
+    if (token.depth > depth)
+      continue;
+    if (isClosing(token.type) && (token.depth < depth || index == start))
+      return index;
+    if (token.type == RtslLexer::SEMICOLON || (endsAtComma && token.type == RtslLexer::COMMA))
+      return index;
+    if (index > start && token.startsLine && isStatementKeyword(token.type))
+      return index;
+  }
+}
+
+/// Index of the parenthesis that closes over the arguments that begin at `start`.
+std::size_t SyntaxErrors::endOfArguments(std::size_t start, std::size_t from) const {
+  const unsigned depth = word(start).depth;
+  std::size_t index = from;
+  while (word(index).type != Token::endOfFile && word(index).depth >= depth &&
+         !(index == start && isClosing(word(index).type)))
+    ++index;
+  return index;
+}
+
+/// Index of the word behind a pair of parentheses that opens at `start`.
+std::size_t SyntaxErrors::behindParentheses(std::size_t start, std::size_t from) const {
+  if (word(start).type != RtslLexer::LEFT_PAREN)
+    return from;
+  std::size_t index = std::max(from, start + 1);
+  while (word(index).type != Token::endOfFile && word(index).depth > word(start).depth)
+    ++index;
+  return index + 1;
+}
+
+antlr4::Token *SyntaxErrors::recoverInline(antlr4::Parser *parser) {
+  if (isQuiet)
+    throw antlr4::ParseCancellationException();
+  const antlr4::atn::ATN &atn = parser->getATN();
+  const std::size_t index = words.index();
+  const bool needsSemicolon =
+      atn.nextTokens(atn.states[parser->getState()]).contains(std::size_t{RtslLexer::SEMICOLON});
+  if (!needsSemicolon || !endsBefore(index))
+    throw antlr4::InputMismatchException(parser);
+
+  if (!isRecovering && !isConsequence(index))
+    reportMissingSemicolon(parser, index);
+  Token semicolon;
+  semicolon.type = RtslLexer::SEMICOLON;
+  semicolon.begin = semicolon.end = index > 0 ? word(index - 1).end : 0;
+  semicolon.depth = word(index).depth;
+  inserted.push_back(std::make_unique<ParserToken>(semicolon, INVALID_INDEX));
+  return inserted.back().get();
+}
+
+/// Called in front of each round of a loop. In the loops over statements and declarations, what can
+/// begin none is reported and skipped here, so that the loop goes on.
+void SyntaxErrors::sync(antlr4::Parser *parser) {
+  const std::size_t rule = ruleOf(parser);
+  const char *expected = nullptr;
+  switch (rule) {
+  case RtslParser::RuleBlock:
+  case RtslParser::RuleSwitchStatement:
+    expected = "a statement";
+    break;
+  case RtslParser::RuleStructDeclaration:
+  case RtslParser::RuleClassDeclaration:
+    expected = "a member";
+    break;
+  case RtslParser::RuleTranslationUnit:
+    expected = "a declaration";
+    break;
+  default:
+    return;
+  }
+  const antlr4::atn::ATN &atn = parser->getATN();
+  antlr4::atn::ATNState *state = atn.states[parser->getState()];
+  if (state->getStateType() != antlr4::atn::ATNState::STAR_LOOP_ENTRY &&
+      state->getStateType() != antlr4::atn::ATNState::STAR_LOOP_BACK)
+    return;
+  const antlr4::misc::IntervalSet &next = atn.nextTokens(state);
+  while (!next.contains(words.LA(1))) {
+    if (isQuiet)
+      throw antlr4::ParseCancellationException();
+    const std::size_t index = words.index();
+    if (!isConsequence(index))
+      reportUnexpected(index, expected);
+    const std::size_t end = std::max(endOfStatement(index, index), index + 1);
+    if (word(index).type == Token::endOfFile)
+      return;
+    words.seek(end);
+  }
+}
+
+void SyntaxErrors::recover(antlr4::Parser *parser, std::exception_ptr error) {
+  const std::size_t start = startOf(parser);
+  const std::size_t from = std::max({words.index(), resumeAt, start});
+  switch (ruleOf(parser)) {
+  case RtslParser::RuleExpression:
+    words.seek(endOfExpression(start, from, false));
+    break;
+  case RtslParser::RuleInitializer:
+  case RtslParser::RuleParameter:
+    words.seek(endOfExpression(start, from, true));
+    break;
+  case RtslParser::RuleArguments:
+    words.seek(endOfArguments(start, from));
+    break;
+  case RtslParser::RuleParameters:
+  case RtslParser::RuleCondition:
+    if (word(start).type != RtslLexer::LEFT_PAREN)
+      std::rethrow_exception(error);
+    words.seek(behindParentheses(start, from));
+    break;
+  case RtslParser::RuleFunctionBody:
+    if (!endsBefore(from))
+      words.seek(endOfStatement(start, from));
+    isRecovering = false;
+    break;
+  case RtslParser::RuleStatement:
+  case RtslParser::RuleDeclaration:
+  case RtslParser::RuleImportDeclaration:
+  case RtslParser::RuleStructDeclaration:
+  case RtslParser::RuleClassDeclaration:
+  case RtslParser::RuleFileItem: {
+    // What begins behind the mistake on a line of its own is not part of it.
+    const Token &at = word(from);
+    const bool isNext = from > start && at.startsLine && at.depth == word(start).depth &&
+                        (isStatementKeyword(at.type) || at.type == RtslLexer::IDENTIFIER);
+    words.seek(isNext ? from : endOfStatement(start, from));
+    isRecovering = false;
+    break;
+  }
+  default:
+    std::rethrow_exception(error);
+  }
+  resumeAt = 0;
+}
+
+} // namespace rtsl

@@ -1,0 +1,62 @@
+//===- SyntaxErrors.h - what the parser says and does about mistakes ------===//
+#pragma once
+
+#include "frontend/Diagnostics.h"
+#include "frontend/TokenStream.h"
+
+#include <ANTLRErrorStrategy.h>
+#include <misc/IntervalSet.h>
+
+namespace rtsl {
+
+/// Reports a mistake where the parser cannot go on, and finds the place where it can again: behind
+/// the expression, the statement or the declaration. A rule that cannot continue hands the mistake
+/// on to the rule that called it, until one of those is reached.
+class SyntaxErrors final : public antlr4::ANTLRErrorStrategy {
+public:
+  SyntaxErrors(FileId file, WordStream &words, Diagnostics &diagnostics)
+      : file(file), words(words), diagnostics(diagnostics) {}
+
+  /// While true, the first mistake ends the parse with antlr4::ParseCancellationException, and
+  /// nothing is reported.
+  bool isQuiet = false;
+
+  void reset(antlr4::Parser *) override { isRecovering = false; }
+  bool inErrorRecoveryMode(antlr4::Parser *) override { return isRecovering; }
+  void reportMatch(antlr4::Parser *) override { isRecovering = false; }
+
+  void reportError(antlr4::Parser *parser, const antlr4::RecognitionException &error) override;
+  antlr4::Token *recoverInline(antlr4::Parser *parser) override;
+  void sync(antlr4::Parser *parser) override;
+  void recover(antlr4::Parser *parser, std::exception_ptr error) override;
+
+private:
+  const Token &word(std::size_t index) const { return words.at(index)->word; }
+  SourceRange rangeOf(std::size_t index) const;
+  std::string_view textOf(std::size_t index) const {
+    return diagnostics.sources().text(rangeOf(index));
+  }
+  std::string describe(std::size_t index) const;
+  bool isConsequence(std::size_t index) const;
+  bool endsBefore(std::size_t index) const;
+
+  void reportMissingSemicolon(antlr4::Parser *parser, std::size_t index);
+  void reportUnexpected(std::size_t index, const std::string &expected);
+  void reportInDeclaration(antlr4::Parser *parser, std::size_t start, std::size_t index);
+  std::string expectedToken(antlr4::Parser *parser, std::size_t index) const;
+
+  std::size_t endOfStatement(std::size_t start, std::size_t from) const;
+  std::size_t endOfExpression(std::size_t start, std::size_t from, bool endsAtComma) const;
+  std::size_t endOfArguments(std::size_t start, std::size_t from) const;
+  std::size_t behindParentheses(std::size_t start, std::size_t from) const;
+
+  const FileId file;
+  WordStream &words;
+  Diagnostics &diagnostics;
+  bool isRecovering =
+      false;                // from a mistake that was reported: what follows may be its consequence
+  std::size_t resumeAt = 0; // the place of that mistake; the parser may not have come so far
+  std::vector<std::unique_ptr<ParserToken>> inserted;
+};
+
+} // namespace rtsl

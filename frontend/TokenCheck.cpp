@@ -1,0 +1,504 @@
+//===- TokenCheck.cpp - what is checked on words, before parsing ----------===//
+//
+// The parser calls itself for what is nested, and when a bracket is missing it understands nothing
+// of what follows. Both are looked after here, in one walk over the words, so that the parser
+// always gets balanced brackets and never overflows the stack.
+//
+// How deep a tree will be is bounded from above without building it: a chain of operators (or of
+// `if`, `for`, ... ) is as deep as it is long, plus the deepest bracket in it.
+//
+//===----------------------------------------------------------------------===//
+#include "frontend/TokenCheck.h"
+
+#include "grammar/RtslLexer.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+namespace {
+
+using generated::RtslLexer;
+
+bool isOpening(unsigned type) {
+  return type == RtslLexer::LEFT_PAREN || type == RtslLexer::LEFT_BRACKET ||
+         type == RtslLexer::LEFT_BRACE;
+}
+
+bool isClosing(unsigned type) {
+  return type == RtslLexer::RIGHT_PAREN || type == RtslLexer::RIGHT_BRACKET ||
+         type == RtslLexer::RIGHT_BRACE;
+}
+
+unsigned closingOf(unsigned opening) {
+  return opening == RtslLexer::LEFT_PAREN     ? RtslLexer::RIGHT_PAREN
+         : opening == RtslLexer::LEFT_BRACKET ? RtslLexer::RIGHT_BRACKET
+                                              : RtslLexer::RIGHT_BRACE;
+}
+
+std::string_view spellingOf(unsigned bracket) {
+  switch (bracket) {
+  case RtslLexer::LEFT_PAREN:
+    return "(";
+  case RtslLexer::RIGHT_PAREN:
+    return ")";
+  case RtslLexer::LEFT_BRACKET:
+    return "[";
+  case RtslLexer::RIGHT_BRACKET:
+    return "]";
+  case RtslLexer::LEFT_BRACE:
+    return "{";
+  default:
+    return "}";
+  }
+}
+
+bool isKeyword(unsigned type) {
+  return (type >= RtslLexer::IMPORT && type <= RtslLexer::FALSE) || type == RtslLexer::PRECISION ||
+         type == RtslLexer::PRECISION_QUALIFIER;
+}
+
+bool isQualifier(unsigned type) {
+  return type >= RtslLexer::PUBLIC && type <= RtslLexer::INOUT;
+}
+
+bool isOperator(unsigned type) {
+  return (type >= RtslLexer::PLUS_PLUS && type <= RtslLexer::OR_ASSIGN) || type == RtslLexer::DOT;
+}
+
+/// Statements that have a statement as their last part.
+bool isPrefixStatement(unsigned type) {
+  return type == RtslLexer::IF || type == RtslLexer::FOR || type == RtslLexer::WHILE ||
+         type == RtslLexer::DO || type == RtslLexer::SWITCH || type == RtslLexer::ILLUMINANCE;
+}
+
+/// Qualifiers of GLSL and its relatives, and what RTSL says instead (nothing: leave it out).
+struct ForeignQualifier {
+  std::string_view name, replacement;
+};
+constexpr ForeignQualifier foreignQualifiers[] = {
+    {"uniform", "public"}, {"varying", "scratch"}, {"attribute", "scratch"}, {"static", ""},
+    {"inline", ""},        {"extern", ""},         {"volatile", ""},         {"flat", ""},
+    {"smooth", ""},        {"noperspective", ""},  {"centroid", ""},         {"invariant", ""},
+    {"precise", ""},       {"virtual", ""},        {"constexpr", "const"},
+};
+
+class TokenChecker {
+public:
+  TokenChecker(FileId file, TokenList &list, Diagnostics &diagnostics)
+      : file(file), diagnostics(diagnostics), sources(diagnostics.sources()), list(list),
+        in(list.tokens) {}
+
+  void run();
+
+private:
+  /// What stands between two brackets, or outside of all.
+  struct Level {
+    enum Kind { Block, InitializerList, Group, Arguments, ForHeader, Index };
+    Kind kind = Block;
+    Token open; // end of file: the outermost level
+    // The chain at hand: since the last separator.
+    unsigned operators = 0, statements = 0;
+    unsigned inner = 0;            // height of the highest bracket in it
+    unsigned pendingQuestions = 0; // `?` without their `:`
+    unsigned height = 0;           // of the highest chain so far
+    unsigned semicolons = 0;
+
+    unsigned chain() const { return operators + statements + inner; }
+    void endChain() {
+      height = std::max(height, chain());
+      operators = statements = inner = pendingQuestions = 0;
+    }
+    bool isBlock() const { return kind == Block || kind == InitializerList; }
+  };
+
+  const Token &at(std::size_t index) const { return in[std::min(index, in.size() - 1)]; }
+  unsigned typeAt(std::size_t index) const { return at(index).type; }
+  /// Type of the word that was put out `back` words ago.
+  unsigned before(std::size_t back = 1) const {
+    return back <= out.size() ? out[out.size() - back].type : unsigned{Token::endOfFile};
+  }
+  SourceRange rangeOf(const Token &token) const { return {file, token.begin, token.end}; }
+  std::string_view textOf(const Token &token) const { return sources.text(rangeOf(token)); }
+  std::uint32_t endOfPrevious() const { return out.empty() ? 0 : out.back().end; }
+
+  bool isDeclarationStart() const;
+  std::size_t skipForeignWords(std::size_t index);
+  void retag(Token &token, std::size_t index);
+
+  void put(Token token);
+  void open(Token token);
+  void close(const Token &token);
+  void closeMissing(bool isReported);
+  void handleClosing(const Token &token);
+  void handleUnclosedAtEnd();
+  void measure(const Token &token, unsigned next);
+  bool checkHeight(const Token &token);
+
+  const FileId file;
+  Diagnostics &diagnostics;
+  const SourceManager &sources;
+  TokenList &list;
+  std::vector<Token> in, out;
+  std::vector<Level> levels{1};
+};
+
+//===----------------------------------------------------------------------===//
+// Words that do not belong here
+//===----------------------------------------------------------------------===//
+
+/// True if what comes next may be the first word of a declaration, of a parameter too.
+bool TokenChecker::isDeclarationStart() const {
+  const unsigned previous = before();
+  return previous == Token::endOfFile || previous == RtslLexer::SEMICOLON ||
+         previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE ||
+         previous == RtslLexer::LEFT_PAREN || previous == RtslLexer::RIGHT_PAREN ||
+         previous == RtslLexer::COMMA || previous == RtslLexer::COLON || isQualifier(previous);
+}
+
+/// Number of words from `index` on that are reported and left out; 0: none.
+std::size_t TokenChecker::skipForeignWords(std::size_t index) {
+  const Token &token = at(index);
+  const auto removal = [&](std::size_t count) { // the words and the space behind them
+    const Token &next = at(index + count);
+    const std::uint32_t lastEnd = at(index + count - 1).end;
+    return SourceRange{file, token.begin, next.startsLine ? lastEnd : next.begin};
+  };
+  if (token.type == RtslLexer::PRECISION) {
+    std::size_t count = 1;
+    while (count < 4 && typeAt(index + count) != RtslLexer::SEMICOLON &&
+           typeAt(index + count) != Token::endOfFile)
+      ++count;
+    if (typeAt(index + count) == RtslLexer::SEMICOLON)
+      ++count;
+    diagnostics.report(Code::precisionQualifier, rangeOf(token).to(rangeOf(at(index + count - 1))))
+        .fix(removal(count), "", true);
+    return count;
+  }
+  if (token.type == RtslLexer::PRECISION_QUALIFIER) {
+    diagnostics.report(Code::precisionQualifier, rangeOf(token)).fix(removal(1), "", true);
+    return 1;
+  }
+  const bool isAccess = token.type == RtslLexer::PUBLIC || token.type == RtslLexer::PRIVATE;
+  if (isAccess && before() == RtslLexer::COLON && before(3) == RtslLexer::CLASS) {
+    diagnostics
+        .report(Code::misplacedQualifier, rangeOf(token), textOf(token),
+                "a class derives in one way only")
+        .fix(removal(1), "", true);
+    return 1;
+  }
+  if ((isAccess || token.type == RtslLexer::SCRATCH) && typeAt(index + 1) == RtslLexer::COLON) {
+    diagnostics.report(Code::misplacedQualifier, rangeOf(token).to(rangeOf(at(index + 1))),
+                       fmt::format("{}:", textOf(token)),
+                       fmt::format("write `{}` in front of each member", textOf(token)));
+    return 2;
+  }
+  // Two names in a row are a type and what it declares; three begin with a qualifier.
+  if (token.type == RtslLexer::IDENTIFIER && isDeclarationStart() &&
+      (typeAt(index + 1) == RtslLexer::IDENTIFIER || isQualifier(typeAt(index + 1))) &&
+      typeAt(index + 2) == RtslLexer::IDENTIFIER) {
+    const std::string_view word = textOf(token);
+    for (const ForeignQualifier &foreign : foreignQualifiers) {
+      if (word != foreign.name)
+        continue;
+      Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), word);
+      if (foreign.replacement.empty())
+        diagnostic.fix(removal(1), "", true);
+      else
+        diagnostic.fix(rangeOf(token), std::string(foreign.replacement));
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/// Turns keywords that stand where a name must stand into names, and `illuminance` into a keyword.
+void TokenChecker::retag(Token &token, std::size_t index) {
+  const unsigned next = typeAt(index + 1);
+  if (token.type == RtslLexer::IDENTIFIER) {
+    const unsigned previous = before();
+    const bool isStatementStart =
+        previous == RtslLexer::SEMICOLON || previous == RtslLexer::LEFT_BRACE ||
+        previous == RtslLexer::RIGHT_BRACE || previous == RtslLexer::RIGHT_PAREN ||
+        previous == RtslLexer::COLON || previous == RtslLexer::ELSE || previous == RtslLexer::DO;
+    if (next == RtslLexer::LEFT_PAREN && isStatementStart && textOf(token) == "illuminance")
+      token.type = RtslLexer::ILLUMINANCE;
+    return;
+  }
+  if (!isKeyword(token.type) || token.startsLine)
+    return;
+  const bool isNamed =
+      before() == RtslLexer::CLASS || before() == RtslLexer::STRUCT || before() == RtslLexer::DOT;
+  bool isDeclared = false;
+  if (before() == RtslLexer::IDENTIFIER && out.size() >= 2) {
+    const Token type = out.back();
+    out.pop_back();
+    isDeclared = isDeclarationStart();
+    out.push_back(type);
+  } else if (before() == RtslLexer::IDENTIFIER) {
+    isDeclared = true;
+  }
+  const bool isBeforeNameEnd = next == RtslLexer::ASSIGN || next == RtslLexer::SEMICOLON ||
+                               next == RtslLexer::COMMA || next == RtslLexer::RIGHT_PAREN ||
+                               next == RtslLexer::LEFT_PAREN || next == RtslLexer::LEFT_BRACKET;
+  if (!isNamed && !(isDeclared && isBeforeNameEnd))
+    return;
+  diagnostics.report(Code::keywordAsName, rangeOf(token), textOf(token));
+  token.type = RtslLexer::IDENTIFIER;
+}
+
+//===----------------------------------------------------------------------===//
+// Brackets
+//===----------------------------------------------------------------------===//
+
+void TokenChecker::put(Token token) {
+  token.depth = static_cast<std::uint16_t>(levels.size() - 1);
+  out.push_back(token);
+}
+
+void TokenChecker::open(Token token) {
+  Level level;
+  level.open = token;
+  const unsigned previous = before();
+  if (token.type == RtslLexer::LEFT_BRACE)
+    level.kind = previous == RtslLexer::ASSIGN || levels.back().kind == Level::InitializerList
+                     ? Level::InitializerList
+                     : Level::Block;
+  else if (token.type == RtslLexer::LEFT_BRACKET)
+    level.kind = Level::Index;
+  else if (previous == RtslLexer::FOR)
+    level.kind = Level::ForHeader;
+  else if (previous == RtslLexer::IDENTIFIER || previous == RtslLexer::ILLUMINANCE ||
+           previous == RtslLexer::RIGHT_BRACKET)
+    level.kind = Level::Arguments;
+  else
+    level.kind = Level::Group;
+  put(token);
+  levels.push_back(level);
+}
+
+void TokenChecker::close(const Token &token) {
+  levels.back().endChain();
+  const unsigned height = levels.back().height + 1;
+  levels.pop_back();
+  levels.back().inner = std::max(levels.back().inner, height);
+  put(token);
+}
+
+/// Puts in the closing bracket of the innermost level, right behind the last word.
+void TokenChecker::closeMissing(bool isReported) {
+  const Token opening = levels.back().open;
+  Token closing;
+  closing.type = static_cast<std::uint16_t>(closingOf(opening.type));
+  closing.begin = closing.end = endOfPrevious();
+  if (isReported)
+    diagnostics.report(Code::unclosedBracket, rangeOf(opening), textOf(opening))
+        .fix({file, closing.begin, closing.begin}, std::string(spellingOf(closing.type)));
+  close(closing);
+}
+
+void TokenChecker::handleClosing(const Token &token) {
+  if (levels.size() > 1 && token.type == closingOf(levels.back().open.type)) {
+    close(token);
+    return;
+  }
+  // Is it the closing bracket of an outer level? Only braces close over other braces.
+  std::size_t level = levels.size() - 1;
+  while (level > 0 && token.type != closingOf(levels[level].open.type) &&
+         (token.type == RtslLexer::RIGHT_BRACE || !levels[level].isBlock()))
+    --level;
+  if (level > 0 && token.type == closingOf(levels[level].open.type)) {
+    const std::size_t missing = levels.size() - 1 - level;
+    for (std::size_t i = 0; i < missing; ++i)
+      closeMissing(i + 1 == missing); // one message: the outermost
+    close(token);
+    return;
+  }
+  if (levels.size() > 1 && !levels.back().isBlock()) { // `f(a]`
+    const Token &opening = levels.back().open;
+    const std::string_view expected = spellingOf(closingOf(opening.type));
+    diagnostics
+        .report(Code::unexpectedToken, rangeOf(token), fmt::format("`{}`", expected),
+                fmt::format("`{}`", textOf(token)))
+        .label(rangeOf(opening), "opened here")
+        .fix(rangeOf(token), std::string(expected));
+    Token closing = token;
+    closing.type = static_cast<std::uint16_t>(closingOf(opening.type));
+    close(closing);
+    return;
+  }
+  diagnostics.report(Code::unmatchedBracket, rangeOf(token), textOf(token));
+  // Directly behind another closing brace it is just one too many. Elsewhere, an earlier one closed
+  // too much, and what stood in between makes no sense outside.
+  if (token.type == RtslLexer::RIGHT_BRACE && before() != RtslLexer::RIGHT_BRACE)
+    list.isUsable = false;
+}
+
+/// Something is still open at the end of the file. Which bracket the author forgot shows in the
+/// indentation: the first one that was closed by a brace further to the left.
+void TokenChecker::handleUnclosedAtEnd() {
+  struct Open {
+    Token token;
+    std::uint32_t indent;
+  };
+  std::vector<Open> stack;
+  const std::string_view text = sources.text(file);
+  std::uint32_t indent = 0;
+  list.isUsable = false;
+  for (const Token &token : out) {
+    if (token.startsLine) {
+      const std::size_t newline =
+          token.begin == 0 ? std::string_view::npos : text.find_last_not_of(" \t", token.begin - 1);
+      indent = newline == std::string_view::npos
+                   ? token.begin
+                   : token.begin - static_cast<std::uint32_t>(newline) - 1;
+    }
+    if (isOpening(token.type)) {
+      stack.push_back({token, indent});
+    } else if (isClosing(token.type) && !stack.empty()) {
+      if (token.type == RtslLexer::RIGHT_BRACE && token.startsLine &&
+          indent < stack.back().indent) {
+        diagnostics.report(Code::unclosedBracket, rangeOf(stack.back().token), "{")
+            .label(rangeOf(token), "this one stands under an outer bracket");
+        return;
+      }
+      stack.pop_back();
+    }
+  }
+  const Token opening = levels.back().open;
+  diagnostics.report(Code::unclosedBracket, rangeOf(opening), textOf(opening));
+}
+
+//===----------------------------------------------------------------------===//
+// Depth
+//===----------------------------------------------------------------------===//
+
+bool TokenChecker::checkHeight(const Token &token) {
+  const Level &level = levels.back();
+  if (level.chain() <= maxNesting)
+    return true;
+  const bool isStatement = level.statements > level.operators;
+  Diagnostic &diagnostic = diagnostics.report(Code::nestedTooDeep, rangeOf(token),
+                                              isStatement ? "statement" : "expression", maxNesting);
+  diagnostic.note(isStatement ? "divide it into functions"
+                              : "divide it: compute parts of it into variables");
+  list.isUsable = false;
+  return false;
+}
+
+/// Follows the chains of operators and statements. Brackets are measured where they are opened and
+/// closed.
+void TokenChecker::measure(const Token &token, unsigned next) {
+  Level &level = levels.back();
+  const unsigned type = token.type;
+  if (isOperator(type)) {
+    ++level.operators;
+  } else if (type == RtslLexer::QUESTION) {
+    ++level.operators;
+    ++level.pendingQuestions;
+  } else if (type == RtslLexer::COLON) {
+    if (level.pendingQuestions > 0)
+      --level.pendingQuestions;
+    else
+      level.endChain(); // a label
+  } else if (isPrefixStatement(type)) {
+    ++level.statements;
+  } else if (type == RtslLexer::COMMA) {
+    const bool separates = level.isBlock() || level.kind == Level::Arguments;
+    if (separates && level.pendingQuestions == 0)
+      level.endChain();
+    else
+      ++level.operators;
+  } else if (type == RtslLexer::SEMICOLON || type == RtslLexer::RIGHT_BRACE) {
+    const bool endsStatement = level.kind == Level::Block || level.kind == Level::ForHeader;
+    if (endsStatement && next != RtslLexer::ELSE)
+      level.endChain();
+  }
+}
+
+//===----------------------------------------------------------------------===//
+// The walk
+//===----------------------------------------------------------------------===//
+
+void TokenChecker::run() {
+  out.reserve(in.size());
+  bool followsMistake = false;
+  for (std::size_t index = 0; index < in.size(); ++index) {
+    if (const std::size_t count = skipForeignWords(index)) {
+      index += count - 1;
+      if (index + 1 < in.size())
+        in[index + 1].startsLine |= in[index + 1 - count].startsLine;
+      continue;
+    }
+    Token token = in[index];
+    token.followsMistake |= followsMistake;
+    followsMistake = false;
+    retag(token, index);
+
+    if (token.type == Token::endOfFile) {
+      if (levels.size() > 1)
+        handleUnclosedAtEnd();
+      put(token);
+      break;
+    }
+
+    // Parentheses end at the latest where a statement does.
+    const unsigned previous = before();
+    const bool opensBlock = token.type == RtslLexer::LEFT_BRACE && previous != RtslLexer::ASSIGN &&
+                            previous != RtslLexer::COMMA && previous != RtslLexer::LEFT_PAREN &&
+                            !levels.back().isBlock();
+    const auto endsHeader = [&] {
+      Level &level = levels.back();
+      return token.type == RtslLexer::SEMICOLON && !level.isBlock() &&
+             (level.kind != Level::ForHeader || level.semicolons++ == 2);
+    };
+    if (opensBlock || endsHeader()) {
+      // One message for them all, at the outermost; a `for` whose semicolons are still to come
+      // stays open.
+      std::size_t missing = 0;
+      for (std::size_t i = levels.size() - 1; i > 0 && !levels[i].isBlock(); --i, ++missing)
+        if (token.type == RtslLexer::SEMICOLON && levels[i].kind == Level::ForHeader &&
+            levels[i].semicolons < 2) {
+          ++levels[i].semicolons;
+          break;
+        }
+      for (; missing > 0; --missing)
+        closeMissing(missing == 1);
+    }
+
+    if (isOpening(token.type)) {
+      if (levels.size() - 1 == maxBracketDepth) {
+        diagnostics.report(Code::bracketsTooDeep, rangeOf(token), maxBracketDepth);
+        list.isUsable = false;
+        break;
+      }
+      // A bracket behind an operand is an operator: a call or an index.
+      if (previous == RtslLexer::IDENTIFIER || previous == RtslLexer::RIGHT_PAREN ||
+          previous == RtslLexer::RIGHT_BRACKET)
+        levels.back().operators += token.type != RtslLexer::LEFT_BRACE;
+      open(token);
+    } else if (isClosing(token.type)) {
+      const std::size_t size = out.size();
+      handleClosing(token);
+      followsMistake = out.size() == size; // left out
+      if (!followsMistake)
+        measure(token, typeAt(index + 1));
+    } else {
+      put(token);
+      measure(token, typeAt(index + 1));
+    }
+    if (!checkHeight(token))
+      break;
+  }
+  if (out.empty() || out.back().type != Token::endOfFile)
+    list.isUsable = false;
+  list.tokens = std::move(out);
+}
+
+} // namespace
+
+void checkTokens(FileId file, TokenList &list, Diagnostics &diagnostics) {
+  TokenChecker(file, list, diagnostics).run();
+}
+
+} // namespace rtsl

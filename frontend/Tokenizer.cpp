@@ -1,0 +1,243 @@
+//===- Tokenizer.cpp - text to words --------------------------------------===//
+#include "frontend/Tokenizer.h"
+#include "frontend/ByteStream.h"
+#include "frontend/Utf8.h"
+
+#include "grammar/RtslLexer.h"
+
+#include <cstring>
+
+namespace rtsl {
+
+namespace {
+
+using generated::RtslLexer;
+
+constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+class Tokenizer {
+public:
+  Tokenizer(FileId file, Diagnostics &diagnostics)
+      : file(file), diagnostics(diagnostics), text(diagnostics.sources().text(file)), stream(text),
+        lexer(&stream) {}
+
+  TokenList run();
+
+private:
+  SourceRange range(std::size_t begin, std::size_t end) const {
+    return {file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  }
+  bool checkEncoding();
+  void add(std::size_t type, std::uint32_t begin, std::uint32_t end);
+  void addString(std::uint32_t begin, std::uint32_t end);
+  void addNumber(std::uint32_t begin, std::uint32_t end);
+  void refuseCharacters(std::uint32_t begin, std::uint32_t end);
+
+  const FileId file;
+  Diagnostics &diagnostics;
+  const std::string_view text;
+  ByteStream stream;
+  RtslLexer lexer;
+  TokenList list;
+  std::uint32_t previousEnd = 0; // of the last word or comment
+  bool startsLine = true;
+  bool isStartCarried = false; // by a comment, to the word behind it
+  bool followsMistake = false;
+};
+
+/// Reports a text that cannot be RTSL: NUL bytes, or bytes that are not UTF-8.
+bool Tokenizer::checkEncoding() {
+  const auto startsWith = [&](std::string_view prefix) {
+    return text.substr(0, prefix.size()) == prefix;
+  };
+  if (startsWith("\xFF\xFE") || startsWith("\xFE\xFF")) {
+    diagnostics.report(Code::notText, range(0, 2), "it is encoded in UTF-16")
+        .note("save it as UTF-8");
+    return false;
+  }
+  const void *nul = std::memchr(text.data(), 0, text.size());
+  const std::size_t invalid = findInvalidUtf8(text);
+  if (nul) {
+    const auto at = static_cast<std::size_t>(static_cast<const char *>(nul) - text.data());
+    if (at < invalid) {
+      diagnostics.report(Code::notText, range(at, at + 1), "it holds a NUL byte");
+      return false;
+    }
+  }
+  if (invalid != std::string_view::npos) {
+    diagnostics.report(
+        Code::notText, range(invalid, invalid + 1),
+        fmt::format("the byte \\x{:02X} is not UTF-8", static_cast<unsigned char>(text[invalid])));
+    return false;
+  }
+  return true;
+}
+
+void Tokenizer::add(std::size_t type, std::uint32_t begin, std::uint32_t end) {
+  Token token;
+  token.begin = begin;
+  token.end = end;
+  token.type = static_cast<std::uint16_t>(type);
+  token.startsLine = startsLine;
+  token.followsMistake = followsMistake;
+  list.tokens.push_back(token);
+  followsMistake = false;
+}
+
+/// A string without an end takes the rest of its line; the brackets and semicolons at the end of it
+/// are given back.
+void Tokenizer::addString(std::uint32_t begin, std::uint32_t end) {
+  const std::string_view code = text.substr(begin, end - begin);
+  const std::size_t last = code.find_last_not_of(" \t),;");
+  const auto stringEnd = static_cast<std::uint32_t>(
+      begin + 1 + (last == std::string_view::npos || last == 0 ? 0 : last));
+  diagnostics.report(Code::unterminatedString, range(begin, begin + 1))
+      .fix(range(stringEnd, stringEnd), "\"");
+  add(RtslLexer::STRING_LITERAL, begin, stringEnd);
+  list.tokens.back().isBroken = true;
+  stream.seek(stringEnd);
+  lexer.hitEOF = false;
+  previousEnd = stringEnd;
+}
+
+void Tokenizer::addNumber(std::uint32_t begin, std::uint32_t end) {
+  const std::string_view number = text.substr(begin, end - begin);
+  Diagnostic &diagnostic = diagnostics.report(Code::malformedNumber, range(begin, end), number);
+  const std::size_t digits = number.find_first_not_of("0123456789");
+  const bool isFloat = number.find('.') != std::string_view::npos;
+  const std::string_view rest = digits == std::string_view::npos ? "" : number.substr(digits);
+  if (rest == "f" || rest == "F" || rest == "lf" || rest == "LF")
+    diagnostic.fix(range(begin + digits, begin + digits), ".0", true);
+  else if (rest == "h" || rest == "L" || rest == "l" || rest == "ul" || rest == "UL")
+    diagnostic.note("the suffixes are `u` for `uint`, and `f` and `lf` for `float`");
+  else if (number.substr(0, 2) == "0x" || number.substr(0, 2) == "0X")
+    diagnostic.note("behind `0x` stand the digits 0-9 and a-f");
+  else if (number.size() > 1 && number[0] == '0' && rest.empty())
+    diagnostic.note("a number that begins with 0 is octal, with the digits 0-7");
+  else if (!isFloat && !isDigit(number.back()) && (rest.front() == 'e' || rest.front() == 'E'))
+    diagnostic.note("the exponent has no digits");
+  add(isFloat ? RtslLexer::FLOAT_LITERAL : RtslLexer::INT_LITERAL, begin, end);
+  list.tokens.back().isBroken = true;
+}
+
+/// Characters that look like one of RTSL, as editors and web pages put them in.
+std::string_view lookAlike(char32_t codePoint) {
+  switch (codePoint) {
+  case 0x00A0: // no-break space
+    return " ";
+  case 0x037E: // Greek question mark
+  case 0xFF1B:
+    return ";";
+  case 0x2010:
+  case 0x2011:
+  case 0x2013:
+  case 0x2014:
+  case 0x2212: // hyphens, dashes and the minus sign
+    return "-";
+  case 0x00D7: // multiplication sign
+  case 0x22C5:
+    return "*";
+  case 0x201C:
+  case 0x201D:
+    return "\"";
+  case 0xFF08:
+    return "(";
+  case 0xFF09:
+    return ")";
+  case 0xFF0C:
+    return ",";
+  default:
+    return {};
+  }
+}
+
+/// Reports each of some characters in a row that begin no word.
+void Tokenizer::refuseCharacters(std::uint32_t begin, std::uint32_t end) {
+  const Utf8Character first = decodeUtf8(text.substr(begin, end - begin));
+  const std::string_view replacement = lookAlike(first.codePoint);
+  const std::size_t size = replacement.empty() ? end - begin : first.size;
+  Diagnostic &diagnostic = diagnostics.report(Code::unknownCharacter, range(begin, begin + size),
+                                              text.substr(begin, size));
+  if (!replacement.empty())
+    diagnostic.fix(range(begin, begin + size), std::string(replacement), true);
+  stream.seek(begin + size);
+  lexer.hitEOF = false;
+  previousEnd = static_cast<std::uint32_t>(begin + size);
+  followsMistake = true;
+}
+
+TokenList Tokenizer::run() {
+  lexer.removeErrorListeners(); // there are no errors: the grammar has a rule for everything
+  if (!checkEncoding()) {
+    list.isUsable = false;
+  } else {
+    list.tokens.reserve(text.size() / 4);
+    if (text.substr(0, byteOrderMark.size()) == byteOrderMark)
+      stream.seek(byteOrderMark.size());
+    for (bool isDone = false; !isDone;) {
+      const std::unique_ptr<antlr4::Token> word = lexer.nextToken();
+      const std::size_t type = word->getType();
+      if (type == antlr4::Token::EOF)
+        break;
+      const auto begin = static_cast<std::uint32_t>(word->getStartIndex());
+      const auto end = static_cast<std::uint32_t>(word->getStopIndex() + 1);
+      startsLine = isStartCarried || (list.tokens.empty() && list.comments.empty());
+      isStartCarried = false;
+      startsLine |=
+          text.substr(previousEnd, begin - previousEnd).find('\n') != std::string_view::npos;
+      previousEnd = end;
+      switch (type) {
+      case RtslLexer::LINE_COMMENT:
+      case RtslLexer::BLOCK_COMMENT:
+        list.comments.push_back({begin, end, startsLine});
+        // The word behind a comment begins the line if the comment did, or if it ends on a line of
+        // its own.
+        isStartCarried =
+            startsLine || text.substr(begin, end - begin).find('\n') != std::string_view::npos;
+        break;
+      case RtslLexer::UNTERMINATED_COMMENT:
+        diagnostics.report(Code::unterminatedComment, range(begin, begin + 2));
+        list.isUsable = false;
+        isDone = true;
+        break;
+      case RtslLexer::UNTERMINATED_STRING:
+        addString(begin, end);
+        break;
+      case RtslLexer::MALFORMED_NUMBER:
+        addNumber(begin, end);
+        break;
+      case RtslLexer::DIRECTIVE: {
+        const std::string_view directive = text.substr(begin, end - begin);
+        const std::size_t name = std::min(directive.find_first_not_of(" \t", 1), directive.size());
+        const std::size_t nameEnd =
+            std::min(directive.find_first_of(" \t\r\n\\(<\"", name), directive.size());
+        diagnostics.report(Code::preprocessorUnsupported, range(begin, begin + nameEnd));
+        break;
+      }
+      case RtslLexer::UNKNOWN_CHARACTERS:
+      case RtslLexer::UNKNOWN_CHARACTER:
+        refuseCharacters(begin, end);
+        break;
+      default:
+        add(type, begin, end);
+      }
+    }
+  }
+  const std::uint32_t end = list.tokens.empty() ? 0 : list.tokens.back().end;
+  startsLine = true;
+  add(Token::endOfFile, std::max(end, static_cast<std::uint32_t>(text.size())),
+      static_cast<std::uint32_t>(text.size()));
+  return std::move(list);
+}
+
+} // namespace
+
+TokenList tokenize(FileId file, Diagnostics &diagnostics) {
+  return Tokenizer(file, diagnostics).run();
+}
+
+} // namespace rtsl
