@@ -51,6 +51,7 @@ struct ClassInfo {
   std::vector<MemberInfo> parameters; // of the constructor
   std::uint32_t parameterSize = 0;    // bytes of the packed arguments
   std::vector<std::string> methods;   // defined or inherited
+  std::uint32_t needs = RTSL_NEEDS_ALL; // of a material: what `shade` reads, itself or through what it calls
   /// Writes member defaults into the record at `object`. Null: there are none.
   void (*initialize)(RtslState *state, RtslRef object) = nullptr;
   /// Runs the constructor on the record at `object`. Null: there is none.
@@ -67,7 +68,7 @@ struct Program {
 #include "runtime/device/Slots.def"
   } slots;
 
-  /// RTSL_NEEDS_*: what the shading methods of the program's classes read.
+  /// RTSL_NEEDS_*: what the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
   /// The program's rtsl_sample.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,

@@ -366,7 +366,8 @@ std::uint32_t Scene::Implementation::addInstance(RtslRef primitive, std::uint32_
   requireRole(material, "rt_Material", {"shade"});
   if (primitiveTotal + primitives > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
-  instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal)});
+  instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal),
+                       program->needs & info(material).classInfo->needs});
   primitiveTotal += primitives;
   instanceNames.push_back(std::move(name));
   instanceBounds.push_back({});

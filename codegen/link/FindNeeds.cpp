@@ -20,6 +20,7 @@ std::uint32_t findNeeds(mlir::ModuleOp ir) {
                    .Cases({"TextureUV", "TextureUVW"}, RTSL_NEEDS_TEXTURE_COORDINATES)
                    .Cases({"dPdu", "dPdv", "dsdu", "dsdv", "dtdu", "dtdv"}, RTSL_NEEDS_DERIVATIVES)
                    .Cases({"ObjectToWorld", "WorldToObject"}, RTSL_NEEDS_TRANSFORMS)
+                   .Case("InverseRayDirection", RTSL_NEEDS_INVERSE_DIRECTION)
                    .Default(0);
   });
   return needs;

@@ -29,6 +29,7 @@ typedef struct RtslInstance {
   RtslRef material;
   uint32_t mesh; // index into RtslLaunch::meshes when primitive is 0
   uint32_t firstPrimitive; // global id of its first primitive, for stable ordering
+  uint32_t needs;          // RTSL_NEEDS_* of its material
 } RtslInstance;
 
 /// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
@@ -105,11 +106,13 @@ typedef struct RtslState {
 
 #define RTSL_NO_HIT 0xffffffffu
 
-// RtslLaunch::needs: state that a shading method of the scene reads. The rest is not computed.
+// RtslLaunch::needs: state that some method of the scene reads. RtslInstance::needs: what its material's `shade` reads,
+// itself or through what it calls. The rest is not computed.
 #define RTSL_NEEDS_TEXTURE_COORDINATES 1u // TextureUV TextureUVW
 #define RTSL_NEEDS_DERIVATIVES 2u         // dPdu dPdv dsdu dsdv dtdu dtdv
 #define RTSL_NEEDS_TRANSFORMS 4u          // ObjectToWorld WorldToObject
-#define RTSL_NEEDS_ALL 7u
+#define RTSL_NEEDS_INVERSE_DIRECTION 8u   // InverseRayDirection
+#define RTSL_NEEDS_ALL 15u
 
 // What rtsl_traverse answers.
 #define RTSL_MISS 0u
@@ -154,6 +157,36 @@ float rtsl_rand(RtslState *state);
 
 /// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents floats.
 void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
+
+//===----------------------------------------------------------------------===//
+// Programs whose shaders were split at their traces (runtime/device/Machine.h). A state is a piece of a method between two
+// traces; numbers start at 1.
+//===----------------------------------------------------------------------===//
+
+/// Defined by the compiled program: runs a state on the frame of its ray. Returns what comes next: 0, the method is over;
+/// n > 0, trace the ray that was spawned, then run state n; -n < 0, run state n at once.
+int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame);
+
+/// Defined by the compiled program: bytes of its largest frame, a multiple of 4.
+int32_t rtsl_frame_size(RtslState *state);
+
+/// Defined by the compiled program: the states in which methods begin that the runtime starts and that may trace. 0: there
+/// is no such method.
+int32_t rtsl_rt_Material_shade_first(RtslState *state);
+int32_t rtsl_rt_Miss_miss_first(RtslState *state);
+
+/// First half of `trace(origin, direction)`: prepares the ray, which is traced when the state returns.
+void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz);
+
+/// Second half: the color that came back, colorComponents floats.
+const float *rtsl_trace_result(RtslState *parent);
+
+/// Defined by the host: memory for the rays of one sample, aligned to 16 bytes, the calling thread's own until it asks
+/// again. Null if there is not so much.
+void *rtsl_machine_stack(uint64_t bytes);
+
+/// rtsl_sample by the machine: the same color, bit for bit. Black if there is no memory for the stack.
+void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 #ifdef __cplusplus
 }

@@ -16,12 +16,23 @@
 
 namespace rtsl::device {
 
+// Loops over a few components become calls of memset and memcpy, which cost more than they do; so
+// the usual number of components is written out.
 inline void setColor(float *color, uint32_t components, float value) {
+  if (components == 3) {
+    color[0] = color[1] = color[2] = value;
+    return;
+  }
   for (uint32_t i = 0; i < components; ++i)
     color[i] = value;
 }
 
 inline void copyColor(float *to, const float *from, uint32_t components) {
+  if (components == 3) {
+    float r = from[0], g = from[1], b = from[2];
+    to[0] = r, to[1] = g, to[2] = b;
+    return;
+  }
   for (uint32_t i = 0; i < components; ++i)
     to[i] = from[i];
 }
@@ -38,7 +49,9 @@ inline bool isBlack(const float *color, uint32_t components) {
 inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon, float distance) {
   store(state.RayOrigin, origin);
   store(state.RayDirection, direction);
-  setVector(state.InverseRayDirection, 1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z);
+  if (state.launch->needs & RTSL_NEEDS_INVERSE_DIRECTION)
+    setVector(state.InverseRayDirection, 1.0f / direction.x, 1.0f / direction.y,
+              1.0f / direction.z);
   state.Epsilon = epsilon;
   state.HitDistance = distance;
   state.instance = RTSL_NO_HIT;
@@ -69,39 +82,67 @@ inline void setDefaults(RtslState &state, uint32_t components) {
   state.du = state.dv = 0;
 }
 
-/// Follows state's ray and puts the color that arrives into SampleColor.
-inline void follow(RtslState &state) {
+/// What a ray met, and the object whose method says what color that is.
+struct Arrival {
+  enum Kind : uint32_t { Nothing, Surface, Background } kind; // Nothing: SampleColor is right already
+  RtslRef object;
+};
+
+/// Finds what state's ray meets and describes it.
+inline Arrival arrive(RtslState &state) {
   const RtslLaunch &launch = *state.launch;
   uint32_t components = launch.colorComponents;
   setDefaults(state, components);
   uint32_t found = rtsl_traverse(&state, 0);
   if (found == RTSL_HIT) {
     describeHit(state);
-    rtsl_rt_Material_shade(&state, launch.instances[state.instance].material);
-  } else if (found == RTSL_MISS) {
-    if (launch.background)
-      rtsl_rt_Miss_miss(&state, launch.background);
-    else
-      copyColor(state.SampleColor, launch.backgroundColor, components);
+    return {Arrival::Surface, launch.instances[state.instance].material};
   }
+  if (found == RTSL_MISS) {
+    if (launch.background)
+      return {Arrival::Background, launch.background};
+    copyColor(state.SampleColor, launch.backgroundColor, components);
+  }
+  return {Arrival::Nothing, 0};
+}
+
+/// Follows state's ray and puts the color that arrives into SampleColor.
+inline void follow(RtslState &state) {
+  Arrival arrival = arrive(state);
+  if (arrival.kind == Arrival::Surface)
+    rtsl_rt_Material_shade(&state, arrival.object);
+  else if (arrival.kind == Arrival::Background)
+    rtsl_rt_Miss_miss(&state, arrival.object);
+}
+
+/// Counts a ray that a shader sends. False if it is deeper than the launch allows: nothing is seen
+/// along it.
+inline bool maySpawn(RtslState &parent, uint32_t *dimension) {
+  *dimension = parent.dimension++; // even if nothing is traced, so that depth does not change what
+                                   // is drawn later
+  return uint32_t(parent.Depth) < parent.launch->maxDepth;
+}
+
+/// Makes `child` the ray that `parent` sends.
+inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension, Vec3 origin,
+                  Vec3 direction) {
+  inherit(child, parent);
+  child.Depth = parent.Depth + 1;
+  childKey(parent.randomKey, dimension, child.randomKey);
+  child.dimension = 0;
+  setRay(child, origin, direction, spawnEpsilon(parent, origin, direction), infinity);
 }
 
 /// `trace(origin, direction)`. Deeper than the launch allows nothing is seen: color 0.
 inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) {
-  const RtslLaunch &launch = *parent.launch;
-  uint32_t components = launch.colorComponents;
-  uint32_t dimension = parent.dimension++; // even if nothing is traced, so that depth does not
-                                           // change what is drawn later
-  if (uint32_t(parent.Depth) >= launch.maxDepth) {
+  uint32_t components = parent.launch->colorComponents;
+  uint32_t dimension;
+  if (!maySpawn(parent, &dimension)) {
     setColor(color, components, 0);
     return;
   }
   RtslState state;
-  inherit(state, parent);
-  state.Depth = parent.Depth + 1;
-  childKey(parent.randomKey, dimension, state.randomKey);
-  state.dimension = 0;
-  setRay(state, origin, direction, spawnEpsilon(parent, origin, direction), infinity);
+  spawn(state, parent, dimension, origin, direction);
   follow(state);
   copyColor(color, state.SampleColor, components);
 }
@@ -127,6 +168,18 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   return rtsl_traverse(&state, 1) != RTSL_MISS; // along a bad ray no light comes
 }
 
+/// Is the angle between two vectors of any length at most the one whose cosine is given? With
+/// squares, so without a root.
+inline bool isInCone(Vec3 direction, Vec3 axis, float cosAngle) {
+  float squares = dot(direction, direction) * dot(axis, axis);
+  if (!(squares > 0x1p-60f && squares < 0x1p60f))
+    return dot(normalized(direction), normalized(axis)) >= cosAngle;
+  float cosine = dot(direction, axis); // times both lengths
+  float bound = cosAngle * cosAngle * squares;
+  return cosAngle >= 0 ? cosine >= 0 && cosine * cosine >= bound
+                       : cosine >= 0 || cosine * cosine <= bound;
+}
+
 /// One light of `illuminance (P [, N, angle])`. Returns whether the body runs.
 inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, float cosAngle) {
   const RtslLaunch &launch = *state.launch;
@@ -144,19 +197,15 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   if (isBlack(state.LightColor, components) || !(state.LightDistance > 0))
     return false;
   Vec3 direction = load(state.LightDirection);
-  if (cosAngle > -1.0f) {
-    float cosine = dot(normalized(direction), normalized(axis));
-    if (!(cosine >= cosAngle))
-      return false;
-  }
+  if (cosAngle > -1.0f && !isInCone(direction, axis, cosAngle))
+    return false;
   return !inShadow(state, point);
 }
 
-/// The ray of one sample of one pixel and what it sees. Row 0 is the top of the picture, where
+/// Makes `state` the ray of one sample of one pixel. Row 0 is the top of the picture, where
 /// ScreenCoord.y is near 1.
-inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index, float *color) {
-  uint32_t components = launch.colorComponents;
-  RtslState state;
+inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
+                        uint32_t index) {
   state.launch = &launch;
   Words4 key = hash4(x, y, index, launch.seed);
   state.randomKey[0] = key.x;
@@ -178,11 +227,18 @@ inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t in
   state.TimeSeed = unitFloat(hash3(key.x, key.y, key.z).x);
   state.Time = 0;
   state.du = state.dv = 0;
-  setRay(state, {0, 0, 0}, {0, 0, 0}, 0, infinity);
+  setVector(state.RayOrigin, 0, 0, 0); // what the camera leaves out
+  setVector(state.RayDirection, 0, 0, 0);
   rtsl_rt_Camera_generateRay(&state, launch.camera);
   setRay(state, load(state.RayOrigin), load(state.RayDirection), 0, infinity);
+}
+
+/// One sample of one pixel: the color that comes along its ray.
+inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index, float *color) {
+  RtslState state;
+  startSample(state, launch, x, y, index);
   follow(state);
-  copyColor(color, state.SampleColor, components);
+  copyColor(color, state.SampleColor, launch.colorComponents);
 }
 
 } // namespace rtsl::device

@@ -38,8 +38,10 @@ inline float trianglePointError(Vec3 v0, Vec3 v1, Vec3 v2) {
 
 /// Epsilon for a ray that a shader sends from `origin`, in units of `direction`. Leaving a surface
 /// at an angle with cosine c to the normal, a ray that starts d below it comes through at d / c;
-/// what is skipped meanwhile lies within d of the tangent plane.
+/// what is skipped meanwhile lies within d of the tangent plane. So epsilon is d |n| / |direction .
+/// n|; nearly along the surface, where that grows without bound, c counts as 2^-12.
 inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {
+  constexpr float smallestCosine = 0x1p-12f;
   float error = triangleErrorUnits * roundingUnit * largest(origin);
   float length = largest(direction);
   if (!(length > 0 && length < infinity))
@@ -50,9 +52,17 @@ inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) 
   // The angle means something only near the hit point.
   if (!(largest(origin - load(parent.HitPoint)) <= 64 * error))
     return error / length;
+  Vec3 normal = load(parent.GeometricNormal);
+  float along = absolute(dot(direction, normal));
+  float squares = dot(direction, direction) * dot(normal, normal);
+  if (squares > 0x1p-60f && squares < 0x1p60f &&
+      dot(direction, direction) > 0x1p-60f) { // nothing overflows
+    if (along * along > smallestCosine * smallestCosine * squares)
+      return error * squareRoot(dot(normal, normal)) / along;
+    return error / (smallestCosine * squareRoot(dot(direction, direction)));
+  }
   Vec3 unit = normalized(direction);
-  float cosine = absolute(dot(unit, normalized(load(parent.GeometricNormal))));
-  constexpr float smallestCosine = 0x1p-12f;
+  float cosine = absolute(dot(unit, normalized(normal)));
   cosine = cosine > smallestCosine ? (cosine < 1 ? cosine : 1.0f) : smallestCosine;
   // |direction| without overflow: its component along the unit vector.
   return error / (cosine * dot(direction, unit));

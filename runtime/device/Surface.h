@@ -41,15 +41,19 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t ne
   state.hitPointError = trianglePointError(p.v0, p.v1, p.v2);
 
   Vec3 geometric = normalized(cross(p.v1 - p.v0, p.v2 - p.v0));
-  store(state.GeometricNormal, geometric);
   Vec3 shading = geometric;
   if (mesh.normals) {
     Vec3 sum = load(mesh.normals + 3 * size_t(index[0])) * w +
                load(mesh.normals + 3 * size_t(index[1])) * u +
                load(mesh.normals + 3 * size_t(index[2])) * v;
-    if (!isZero(sum)) // normals that cancel, or that the file has as 0
+    if (!isZero(sum)) { // normals that cancel, or that the file has as 0
       shading = normalized(sum);
+      // Of the two sides the file's normals say which is outside; its winding is less often right.
+      if (dot(geometric, shading) < 0)
+        geometric = geometric * -1.0f;
+    }
   }
+  store(state.GeometricNormal, geometric);
   store(state.ShadingNormal, shading);
 
   if (needs & (RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES)) {
@@ -93,7 +97,7 @@ inline void describePrimitive(RtslState &state, RtslRef primitive, uint32_t need
 inline void describeHit(RtslState &state) {
   const RtslLaunch &launch = *state.launch;
   const RtslInstance &instance = launch.instances[state.instance];
-  uint32_t needs = launch.needs;
+  uint32_t needs = instance.needs;
   state.PrimitiveIndex = int32_t(state.primitive);
   state.InstanceIndex = int32_t(state.instance);
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES) {
