@@ -74,7 +74,10 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
     return checkTracePayload(expr);
   if (const BuiltinOverloads *overloads = program.builtins.find(name))
     return checkBuiltinCall(expr, *overloads);
-  reportUnknownFunction(expr.callee);
+  if (!facts && program.namesFunction(name)) // functions are declared after constants and members
+    diagnostics.report(Code::useOutsideFunction, expr.callee.range, name);
+  else
+    reportUnknownFunction(expr.callee);
   for (const ast::ExprPtr &arg : expr.args)
     checkExpr(*arg);
   return errorExpr(expr.range);
@@ -228,7 +231,7 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   }
   for (std::size_t i = 0; i != args.size(); ++i)
     if (signature.parameters[i].direction != ast::Direction::In &&
-        !requireTarget(*expr.args[i], *args[i], "pass as `out` argument"))
+        !requireTarget(*expr.args[i], *args[i], "write to"))
       return errorExpr(expr.range);
   if (!facts) {
     diagnostics.report(Code::useOutsideFunction, expr.callee.range, callee.name);
@@ -294,11 +297,12 @@ ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
   const Builtin builtin = overloads.builtins[static_cast<std::size_t>(chosen)];
   for (std::size_t i = 0; i != args.size(); ++i)
     if (signature.parameters[i].direction != ast::Direction::In &&
-        !requireTarget(*expr.args[i], *args[i], "pass as `out` argument"))
+        !requireTarget(*expr.args[i], *args[i], "write to"))
       return errorExpr(expr.range);
   Ability ability;
-  if (neededAbility(builtin, ability))
-    recordSpecial(ability, expr.callee.text, expr.callee.range);
+  if (neededAbility(builtin, ability) &&
+      !recordSpecial(ability, expr.callee.text, expr.callee.range))
+    return errorExpr(expr.range);
   convertArguments(signature, args);
   auto node = makeExpr<typed::BuiltinExpr>(signature.result, expr.range);
   node->builtin = builtin;
@@ -329,7 +333,8 @@ ExprPtr FunctionChecker::checkTracePayload(const ast::CallExpr &expr) {
       checkExpr(*arg);
     return errorExpr(expr.range);
   }
-  recordSpecial(Ability::Trace, "trace", expr.callee.range);
+  if (!recordSpecial(Ability::Trace, "trace", expr.callee.range))
+    return errorExpr(expr.range);
   auto node = makeExpr<typed::BuiltinExpr>(types.voidType, expr.range);
   node->builtin = Builtin::TracePayload;
   bool broken = false;
@@ -342,7 +347,7 @@ ExprPtr FunctionChecker::checkTracePayload(const ast::CallExpr &expr) {
         diagnostics.report(Code::payloadNotAStruct, arg->range, toString(arg->type));
         broken = true;
       } else {
-        broken |= !requireTarget(*expr.args[i], *arg, "pass as payload");
+        broken |= !requireTarget(*expr.args[i], *arg, "write to");
       }
     } else if (implicitConversion(arg->type, parameters[i].type) == Conversion::None) {
       Diagnostic &diagnostic =
@@ -431,7 +436,8 @@ ExprPtr FunctionChecker::checkReferenceCall(const ast::CallExpr &expr, ExprPtr r
           .note("a texture reads `rt_TextureUV` and `rt_TextureUVW`");
       return errorExpr(expr.range);
     }
-    recordSpecial(Ability::Lookup, method, expr.callee.range);
+    if (!recordSpecial(Ability::Lookup, method, expr.callee.range))
+      return errorExpr(expr.range);
     auto node = makeExpr<typed::MethodCallExpr>(method == "lookup" ? types.color : types.floatType,
                                                 expr.range);
     node->receiver = std::move(receiver);

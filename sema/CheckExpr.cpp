@@ -254,8 +254,8 @@ ExprPtr FunctionChecker::checkConditional(const ast::ConditionalExpr &expr) {
     diagnostics
         .report(Code::branchesDiffer, expr.range, toString(whenTrue->type),
                 toString(whenFalse->type))
-        .label(whenTrue->range, "this is " + withArticle(toString(whenTrue->type)))
-        .label(whenFalse->range, "this is " + withArticle(toString(whenFalse->type)));
+        .label(whenTrue->range, "this is `" + toString(whenTrue->type) + "`")
+        .label(whenFalse->range, "this is `" + toString(whenFalse->type) + "`");
     return errorExpr(expr.range);
   }
   auto node = makeExpr<typed::ConditionalExpr>(type, expr.range);

@@ -13,20 +13,21 @@ using typed::ExprPtr;
 // Uses that only some methods may make
 //===----------------------------------------------------------------------===//
 
-void FunctionChecker::record(Use use) {
+bool FunctionChecker::record(Use use) {
   if (!facts) {
     // Outside of functions nothing is running that could have a state.
     diagnostics.report(Code::useOutsideFunction, use.range, use.what);
-    return;
+    return false;
   }
   // In a method of the table the rules are known; elsewhere the calls decide, once all are known.
   if (rules && scope->root)
     judgeUse(diagnostics, use, *scope->root, *rules, nullptr);
   else
     facts->uses.push_back(std::move(use));
+  return true;
 }
 
-void FunctionChecker::recordState(Use::Kind kind, typed::StateVariable variable,
+bool FunctionChecker::recordState(Use::Kind kind, typed::StateVariable variable,
                                   SourceRange range) {
   Use use;
   use.kind = kind;
@@ -40,10 +41,10 @@ void FunctionChecker::recordState(Use::Kind kind, typed::StateVariable variable,
                        std::string("rt_") + typed::name(variable));
   use.what = std::string("rt_") + typed::name(variable);
   use.range = range;
-  record(std::move(use));
+  return record(std::move(use));
 }
 
-void FunctionChecker::recordSpecial(Ability ability, const std::string &what, SourceRange range,
+bool FunctionChecker::recordSpecial(Ability ability, const std::string &what, SourceRange range,
                                     const typed::Member *member) {
   Use use;
   use.ability = ability;
@@ -53,7 +54,7 @@ void FunctionChecker::recordSpecial(Ability ability, const std::string &what, So
   if (facts &&
       (ability == Ability::Trace || (ability == Ability::Illuminance && what == "illuminance")))
     facts->traces = true;
-  record(std::move(use));
+  return record(std::move(use));
 }
 
 //===----------------------------------------------------------------------===//
@@ -130,10 +131,10 @@ ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, 
       diagnostic.fix(range, closest);
     return errorExpr(range);
   }
-  if (access != Access::Read)
-    recordState(Use::Kind::WriteState, variable, range);
-  if (access != Access::Write)
-    recordState(Use::Kind::ReadState, variable, range);
+  if (access != Access::Read && !recordState(Use::Kind::WriteState, variable, range))
+    return errorExpr(range);
+  if (access != Access::Write && !recordState(Use::Kind::ReadState, variable, range))
+    return errorExpr(range);
   auto node = makeExpr<typed::StateExpr>(typeOf(variable, types), range);
   node->variable = variable;
   return node;
@@ -152,6 +153,9 @@ ExprPtr FunctionChecker::memberAccess(const typed::Member *member, SourceRange r
   if (member->isConst) {
     if (member->constant && access == Access::Read && !isAggregate(member->type))
       return literal(member->type, range, *member->constant);
+  } else if (!facts) {
+    diagnostics.report(Code::useOutsideFunction, range, member->name);
+    return errorExpr(range);
   } else if (member->access == ast::Access::Scratch) {
     if (access != Access::Read)
       recordSpecial(Ability::WriteScratch, member->name, range, member);
@@ -160,9 +164,6 @@ ExprPtr FunctionChecker::memberAccess(const typed::Member *member, SourceRange r
   } else if (access != Access::Read &&
              !member->type->is(TypeKind::Buffer)) { // buffers: `requireTarget`
     recordSpecial(Ability::WriteMembers, member->name, range, member);
-  } else if (!facts) {
-    diagnostics.report(Code::useOutsideFunction, range, member->name);
-    return errorExpr(range);
   }
   auto node = makeExpr<typed::MemberExpr>(member->type, range);
   node->member = member;

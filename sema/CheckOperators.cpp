@@ -71,7 +71,7 @@ ExprPtr FunctionChecker::checkUnary(const ast::UnaryExpr &expr) {
   if (!fits) {
     Diagnostic &diagnostic =
         diagnostics.report(Code::badOperand, expr.opRange, opSpelling, toString(type));
-    diagnostic.label(operand->range, "this is " + withArticle(toString(type)));
+    diagnostic.label(operand->range, "this is `" + toString(type) + "`");
     if (expr.op == ast::UnaryOp::Not && type->isVector() && scalar->is(TypeKind::Bool))
       diagnostic.note("`not(v)` inverts each component");
     return errorExpr(expr.range);
@@ -97,7 +97,7 @@ ExprPtr FunctionChecker::checkIncDec(const ast::UnaryExpr &expr) {
   const char *opSpelling = increment ? "++" : "--";
   if (!isNumeric(target->type->scalar())) {
     diagnostics.report(Code::badOperand, expr.opRange, opSpelling, toString(target->type))
-        .label(target->range, "this is " + withArticle(toString(target->type)));
+        .label(target->range, "this is `" + toString(target->type) + "`");
     return errorExpr(expr.range);
   }
   if (!requireTarget(*expr.operand, *target, increment ? "increment" : "decrement"))
@@ -240,8 +240,8 @@ void FunctionChecker::reportOperands(BinaryOp op, SourceRange opRange, const typ
   const Type *l = left.type, *r = right.type;
   Diagnostic &diagnostic =
       diagnostics.report(Code::badOperands, opRange, spelling(op), toString(l), toString(r));
-  diagnostic.label(left.range, "this is " + withArticle(toString(l)));
-  diagnostic.label(right.range, "this is " + withArticle(toString(r)));
+  diagnostic.label(left.range, "this is `" + toString(l) + "`");
+  diagnostic.label(right.range, "this is `" + toString(r) + "`");
 
   const bool leftColor = l->is(TypeKind::Color), rightColor = r->is(TypeKind::Color);
   const typed::Expr &other = leftColor ? right : left;
@@ -325,14 +325,14 @@ ExprPtr FunctionChecker::checkAssign(const ast::AssignExpr &expr) {
         diagnostics
             .report(Code::compoundDoesNotFit, expr.opRange, spelling(expr.op), toString(free),
                     toString(target->type))
-            .label(target->range, "this is " + withArticle(toString(target->type)))
-            .label(value->range, "this is " + withArticle(toString(value->type)));
+            .label(target->range, "this is `" + toString(target->type) + "`")
+            .label(value->range, "this is `" + toString(value->type) + "`");
       return errorExpr(expr.range);
     }
     warnAboutConstants(expr.op, *value);
   } else {
     value = coerce(std::move(value), target->type,
-                   Label{target->range, "this is " + withArticle(toString(target->type))});
+                   Label{target->range, "this is `" + toString(target->type) + "`"});
     if (value->type->isError())
       return errorExpr(expr.range);
     const auto *from = dynCast<typed::VariableExpr>(value);

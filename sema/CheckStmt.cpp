@@ -34,6 +34,7 @@ FunctionChecker::FunctionChecker(Program &program, const ClassScope *scope,
 }
 
 void FunctionChecker::checkBody(const ast::FunctionDecl &declaration) {
+  const std::size_t errorsBefore = diagnostics.errorCount();
   // Parameters and body are one scope (GLSL 4.60, 4.2.2).
   locals.push();
   for (const std::unique_ptr<typed::Variable> &parameter : function->parameters) {
@@ -47,6 +48,8 @@ void FunctionChecker::checkBody(const ast::FunctionDecl &declaration) {
     checkLocalSize(*parameter);
   function->body = checkCompound(*declaration.body, false);
   locals.pop();
+  if (diagnostics.errorCount() != errorsBefore)
+    return;
   for (const std::unique_ptr<typed::Variable> &local : function->locals)
     if (!mentioned.count(local.get()) && !local->type->isError())
       diagnostics.report(Code::unusedVariable, local->range, local->name);
@@ -352,9 +355,9 @@ StmtPtr FunctionChecker::checkReturn(const ast::ReturnStmt &stmt) {
     return node;
   }
   value = requireValue(std::move(value));
-  node->value = coerce(
-      std::move(value), wanted,
-      Label{function->range, "`" + function->name + "` returns " + withArticle(toString(wanted))});
+  node->value =
+      coerce(std::move(value), wanted,
+             Label{function->range, "`" + function->name + "` returns `" + toString(wanted) + "`"});
   return node;
 }
 

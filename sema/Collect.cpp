@@ -73,6 +73,8 @@ void Program::collectUnit(const ast::TranslationUnit &unit) {
     entry.variable->type = types.error;
     constantOrder.push_back(declaration.name.text);
   }
+  for (const ast::FunctionDecl &declaration : unit.functions)
+    functionNames.insert(declaration.name.text);
   for (const ast::ClassDecl &declaration : unit.classes) {
     if (!declareSymbol(declaration.name, Symbol::Kind::Class))
       continue;

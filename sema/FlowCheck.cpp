@@ -271,6 +271,9 @@ void FlowCheck::read(const Variable &variable, SourceRange range) {
   if (found == tracked.end() || !state.reachable)
     return;
   const std::uint8_t flags = state.variables[found->second];
+  // Arrays are filled in loops, of which nobody knows here that they run.
+  if ((flags & written) && variable.type->is(TypeKind::Array))
+    return;
   if (!(flags & unwritten) || !reported.insert(&variable).second)
     return;
   const Code code = flags & written ? Code::maybeUninitialized : Code::uninitialized;

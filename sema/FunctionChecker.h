@@ -83,10 +83,12 @@ private:
   typed::ExprPtr checkIndex(const ast::IndexExpr &expr, Access access);
   /// Reports if `target` cannot be stored to.
   bool requireTarget(const ast::Expr &source, const typed::Expr &target, const char *action);
-  void recordState(Use::Kind kind, typed::StateVariable variable, SourceRange range);
-  void recordSpecial(Ability ability, const std::string &what, SourceRange range,
+  /// These remember a use, or judge it at once. False (reported) outside of functions, where
+  /// nothing is running.
+  bool recordState(Use::Kind kind, typed::StateVariable variable, SourceRange range);
+  bool recordSpecial(Ability ability, const std::string &what, SourceRange range,
                      const typed::Member *member = nullptr);
-  void record(Use use);
+  bool record(Use use);
 
   // CheckOperators.cpp
   typed::ExprPtr checkUnary(const ast::UnaryExpr &expr);

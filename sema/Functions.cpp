@@ -57,8 +57,10 @@ std::unique_ptr<typed::Function> Program::declareFunction(const ast::FunctionDec
     if (source.init)
       diagnostics.report(Code::parameterDefault, source.init->range, parameter->name)
           .note("write a second function with fewer parameters");
-    if (parameter->isConst && parameter->direction != ast::Direction::In)
+    if (parameter->isConst && parameter->direction != ast::Direction::In) {
       diagnostics.report(Code::constOutParameter, source.range, parameter->name);
+      parameter->isConst = false;
+    }
     if (parameter->name.compare(0, 3, "rt_") == 0)
       diagnostics.report(Code::reservedName, parameter->range, parameter->name);
     function->parameters.push_back(std::move(parameter));
@@ -188,6 +190,7 @@ void Program::declareFreeFunction(const ast::FunctionDecl &declaration) {
     if (!same) {
       diagnostics.report(Code::prototypeDiffers, owned->range, owned->name)
           .label(other->range, "declared differently here");
+      prototypes.erase(other);
       return;
     }
     if (!declaration.body)
@@ -210,7 +213,7 @@ void Program::declareFreeFunction(const ast::FunctionDecl &declaration) {
   if (declaration.body)
     bodies.push_back({&declaration, function, nullptr});
   else
-    prototypes.emplace(function, &declaration);
+    prototypes.insert(function);
 }
 
 } // namespace rtsl

@@ -13,6 +13,7 @@
 
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace rtsl {
@@ -113,6 +114,11 @@ public:
   std::vector<const typed::Function *> findMethods(const ClassScope *scope,
                                                    const std::string &name) const;
 
+  /// Is there a function of that name anywhere, declared by now or not?
+  bool namesFunction(const std::string &name) const {
+    return functionNames.count(name) || methodNames.count(name);
+  }
+
   /// The checked constant, or null if it is broken or depends on itself (reported).
   const typed::Variable *constant(const std::string &name, SourceRange usedAt);
   /// The struct with its fields resolved, or null if it contains itself (reported).
@@ -162,7 +168,8 @@ private:
   std::vector<ClassScope *> baseFirst;
   std::vector<PendingBody> bodies;
   std::unordered_map<std::string, unsigned> memberNames, methodNames; // in how many classes
-  std::unordered_map<const typed::Function *, const ast::FunctionDecl *> prototypes;
+  std::unordered_set<std::string> functionNames;                      // at file level
+  std::unordered_set<const typed::Function *> prototypes;             // that no body followed yet
   unsigned constantDepth = 0, structDepth = 0;
 };
 

@@ -20,6 +20,11 @@ struct NamedCase {
   Case content;
 };
 
+/// What GoogleTest shows of a parameter.
+void PrintTo(const NamedCase &named, std::ostream *stream) {
+  *stream << named.name;
+}
+
 std::vector<NamedCase> allCases() {
   std::vector<NamedCase> cases;
   for (const std::string &path : languageFiles("errors", ".rtsl"))
