@@ -15,6 +15,9 @@ namespace {
 
 /// Functions of at most this many operations are inlined wherever they are called.
 constexpr unsigned smallFunction = 60;
+/// Functions that trace, at most this many: a frame of their own costs more than copies of the
+/// code, up to here.
+constexpr unsigned smallTracingFunction = 1000;
 
 unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {
   unsigned count = 0;
@@ -47,7 +50,8 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
       return false;
     if (callee->hasAttr("rtsl.constructor") && !caller->hasAttr("rtsl.constructor"))
       return false;
-    if (operationCount(callee, smallFunction) <= smallFunction || traces(callee))
+    unsigned limit = traces(callee) ? smallTracingFunction : smallFunction;
+    if (operationCount(callee, limit) <= limit)
       return true;
     auto uses = callee.getSymbolUses(getOperation());
     return callee.isPrivate() && uses && llvm::hasSingleElement(*uses);
