@@ -74,14 +74,6 @@ void occludedUser(const RTCOccludedFunctionNArguments *arguments) {
     reinterpret_cast<RTCRay *>(arguments->ray)->tfar = -std::numeric_limits<float>::infinity();
 }
 
-/// The length of a direction for which Embree works as it should, with room on both sides.
-bool isEasyLength(float length) {
-  return length > 0x1p-20f && length < 0x1p20f;
-}
-
-/// Beyond this Embree's arithmetic on the origin would overflow.
-constexpr float largestOrigin = 1e18f;
-
 } // namespace
 
 struct EmbreeScene::Implementation {
@@ -177,34 +169,37 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
 EmbreeScene::~EmbreeScene() = default;
 
 EmbreeAnswer EmbreeScene::traverse(RtslState &state, bool anyHit) const {
+  if (!(device::largest(device::load(state.RayOrigin)) < largestOrigin))
+    return EmbreeAnswer::Refused;
+  float length = device::largest(device::load(state.RayDirection));
+  if (length > shortest && length < longest)
+    return query(state, anyHit, 1, 1);
+  // Beyond these exponents the scale or its inverse would not be exact.
+  int exponent = device::exponentOf(length);
+  if (exponent < -100 || exponent > 100)
+    return EmbreeAnswer::Refused;
+  ++rayCounters().rescaledRays;
+  return query(state, anyHit, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
+}
+
+/// `toEmbree` and `fromEmbree` are powers of two and turn our t into Embree's, and back.
+EmbreeAnswer EmbreeScene::query(RtslState &state, bool anyHit, float toEmbree,
+                                float fromEmbree) const {
   using namespace device;
   Vec3 origin = load(state.RayOrigin), direction = load(state.RayDirection);
-  Vec3 scaled = direction;
+  Vec3 scaled = direction * fromEmbree;
   RayContext context;
   rtcInitIntersectContext(&context.embree);
   context.state = &state;
-  context.toEmbree = context.fromEmbree = 1;
-  float length = largest(direction);
-  if (!isEasyLength(length)) {
-    // Beyond these exponents the scale or its inverse would not be exact.
-    int exponent = exponentOf(length);
-    if (exponent < -100 || exponent > 100)
-      return EmbreeAnswer::Refused;
-    ++rayCounters().rescaledRays;
-    context.toEmbree = powerOfTwo(exponent);
-    context.fromEmbree = powerOfTwo(-exponent);
-    scaled = direction * context.fromEmbree;
-  }
-  if (!(largest(origin) < largestOrigin))
-    return EmbreeAnswer::Refused;
-
+  context.toEmbree = toEmbree;
+  context.fromEmbree = fromEmbree;
   float distance = state.HitDistance;
   RTCRayHit rayHit;
   RTCRay &ray = rayHit.ray;
   ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
   ray.dir_x = scaled.x, ray.dir_y = scaled.y, ray.dir_z = scaled.z;
-  ray.tnear = maximum(state.Epsilon * context.toEmbree, 0.0f);
-  ray.tfar = distance * context.toEmbree;
+  ray.tnear = maximum(state.Epsilon * toEmbree, 0.0f);
+  ray.tfar = distance * toEmbree;
   ray.time = 0;
   ray.mask = ~0u;
   ray.id = 0;

@@ -34,7 +34,34 @@ public:
   /// The ray of `state` must be good (device::isGoodRay) and have no hit yet.
   EmbreeAnswer traverse(RtslState &state, bool anyHit) const;
 
+  /// The same for a ray that isEasy.
+  EmbreeAnswer traverseEasy(RtslState &state, bool anyHit) const {
+    return query(state, anyHit, 1, 1);
+  }
+
+  /// Is the ray of `state` good, and can Embree take it as it is? Most are; the test is made for
+  /// them.
+  static bool isEasy(const RtslState &state) {
+    const float *o = state.RayOrigin, *d = state.RayDirection;
+    auto below = [](float a, float limit) {
+      return int(__builtin_fabsf(a) < limit);
+    }; // not for what is no number
+    auto above = [](float a, float limit) { return int(__builtin_fabsf(a) > limit); };
+    // Without branches, for there is only one outcome to predict.
+    return below(o[0], largestOrigin) & below(o[1], largestOrigin) & below(o[2], largestOrigin) &
+           below(d[0], longest) & below(d[1], longest) & below(d[2], longest) &
+           (above(d[0], shortest) | above(d[1], shortest) | above(d[2], shortest)) &
+           int(state.Epsilon >= 0) & int(state.HitDistance == state.HitDistance);
+  }
+
 private:
+  /// Beyond this Embree's arithmetic on the origin would overflow.
+  static constexpr float largestOrigin = 1e18f;
+  /// Lengths of directions for which Embree works as it should, with room on both sides.
+  static constexpr float shortest = 0x1p-20f, longest = 0x1p20f;
+
+  EmbreeAnswer query(RtslState &state, bool anyHit, float toEmbree, float fromEmbree) const;
+
   struct Implementation;
   std::unique_ptr<Implementation> self;
 };

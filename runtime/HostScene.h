@@ -30,6 +30,7 @@ public:
   std::uint32_t traverse(RtslState &state, bool anyHit) const;
 
 private:
+  std::uint32_t traverseCarefully(RtslState &state, bool anyHit) const;
   std::uint32_t retrace(RtslState &state, bool anyHit, float distance) const;
 
   const Scene &scene;

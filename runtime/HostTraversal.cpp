@@ -29,26 +29,27 @@ const RtslLaunch &HostScene::deviceLaunch() const {
 }
 
 std::uint32_t HostScene::traverse(RtslState &state, bool anyHit) const {
-  if (!embree) {
-    std::uint32_t answer = device::traverseDevice(state, anyHit, slots.rt_Primitive_intersect);
-    if (answer == RTSL_BAD_RAY)
-      ++rayCounters().badRays;
-    return answer;
-  }
+  if (!embree || !EmbreeScene::isEasy(state))
+    return traverseCarefully(state, anyHit);
+  float distance = state.HitDistance;
+  EmbreeAnswer answer = embree->traverseEasy(state, anyHit);
+  if (answer == EmbreeAnswer::Refused)
+    return retrace(state, anyHit, distance);
+  return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
+}
+
+std::uint32_t HostScene::traverseCarefully(RtslState &state, bool anyHit) const {
   if (!device::isGoodRay(state)) {
     ++rayCounters().badRays;
     return RTSL_BAD_RAY;
   }
+  if (!embree)
+    return device::traverseDevice(state, anyHit, slots.rt_Primitive_intersect);
   float distance = state.HitDistance;
-  switch (embree->traverse(state, anyHit)) {
-  case EmbreeAnswer::Miss:
-    return RTSL_MISS;
-  case EmbreeAnswer::Hit:
-    return RTSL_HIT;
-  case EmbreeAnswer::Refused:
+  EmbreeAnswer answer = embree->traverse(state, anyHit);
+  if (answer == EmbreeAnswer::Refused)
     return retrace(state, anyHit, distance);
-  }
-  return RTSL_MISS;
+  return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
 }
 
 std::uint32_t HostScene::retrace(RtslState &state, bool anyHit, float distance) const {

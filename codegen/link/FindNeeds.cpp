@@ -21,6 +21,7 @@ std::uint32_t findNeeds(mlir::ModuleOp ir) {
                    .Cases({"dPdu", "dPdv", "dsdu", "dsdv", "dtdu", "dtdv"}, RTSL_NEEDS_DERIVATIVES)
                    .Cases({"ObjectToWorld", "WorldToObject"}, RTSL_NEEDS_TRANSFORMS)
                    .Case("InverseRayDirection", RTSL_NEEDS_INVERSE_DIRECTION)
+                   .Cases({"EmissionColor", "BSDFValue", "BSDFSeed", "PDF", "du", "dv"}, RTSL_NEEDS_SAMPLING)
                    .Default(0);
   });
   return needs;

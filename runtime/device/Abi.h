@@ -112,7 +112,8 @@ typedef struct RtslState {
 #define RTSL_NEEDS_DERIVATIVES 2u         // dPdu dPdv dsdu dsdv dtdu dtdv
 #define RTSL_NEEDS_TRANSFORMS 4u          // ObjectToWorld WorldToObject
 #define RTSL_NEEDS_INVERSE_DIRECTION 8u   // InverseRayDirection
-#define RTSL_NEEDS_ALL 15u
+#define RTSL_NEEDS_SAMPLING 16u           // EmissionColor BSDFValue BSDFSeed PDF du dv
+#define RTSL_NEEDS_ALL 31u
 
 // What rtsl_traverse answers.
 #define RTSL_MISS 0u

@@ -73,18 +73,24 @@ inline void inherit(RtslState &state, const RtslState &parent) {
 inline void setDefaults(RtslState &state, uint32_t components) {
   setColor(state.SampleColor, components, 0);
   setColor(state.LightColor, components, 0);
-  setColor(state.EmissionColor, components, 0);
-  setColor(state.BSDFValue, components, 0);
   setVector(state.LightDirection, 0, 0, 0);
   state.LightDistance = infinity;
-  state.BSDFSeed[0] = state.BSDFSeed[1] = 0;
-  state.PDF = 0;
-  state.du = state.dv = 0;
+  if (state.launch->needs & RTSL_NEEDS_SAMPLING) { // this engine does not sample
+    setColor(state.EmissionColor, components, 0);
+    setColor(state.BSDFValue, components, 0);
+    state.BSDFSeed[0] = state.BSDFSeed[1] = 0;
+    state.PDF = 0;
+    state.du = state.dv = 0;
+  }
 }
 
 /// What a ray met, and the object whose method says what color that is.
 struct Arrival {
-  enum Kind : uint32_t { Nothing, Surface, Background } kind; // Nothing: SampleColor is right already
+  enum Kind : uint32_t {
+    Nothing,
+    Surface,
+    Background
+  } kind; // Nothing: SampleColor is right already
   RtslRef object;
 };
 
@@ -160,7 +166,9 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   float length = largest(direction);
   if (distance < infinity && length > 0)
     distance -= primitivePointError(point, direction, distance) / length;
-  childKey(shading.randomKey, shading.dimension, state.randomKey);
+  // Draws are hashed; a key that no other ray has is enough.
+  state.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
+  state.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
   state.dimension = 0;
   setRay(state, point, direction, epsilon, distance);
   if (!(epsilon < distance))
