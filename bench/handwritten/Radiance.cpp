@@ -155,8 +155,10 @@ vec3 radiance(const Scene &scene, const Picture &picture, const Ray &ray) {
     const vec3 geometric(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
     const vec3 normal =
         glm::normalize(scene.knotNormal(found.hit.primID, found.hit.u, found.hit.v));
-    return lambert(scene, ray, point, glm::dot(geometric, ray.direction) < 0 ? normal : -normal,
-                   {0.8f, 0.35f, 0.2f});
+    // The normals of the file say which side is outside, not its winding.
+    const bool isFront =
+        (glm::dot(geometric, ray.direction) < 0) == (glm::dot(geometric, normal) > 0);
+    return lambert(scene, ray, point, isFront ? normal : -normal, {0.8f, 0.35f, 0.2f});
   }
   default:
     return sky(ray.direction);
