@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Language, Errors, testing::ValuesIn(allCases()),
                          });
 
 // Codes that no text of reasonable length can provoke; LimitsTest.cpp does.
-const char *const provokedByLimitsTest[] = {"E0606", "E0608", "E0609", "E0611"};
+const char *const provokedByLimitsTest[] = {"E0320", "E0606", "E0608", "E0609", "E0611"};
 
 TEST(Errors, EveryMessageOfSemaHasATest) {
   std::string expectations;

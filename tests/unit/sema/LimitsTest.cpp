@@ -136,6 +136,33 @@ TEST(Limits, TooDeepStatementsAreRefused) {
   EXPECT_EQ(diagnostics.all()[1].code, Code::statementTooDeep);
 }
 
+TEST(Limits, ListsWhereTheSyntaxHasNoneAreRefused) {
+  // The grammar has lists in initialisers alone; a tree that another program makes may have them
+  // anywhere.
+  SourceManager sources;
+  Diagnostics diagnostics(sources);
+  const FileId file = sources.add("list.rtsl", std::string(64, ' '));
+  const SourceRange range{file, 4, 8};
+  auto list = std::make_unique<ast::InitializerListExpr>();
+  list->range = range;
+  auto negated = std::make_unique<ast::UnaryExpr>();
+  negated->op = ast::UnaryOp::Minus;
+  negated->operand = std::move(list);
+  negated->range = {file, 3, 8};
+  ast::TranslationUnit unit;
+  unit.file = file;
+  ast::VariableDecl declaration;
+  declaration.isConst = true;
+  declaration.name = {"x", range};
+  declaration.type.name = {"float", range};
+  declaration.init = std::move(negated);
+  unit.constants.push_back(std::move(declaration));
+  check({&unit}, {}, diagnostics);
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].code, Code::misplacedInitializerList);
+  EXPECT_EQ(diagnostics.all()[0].range, range);
+}
+
 TEST(Limits, StructsNestToALimit) {
   const std::string flat = "struct S0 { float x; };\n";
   EXPECT_EQ(checkText(flat + numbered(60, "struct S@ { S# inner; };\n"))->numbers(), "");

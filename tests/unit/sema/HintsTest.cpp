@@ -1,0 +1,129 @@
+//===- HintsTest.cpp - labels, notes and fixes ----------------------------===//
+//
+// What stands beside a message: where else to look, what was expected, and edits that mend the
+// mistake. Each fix is applied, and the text that comes out is checked again.
+//
+//===----------------------------------------------------------------------===//
+#include "Harness.h"
+
+#include <gtest/gtest.h>
+
+using namespace rtsl;
+using namespace rtsl::test;
+
+namespace {
+
+/// The text after the first fix of its only message.
+std::string fixed(const std::string &text) {
+  const std::unique_ptr<Checked> checked = checkText(text);
+  if (checked->diagnostics.all().size() != 1 || checked->diagnostics.all()[0].fixes.empty())
+    return "no single fix:\n" + render(*checked);
+  const Fix &fix = checked->diagnostics.all()[0].fixes[0];
+  std::string result = text;
+  return result.replace(fix.range.begin, fix.range.end - fix.range.begin, fix.replacement);
+}
+
+void expectFix(const std::string &before, const std::string &after) {
+  EXPECT_EQ(fixed(before), after);
+  EXPECT_EQ(render(*checkText(after)), "");
+}
+
+/// Everything that the first message says beside its text.
+std::string hints(const std::string &text) {
+  const std::unique_ptr<Checked> checked = checkText(text);
+  std::string result;
+  for (const Diagnostic &diagnostic : checked->diagnostics.all()) {
+    for (const Label &label : diagnostic.labels)
+      result += std::string(checked->sources.text(label.range)) + ": " + label.text + "\n";
+    for (const std::string &note : diagnostic.notes)
+      result += note + "\n";
+  }
+  return result;
+}
+
+TEST(Hints, MistypedNamesAreMended) {
+  expectFix("float f(float radius) { return radus; }", "float f(float radius) { return radius; }");
+  expectFix("struct Ray { vec3 origin; };\nvec3 f(Ray r) { return r.orign; }",
+            "struct Ray { vec3 origin; };\nvec3 f(Ray r) { return r.origin; }");
+  expectFix("class A : rt_Primitiv { };", "class A : rt_Primitive { };");
+  expectFix("class A : Light { };", "class A : rt_Light { };");
+  expectFix("class C : rt_Light; vec3 f() { return HitPoint; }",
+            "class C : rt_Light; vec3 f() { return rt_HitPoint; }");
+  expectFix("float f(float x) { return Sqrt(x); }", "float f(float x) { return sqrt(x); }");
+}
+
+TEST(Hints, OtherLanguagesAreTranslated) {
+  expectFix("float f(float3 v) { return v.x; }", "float f(vec3 v) { return v.x; }");
+  expectFix("vec3 f(vec3 a) { return lerp(a, a, 0.5); }",
+            "vec3 f(vec3 a) { return mix(a, a, 0.5); }");
+  expectFix("vec3 f(vec3 a) { return make_float3(1.0, 2.0, 3.0); }",
+            "vec3 f(vec3 a) { return vec3(1.0, 2.0, 3.0); }");
+  expectFix("float f(float y) { return atan2(y, 2.0); }",
+            "float f(float y) { return atan(y, 2.0); }");
+  expectFix("double f() { return 1.0; }", "float f() { return 1.0; }");
+  EXPECT_EQ(hints("vec3 f(vec3 a) { return saturate(a); }"), "write `clamp(x, 0.0, 1.0)`\n");
+  EXPECT_EQ(hints("vec3 f(mat3 m, vec3 a) { return mul(m, a); }"),
+            "write `a * b`: it is the product of linear algebra\n");
+}
+
+TEST(Hints, ConversionsAreWrittenOut) {
+  expectFix("int f(float x) { return x; }", "int f(float x) { return int(x); }");
+  expectFix("vec2 f(vec4 v) { return v; }", "vec2 f(vec4 v) { return v.xy; }");
+  expectFix("vec3 f(float x) { return x; }", "vec3 f(float x) { return vec3(x); }");
+  expectFix("color f(float x) { return x; }", "color f(float x) { return color(x); }");
+  expectFix("color f(vec3 v) { return v; }", "color f(vec3 v) { return color(v.r, v.g, v.b); }");
+  expectFix("color f(vec3 v) { return color(v); }",
+            "color f(vec3 v) { return color(v.r, v.g, v.b); }");
+  expectFix("float f(color c) { return c; }", "float f(color c) { return luminance(c); }");
+  expectFix("float f(color c) { return float(c); }",
+            "float f(color c) { return float(luminance(c)); }");
+  expectFix("color f(color c) { return c + 1.0; }", "color f(color c) { return c + color(1.0); }");
+  expectFix("float f(float a[3], float x) { return a[x]; }",
+            "float f(float a[3], float x) { return a[int(x)]; }");
+  expectFix("bool f(int i) { return i ? true : false; }",
+            "bool f(int i) { return i != 0 ? true : false; }");
+  expectFix("uint f() { return 4000000000; }", "uint f() { return 4000000000u; }");
+  expectFix("int f(float a[3]) { return a.size(); }", "int f(float a[3]) { return a.length(); }");
+  expectFix("class L : rt_Light;\nfloat x;", "class L : rt_Light;\nprivate float x;");
+}
+
+TEST(Hints, CandidatesAreListed) {
+  EXPECT_EQ(hints("float g(float a, int b) { return a; }\nfloat g(int a, float b) { return b; }\n"
+                  "float f() { return g(1, 2); }"),
+            "g: candidate: `float g(float, int)`\ng: candidate: `float g(int, float)`\n");
+  EXPECT_EQ(hints("float f() { return dot(vec2(1.0), vec3(1.0)); }"),
+            "candidate: `float dot(float, float)`\ncandidate: `float dot(vec2, vec2)`\n"
+            "candidate: `float dot(vec3, vec3)`\ncandidate: `float dot(vec4, vec4)`\n");
+}
+
+TEST(Hints, CallersOfHelpersAreNamed) {
+  EXPECT_EQ(
+      hints("class A : rt_Primitive {\n  color look() { return trace(vec3(0.0), vec3(1.0)); }\n"
+            "  void intersect() { hit(luminance(look())); }\n};"),
+      "intersect: reached from `intersect` of an rt_Primitive\n"
+      "`trace` may stand in `shade` and `closestHit` of an rt_Material, `generate` of an "
+      "rt_RayGeneration and "
+      "`miss` of an rt_Miss, and in functions that these call\n");
+}
+
+TEST(Hints, CyclesAreShown) {
+  EXPECT_EQ(hints("float a(float x) { return b(x); }\nfloat b(float x) { return a(x); }"),
+            "b: `a` calls `b` here\n`a` calls `b`, which calls `a`\nonly `trace` recurses\n");
+}
+
+TEST(Hints, ExpectedMethodsAreShown) {
+  EXPECT_EQ(hints("class A : rt_Primitive { bool intersect() { return true; } };"),
+            "expected `void intersect()`\n");
+  EXPECT_EQ(hints("class S : rt_Miss { void miss(float x) { } };"),
+            "expected `void miss()` or `void miss(inout P)`, where P is a struct of yours, the "
+            "payload of the ray\n");
+  EXPECT_EQ(hints("class L : rt_Light { void shade() { } };"), "an rt_Light has `illumination`\n");
+}
+
+TEST(Hints, StateSaysWhoSeesIt) {
+  EXPECT_EQ(hints("class C : rt_Camera; void generateRay() { rt_RayOrigin = "
+                  "vec3(luminance(rt_LightColor)); }"),
+            "`rt_LightColor` belongs to rt_Material and rt_Light\n");
+}
+
+} // namespace
