@@ -1,0 +1,214 @@
+//===- ClassesTest.cpp - what classes become ------------------------------===//
+#include "tests/unit/codegen/Shader.h"
+
+#include <gtest/gtest.h>
+
+namespace rtsl::test {
+namespace {
+
+const char *const sphere = R"(
+class Sphere : rt_Primitive {
+  public vec3 center;
+  public float radius = 1.0;
+  scratch vec3 hitNormal;
+  scratch float list[2];
+
+  float nearest(float b, float d) { return -b - sqrt(d); }
+  bool report(float t) {
+    hitNormal = rt_RayOrigin + t * rt_RayDirection - center;
+    return hit(t);
+  }
+  void intersect() {
+    vec3 f = rt_RayOrigin - center;
+    float b = dot(f, rt_RayDirection);
+    float d = b * b - dot(f, f) + radius * radius;
+    if (d < 0.0)
+      return;
+    list[1] = d;
+    if (!report(nearest(b, d)))
+      report(-b + sqrt(d));
+  }
+  void computeNormal() {
+    rt_GeometricNormal = normalize(hitNormal) * list[1];
+    rt_ShadingNormal = rt_GeometricNormal;
+  }
+  void computeBounds() {
+    rt_BoundMin = center - vec3(radius);
+    rt_BoundMax = center + vec3(radius);
+  }
+};
+)";
+
+TEST(Classes, ScratchMembersAreVariablesOfOneIntersection) {
+  Lowered lowered(sphere);
+  ASSERT_TRUE(lowered.succeeded());
+  // Two returns, each stores both scratch members if a hit was accepted.
+  EXPECT_EQ(lowered.count("Sphere.intersect", "rtsl.attribute \"hitNormal\""), 2u);
+  EXPECT_EQ(lowered.count("Sphere.intersect", "rtsl.attribute \"list\""), 2u);
+  EXPECT_EQ(lowered.count("Sphere.intersect", "rtsl.var \"hitNormal\""), 1u);
+  EXPECT_EQ(lowered.count("Sphere.intersect", "rtsl.var \"accepted\""), 1u);
+  EXPECT_EQ(lowered.count("Sphere.intersect", "call @Sphere.report.intersect"), 2u);
+  EXPECT_EQ(lowered.count("Sphere.intersect", "call @Sphere.nearest("), 1u)
+      << "a helper that has nothing to do with it takes no more parameters";
+  EXPECT_EQ(lowered.count("Sphere.report.intersect", "rtsl.attribute"), 0u);
+  EXPECT_EQ(lowered.count("Sphere.report.intersect", "rtsl.hit"), 1u);
+  EXPECT_EQ(lowered.count("Sphere.report.intersect", "!rtsl.ptr<i1>"), 3u)
+      << "parameter, load, store";
+  EXPECT_FALSE(lowered.hasFunction("Sphere.report"));
+  EXPECT_EQ(lowered.count("Sphere.computeNormal", "rtsl.attribute \"hitNormal\""), 1u);
+}
+
+TEST(Classes, DeclareTheirMembersInheritedOnesFirst) {
+  Lowered lowered(R"(
+class A : rt_Material {
+  public float first = 2.0, second;
+  private int third;
+  const int fixed = 3;
+  scratch vec3 n;
+  constructor(float value) { third = int(value) + fixed; }
+  float helper() { return first; }
+  void shade() { rt_SampleColor = color(helper() + n.x); }
+};
+class B : A {
+  public vec2 fourth = vec2(1, 2);
+  float helper() { return second; }
+};
+)");
+  ASSERT_TRUE(lowered.succeeded());
+  std::string text = lowered.text("B");
+  std::size_t last = 0;
+  for (const char *member :
+       {"@first : f32 access \"public\"", "@second : f32 access \"public\"",
+        "@third : i32 access \"private\"", "@n : vector<3xf32> access \"scratch\"",
+        "@fourth : vector<2xf32> access \"public\""}) {
+    std::size_t at = text.find(member);
+    ASSERT_NE(at, std::string::npos) << member << " in\n" << text;
+    EXPECT_GT(at, last);
+    last = at;
+  }
+  EXPECT_EQ(text.find("fixed"), std::string::npos);
+  EXPECT_NE(text.find("root \"rt_Material\" base @A"), std::string::npos);
+  // Methods are lowered for each class, so that calls on the object itself are known.
+  EXPECT_EQ(lowered.count("A.shade", "call @A.helper"), 1u);
+  EXPECT_EQ(lowered.count("B.shade", "call @B.helper"), 1u);
+  EXPECT_EQ(lowered.count("B.shade", "rtsl.method = \"shade\""), 1u);
+  EXPECT_EQ(lowered.count("B.constructor", "rtsl.constructor"), 1u);
+  EXPECT_EQ(lowered.count("A.initialize", "rtsl.member"), 1u);
+  EXPECT_EQ(lowered.count("B.initialize", "rtsl.member"), 2u);
+}
+
+TEST(Classes, CallsThroughReferencesAreSlots) {
+  Lowered lowered(R"(
+class Base : rt_Texture {
+  public rt_Texture other;
+  public Base next;
+  float weight(float x) { return x; }
+  vec2 weight(vec2 x) { return x; }
+  void lookup() {
+    rt_TextureColor = other.lookup() * next.weight(2.0) * next.weight(vec2(1)).x;
+    rt_FloatTextureValue = other.lookupFloat();
+  }
+};
+)");
+  ASSERT_TRUE(lowered.succeeded());
+  EXPECT_EQ(lowered.count("Base.lookup", "rtsl.call_method \"lookup\" on"), 2u);
+  EXPECT_EQ(lowered.count("Base.lookup", "rtsl.call_method \"weight.float\" on"), 1u);
+  EXPECT_EQ(lowered.count("Base.lookup", "rtsl.call_method \"weight.vec2\" on"), 1u);
+  EXPECT_TRUE(lowered.hasFunction("Base.weight.float"));
+}
+
+TEST(Classes, MaterialsTraceAndAreLit) {
+  Options options;
+  options.colorComponents = 4;
+  Lowered lowered(R"(
+class Glass : rt_Material {
+  public float eta = 1.5;
+  public color tint = color(1, 0.9, 0.8);
+  void shade() {
+    vec3 n = faceforward(rt_ShadingNormal, rt_RayDirection, rt_GeometricNormal);
+    color sum = trace(rt_HitPoint, reflect(rt_RayDirection, n));
+    sum += tint * trace(rt_HitPoint, refract(rt_RayDirection, n, 1.0 / eta));
+    illuminance (rt_HitPoint, n, 1.5707) {
+      if (luminance(rt_LightColor) < 0.01)
+        continue;
+      sum += rt_LightColor * max(dot(n, rt_LightDirection), 0.0);
+    }
+    illuminance (rt_HitPoint)
+      sum += rt_LightColor;
+    rt_SampleColor = sum + ambient() * rand();
+  }
+};
+)",
+                  options);
+  ASSERT_TRUE(lowered.succeeded());
+  EXPECT_EQ(lowered.count("Glass.shade", "rtsl.trace"), 2u);
+  EXPECT_EQ(lowered.count("Glass.shade", "rtsl.illuminance"), 2u);
+  EXPECT_EQ(lowered.count("Glass.shade", "normal %"), 1u);
+  EXPECT_EQ(lowered.count("Glass.shade", "rtsl.continue"), 1u);
+  EXPECT_EQ(lowered.count("Glass.shade", "rtsl.ambient : vector<4xf32>"), 1u);
+  EXPECT_EQ(lowered.count("Glass.shade", "rtsl.rand"), 1u);
+}
+
+TEST(Classes, BuffersAreReadWithinTheirBounds) {
+  Lowered lowered(R"(
+class Mesh : rt_Primitive {
+  public vec3 vertices[];
+  public float grid[][];
+  void intersect() {
+    hit(vertices[rt_PrimitiveIndex].x + grid[1][2] + float(vertices.length() + grid.length() + grid[0].length()));
+  }
+  void computeBounds() {
+    rt_BoundMin = vec3(0);
+    rt_BoundMax = vec3(1);
+  }
+};
+)");
+  ASSERT_TRUE(lowered.succeeded());
+  EXPECT_EQ(lowered.count("Mesh.intersect", "rtsl.buffer_element"), 2u);
+  EXPECT_EQ(lowered.count("Mesh.intersect", "rtsl.buffer_length"), 6u);
+  EXPECT_EQ(lowered.count("Mesh.intersect", "rtsl.if"), 2u) << "a buffer may be empty";
+}
+
+TEST(Classes, OnlyThoseAskedFor) {
+  Options options;
+  options.classes = {"A"};
+  Lowered lowered(R"(
+float used(float x) { return x; }
+float unused(float x) { return x; }
+class A : rt_Material { void shade() { rt_SampleColor = color(used(1.0)); } };
+class B : rt_Material { void shade() { rt_SampleColor = color(unused(1.0)); } };
+)",
+                  options);
+  EXPECT_TRUE(lowered.hasFunction("A.shade"));
+  EXPECT_TRUE(lowered.hasFunction("used"));
+  EXPECT_FALSE(lowered.hasFunction("B.shade"));
+  EXPECT_FALSE(lowered.hasFunction("unused"));
+}
+
+TEST(Classes, LocationsAreThoseOfTheSource) {
+  Lowered lowered("float twice(float x) {\n  return x * 2.0;\n}\n");
+  std::string text = lowered.text("", /*withLocations=*/true);
+  EXPECT_NE(text.find("\"test.rtsl\":2:"), std::string::npos) << text;
+}
+
+TEST(Unsupported, IsReportedWhereItStands) {
+  Lowered lowered(R"(
+struct Payload { float x; };
+class C : rt_RayGeneration {
+  void generate() {
+    Payload p;
+    trace(vec3(0), vec3(1), 0.0, 1.0, p);
+  }
+};
+)",
+                  {}, /*expectErrors=*/true);
+  ASSERT_EQ(lowered.messages().all().size(), 1u) << renderText(lowered.messages(), false);
+  const Diagnostic &message = lowered.messages().all().front();
+  EXPECT_EQ(message.code, Code::notSupportedYet);
+  EXPECT_EQ(message.message, "`trace` with a payload is not supported yet");
+  EXPECT_EQ(lowered.messages().sources().text(message.range),
+            "trace(vec3(0), vec3(1), 0.0, 1.0, p)");
+}
+
+} // namespace
+} // namespace rtsl::test
