@@ -25,6 +25,9 @@ namespace rtsl {
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program);
 
+/// For a unit without a scene: slots become declared functions, attributes get provisional places.
+void declareSlots(mlir::ModuleOp ir);
+
 /// The symbols under which code of a linked program is found.
 std::string initializeSymbol(const std::string &className); // member defaults
 std::string constructSymbol(const std::string &className);  // constructor on packed arguments

@@ -77,38 +77,43 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
   buildZeroReturn(builder, function);
 }
 
-void resolveSlots(LinkContext &context) {
+void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define) {
   llvm::SmallVector<ir::CallMethodOp> calls;
-  context.ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
+  ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
 
   for (ir::CallMethodOp call : calls) {
-    const std::string base = mlir::cast<ir::RefType>(call.getObject().getType()).getClassName().str();
-    const std::string method = call.getMethod().str();
-    const std::string name = "dispatch." + base + "." + method;
-    auto function = context.ir.lookupSymbol<mlir::func::FuncOp>(name);
-    if (!function) {
-      std::vector<const LinkedClass *> classes;
-      for (const LinkedClass &linked : context.classes) {
-        if (!derivesFrom(*linked.info, base))
-          continue;
-        classes.push_back(&linked);
-        if (!findMethod(context, linked, method))
-          context.diagnostics.report(Code::slotNotFilled, linked.info->range, method, linked.info->name);
-      }
-      llvm::SmallVector<mlir::Type> inputs = {call.getObject().getType()};
-      llvm::append_range(inputs, call.getArguments().getTypes());
-      mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
-      function = mlir::func::FuncOp::create(builder, call.getLoc(), name,
-                                            builder.getFunctionType(inputs, call.getResultTypes()));
-      buildDispatch(context, function, classes, method);
-    }
-    mlir::OpBuilder builder(call);
+    const SlotCall slot = {mlir::cast<ir::RefType>(call.getObject().getType()).getClassName().str(),
+                           call.getMethod().str()};
+    const std::string name = "dispatch." + slot.base + "." + slot.method;
     llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
     llvm::append_range(arguments, call.getArguments());
+    auto function = ir.lookupSymbol<mlir::func::FuncOp>(name);
+    if (!function) {
+      mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(ir.getBody());
+      function = mlir::func::FuncOp::create(
+          builder, call.getLoc(), name,
+          builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
+      define(slot, function);
+    }
+    mlir::OpBuilder builder(call);
     auto direct = mlir::func::CallOp::create(builder, call.getLoc(), function, arguments);
     call.replaceAllUsesWith(direct.getResults());
     call.erase();
   }
+}
+
+void resolveSlots(LinkContext &context) {
+  replaceSlots(context.ir, [&](const SlotCall &slot, mlir::func::FuncOp function) {
+    std::vector<const LinkedClass *> classes;
+    for (const LinkedClass &linked : context.classes) {
+      if (!derivesFrom(*linked.info, slot.base))
+        continue;
+      classes.push_back(&linked);
+      if (!findMethod(context, linked, slot.method))
+        context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method, linked.info->name);
+    }
+    buildDispatch(context, function, classes, slot.method);
+  });
 }
 
 } // namespace rtsl::linking

@@ -34,7 +34,17 @@ void dropUnusedClasses(LinkContext &context);
 /// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody reads.
 void placeAttributes(LinkContext &context);
 
-/// Replaces every `rtsl.call_method` by a call of a dispatch function.
+/// A method that is called through a reference.
+struct SlotCall {
+  std::string base; // the class of the reference: "rt_Texture" or one of the user's
+  std::string method;
+};
+
+/// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`. `define` is given each such function once,
+/// without a body.
+void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define);
+
+/// Gives every slot its dispatch function.
 void resolveSlots(LinkContext &context);
 
 /// Adds the entries of runtime/device/Slots.def and those that make objects; everything else becomes private.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <set>
 
 namespace rtsl::tool {
 
@@ -19,16 +20,31 @@ struct CheckOptions {
   bool fix = false;
 };
 
-/// Writes back the texts that sure fixes change. A file that came from standard input goes to standard output.
-void writeFixes(Messages &messages) {
-  for (const FixedText &fixed : applyFixes(messages.diagnostics)) {
-    const std::string path(messages.sources.name(fixed.file));
-    if (path == "<stdin>") {
-      std::fwrite(fixed.text.data(), 1, fixed.text.size(), stdout);
-      continue;
-    }
-    runtime::writeFileAtomically(path, fixed.text);
-    fmt::print(stderr, "{}: {} fixed\n", path, fixed.applied == 1 ? "1 mistake" : fmt::format("{} mistakes", fixed.applied));
+/// The files that some sure fix changes.
+std::set<FileId> filesToFix(const Diagnostics &diagnostics) {
+  std::set<FileId> files;
+  for (const Diagnostic &diagnostic : diagnostics.all())
+    for (const Fix &fix : diagnostic.fixes)
+      if (fix.sure)
+        files.insert(fix.range.file);
+  return files;
+}
+
+std::string count(std::size_t number, const char *noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
+/// Writes the mended texts back. What came from standard input goes to standard output.
+void writeFixes(const Messages &messages) {
+  for (const FileId file : filesToFix(messages.diagnostics)) {
+    const FixedText fixed = applyFixes(messages.diagnostics, file);
+    const std::string path(messages.sources.name(file));
+    if (path == "<stdin>")
+      fmt::print("{}", fixed.text);
+    else
+      runtime::writeFileAtomically(path, fixed.text);
+    fmt::print(stderr, "{}: {} fixed", path, count(fixed.applied, "mistake"));
+    fmt::print(stderr, fixed.skipped ? ", {} left that overlap with these: run again\n" : "\n", fixed.skipped);
   }
 }
 
@@ -44,7 +60,12 @@ int check(const CheckOptions &options) {
       messages.diagnostics);
   messages.print();
   if (options.fix)
-    writeFixes(messages);
+    try {
+      writeFixes(messages);
+    } catch (const runtime::Error &error) {
+      fmt::print(stderr, "rtslc: {}\n", error.what());
+      return Diagnosed;
+    }
   return messages.status();
 }
 

@@ -1,0 +1,28 @@
+//===- DeclareSlots.cpp - a unit without a scene --------------------------===//
+//
+// A file that is compiled alone calls through references what it does not know: each slot becomes the declaration of a
+// function, `@dispatch.rt_Texture.lookup`, that a linker fills. Attributes get places of their own in the order in which
+// they are mentioned.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Layout.h"
+#include "codegen/link/Steps.h"
+
+#include "llvm/ADT/DenseMap.h"
+
+namespace rtsl {
+
+void declareSlots(mlir::ModuleOp ir) {
+  llvm::DenseMap<std::pair<mlir::StringAttr, mlir::Type>, std::uint32_t> places;
+  std::uint32_t words = 0;
+  ir.walk([&](ir::AttributeOp op) {
+    const mlir::Type type = mlir::cast<ir::PtrType>(op.getType()).getPointee();
+    const auto [place, isNew] = places.try_emplace({op.getNameAttr(), type}, words);
+    if (isNew)
+      words += ir::sizeInBytes(type) / 4;
+    op.setOffset(place->second);
+  });
+  linking::replaceSlots(ir, [](const linking::SlotCall &, mlir::func::FuncOp declaration) { declaration.setPrivate(); });
+}
+
+} // namespace rtsl
