@@ -196,6 +196,16 @@ struct ConvertState : ConvertOpToLLVMPattern<ir::StateOp> {
   }
 };
 
+struct ConvertFrameSlot : ConvertOpToLLVMPattern<ir::FrameSlotOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::FrameSlotOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOp(op,
+                       offsetAddress(rewriter, op.getLoc(), adaptor.getFrame(), op.getOffset()));
+    return mlir::success();
+  }
+};
+
 struct ConvertAttribute : ConvertOpToLLVMPattern<ir::AttributeOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::AttributeOp op, OpAdaptor,
@@ -314,11 +324,10 @@ struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
 } // namespace
 
 void addMemoryPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
-  patterns
-      .add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
-           ConvertElement, ConvertMember, ConvertState, ConvertAttribute, ConvertBufferElement,
-           ConvertBufferLength, ConvertNullRef, ConvertCastRef, ConvertEqualRef, ConvertClassId>(
-          converter);
+  patterns.add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
+               ConvertElement, ConvertMember, ConvertState, ConvertFrameSlot, ConvertAttribute,
+               ConvertBufferElement, ConvertBufferLength, ConvertNullRef, ConvertCastRef,
+               ConvertEqualRef, ConvertClassId>(converter);
 }
 
 } // namespace rtsl::codegen

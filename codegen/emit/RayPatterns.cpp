@@ -99,11 +99,35 @@ struct ConvertIlluminate : ConvertOpToLLVMPattern<ir::IlluminateOp> {
   }
 };
 
+/// The two halves of a trace in a function that was split there.
+struct ConvertSpawn : ConvertOpToLLVMPattern<ir::SpawnOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::SpawnOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    llvm::SmallVector<Value> arguments = {rayState(rewriter)};
+    llvm::append_range(arguments, componentsOf(rewriter, op.getLoc(), adaptor.getOrigin()));
+    llvm::append_range(arguments, componentsOf(rewriter, op.getLoc(), adaptor.getDirection()));
+    callRuntime(rewriter, op.getLoc(), runtimeFunction(op), arguments);
+    rewriter.eraseOp(op);
+    return mlir::success();
+  }
+};
+
+struct ConvertTraceResult : ConvertOpToLLVMPattern<ir::TraceResultOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::TraceResultOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    Value color = callRuntime(rewriter, op.getLoc(), runtimeFunction(op), {rayState(rewriter)});
+    rewriter.replaceOp(op, loadFrom(rewriter, op.getLoc(), op.getType(), color, false));
+    return mlir::success();
+  }
+};
+
 } // namespace
 
 void addRayPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
   patterns.add<ConvertTrace, ConvertHit, ConvertRand, ConvertAmbient, ConvertLightCount,
-               ConvertIlluminate>(converter);
+               ConvertIlluminate, ConvertSpawn, ConvertTraceResult>(converter);
 }
 
 } // namespace rtsl::codegen

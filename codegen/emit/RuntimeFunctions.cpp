@@ -18,6 +18,8 @@ std::string runtimeFunction(mlir::Operation *op) {
       .Case([](ir::HitOp) { return "rtsl_hit"; })
       .Case([](ir::RandOp) { return "rtsl_rand"; })
       .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
+      .Case([](ir::SpawnOp) { return "rtsl_spawn"; })
+      .Case([](ir::TraceResultOp) { return "rtsl_trace_result"; })
       .Default([](mlir::Operation *) { return ""; });
 }
 
@@ -42,7 +44,11 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
       .Case([&](ir::RandOp) { return function(f32, {pointer}); })
       .Case([&](ir::IlluminateOp) {
         return function(i32, {pointer, i32, f32, f32, f32, f32, f32, f32, f32});
-      });
+      })
+      .Case([&](ir::SpawnOp) {
+        return function(nothing, {pointer, f32, f32, f32, f32, f32, f32});
+      })
+      .Case([&](ir::TraceResultOp) { return function(pointer, {pointer}); });
 }
 
 void declareRuntimeFunctions(mlir::ModuleOp module) {

@@ -15,6 +15,7 @@
 #include "llvm/ADT/StringMap.h"
 
 #include <algorithm>
+#include <map>
 
 namespace rtsl::continuation {
 
@@ -176,7 +177,9 @@ void Dispatcher::makeRunState() {
 
 mlir::LogicalResult Dispatcher::run() {
   std::int32_t frameSize = 0;
-  std::vector<std::pair<std::string, std::int32_t>> entries;
+  std::map<std::string, std::int32_t> entries;
+  for (llvm::StringRef name : machineEntries())
+    entries[name.str() + "_first"] = 0;
   for (FuncOp state : module.getOps<FuncOp>()) {
     if (!state->hasAttr("rtsl.state"))
       continue;
@@ -190,7 +193,7 @@ mlir::LogicalResult Dispatcher::run() {
     if (auto size = state->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_size"))
       frameSize = std::max(frameSize, static_cast<std::int32_t>(size.getInt()));
     if (auto entry = state->getAttrOfType<mlir::StringAttr>("rtsl.entry"))
-      entries.push_back({(entry.getValue() + "_first").str(), number});
+      entries[(entry.getValue() + "_first").str()] = number;
   }
   for (FuncOp state : states) {
     passFrame(state);
@@ -208,6 +211,11 @@ mlir::LogicalResult Dispatcher::run() {
 }
 
 } // namespace
+
+llvm::ArrayRef<llvm::StringLiteral> machineEntries() {
+  static constexpr llvm::StringLiteral entries[] = {"rtsl_rt_Material_shade", "rtsl_rt_Miss_miss"};
+  return entries;
+}
 
 mlir::LogicalResult makeDispatch(mlir::ModuleOp module) {
   return Dispatcher(module).run();

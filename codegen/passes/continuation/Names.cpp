@@ -79,7 +79,9 @@ std::string sourceName(mlir::Value value) {
   if (auto argument = llvm::dyn_cast<mlir::BlockArgument>(value)) {
     llvm::SmallPtrSet<mlir::Block *, 8> seen;
     name = nameOfArgument(argument, seen);
-    return name.empty() ? "merged" : name;
+    if (!name.empty())
+      return name;
+    return argument.getOwner()->isEntryBlock() ? "argument" : "merged";
   }
   mlir::Operation *op = value.getDefiningOp();
   if (llvm::isa<ir::PtrType>(value.getType()))

@@ -187,7 +187,12 @@ void keepTracingMethods(mlir::ModuleOp module) {
 bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitReport &report) {
   if (mlir::failed(inlineTracingCalls(module)))
     return false;
-  for (FuncOp function : tracingFunctions(module)) {
+  llvm::SmallVector<FuncOp> functions = tracingFunctions(module);
+  for (llvm::StringRef name : machineEntries())
+    if (auto entry = module.lookupSymbol<FuncOp>(name);
+        entry && !entry.isExternal() && !llvm::is_contained(functions, entry))
+      functions.push_back(entry);
+  for (FuncOp function : functions) {
     if (!isRunnable(function))
       continue; // a function of the author's that others could call, if they were in this program
     FunctionReport ofFunction;

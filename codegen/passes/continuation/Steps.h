@@ -30,6 +30,10 @@ mlir::Value objectOf(FuncOp function);
 /// The functions of the module that trace, or that call one that does.
 llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module);
 
+/// The entries that the machine starts (runtime/device/Machine.h): their states are made even if
+/// they do not trace.
+llvm::ArrayRef<llvm::StringLiteral> machineEntries();
+
 //===----------------------------------------------------------------------===//
 // Before the cut
 //===----------------------------------------------------------------------===//
@@ -118,8 +122,9 @@ void cleanStores(FuncOp state);
 void sinkLoads(FuncOp state);
 
 /// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in the order in which they
-/// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`,
-/// and for each exported function `f` that was split, `@f.first`, as a symbol `f_first`.
+/// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`, and
+/// `@f_first` for each of machineEntries(), 0 if there is no such function, and for each other
+/// exported function that was split.
 mlir::LogicalResult makeDispatch(mlir::ModuleOp module);
 
 } // namespace rtsl::continuation

@@ -1,0 +1,17 @@
+//===- MachineStack.h - memory for rays in flight -------------------------===//
+//
+// What the machine of split shaders (device/Machine.h) keeps its rays in: a block a thread, as
+// large as the depth limit and the largest frame ask for, so it cannot overflow.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <cstdint>
+
+namespace rtsl::runtime {
+
+/// How often, in this process, a thread asked for a stack and there was no memory; those samples
+/// are black. The largest request in bytes is in `largest`, if given.
+std::uint64_t failedMachineStacks(std::uint64_t *largest = nullptr);
+
+} // namespace rtsl::runtime

@@ -1,0 +1,29 @@
+//===- Machine.cpp - the machine's functions for programs that were split -===//
+//
+// Apart from Device.cpp, for they want what only such programs define.
+//
+//===----------------------------------------------------------------------===//
+#include "runtime/device/Machine.h"
+
+using namespace rtsl;
+
+extern "C" {
+
+void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz) {
+  device::spawnAbove(*reinterpret_cast<device::Level *>(parent), {ox, oy, oz}, {dx, dy, dz});
+}
+
+const float *rtsl_trace_result(RtslState *parent) {
+  return reinterpret_cast<device::Level *>(parent)->color;
+}
+
+void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
+                       float *color) {
+  void *stack = rtsl_machine_stack(device::stackSize(*launch));
+  if (stack)
+    device::runMachine(*launch, x, y, sample, stack, color);
+  else
+    device::setColor(color, launch->colorComponents, 0);
+}
+
+} // extern "C"
