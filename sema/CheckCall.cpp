@@ -50,6 +50,10 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
     if (!methods.empty())
       return checkUserCall(expr, methods, nullptr);
   }
+  if (!facts && program.namesFunction(scope, name)) {
+    diagnostics.report(Code::useOutsideFunction, expr.callee.range, name);
+    return errorExpr(expr.range);
+  }
   if (const Type *type = types.named(name))
     return checkConstruct(type, expr.callee.range, expr.args, expr.range);
   if (const Symbol *symbol = program.findSymbol(name)) {
@@ -74,10 +78,7 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
     return checkTracePayload(expr);
   if (const BuiltinOverloads *overloads = program.builtins.find(name))
     return checkBuiltinCall(expr, *overloads);
-  if (!facts && program.namesFunction(name)) // functions are declared after constants and members
-    diagnostics.report(Code::useOutsideFunction, expr.callee.range, name);
-  else
-    reportUnknownFunction(expr.callee);
+  reportUnknownFunction(expr.callee);
   for (const ast::ExprPtr &arg : expr.args)
     checkExpr(*arg);
   return errorExpr(expr.range);

@@ -95,4 +95,14 @@ void Program::collectUnit(const ast::TranslationUnit &unit) {
   }
 }
 
+bool Program::namesFunction(const ClassScope *scope, const std::string &name) const {
+  if (functionNames.count(name))
+    return true;
+  for (const ClassScope *at = methodNames.count(name) ? scope : nullptr; at; at = at->base)
+    for (const ast::FunctionDecl &function : at->declaration->functions)
+      if (function.name.text == name)
+        return true;
+  return false;
+}
+
 } // namespace rtsl

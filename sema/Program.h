@@ -114,10 +114,9 @@ public:
   std::vector<const typed::Function *> findMethods(const ClassScope *scope,
                                                    const std::string &name) const;
 
-  /// Is there a function of that name anywhere, declared by now or not?
-  bool namesFunction(const std::string &name) const {
-    return functionNames.count(name) || methodNames.count(name);
-  }
+  /// Does the name mean a function of the author's, seen from a class or (null) from a file? Also
+  /// before functions are declared, which they are after constants and members.
+  bool namesFunction(const ClassScope *scope, const std::string &name) const;
 
   /// The checked constant, or null if it is broken or depends on itself (reported).
   const typed::Variable *constant(const std::string &name, SourceRange usedAt);
