@@ -18,6 +18,8 @@
 //     InverseHyperbolic.h     asinh acosh atanh      LogarithmKernel.h
 //     Power.h                 pow                    both kernels, DoubleDoubleFunctions.h
 //     InverseSquareRoot.h     inversesqrt sqrt
+//
+// Fast.h has approximations for --fp=fast.
 #pragma once
 
 #include "runtime/device/math/ArcTangent2.h"

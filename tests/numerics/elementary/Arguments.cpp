@@ -186,7 +186,8 @@ const std::vector<float> &hardArguments(std::string_view function) {
 
 Pair argumentPair(std::string_view function, std::uint64_t index) {
   Random random(index);
-  return function == "pow" ? powerArguments(random) : angleArguments(random);
+  return function == "pow" || function == "fast.pow" ? powerArguments(random)
+                                                     : angleArguments(random);
 }
 
 } // namespace rtsl::elementary

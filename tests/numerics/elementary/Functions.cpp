@@ -1,8 +1,10 @@
 #include "Functions.h"
 
 #include "runtime/device/math/Elementary.h"
+#include "runtime/device/math/Fast.h"
 
 #include <cmath>
+#include <limits>
 
 namespace rtsl::elementary {
 
@@ -13,6 +15,20 @@ float systemInverseSquareRoot(float x) {
 }
 double systemInverseSquareRootDouble(double x) {
   return 1.0 / std::sqrt(x);
+}
+
+double boundOfFastPower(float x, float y) {
+  bool promised = x > 0.0f && std::isfinite(x) && std::isfinite(y);
+  double exponent = y * std::log2(static_cast<double>(x));
+  return promised ? 0x1p-21 * (1.0 + std::fabs(exponent)) : std::numeric_limits<double>::infinity();
+}
+
+double boundOfFastAngle(float y, float x) {
+  auto isModerate = [](float a) {
+    return a == 0.0f || (std::fabs(a) >= 0x1p-100f && std::fabs(a) <= 0x1p100f);
+  };
+  bool promised = isModerate(x) && isModerate(y) && (x != 0.0f || y != 0.0f);
+  return promised ? 0x1p-21 : std::numeric_limits<double>::infinity();
 }
 
 } // namespace
@@ -51,6 +67,36 @@ const std::vector<Binary> &binaryFunctions() {
   static const std::vector<Binary> functions = {
       {"pow", device::pow, ::powf, ::pow, mpfr_pow, 0.0f, 8.0f},
       {"atan2", device::atan2, ::atan2f, ::atan2, mpfr_atan2, -8.0f, 8.0f},
+  };
+  return functions;
+}
+
+#define FAST(name, low, high, bound)                                                               \
+  { "fast." #name, device::fast::name, ::name##f, ::name, mpfr_##name, low, high, bound }
+
+const std::vector<Unary> &fastUnaryFunctions() {
+  static const std::vector<Unary> functions = {
+      FAST(sin, -6.0f, 6.0f, 0x1p-22),
+      FAST(cos, -6.0f, 6.0f, 0x1p-22),
+      FAST(tan, -6.0f, 6.0f, 0x1p-21),
+      FAST(asin, -1.0f, 1.0f, 0x1p-21),
+      FAST(acos, -1.0f, 1.0f, 0x1p-21),
+      FAST(atan, -8.0f, 8.0f, 0x1p-22),
+      FAST(exp, -8.0f, 8.0f, 0x1p-23),
+      FAST(exp2, -8.0f, 8.0f, 0x1p-23),
+      FAST(log, 0.0f, 100.0f, 0x1p-22),
+      FAST(log2, 0.0f, 100.0f, 0x1p-22),
+      {"fast.inversesqrt", device::fast::inversesqrt, systemInverseSquareRoot,
+       systemInverseSquareRootDouble, mpfr_rec_sqrt, 0.0f, 100.0f, 0x1p-23},
+  };
+  return functions;
+}
+
+const std::vector<Binary> &fastBinaryFunctions() {
+  static const std::vector<Binary> functions = {
+      {"fast.pow", device::fast::pow, ::powf, ::pow, mpfr_pow, 0.0f, 8.0f, boundOfFastPower},
+      {"fast.atan2", device::fast::atan2, ::atan2f, ::atan2, mpfr_atan2, -8.0f, 8.0f,
+       boundOfFastAngle},
   };
   return functions;
 }

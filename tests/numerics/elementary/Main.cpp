@@ -36,19 +36,23 @@ std::string inHex(const Mismatch &mismatch, const std::string &function) {
 }
 
 json asJson(const Report &report) {
-  json result = {{"function", report.function},     {"tested", report.tested},
-                 {"mismatches", report.mismatches}, {"worstErrorUlp", report.worstError},
-                 {"askedMpfr", report.askedMpfr},   {"seconds", report.seconds}};
+  json result = {{"function", report.function},
+                 {"tested", report.tested},
+                 {"mismatches", report.mismatches},
+                 {"worstErrorUlp", report.worstError},
+                 {"worstRelativeError", report.worstRelativeError},
+                 {"askedMpfr", report.askedMpfr},
+                 {"seconds", report.seconds}};
   if (report.mismatches > 0)
     result["worst"] = inHex(report.worst, report.function);
   return result;
 }
 
 void print(const Report &report) {
-  fmt::print(
-      "{:<12} {:>10} tested, {} wrong, worst error {:.8f} ulp, MPFR asked {} times, {:.1f} s\n",
-      report.function, report.tested, report.mismatches, report.worstError, report.askedMpfr,
-      report.seconds);
+  fmt::print("{:<12} {:>10} tested, {} wrong, worst error {:.8f} ulp, 2^{:.2f}, MPFR asked {} "
+             "times, {:.1f} s\n",
+             report.function, report.tested, report.mismatches, report.worstError,
+             std::log2(report.worstRelativeError), report.askedMpfr, report.seconds);
   if (report.mismatches == 0)
     return;
   fmt::print("  worst: {}\n", inHex(report.worst, report.function));
@@ -132,7 +136,8 @@ bool runBounds(const char *function, const Options &options) {
 bool runAll(const Options &options, bool &right) {
   bool found = false;
   auto wanted = [&](const char *name) {
-    bool match = options.function == "all" || options.function == name;
+    bool isFast = std::string_view(name).substr(0, 5) == "fast.";
+    bool match = options.function == (isFast ? "fast" : "all") || options.function == name;
     found = found || match;
     return match;
   };
@@ -142,16 +147,17 @@ bool runAll(const Options &options, bool &right) {
     else if (!runSweep(function, options))
       right = false;
   };
-  for (const Unary &function : unaryFunctions())
-    if (wanted(function.name) && options.bounds == 0)
-      run(function);
-  for (const Binary &function : binaryFunctions())
-    if (wanted(function.name)) {
-      if (options.bounds == 0)
+  for (const auto *functions : {&unaryFunctions(), &fastUnaryFunctions()})
+    for (const Unary &function : *functions)
+      if (wanted(function.name) && options.bounds == 0)
         run(function);
-      else if (!runBounds(function.name, options))
-        right = false;
-    }
+  for (const auto *functions : {&binaryFunctions(), &fastBinaryFunctions()})
+    for (const Binary &function : *functions)
+      if (wanted(function.name) && options.bounds == 0)
+        run(function);
+  for (const Binary &function : binaryFunctions())
+    if (options.bounds != 0 && wanted(function.name) && !runBounds(function.name, options))
+      right = false;
   return found;
 }
 
@@ -162,7 +168,9 @@ int main(int argc, char **argv) {
   CLI::App app(
       "Compares the elementary functions with MPFR over all 2^32 arguments, or (pow, atan2) "
       "over 2^32 random and directed pairs. Exit status 1: some result is wrong.");
-  app.add_option("function", options.function, "a function's name, or `all`")->required();
+  app.add_option("function", options.function,
+                 "a function's name, or `all`, or `fast` for all approximations")
+      ->required();
   app.add_option("--sample", options.step, "test only every Nth argument, and the special ones")
       ->check(CLI::PositiveNumber);
   app.add_option("--threads", options.threads, "how many threads")->check(CLI::PositiveNumber);

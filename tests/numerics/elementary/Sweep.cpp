@@ -32,6 +32,29 @@ bool isRightForSystem(float result, float right) {
   return isRight(result, right) || (std::isnan(result) && std::isnan(right));
 }
 
+double relativeError(float result, double exact) {
+  if (!std::isfinite(result) || !std::isfinite(exact))
+    return 0.0;
+  return std::fabs(result - exact) / std::max(std::fabs(exact), 0x1p-126);
+}
+
+/// For approximations. Near the largest float an infinity may be off by less than the bound.
+bool isWithin(double bound, float result, double exact) {
+  if (std::isinf(bound) || std::isnan(exact))
+    return std::isinf(bound) || std::isnan(result);
+  if (std::isinf(result))
+    return std::fabs(exact) * (1.0 + bound) >= 0x1.ffffffp127 && (result > 0.0f) == (exact > 0.0);
+  return std::fabs(result - exact) <= bound * std::max(std::fabs(exact), 0x1p-126);
+}
+
+double boundOf(const Unary &function, float) {
+  return function.bound;
+}
+
+double boundOf(const Binary &function, float x, float y) {
+  return function.bound == nullptr ? 0.0 : function.bound(x, y);
+}
+
 constexpr std::size_t shownMismatches = 32;
 
 void note(Report &report, std::vector<float> arguments, float result, Oracle::Answer answer,
@@ -47,6 +70,7 @@ void merge(Report &total, const Report &part, std::size_t hardest) {
   total.tested += part.tested;
   total.askedMpfr += part.askedMpfr;
   total.worstError = std::max(total.worstError, part.worstError);
+  total.worstRelativeError = std::max(total.worstRelativeError, part.worstRelativeError);
   if (part.mismatches > 0 && (total.mismatches == 0 || part.worst.error > total.worst.error))
     total.worst = part.worst;
   total.mismatches += part.mismatches;
@@ -68,8 +92,13 @@ void check(const Function &function, bool testSystem, Oracle &oracle, Report &re
   ++report.tested;
   double error = errorInUlp(result, answer.unrounded);
   report.worstError = std::max(report.worstError, error);
-  bool right =
-      testSystem ? isRightForSystem(result, answer.rounded) : isRight(result, answer.rounded);
+  double bound = boundOf(function, arguments...);
+  if (!std::isinf(bound))
+    report.worstRelativeError =
+        std::max(report.worstRelativeError, relativeError(result, answer.unrounded));
+  bool right = testSystem    ? isRightForSystem(result, answer.rounded)
+               : bound > 0.0 ? isWithin(bound, result, answer.unrounded)
+                             : isRight(result, answer.rounded);
   if (!right)
     note(report, {arguments...}, result, answer, error);
 }

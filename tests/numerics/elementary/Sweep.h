@@ -25,6 +25,7 @@ struct HardArgument {
 struct Report {
   std::string function;
   std::uint64_t tested = 0, mismatches = 0, askedMpfr = 0;
+  double worstRelativeError = 0.0; ///< with the smallest normal float for the smallest result
   double worstError = 0.0; ///< largest distance from the exact value, in units of the last place
   Mismatch worst;          ///< the mismatch with the largest error, if there is one
   std::vector<Mismatch> first;       ///< the first few mismatches

@@ -1,0 +1,276 @@
+// Approximations in single precision, for --fp=fast: the functions that shaders call most.
+//
+// Only float arithmetic (but for sin, cos and tan of |x| >= 2^13, which reduce in integers). Each
+// function states its error bound; `elementary-exhaustive fast` measures it over all floats. Errors
+// are relative to the result, or to the smallest normal float where the result is smaller. Zeros,
+// infinities, NaNs and errors of domain come out as in Elementary.h, except that any NaN may
+// result. Functions that are missing here are those of Elementary.h.
+#pragma once
+
+#include "runtime/device/math/ArgumentReduction.h"
+#include "runtime/device/math/tables/ArcTangentTable.h"
+
+namespace rtsl::device::fast {
+
+namespace detail {
+
+using namespace device::detail;
+
+#if defined(__clang__)
+inline float fma(float a, float b, float c) {
+  return __builtin_elementwise_fma(a, b, c);
+}
+#else
+inline float fma(float a, float b, float c) {
+  return __builtin_fmaf(a, b, c);
+}
+#endif
+
+/// The integer nearest to x, for |x| < 2^22, as nearestInteger() in double.
+inline float nearest(float x) {
+  constexpr float shifter = 0x1.8p23f;
+  return (x + shifter) - shifter;
+}
+
+/// y 2^k for -300 < k < 300, in two steps so that subnormal results are rounded once.
+inline float scale(float y, int k) {
+  int half = k >> 1;
+  float first = floatOf(uint32_t(half + 127) << 23);
+  float second = floatOf(uint32_t(k - half + 127) << 23);
+  return y * first * second;
+}
+
+// ---- exponential functions
+
+/// e^r for |r| <= 0.35, by Taylor's series up to r^7/5040; what is left out is below 2^-27.
+inline float exponentialSeries(float r) {
+  float q = fma(r, 1.0f / 5040, 1.0f / 720);
+  q = fma(r, q, 1.0f / 120);
+  q = fma(r, q, 1.0f / 24);
+  q = fma(r, q, 1.0f / 6);
+  q = fma(r, q, 0.5f);
+  q = fma(r, q, 1.0f);
+  return fma(r, q, 1.0f);
+}
+
+// ---- logarithms
+
+/// x = 2^exponent m with 11/16 <= m < 11/8, and ln(m).
+struct Logarithm {
+  float exponent, ofM;
+};
+
+/// For positive finite x. ln(m) = 2 artanh(s), s = (m - 1)/(m + 1), |s| <= 5/27; the series up to
+/// s^9/9 leaves less than 2^-27 |s|.
+inline Logarithm logarithm(float x) {
+  bool subnormal = x < 0x1p-126f;
+  float normal = subnormal ? x * 0x1p24f : x;
+  uint32_t distance = bitsOf(normal) - bitsOf(0.6875f);
+  int exponent = int(distance) >> 23;
+  float m = floatOf(bitsOf(normal) - (uint32_t(exponent) << 23));
+  float s = (m - 1.0f) / (m + 1.0f);
+  float z = s * s;
+  float q = fma(z, 1.0f / 9, 1.0f / 7);
+  q = fma(z, q, 1.0f / 5);
+  q = fma(z, q, 1.0f / 3);
+  return {float(subnormal ? exponent - 24 : exponent), 2.0f * fma(s * z, q, s)};
+}
+
+/// The logarithm of a float that is not positive and finite.
+inline float logarithmOutside(float x) {
+  if (x == 0.0f)
+    return -infinity();
+  return x > 0.0f ? x : canonicalNaN();
+}
+
+// ---- trigonometric functions
+
+struct Quadrant {
+  int quadrant;
+  float rest;
+};
+
+/// For finite a >= 0. Below 2^13, pi/2 in three parts of 9, 24 and 24 bits: the product of the
+/// quadrant's number with the first is exact.
+inline Quadrant reduce(float a) {
+  if (a >= 0x1p13f) {
+    QuadrantReduction exact = reduceToQuadrant(a);
+    return {exact.quadrant, float(exact.rest.hi)};
+  }
+  constexpr float first = 0x1.92p0f;
+  constexpr float second = float(halfPi.hi - double(first));
+  constexpr float third = float(halfPi.hi - double(first) - double(second) + halfPi.lo);
+  float q = nearest(a * float(twoOverPi));
+  float rest = fma(-q, first, a);
+  rest = fma(-q, second, rest);
+  return {int(q), fma(-q, third, rest)};
+}
+
+inline float sineSeries(float r) {
+  float z = r * r;
+  float q = fma(z, 1.0f / 362880, -1.0f / 5040);
+  q = fma(z, q, 1.0f / 120);
+  q = fma(z, q, -1.0f / 6);
+  return fma(r * z, q, r);
+}
+
+inline float cosineSeries(float r) {
+  float z = r * r;
+  float q = fma(z, 1.0f / 40320, -1.0f / 720);
+  q = fma(z, q, 1.0f / 24);
+  q = fma(z, q, -0.5f);
+  return fma(z, q, 1.0f);
+}
+
+inline float withFlippedSign(float x, bool flip) {
+  return floatOf(bitsOf(x) ^ (flip ? floatSignBit : 0u));
+}
+
+// ---- inverse trigonometric functions
+
+/// atan(y/x) for 0 <= y <= x, 0 < x: the nearest of atan(0), atan(1/4) ... atan(1), and a series
+/// for |t| <= 1/8 up to t^7/7.
+inline float firstOctantAngle(float y, float x) {
+  constexpr float angles[5] = {float(arcTangentTable[0].hi), float(arcTangentTable[4].hi),
+                               float(arcTangentTable[8].hi), float(arcTangentTable[12].hi),
+                               float(arcTangentTable[16].hi)};
+  float ratio = y / x;
+  int i = ratio < 1.0f ? int(fma(ratio, 4.0f, 0.5f)) : 4; // 4 for a NaN, too
+  float c = 0.25f * float(i);
+  float t = fma(-c, x, y) / fma(c, y, x);
+  float z = t * t;
+  float q = fma(z, -1.0f / 7, 1.0f / 5);
+  q = fma(z, q, -1.0f / 3);
+  return angles[i] + fma(t * z, q, t);
+}
+
+/// The angle of (x, y) for x, y >= 0, finite and not both 0.
+inline float firstQuadrantAngle(float y, float x) {
+  bool steep = y > x;
+  float angle = firstOctantAngle(steep ? x : y, steep ? y : x);
+  return steep ? float(halfPi.hi) - angle : angle;
+}
+
+} // namespace detail
+
+/// e^x, relative error below 2^-23.
+inline float exp(float x) {
+  using namespace detail;
+  if (!(absolute(x) < 105.0f)) // infinities and NaNs, too
+    return x < 0.0f ? 0.0f : x + infinity();
+  constexpr float first = 0x1.62ep-1f; // ln(2), its first 13 bits and the rest
+  constexpr float second = float(ln2.hi - double(first));
+  float k = nearest(x * float(inverseLn2.hi));
+  return scale(exponentialSeries(fma(-k, second, fma(-k, first, x))), int(k));
+}
+
+/// 2^x, relative error below 2^-23.
+inline float exp2(float x) {
+  using namespace detail;
+  if (!(absolute(x) < 151.0f))
+    return x < 0.0f ? 0.0f : x + infinity();
+  float k = nearest(x);
+  return scale(exponentialSeries((x - k) * float(ln2.hi)), int(k));
+}
+
+/// ln(x), relative error below 2^-22.
+inline float log(float x) {
+  using namespace detail;
+  if (!(x > 0.0f && x < infinity()))
+    return logarithmOutside(x);
+  Logarithm parts = logarithm(x);
+  return fma(parts.exponent, float(ln2.hi), parts.ofM);
+}
+
+/// log2(x), relative error below 2^-22.
+inline float log2(float x) {
+  using namespace detail;
+  if (!(x > 0.0f && x < infinity()))
+    return logarithmOutside(x);
+  Logarithm parts = logarithm(x);
+  return fma(parts.ofM, float(inverseLn2.hi), parts.exponent);
+}
+
+/// x^y for x >= 0 as GLSL defines it, relative error below 2^-21 (1 + |y log2 x|); NaN for x < 0,
+/// and for pow(0, 0), pow(1, infinity), pow(infinity, 0).
+inline float pow(float x, float y) {
+  return fast::exp2(y * fast::log2(x));
+}
+
+/// sin(x), relative error below 2^-22, absolute error below 2^-23.
+inline float sin(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  if (!(a < infinity()))
+    return canonicalNaN();
+  Quadrant reduced = reduce(a);
+  float y = (reduced.quadrant & 1) != 0 ? cosineSeries(reduced.rest) : sineSeries(reduced.rest);
+  return withFlippedSign(y, ((reduced.quadrant & 2) != 0) != (bitsOf(x) >= floatSignBit));
+}
+
+/// cos(x), relative error below 2^-22, absolute error below 2^-23.
+inline float cos(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  if (!(a < infinity()))
+    return canonicalNaN();
+  Quadrant reduced = reduce(a);
+  float y = (reduced.quadrant & 1) != 0 ? sineSeries(reduced.rest) : cosineSeries(reduced.rest);
+  return withFlippedSign(y, ((reduced.quadrant + 1) & 2) != 0);
+}
+
+/// tan(x), relative error below 2^-21.
+inline float tan(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  if (!(a < infinity()))
+    return canonicalNaN();
+  Quadrant reduced = reduce(a);
+  float sine = sineSeries(reduced.rest), cosine = cosineSeries(reduced.rest);
+  float y = (reduced.quadrant & 1) != 0 ? -cosine / sine : sine / cosine;
+  return withFlippedSign(y, bitsOf(x) >= floatSignBit);
+}
+
+/// asin(x), relative error below 2^-21.
+inline float asin(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  if (!(a <= 1.0f))
+    return canonicalNaN();
+  return withSignOf(firstQuadrantAngle(a, squareRoot((1.0f - a) * (1.0f + a))), x);
+}
+
+/// acos(x), relative error below 2^-21.
+inline float acos(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  if (!(a <= 1.0f))
+    return canonicalNaN();
+  float angle = firstQuadrantAngle(squareRoot((1.0f - a) * (1.0f + a)), a);
+  return x < 0.0f ? float(pi.hi) - angle : angle;
+}
+
+/// atan(x), relative error below 2^-22.
+inline float atan(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  if (!(a < infinity()))
+    return isNaN(x) ? canonicalNaN() : withSignOf(float(halfPi.hi), x);
+  return withSignOf(firstQuadrantAngle(a, 1.0f), x);
+}
+
+/// The angle of (x, y), relative error below 2^-21 for finite x and y, not both 0 and between
+/// 2^-100 and 2^100 if not 0. Elsewhere that of Elementary.h is the one to call.
+inline float atan2(float y, float x) {
+  using namespace detail;
+  float angle = firstQuadrantAngle(absolute(y), absolute(x));
+  return withSignOf(x < 0.0f ? float(pi.hi) - angle : angle, y);
+}
+
+/// 1/sqrt(x), relative error below 2^-23.
+inline float inversesqrt(float x) {
+  using namespace detail;
+  return 1.0f / squareRoot(x);
+}
+
+} // namespace rtsl::device::fast
