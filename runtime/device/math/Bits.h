@@ -2,8 +2,8 @@
 // the square root.
 //
 // All arithmetic here is IEEE double in round-to-nearest, to be compiled with -ffp-contract=off. No
-// result hangs on that (a build with =fast passed the same exhaustive test), but only arithmetic that
-// is compiled as it is written was analysed.
+// result hangs on that (a build with =fast passed the same exhaustive test), but only arithmetic
+// that is compiled as it is written was analysed.
 #pragma once
 
 #include <stdint.h> // not <cstdint>: the device has no C++ library
