@@ -15,27 +15,42 @@ const CodeInfo &info(Code code) {
 }
 
 Diagnostic &Diagnostics::add(Code code, SourceRange range, std::string message) {
-  Severity severity = info(code).severity;
+  return add(Diagnostic{code, info(code).severity, std::move(message), range, {}, {}, {}});
+}
+
+Diagnostic &Diagnostics::add(Diagnostic diagnostic) {
   if (warningsAreErrors)
-    severity = Severity::Error;
-
-  const std::string key = range.isValid() ? fmt::format("{} {} {} {}", static_cast<int>(code),
-                                                        range.file, range.begin, range.end)
-                                          : fmt::format("{} {}", static_cast<int>(code), message);
-  const bool isRepeated = !seen.insert(key).second;
-  const bool isHidden = !isRepeated && severity == Severity::Error && limitReached();
-  if (!isRepeated && severity == Severity::Error)
+    diagnostic.severity = Severity::Error;
+  const bool isError = diagnostic.severity == Severity::Error;
+  const SourceRange range = diagnostic.range;
+  const auto code = static_cast<int>(diagnostic.code);
+  const bool isNew = seen.insert(range.isValid() ? fmt::format("{} {} {} {}", code, range.file,
+                                                               range.begin, range.end)
+                                                 : fmt::format("{} {}", code, diagnostic.message))
+                         .second;
+  const bool isHidden = isError && limitReached();
+  if (isNew && isError) {
     ++numErrors;
-  if (isHidden)
-    ++numHidden;
-
-  Diagnostic diagnostic{code, severity, std::move(message), range, {}, {}, {}};
-  if (isRepeated || isHidden) {
+    numHidden += isHidden;
+  }
+  if (!isNew || isHidden) {
     dropped = std::move(diagnostic);
     return dropped;
   }
   diagnostics.push_back(std::move(diagnostic));
   return diagnostics.back();
+}
+
+void Diagnostics::addSorted(Diagnostics &&other) {
+  const auto before = [](const Diagnostic &a, const Diagnostic &b) {
+    return a.range.file != b.range.file ? a.range.file < b.range.file
+                                        : a.range.begin < b.range.begin;
+  };
+  std::stable_sort(other.diagnostics.begin(), other.diagnostics.end(), before);
+  for (Diagnostic &diagnostic : other.diagnostics)
+    add(std::move(diagnostic));
+  numErrors += other.numHidden;
+  numHidden += other.numHidden;
 }
 
 namespace {

@@ -85,6 +85,9 @@ public:
     return add(code, range, fmt::format(fmt::runtime(info(code).message), args...));
   }
 
+  /// Takes over the messages of `other`, in the order of their places: what several steps found in one text.
+  void addSorted(Diagnostics &&other);
+
   bool hasErrors() const { return numErrors != 0; }
   std::size_t errorCount() const { return numErrors; }
   /// Errors beyond the limit: counted in `errorCount`, not held in `all`.
@@ -99,6 +102,7 @@ public:
   bool warningsAreErrors = false;
 
 private:
+  Diagnostic &add(Diagnostic diagnostic);
   Diagnostic &add(Code code, SourceRange range, std::string message);
 
   const SourceManager &sourceManager;

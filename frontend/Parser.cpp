@@ -16,6 +16,8 @@
 
 #include <Exceptions.h>
 
+#include <algorithm>
+
 namespace rtsl {
 
 namespace {
@@ -23,6 +25,9 @@ namespace {
 using antlr4::atn::ParserATNSimulator;
 using antlr4::atn::PredictionMode;
 using generated::RtslParser;
+
+/// Errors of one text that are held at most, to be sorted.
+constexpr std::size_t maxFoundErrors = 1000;
 
 /// Parses with predictions that ignore the rules around a decision, which is fast and nearly always
 /// right. Only when that fails, for a mistake of the author as a rule, the text is parsed again
@@ -42,14 +47,11 @@ RtslParser::TranslationUnitContext *parseWords(RtslParser &parser, SyntaxErrors 
   }
 }
 
-} // namespace
-
-std::unique_ptr<ast::TranslationUnit> parse(FileId file, Diagnostics &diagnostics) {
-  const std::size_t errorsBefore = diagnostics.errorCount();
+std::unique_ptr<ast::TranslationUnit> parseText(FileId file, Diagnostics &diagnostics) {
   TokenList list = tokenize(file, diagnostics);
   if (list.isUsable)
     checkTokens(file, list, diagnostics);
-  if (list.isUsable && list.tokens.size() == 1 && diagnostics.errorCount() == errorsBefore)
+  if (list.isUsable && list.tokens.size() == 1 && !diagnostics.hasErrors())
     diagnostics.report(Code::emptySource, SourceRange{file, 0, 0});
   if (!list.isUsable) {
     auto unit = std::make_unique<ast::TranslationUnit>();
@@ -66,6 +68,19 @@ std::unique_ptr<ast::TranslationUnit> parse(FileId file, Diagnostics &diagnostic
   for (RtslParser::FileItemContext *item : parseWords(parser, *errors)->fileItem())
     builder.addItem(item);
   return builder.finish();
+}
+
+} // namespace
+
+std::unique_ptr<ast::TranslationUnit> parse(FileId file, Diagnostics &diagnostics) {
+  // Each step goes over the whole text; the author reads from top to bottom.
+  Diagnostics found(diagnostics.sources());
+  found.errorLimit =
+      diagnostics.errorLimit == 0 ? 0 : std::max(diagnostics.errorLimit, maxFoundErrors);
+  found.warningsAreErrors = diagnostics.warningsAreErrors;
+  std::unique_ptr<ast::TranslationUnit> unit = parseText(file, found);
+  diagnostics.addSorted(std::move(found));
+  return unit;
 }
 
 } // namespace rtsl

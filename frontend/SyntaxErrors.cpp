@@ -188,7 +188,8 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
     while (open > 0 &&
            !(word(open).type == RtslLexer::LEFT_PAREN && word(open).depth == word(index).depth))
       --open;
-    if (endsBefore(index) && open > 0)
+    const bool isMissing = word(index).startsLine || word(index).type == RtslLexer::RIGHT_BRACE;
+    if (isMissing && open > 0)
       diagnostics.report(Code::missingFunctionBody, rangeOf(open - 1), textOf(open - 1));
     else
       reportUnexpected(index, "`{`");
@@ -373,7 +374,7 @@ void SyntaxErrors::recover(antlr4::Parser *parser, std::exception_ptr error) {
     words.seek(behindParentheses(start, from));
     break;
   case RtslParser::RuleFunctionBody:
-    if (!endsBefore(from))
+    if (!word(from).startsLine)
       words.seek(endOfStatement(start, from));
     isRecovering = false;
     break;

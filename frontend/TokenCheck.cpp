@@ -141,6 +141,7 @@ private:
   TokenList &list;
   std::vector<Token> in, out;
   std::vector<Level> levels{1};
+  Token lastOuterClose; // the last brace that closed all
 };
 
 //===----------------------------------------------------------------------===//
@@ -195,7 +196,8 @@ std::size_t TokenChecker::skipForeignWords(std::size_t index) {
   }
   // Two names in a row are a type and what it declares; three begin with a qualifier.
   if (token.type == RtslLexer::IDENTIFIER && isDeclarationStart() &&
-      (typeAt(index + 1) == RtslLexer::IDENTIFIER || isQualifier(typeAt(index + 1))) &&
+      (typeAt(index + 1) == RtslLexer::IDENTIFIER || isQualifier(typeAt(index + 1)) ||
+       typeAt(index + 1) == RtslLexer::PRECISION_QUALIFIER) &&
       typeAt(index + 2) == RtslLexer::IDENTIFIER) {
     const std::string_view word = textOf(token);
     for (const ForeignQualifier &foreign : foreignQualifiers) {
@@ -283,6 +285,8 @@ void TokenChecker::close(const Token &token) {
   levels.pop_back();
   levels.back().inner = std::max(levels.back().inner, height);
   put(token);
+  if (levels.size() == 1 && token.type == RtslLexer::RIGHT_BRACE)
+    lastOuterClose = token;
 }
 
 /// Puts in the closing bracket of the innermost level, right behind the last word.
@@ -327,7 +331,10 @@ void TokenChecker::handleClosing(const Token &token) {
     close(closing);
     return;
   }
-  diagnostics.report(Code::unmatchedBracket, rangeOf(token), textOf(token));
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::unmatchedBracket, rangeOf(token), textOf(token));
+  if (token.type == RtslLexer::RIGHT_BRACE && lastOuterClose.end != 0)
+    diagnostic.label(rangeOf(lastOuterClose), "all brackets were closed here");
   // Directly behind another closing brace it is just one too many. Elsewhere, an earlier one closed
   // too much, and what stood in between makes no sense outside.
   if (token.type == RtslLexer::RIGHT_BRACE && before() != RtslLexer::RIGHT_BRACE)
@@ -359,7 +366,7 @@ void TokenChecker::handleUnclosedAtEnd() {
       if (token.type == RtslLexer::RIGHT_BRACE && token.startsLine &&
           indent < stack.back().indent) {
         diagnostics.report(Code::unclosedBracket, rangeOf(stack.back().token), "{")
-            .label(rangeOf(token), "this one stands under an outer bracket");
+            .label(rangeOf(token), "this one is indented like that of an outer bracket");
         return;
       }
       stack.pop_back();
