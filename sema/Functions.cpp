@@ -14,10 +14,12 @@ void Program::declareFunctions() {
 }
 
 void Program::checkBodies() {
-  // A prototype that no body followed.
+  // A prototype that no body followed. It stays, with an empty one: calls refer to it.
   for (const std::unique_ptr<typed::Function> &function : module.functions)
-    if (prototypes.count(function.get()))
+    if (prototypes.count(function.get())) {
       diagnostics.report(Code::prototypeWithoutBody, function->range, function->name);
+      function->body = std::make_unique<typed::CompoundStmt>();
+    }
   for (const PendingBody &body : bodies) {
     const std::size_t before = diagnostics.errorCount();
     FunctionChecker(*this, body.scope, body.function).checkBody(*body.declaration);
@@ -25,9 +27,6 @@ void Program::checkBodies() {
     if (diagnostics.errorCount() == before)
       checkFlow(*body.function, diagnostics);
   }
-  module.functions.erase(std::remove_if(module.functions.begin(), module.functions.end(),
-                                        [](const auto &function) { return !function->body; }),
-                         module.functions.end());
 }
 
 std::unique_ptr<typed::Function> Program::declareFunction(const ast::FunctionDecl &declaration,

@@ -220,4 +220,35 @@ TEST(Limits, ABodyWithManyVariables) {
       "");
 }
 
+/// Whatever is wrong with a text, its messages have places in it and its module can be looked at.
+void expectWholeResult(const std::string &text) {
+  const std::unique_ptr<Checked> checked = checkText(text);
+  for (const Diagnostic &diagnostic : checked->diagnostics.all()) {
+    ASSERT_TRUE(diagnostic.range.isValid()) << diagnostic.message;
+    ASSERT_LE(diagnostic.range.begin, diagnostic.range.end) << diagnostic.message;
+    ASSERT_LE(diagnostic.range.end, checked->sources.text(diagnostic.range.file).size())
+        << diagnostic.message;
+  }
+  const std::string dump = typed::dump(*checked->module);
+  EXPECT_EQ(dump.find('\0'), std::string::npos);
+}
+
+TEST(Robustness, CallsOfFunctionsThatWereNeverDefined) {
+  const std::unique_ptr<Checked> checked =
+      checkText("float later(float x);\nfloat f() { return later(1.0); }");
+  EXPECT_EQ(checked->numbers(), "E0214");
+  EXPECT_NE(typed::dump(*checked->module).find("call later : float"), std::string::npos);
+}
+
+TEST(Robustness, EveryLineMayBeMissing) {
+  for (const std::string &path : languageFiles("accepted", ".rtsl")) {
+    const std::string text = readFile(path);
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+      expectWholeResult(text.substr(0, begin) + text.substr(end));
+      begin = end;
+    }
+  }
+}
+
 } // namespace
