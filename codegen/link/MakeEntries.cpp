@@ -77,7 +77,7 @@ void makeConstruct(LinkContext &context, LinkedClass &linked) {
     arguments.push_back(byAddress ? address : ir::LoadOp::create(builder, location, address).getResult());
   }
   mlir::func::CallOp::create(builder, location, target, arguments);
-  ir::ReturnOp::create(builder, location);
+  ir::ReturnOp::create(builder, location, mlir::ValueRange());
   exportFunction(function);
 }
 
