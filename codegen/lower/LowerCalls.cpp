@@ -9,12 +9,36 @@
 #include "codegen/lower/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
+#include "sema/Casting.h"
+
+#include <algorithm>
+
 namespace rtsl::lowering {
+
+// Is the argument a variable of the caller's that neither the callee nor a later argument changes?
+// Nobody else can.
+static bool canShare(const typed::Expr &arg, const std::vector<typed::ExprPtr> &args,
+                     std::size_t index, const std::set<const typed::Variable *> &assigned,
+                     const typed::Variable &parameter) {
+  auto *variable = dynCast<typed::VariableExpr>(&arg);
+  if (!variable || variable->variable->kind == typed::Variable::Kind::Global ||
+      assigned.count(&parameter))
+    return false;
+  for (std::size_t later = index + 1; later < args.size(); ++later)
+    if (hasSideEffects(*args[later]))
+      return false;
+  return true;
+}
 
 void FunctionLowering::passArguments(const typed::Function &callee,
                                      const std::vector<typed::ExprPtr> &args,
                                      llvm::SmallVectorImpl<Value> &values,
-                                     std::vector<CopyOut> &outputs) {
+                                     std::vector<CopyOut> &outputs, bool isDispatched) {
+  std::set<const typed::Variable *> assigned;
+  bool hasMemory = std::any_of(args.begin(), args.end(),
+                               [](const typed::ExprPtr &arg) { return livesInMemory(arg->type); });
+  if (hasMemory && !isDispatched)
+    assigned = assignedVariables(*callee.body);
   for (std::size_t i = 0; i < args.size(); ++i) {
     const typed::Variable &parameter = *callee.parameters[i];
     const Type *type = parameter.type;
@@ -23,6 +47,10 @@ void FunctionLowering::passArguments(const typed::Function &callee,
     if (parameter.direction == ast::Direction::In) {
       if (!livesInMemory(type)) {
         values.push_back(value(*args[i]));
+        continue;
+      }
+      if (!isDispatched && canShare(*args[i], args, i, assigned, parameter)) {
+        values.push_back(place(*args[i]).address);
         continue;
       }
       Value copy = temporary(name, type);
@@ -60,7 +88,7 @@ Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
       result = temporary(callee.name, type);
     values.push_back(result);
   }
-  passArguments(callee, expr.args, values, outputs);
+  passArguments(callee, expr.args, values, outputs, /*isDispatched=*/false);
   if (forIntersect) {
     if (concrete)
       for (const typed::Member *member : module.scratchMembers(concrete))
@@ -105,7 +133,7 @@ Parts FunctionLowering::lowerMethodCall(const typed::MethodCallExpr &expr) {
   } else if (!type->is(TypeKind::Void)) {
     results.push_back(module.type(type));
   }
-  passArguments(callee, expr.args, values, outputs);
+  passArguments(callee, expr.args, values, outputs, /*isDispatched=*/true);
   emitter.setLoc(module.location(expr.range));
   auto call = emitter.make<ir::CallMethodOp>(results, module.slotName(callee), object, values);
   copyOut(outputs);

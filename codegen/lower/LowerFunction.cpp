@@ -115,16 +115,16 @@ void FunctionLowering::commitScratch() {
   });
 }
 
-void FunctionLowering::emitReturn(const Parts &value) {
-  const Type *type = key.function->returnType;
-  if (livesInMemory(type)) {
-    storeTo(value, resultAddress, type);
-    commitScratch();
-    emitter.returnValues({});
-    return;
-  }
+void FunctionLowering::emitReturn(const typed::Expr *value) {
+  mlir::Location location = emitter.getLoc();
+  Parts results;
+  if (value && livesInMemory(value->type))
+    lowerInto(*value, resultAddress); // fresh memory of the caller's
+  else if (value)
+    results = lower(*value);
+  emitter.setLoc(location);
   commitScratch();
-  emitter.returnValues(value);
+  emitter.returnValues(results);
 }
 
 // Control that reaches the end of a function with a result gives zero.

@@ -51,10 +51,8 @@ void FunctionLowering::lower(const typed::Stmt &stmt) {
   case StmtKind::Continue:
     emitter.make<ir::ContinueOp>();
     return;
-  case StmtKind::Return: {
-    const auto &ret = cast<typed::ReturnStmt>(stmt);
-    return emitReturn(ret.value ? lower(*ret.value) : Parts());
-  }
+  case StmtKind::Return:
+    return emitReturn(cast<typed::ReturnStmt>(stmt).value.get());
   case StmtKind::Illuminance:
     return lowerIlluminance(cast<typed::IlluminanceStmt>(stmt));
   case StmtKind::Case: // only in the syntax tree

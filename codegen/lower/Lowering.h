@@ -107,7 +107,7 @@ private:
   void bindParameters();
   void enterIntersect();
   void commitScratch();
-  void emitReturn(const Parts &value);
+  void emitReturn(const typed::Expr *value);
   void emitReturnOfZero();
   Value self();
 
@@ -183,7 +183,8 @@ private:
     Value from;
   };
   void passArguments(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
-                     llvm::SmallVectorImpl<Value> &values, std::vector<CopyOut> &outputs);
+                     llvm::SmallVectorImpl<Value> &values, std::vector<CopyOut> &outputs,
+                     bool isDispatched);
   void copyOut(const std::vector<CopyOut> &outputs);
 
   // LowerBuiltins.cpp, LowerBuiltinsInteger.cpp, LowerBuiltinsRay.cpp

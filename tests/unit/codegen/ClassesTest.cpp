@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
 namespace rtsl::test {
 namespace {
 
@@ -65,7 +70,7 @@ class A : rt_Material {
   private int third;
   const int fixed = 3;
   scratch vec3 n;
-  constructor(float value) { third = int(value) + fixed; }
+  void constructor(float value) { third = int(value) + fixed; }
   float helper() { return first; }
   void shade() { rt_SampleColor = color(helper() + n.x); }
 };
@@ -189,6 +194,159 @@ TEST(Classes, LocationsAreThoseOfTheSource) {
   Lowered lowered("float twice(float x) {\n  return x * 2.0;\n}\n");
   std::string text = lowered.text("", /*withLocations=*/true);
   EXPECT_NE(text.find("\"test.rtsl\":2:"), std::string::npos) << text;
+}
+
+//===----------------------------------------------------------------------===//
+// Methods that run
+//===----------------------------------------------------------------------===//
+
+/// Records of objects, as the runtime lays them out: the class id, then the members.
+struct Record {
+  std::vector<std::uint32_t> words{0, 1}; // offset 0 is no object; the class id at offset 4
+  RtslRef object() const { return 4; }
+  void add(std::initializer_list<float> values) {
+    for (float value : values) {
+      std::uint32_t bits;
+      std::memcpy(&bits, &value, sizeof bits);
+      words.push_back(bits);
+    }
+  }
+};
+
+float attribute(const Shader &shader, unsigned word) {
+  float value;
+  std::memcpy(&value, &shader.state.attributes[word], sizeof value);
+  return value;
+}
+
+TEST(Classes, IntersectionStoresScratchOfAcceptedHitsOnly) {
+  Shader shader(sphere);
+  Record record;
+  record.add({0, 0, 5, 1}); // center and radius
+  shader.launch.records = reinterpret_cast<std::uint8_t *>(record.words.data());
+  auto intersect = [&](float x, float farthest, float epsilon = 0.0F) {
+    shader.state.RayOrigin[0] = x;
+    shader.state.RayDirection[2] = 1;
+    shader.state.Epsilon = epsilon;
+    shader.state.HitDistance = farthest;
+    shader.state.instance = RTSL_NO_HIT;
+    for (std::uint32_t &word : shader.state.attributes)
+      word = 0;
+    shader.callMethod("Sphere.intersect", record.object());
+    return shader.state.HitDistance;
+  };
+  EXPECT_EQ(intersect(0.0F, 100.0F), 4.0F);
+  EXPECT_EQ(attribute(shader, 2), -1.0F) << "hitNormal.z";
+  EXPECT_EQ(attribute(shader, 4), 1.0F) << "list[1]";
+  EXPECT_EQ(intersect(2.0F, 100.0F), 100.0F) << "a miss";
+  EXPECT_EQ(attribute(shader, 4), 0.0F);
+  EXPECT_EQ(intersect(0.0F, 3.0F), 3.0F) << "behind another hit";
+  EXPECT_EQ(attribute(shader, 2), 0.0F);
+  EXPECT_EQ(intersect(0.0F, 100.0F, 5.0F), 6.0F)
+      << "the second root, reported by the helper's second call";
+  EXPECT_EQ(attribute(shader, 2), 1.0F);
+
+  shader.callMethod("Sphere.computeNormal", record.object());
+  EXPECT_EQ(shader.state.GeometricNormal[2], 1.0F);
+  shader.callMethod("Sphere.computeBounds", record.object());
+  EXPECT_EQ(shader.state.BoundMin[0], -1.0F);
+  EXPECT_EQ(shader.state.BoundMax[2], 6.0F);
+}
+
+TEST(Classes, ConstructorsAndDefaultsWriteTheRecord) {
+  Shader shader(R"(
+struct Pair { float a; int b; };
+class A : rt_Texture {
+  public float x = 2.0, y;
+  private Pair pairs[2];
+  public bool flag = true;
+  private mat2 m = mat2(1, 2, 3, 4);
+  void constructor(float v, bool f) { y = v; pairs[1] = Pair(v * 2.0, 7); flag = f; m[1].x += x; scale(3.0); }
+  void scale(float by) { pairs[0].a = y * by; }
+  void lookup() { rt_FloatTextureValue = pairs[1].a + m[1].x + (flag ? 100.0 : 0.0); }
+};
+)");
+  Record record;
+  record.words.resize(2 + 2 + 4 + 1 + 4);
+  shader.launch.records = reinterpret_cast<std::uint8_t *>(record.words.data());
+  shader.callMethod("A.initialize", record.object());
+  auto word = [&](std::size_t i) {
+    float value;
+    std::memcpy(&value, &record.words[2 + i], sizeof value);
+    return value;
+  };
+  EXPECT_EQ(word(0), 2.0F);
+  EXPECT_EQ(record.words[2 + 6], 1u) << "a bool is 0 or 1 in memory";
+  EXPECT_EQ(word(7 + 2), 3.0F);
+  shader.callMethod("A.constructor", record.object(), 5.0F, false);
+  EXPECT_EQ(word(1), 5.0F);
+  EXPECT_EQ(word(2), 15.0F);
+  EXPECT_EQ(word(4), 10.0F);
+  EXPECT_EQ(record.words[2 + 5], 7u);
+  EXPECT_EQ(record.words[2 + 6], 0u);
+  EXPECT_EQ(word(7 + 2), 5.0F);
+  shader.callMethod("A.lookup", record.object());
+  EXPECT_EQ(shader.state.FloatTextureValue, 15.0F);
+}
+
+TEST(Classes, BuffersReadZeroWhereThereIsNothing) {
+  Shader shader(R"(
+struct Item { float a; vec2 b; };
+class T : rt_Texture {
+  public float list[];
+  public Item grid[][];
+  void lookup() {
+    int i = int(rt_TextureUV.x), j = int(rt_TextureUV.y);
+    rt_FloatTextureValue = list[i] + 1000.0 * grid[i][j].b.y;
+    rt_TextureColor = color(float(list.length()), float(grid.length()), float(grid[0].length()));
+  }
+};
+)");
+  float list[3] = {1, 2, 3};
+  float grid[2 * 2 * 3] = {0, 0, 10, 0, 0, 11, 0, 0, 12, 0, 0, 13};
+  Record record;
+  auto addBuffer = [&](const void *address, std::initializer_list<std::uint32_t> sizes) {
+    auto bits = reinterpret_cast<std::uintptr_t>(address);
+    record.words.push_back(static_cast<std::uint32_t>(bits));
+    record.words.push_back(static_cast<std::uint32_t>(bits >> 32));
+    record.words.insert(record.words.end(), sizes);
+  };
+  addBuffer(list, {3, 1, 1});
+  addBuffer(grid, {2, 2, 1});
+  shader.launch.records = reinterpret_cast<std::uint8_t *>(record.words.data());
+  auto lookup = [&](float i, float j) {
+    shader.state.TextureUV[0] = i;
+    shader.state.TextureUV[1] = j;
+    shader.callMethod("T.lookup", record.object());
+    return shader.state.FloatTextureValue;
+  };
+  EXPECT_EQ(lookup(1, 0), 2 + 12000.0F);
+  EXPECT_EQ(lookup(0, 1), 1 + 11000.0F);
+  EXPECT_EQ(lookup(99, 99), 3 + 13000.0F) << "indices are clamped";
+  EXPECT_EQ(lookup(-99, -99), 1 + 10000.0F);
+  EXPECT_EQ(shader.state.TextureColor[0], 3.0F);
+  EXPECT_EQ(shader.state.TextureColor[2], 2.0F);
+  record.words[2] = record.words[3] = record.words[4] = 0; // no elements, no memory
+  EXPECT_EQ(lookup(1, 1), 13000.0F);
+  EXPECT_EQ(shader.state.TextureColor[0], 0.0F);
+  record.words[2 + 5] = record.words[2 + 6] = 0;
+  record.words[2 + 5 + 3] = 0;
+  EXPECT_EQ(lookup(1, 1), 0.0F) << "one empty dimension is enough";
+}
+
+TEST(Examples, AreLowered) {
+  std::size_t number = 0;
+  for (const auto &entry : std::filesystem::recursive_directory_iterator(RTSL_EXAMPLES)) {
+    if (entry.path().extension() != ".rtsl")
+      continue;
+    std::ifstream file(entry.path());
+    std::stringstream text;
+    text << file.rdbuf();
+    SCOPED_TRACE(entry.path().string());
+    EXPECT_TRUE(Lowered(text.str()).succeeded());
+    ++number;
+  }
+  EXPECT_GE(number, 5u);
 }
 
 TEST(Unsupported, IsReportedWhereItStands) {

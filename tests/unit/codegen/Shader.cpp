@@ -4,6 +4,8 @@
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/ir/Layout.h"
+#include "codegen/ir/Rtsl.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
 #include "frontend/Parser.h"
@@ -23,6 +25,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace rtsl::test {
 
@@ -148,15 +151,24 @@ Shader::Shader(const std::string &source, Options options) : code(std::make_uniq
   Lowered lowered(source, options);
   if (!lowered.succeeded() || ::testing::Test::HasFailure())
     return;
-  mlir::ModuleOp ir = *lowered.parts->ir;
+  mlir::ModuleOp program = *lowered.parts->ir;
   std::vector<std::string> exports;
-  for (auto function : ir.getOps<mlir::func::FuncOp>())
-    if (!function.isPrivate() && !function->hasAttr("rtsl.class")) {
-      function->setAttr("rtsl.export", mlir::UnitAttr::get(ir.getContext()));
+  for (auto function : program.getOps<mlir::func::FuncOp>())
+    if (!function.isPrivate()) {
+      function->setAttr("rtsl.export", mlir::UnitAttr::get(program.getContext()));
       exports.push_back(function.getName().str());
     }
-  runPasses(ir, codegen::buildSsaPipeline);
-  runPasses(ir, codegen::buildLlvmPipeline);
+  // What linking does in a real program.
+  std::map<std::string, std::uint32_t> offsets;
+  std::uint32_t words = 0;
+  program.walk([&](ir::AttributeOp op) {
+    auto [place, isNew] = offsets.try_emplace(op.getName().str(), words);
+    if (isNew)
+      words += ir::sizeInBytes(llvm::cast<ir::PtrType>(op.getType()).getPointee()) / 4;
+    op.setOffset(place->second);
+  });
+  runPasses(program, codegen::buildSsaPipeline);
+  runPasses(program, codegen::buildLlvmPipeline);
   if (::testing::Test::HasFatalFailure())
     return;
 
@@ -164,7 +176,7 @@ Shader::Shader(const std::string &source, Options options) : code(std::make_uniq
   codegen::MachineOptions machine;
   machine.optimization = 1;
   auto target = take(codegen::createTargetMachine(machine));
-  auto module = take(codegen::translateToLlvm(ir, *context, *target));
+  auto module = take(codegen::translateToLlvm(program, *context, *target));
   if (!module)
     return;
   if (llvm::Error error = codegen::linkDeviceCode(*module, runtime::deviceBitcode(), exports)) {

@@ -56,6 +56,16 @@ public:
       reinterpret_cast<void (*)(RtslState *, Pointers *...)>(code)(&state, arrays...);
   }
 
+  /// Calls a method, a constructor or `Class.initialize` on an object of `launch.records`.
+  /// Attributes lie one behind the other in the order in which the text of the program mentions
+  /// them.
+  template <typename... Arguments>
+  void callMethod(const std::string &name, RtslRef object, Arguments... arguments) {
+    if (void *code = find(name))
+      reinterpret_cast<void (*)(RtslState *, RtslRef, Arguments...)>(code)(&state, object,
+                                                                           arguments...);
+  }
+
   RtslState state{};
   RtslLaunch launch{};
 

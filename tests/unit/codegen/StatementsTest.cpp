@@ -32,7 +32,7 @@ TEST(ControlFlow, LoopsWithBreakAndContinue) {
       "do n[5]++; while (false); while (false) n[6]++;\n"
       "for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++) { if (j > i) break; n[7] += 10 "
       "* i + j; }\n"
-      "int last = 0; for (int i = 0; i < 4; ++i) { int fresh; fresh += i; last = fresh; } n[8] "
+      "int last = 0; for (int i = 0; i < 4; ++i) { int fresh = 0; fresh += i; last = fresh; } n[8] "
       "= last;");
   const int expected[] = {
       0 + 1 + 2 + 4 + 5, 1 + 3 + 4 + 5, 3 + 9, 5, 4, 1, 0, 0 + 10 + 11 + 20 + 21 + 22, 3};
@@ -153,6 +153,24 @@ TEST(Calls, StructsArraysAndMatrices) {
   EXPECT_EQ(run.n[7], 50);
   EXPECT_EQ(run.x[5], 2.5F);
   EXPECT_EQ(run.x[6], 2.5F);
+}
+
+TEST(Calls, AggregatesAreCopiedOnlyWhereSomebodyWrites) {
+  Lowered lowered(
+      "float read(float v[8]) { return v[3]; } float write(float v[8]) { v[3] = 1.0; return v[3]; "
+      "}\n"
+      "float change(inout float v[8]) { v[3] = 2.0; return 0.0; } float first(float v[8], float x) "
+      "{ return v[3] + x; }\n"
+      "float shares() { float a[8]; a[3] = 1.0; return read(a); }\n"
+      "float copies() { float a[8]; a[3] = 1.0; return write(a) + first(a, change(a)); }");
+  EXPECT_EQ(lowered.count("shares", "rtsl.copy"), 0u);
+  EXPECT_EQ(lowered.count("copies", "rtsl.copy"), 4u) << "in, in, and inout there and back";
+  Outcome run =
+      Outcome::with("float change(inout float v[2]) { v[0] = 2.0; return 10.0; } float first(float "
+                    "v[2], float x) { return v[0] + x; }",
+                    "float a[2]; a[0] = 1.0; x[0] = first(a, change(a)); x[1] = first(a, 0.0);");
+  EXPECT_EQ(run.x[0], 11.0F);
+  EXPECT_EQ(run.x[1], 2.0F);
 }
 
 TEST(Calls, OverloadsAndBuiltinNamesOfTheAuthors) {
