@@ -43,15 +43,13 @@ public:
   /// them.
   static bool isEasy(const RtslState &state) {
     const float *o = state.RayOrigin, *d = state.RayDirection;
-    auto below = [](float a, float limit) {
-      return int(__builtin_fabsf(a) < limit);
-    }; // not for what is no number
-    auto above = [](float a, float limit) { return int(__builtin_fabsf(a) > limit); };
-    // Without branches, for there is only one outcome to predict.
-    return below(o[0], largestOrigin) & below(o[1], largestOrigin) & below(o[2], largestOrigin) &
-           below(d[0], longest) & below(d[1], longest) & below(d[2], longest) &
-           (above(d[0], shortest) | above(d[1], shortest) | above(d[2], shortest)) &
-           int(state.Epsilon >= 0) & int(state.HitDistance == state.HitDistance);
+    auto sum = [](const float *v) {
+      return __builtin_fabsf(v[0]) + __builtin_fabsf(v[1]) + __builtin_fabsf(v[2]);
+    };
+    // The sums of what is no number compare false, and infinite ones are too large.
+    float length = sum(d);
+    return sum(o) < largestOrigin && length < longest && length > 3 * shortest &&
+           state.Epsilon >= 0 && state.HitDistance == state.HitDistance;
   }
 
 private:

@@ -163,9 +163,8 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   // The light's own surface, if it has one, lies at the end: keep as clear of it as of where the
   // ray starts.
   float distance = shading.LightDistance;
-  float length = largest(direction);
-  if (distance < infinity && length > 0)
-    distance -= primitivePointError(point, direction, distance) / length;
+  if (distance < infinity)
+    distance -= minimum(epsilon, distance * 0x1p-10f);
   // Draws are hashed; a key that no other ray has is enough.
   state.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
   state.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
@@ -176,12 +175,17 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   return rtsl_traverse(&state, 1) != RTSL_MISS; // along a bad ray no light comes
 }
 
+/// isInCone for vectors whose squares would leave the range of a float.
+__attribute__((cold)) inline bool isInConeOfExtremes(Vec3 direction, Vec3 axis, float cosAngle) {
+  return dot(normalized(direction), normalized(axis)) >= cosAngle;
+}
+
 /// Is the angle between two vectors of any length at most the one whose cosine is given? With
 /// squares, so without a root.
 inline bool isInCone(Vec3 direction, Vec3 axis, float cosAngle) {
   float squares = dot(direction, direction) * dot(axis, axis);
   if (!(squares > 0x1p-60f && squares < 0x1p60f))
-    return dot(normalized(direction), normalized(axis)) >= cosAngle;
+    return isInConeOfExtremes(direction, axis, cosAngle);
   float cosine = dot(direction, axis); // times both lengths
   float bound = cosAngle * cosAngle * squares;
   return cosAngle >= 0 ? cosine >= 0 && cosine * cosine >= bound
@@ -232,7 +236,7 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   state.ScreenCoord[1] = 1.0f - (float(y) + jitterY) / float(launch.height);
   state.LensCoord[0] = unitFloat(key.z);
   state.LensCoord[1] = unitFloat(key.w);
-  state.TimeSeed = unitFloat(hash3(key.x, key.y, key.z).x);
+  state.TimeSeed = unitFloat(key.x * 0x9e3779b9u ^ key.y);
   state.Time = 0;
   state.du = state.dv = 0;
   setVector(state.RayOrigin, 0, 0, 0); // what the camera leaves out

@@ -36,12 +36,24 @@ inline float trianglePointError(Vec3 v0, Vec3 v1, Vec3 v2) {
          maximum(maximum(largest(v0), largest(v1)), largest(v2));
 }
 
+/// Nearly along the surface epsilon would grow without bound: the cosine counts as this much.
+constexpr float smallestCosine = 0x1p-12f;
+
+/// spawnEpsilon for vectors whose squares would leave the range of a float.
+__attribute__((cold)) inline float spawnEpsilonOfExtremes(float error, Vec3 normal,
+                                                          Vec3 direction) {
+  Vec3 unit = normalized(direction);
+  float cosine = absolute(dot(unit, normalized(normal)));
+  cosine = cosine > smallestCosine ? (cosine < 1 ? cosine : 1.0f) : smallestCosine;
+  // |direction| without overflow: its component along the unit vector.
+  return error / (cosine * dot(direction, unit));
+}
+
 /// Epsilon for a ray that a shader sends from `origin`, in units of `direction`. Leaving a surface
 /// at an angle with cosine c to the normal, a ray that starts d below it comes through at d / c;
 /// what is skipped meanwhile lies within d of the tangent plane. So epsilon is d |n| / |direction .
-/// n|; nearly along the surface, where that grows without bound, c counts as 2^-12.
+/// n|.
 inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {
-  constexpr float smallestCosine = 0x1p-12f;
   float error = triangleErrorUnits * roundingUnit * largest(origin);
   float length = largest(direction);
   if (!(length > 0 && length < infinity))
@@ -54,18 +66,14 @@ inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) 
     return error / length;
   Vec3 normal = load(parent.GeometricNormal);
   float along = absolute(dot(direction, normal));
-  float squares = dot(direction, direction) * dot(normal, normal);
-  if (squares > 0x1p-60f && squares < 0x1p60f &&
-      dot(direction, direction) > 0x1p-60f) { // nothing overflows
-    if (along * along > smallestCosine * smallestCosine * squares)
-      return error * squareRoot(dot(normal, normal)) / along;
-    return error / (smallestCosine * squareRoot(dot(direction, direction)));
-  }
-  Vec3 unit = normalized(direction);
-  float cosine = absolute(dot(unit, normalized(normal)));
-  cosine = cosine > smallestCosine ? (cosine < 1 ? cosine : 1.0f) : smallestCosine;
-  // |direction| without overflow: its component along the unit vector.
-  return error / (cosine * dot(direction, unit));
+  float square = dot(direction, direction), squares = square * dot(normal, normal);
+  if (!(square > 0x1p-60f && squares > 0x1p-60f && squares < 0x1p60f))
+    return spawnEpsilonOfExtremes(error, normal, direction);
+  // The sum is at least the length, at most 1.74 times as much, and takes no root: a bound may be
+  // generous.
+  if (along * along > smallestCosine * smallestCosine * squares)
+    return error * (absolute(normal.x) + absolute(normal.y) + absolute(normal.z)) / along;
+  return error / (smallestCosine * squareRoot(square));
 }
 
 } // namespace rtsl::device
