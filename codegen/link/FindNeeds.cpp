@@ -1,18 +1,23 @@
 //===- FindNeeds.cpp - what of a hit is read ------------------------------===//
 //
-// Texture coordinates, derivatives and transforms cost time at every hit. If no function that is left in the program
-// reads them, the runtime does not compute them.
+// Texture coordinates, derivatives and transforms cost time at every hit. What no function of the program reads is not
+// computed at all; what `shade` of a material cannot reach is not computed where that material was hit.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
 
 #include "llvm/ADT/StringSwitch.h"
 
+#include <set>
+
 namespace rtsl::linking {
 
-std::uint32_t findNeeds(mlir::ModuleOp ir) {
+namespace {
+
+/// What one function reads itself.
+std::uint32_t needsOf(mlir::func::FuncOp function) {
   std::uint32_t needs = 0;
-  ir.walk([&](ir::StateOp state) {
+  function.walk([&](ir::StateOp state) {
     const bool isRead =
         llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
     if (isRead)
@@ -24,6 +29,46 @@ std::uint32_t findNeeds(mlir::ModuleOp ir) {
                    .Cases({"EmissionColor", "BSDFValue", "BSDFSeed", "PDF", "du", "dv"}, RTSL_NEEDS_SAMPLING)
                    .Default(0);
   });
+  return needs;
+}
+
+/// What a function and all that it calls read.
+std::uint32_t needsReachedFrom(mlir::func::FuncOp root, mlir::ModuleOp ir) {
+  std::uint32_t needs = 0;
+  std::set<mlir::Operation *> seen = {root};
+  std::vector<mlir::func::FuncOp> pending = {root};
+  while (!pending.empty()) {
+    mlir::func::FuncOp function = pending.back();
+    pending.pop_back();
+    needs |= needsOf(function);
+    function.walk([&](mlir::func::CallOp call) {
+      auto callee = ir.lookupSymbol<mlir::func::FuncOp>(call.getCallee());
+      if (callee && seen.insert(callee).second)
+        pending.push_back(callee);
+    });
+  }
+  return needs;
+}
+
+} // namespace
+
+std::uint32_t findNeeds(mlir::ModuleOp ir) {
+  std::uint32_t needs = 0;
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    needs |= needsOf(function);
+  return needs;
+}
+
+std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &material) {
+  mlir::func::FuncOp shade = findMethod(context, material, "shade");
+  if (!shade)
+    return 0;
+  std::uint32_t needs = needsReachedFrom(shade, context.ir);
+  // `illuminance` runs the lights on the material's own state.
+  for (const LinkedClass &light : context.classes)
+    if (light.info->root == "rt_Light")
+      if (mlir::func::FuncOp illumination = findMethod(context, light, "illumination"))
+        needs |= needsReachedFrom(illumination, context.ir);
   return needs;
 }
 

@@ -25,6 +25,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   for (const linking::LinkedClass &linked : context.classes) {
     runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
     info.id = linked.id;
+    if (info.root == "rt_Material")
+      info.needs = linking::findNeeds(context, linked);
     program.classes.push_back(std::move(info));
   }
   program.colorComponents = colorComponents;

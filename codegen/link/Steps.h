@@ -52,6 +52,8 @@ void makeEntries(LinkContext &context);
 
 /// RTSL_NEEDS_*: what some function of the program reads, so that the runtime computes nothing else.
 std::uint32_t findNeeds(mlir::ModuleOp ir);
+/// The same for what `shade` of a material reads, itself or through what it calls.
+std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &material);
 
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);

@@ -52,5 +52,5 @@ with open("knot.obj", "w") as out:
             b = i * AROUND + (j + 1) % AROUND + 1
             c = (i + 1) % ALONG * AROUND + (j + 1) % AROUND + 1
             d = (i + 1) % ALONG * AROUND + j + 1
-            out.write("f %d/%d/%d %d/%d/%d %d/%d/%d\n" % (a, a, a, d, d, d, c, c, c))
-            out.write("f %d/%d/%d %d/%d/%d %d/%d/%d\n" % (a, a, a, c, c, c, b, b, b))
+            out.write("f %d/%d/%d %d/%d/%d %d/%d/%d\n" % (a, a, a, c, c, c, d, d, d))
+            out.write("f %d/%d/%d %d/%d/%d %d/%d/%d\n" % (a, a, a, b, b, b, c, c, c))

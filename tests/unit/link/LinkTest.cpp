@@ -133,6 +133,13 @@ TEST(Link, NeedsAreWhatIsRead) {
   EXPECT_EQ(Linked(textures, {{"Stripes", "Matte"}, {}}).program.needs, RTSL_NEEDS_TEXTURE_COORDINATES);
 }
 
+TEST(Link, AMaterialNeedsWhatItReaches) {
+  Linked linked(textures, {{"Stripes", "Matte", "Shiny"}, {}});
+  ASSERT_TRUE(linked.succeeded);
+  EXPECT_EQ(linked.classInfo("Matte").needs, RTSL_NEEDS_TEXTURE_COORDINATES);
+  EXPECT_EQ(linked.classInfo("Shiny").needs, 0u);
+}
+
 TEST(Link, RecordsAreDescribed) {
   Linked linked(R"(
 struct Pair { float a; vec3 b; };
