@@ -34,6 +34,13 @@ bool isStatementKeyword(unsigned type) {
          type == RtslLexer::ILLUMINANCE || (type >= RtslLexer::IMPORT && type <= RtslLexer::CONST);
 }
 
+/// True for words behind which an expression may end.
+bool endsOperand(unsigned type) {
+  return type == RtslLexer::IDENTIFIER || isClosing(type) || type == RtslLexer::PLUS_PLUS ||
+         type == RtslLexer::MINUS_MINUS || type == RtslLexer::TRUE || type == RtslLexer::FALSE ||
+         (type >= RtslLexer::INT_LITERAL && type <= RtslLexer::STRING_LITERAL);
+}
+
 } // namespace
 
 //===----------------------------------------------------------------------===//
@@ -59,8 +66,15 @@ std::string SyntaxErrors::describe(std::size_t index) const {
 
 /// True if a mistake at this word is explained by a message that was given before parsing.
 bool SyntaxErrors::isConsequence(std::size_t index) const {
-  return word(index).followsMistake || (index > 0 && word(index - 1).followsMistake) ||
-         (index > 0 && word(index - 1).isBroken);
+  const Token &token = word(index);
+  if (token.followsMistake || token.isBroken)
+    return true;
+  if (index == 0)
+    return false;
+  const Token &previous = word(index - 1);
+  // A string without an end may have taken anything.
+  return previous.followsMistake ||
+         (previous.isBroken && previous.type == RtslLexer::STRING_LITERAL);
 }
 
 /// True if a statement that lacks its semicolon ends in front of this word.
@@ -97,7 +111,7 @@ void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expect
 void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t index) {
   const Token &previous = word(index > 0 ? index - 1 : 0);
   std::string after = fmt::format("`{}`", textOf(index > 0 ? index - 1 : 0));
-  if (previous.end - previous.begin > maxQuotedBytes)
+  if (previous.end == previous.begin || previous.end - previous.begin > maxQuotedBytes)
     after = "this";
   if (previous.type == RtslLexer::RIGHT_BRACE) {
     const auto named = [&](const char *what, antlr4::tree::TerminalNode *name) {
@@ -112,6 +126,16 @@ void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t in
   }
   const SourceRange place{file, previous.end, previous.end};
   diagnostics.report(Code::missingSemicolon, place, after).fix(place, ";", true);
+}
+
+/// What may follow an operand inside of the brackets around this word.
+std::string SyntaxErrors::closingAround(std::size_t index) const {
+  std::size_t open = index;
+  while (open > 0 && word(open).depth >= word(index).depth)
+    --open;
+  return word(open).type == RtslLexer::LEFT_BRACKET ? "`]`"
+         : word(open).type == RtslLexer::LEFT_PAREN ? "`,` or `)`"
+                                                    : "`;`";
 }
 
 /// What a declaration lacks behind its type: it has read the words from `start` on, and not the one
@@ -143,7 +167,7 @@ std::string SyntaxErrors::expectedToken(antlr4::Parser *parser, std::size_t inde
            : rule == RtslParser::RuleModulePath ? "the name of a module"
                                                 : "a name";
   if (expected.contains(std::size_t{RtslLexer::RIGHT_PAREN})) {
-    if (word(index).type == RtslLexer::COMMA)
+    if (index > 0 && !endsOperand(word(index - 1).type))
       return rule == RtslParser::RuleParameters ? "a parameter" : "an expression";
     return rule == RtslParser::RuleCondition || rule == RtslParser::RuleForStatement ? "`)`"
                                                                                      : "`,` or `)`";
@@ -186,7 +210,7 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
     // The words in front are the name and the parameters, which balance.
     std::size_t open = index - 1;
     while (open > 0 &&
-           !(word(open).type == RtslLexer::LEFT_PAREN && word(open).depth == word(index).depth))
+           (word(open).type != RtslLexer::LEFT_PAREN || word(open).depth != word(index - 1).depth))
       --open;
     const bool isMissing = word(index).startsLine || word(index).type == RtslLexer::RIGHT_BRACE;
     if (isMissing && open > 0)
@@ -196,10 +220,19 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
     return;
   }
   case RtslParser::RuleSimpleStatement:
-    if (index > start && endsBefore(index))
+    // The parser has looked ahead, perhaps into brackets, and not yet read anything.
+    if (index == start || !endsOperand(word(index - 1).type))
+      reportUnexpected(index, "an expression");
+    else if (word(index).depth > word(start).depth ||
+             (isClosing(word(index).type) && word(index).type != RtslLexer::RIGHT_BRACE))
+      reportUnexpected(index, closingAround(index));
+    else if (endsBefore(index))
       reportMissingSemicolon(parser, index);
     else
-      reportUnexpected(index, index > start ? "`;`" : "an expression");
+      reportUnexpected(index, "`;`");
+    return;
+  case RtslParser::RuleInitializer:
+    reportUnexpected(index, endsOperand(word(index - 1).type) ? "`,` or `}`" : "an expression");
     return;
   case RtslParser::RuleStatement:
     reportUnexpected(index, "a statement");
@@ -233,7 +266,7 @@ std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) co
       return index;
     if (token.depth > depth)
       continue;
-    if (isClosing(token.type) && token.depth < depth)
+    if (isClosing(token.type) && (token.depth < depth || index == start))
       return index;
     if (token.type == RtslLexer::SEMICOLON)
       return index + 1;
@@ -374,7 +407,7 @@ void SyntaxErrors::recover(antlr4::Parser *parser, std::exception_ptr error) {
     words.seek(behindParentheses(start, from));
     break;
   case RtslParser::RuleFunctionBody:
-    if (!word(from).startsLine)
+    if (!word(from).startsLine && !isClosing(word(from).type))
       words.seek(endOfStatement(start, from));
     isRecovering = false;
     break;

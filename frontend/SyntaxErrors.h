@@ -43,6 +43,7 @@ private:
   void reportMissingSemicolon(antlr4::Parser *parser, std::size_t index);
   void reportUnexpected(std::size_t index, const std::string &expected);
   void reportInDeclaration(antlr4::Parser *parser, std::size_t start, std::size_t index);
+  std::string closingAround(std::size_t index) const;
   std::string expectedToken(antlr4::Parser *parser, std::size_t index) const;
 
   std::size_t endOfStatement(std::size_t start, std::size_t from) const;

@@ -315,7 +315,9 @@ void TokenChecker::handleClosing(const Token &token) {
     const std::size_t missing = levels.size() - 1 - level;
     for (std::size_t i = 0; i < missing; ++i)
       closeMissing(i + 1 == missing); // one message: the outermost
-    close(token);
+    Token closing = token;
+    closing.followsMistake = true;
+    close(closing);
     return;
   }
   if (levels.size() > 1 && !levels.back().isBlock()) { // `f(a]`
@@ -469,6 +471,7 @@ void TokenChecker::run() {
           ++levels[i].semicolons;
           break;
         }
+      token.followsMistake |= missing > 0;
       for (; missing > 0; --missing)
         closeMissing(missing == 1);
     }

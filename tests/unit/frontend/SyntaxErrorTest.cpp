@@ -1,0 +1,548 @@
+//===- SyntaxErrorTest.cpp - mistakes, their places and what survives them ===//
+//
+// Each text states all of its messages: one that is not expected fails its test, so that no slip
+// gives two.
+//
+//===----------------------------------------------------------------------===//
+#include "Parsed.h"
+
+#include <gtest/gtest.h>
+
+namespace rtsl {
+namespace {
+
+using test::Parsed;
+
+std::string messages(const std::string &text) {
+  return Parsed(text).messages();
+}
+
+/// Messages for a statement that stands on line 2 of a function.
+std::string inFunction(const std::string &statement) {
+  return messages("void f() {\n" + statement + "\n  last();\n}\n");
+}
+
+//===----------------------------------------------------------------------===//
+// Semicolons
+//===----------------------------------------------------------------------===//
+
+TEST(MissingSemicolon, PointsBehindThePreviousWord) {
+  EXPECT_EQ(Parsed("void f() {\n"
+                   "  vec3 a = b // why\n"
+                   "\n"
+                   "  c = a;\n"
+                   "}\n")
+                .shown(),
+            "test.rtsl:2:13: error[E0112]: missing `;` after `b`\n"
+            "  |\n"
+            "2 |   vec3 a = b // why\n"
+            "  |             ^\n"
+            "help: insert `;`\n"
+            "  |\n"
+            "2 |   vec3 a = b; // why\n"
+            "  |             +\n"
+            "\n");
+}
+
+TEST(MissingSemicolon, IsTheOnlyMessageWhereverItIsMissing) {
+  EXPECT_EQ(inFunction("a = b"), "E0112 2:6-2:6 missing `;` after `b`\n");
+  EXPECT_EQ(inFunction("float a"), "E0112 2:8-2:8 missing `;` after `a`\n");
+  EXPECT_EQ(inFunction("foo(a)"), "E0112 2:7-2:7 missing `;` after `)`\n");
+  EXPECT_EQ(inFunction("{ return }"), "E0112 2:9-2:9 missing `;` after `return`\n");
+  EXPECT_EQ(inFunction("return"), "") << "it takes what follows as its value";
+  EXPECT_EQ(inFunction("break"), "E0112 2:6-2:6 missing `;` after `break`\n");
+  EXPECT_EQ(inFunction("do { } while (a)"), "E0112 2:17-2:17 missing `;` after `)`\n");
+  EXPECT_EQ(inFunction("{ a = b }"), "E0112 2:8-2:8 missing `;` after `b`\n");
+  EXPECT_EQ(inFunction("{ a }"), "E0112 2:4-2:4 missing `;` after `a`\n");
+  EXPECT_EQ(inFunction("a = b if (c) d;"), "E0112 2:6-2:6 missing `;` after `b`\n");
+  EXPECT_EQ(messages("class A : rt_Light;\npublic float a = 1\npublic float b\nvoid f() { }\n"),
+            "E0112 2:19-2:19 missing `;` after `1`\n"
+            "E0112 3:15-3:15 missing `;` after `b`\n");
+  EXPECT_EQ(messages("class A : rt_Light\npublic float a;\n"),
+            "E0112 1:19-1:19 missing `;` after `rt_Light`\n");
+  EXPECT_EQ(messages("import std.cameras\nvoid f() { }"),
+            "E0112 1:19-1:19 missing `;` after `cameras`\n");
+  EXPECT_EQ(messages("const float a = 1"), "E0112 1:18-1:18 missing `;` after `1`\n");
+}
+
+TEST(MissingSemicolon, BehindAClassOrStruct) {
+  EXPECT_EQ(Parsed("class A : rt_Light {\n"
+                   "  public float a;\n"
+                   "}\n"
+                   "\n"
+                   "class B : A { };\n")
+                .shown(),
+            "test.rtsl:3:2: error[E0112]: missing `;` after class `A`\n"
+            "  |\n"
+            "3 | }\n"
+            "  |  ^\n"
+            "help: insert `;`\n"
+            "  |\n"
+            "3 | };\n"
+            "  |  +\n"
+            "\n");
+  EXPECT_EQ(messages("struct S { float a; }\nvoid f() { }"),
+            "E0112 1:22-1:22 missing `;` after struct `S`\n");
+}
+
+TEST(MissingSemicolon, LosesNothing) {
+  const Parsed parsed(
+      "class A : rt_Light {\n  void f() {\n    a = 1\n    b = 2\n  }\n}\nclass B : A { };\n");
+  EXPECT_EQ(parsed.tree(), "unit\n"
+                           "  class A : rt_Light\n"
+                           "    function void f\n"
+                           "      block\n"
+                           "        expression\n"
+                           "          assign =\n"
+                           "            name a\n"
+                           "            int 1\n"
+                           "        expression\n"
+                           "          assign =\n"
+                           "            name b\n"
+                           "            int 2\n"
+                           "  class B : A\n");
+}
+
+//===----------------------------------------------------------------------===//
+// Brackets
+//===----------------------------------------------------------------------===//
+
+TEST(Brackets, UnclosedOnesAreShownWhereTheyOpen) {
+  EXPECT_EQ(Parsed("void f() {\n  c = mix(a, (b + 1);\n  d = 2;\n}\n").shown(),
+            "test.rtsl:2:10: error[E0113]: `(` is never closed\n"
+            "  |\n"
+            "2 |   c = mix(a, (b + 1);\n"
+            "  |          ^\n"
+            "help: insert `)`\n"
+            "  |\n"
+            "2 |   c = mix(a, (b + 1));\n"
+            "  |                     +\n"
+            "\n");
+  EXPECT_EQ(inFunction("a[1 = 2;"), "E0113 2:2-2:3 `[` is never closed\n");
+  EXPECT_EQ(inFunction("foo(a[1);"), "E0113 2:6-2:7 `[` is never closed\n");
+  EXPECT_EQ(inFunction("foo(bar(baz(1);"), "E0113 2:4-2:5 `(` is never closed\n");
+  EXPECT_EQ(inFunction("if (a { b; }"), "E0113 2:4-2:5 `(` is never closed\n");
+  EXPECT_EQ(inFunction("for (int i = 0; i < n; i++ { b; }"), "E0113 2:5-2:6 `(` is never closed\n");
+  EXPECT_EQ(inFunction("for (int i = foo(1; i < n; i++) { b; }"),
+            "E0113 2:17-2:18 `(` is never closed\n");
+  EXPECT_EQ(inFunction("{ foo(1 }"), "E0113 2:6-2:7 `(` is never closed\n");
+}
+
+TEST(Brackets, AnUnclosedBraceIsFoundByIndentation) {
+  EXPECT_EQ(Parsed("class A : rt_Material;\n"
+                   "void shade() {\n"
+                   "  if (a) {\n"
+                   "    b = 1;\n"
+                   "}\n"
+                   "void other() {\n"
+                   "}\n")
+                .shown(),
+            "test.rtsl:3:10: error[E0113]: `{` is never closed\n"
+            "  |\n"
+            "3 |   if (a) {\n"
+            "  |          ^\n"
+            "4 |     b = 1;\n"
+            "5 | }\n"
+            "  | - this one is indented like that of an outer bracket\n"
+            "\n");
+  EXPECT_EQ(messages("void f() {\n  a;\n"), "E0113 1:10-1:11 `{` is never closed\n");
+  EXPECT_EQ(messages("void f() { a; "), "E0113 1:10-1:11 `{` is never closed\n");
+  EXPECT_EQ(messages("void f() { a; } void g() {"), "E0113 1:26-1:27 `{` is never closed\n");
+}
+
+TEST(Brackets, OnesTooManyAreShown) {
+  EXPECT_EQ(inFunction("a = b);"), "E0114 2:6-2:7 `)` closes nothing\n");
+  EXPECT_EQ(inFunction("a = b];"), "E0114 2:6-2:7 `]` closes nothing\n");
+  EXPECT_EQ(messages("void f() { a; } }\nvoid g() { }\n"), "E0114 1:17-1:18 `}` closes nothing\n");
+  EXPECT_EQ(Parsed("void f() {\n  a; }\n  b;\n}\n").shown(),
+            "test.rtsl:4:1: error[E0114]: `}` closes nothing\n"
+            "  |\n"
+            "2 |   a; }\n"
+            "  |      - all brackets were closed here\n"
+            "3 |   b;\n"
+            "4 | }\n"
+            "  | ^\n"
+            "\n");
+}
+
+TEST(Brackets, OfTheWrongKindAreShownWithTheOneTheyClose) {
+  EXPECT_EQ(Parsed("void f() {\n  foo(a];\n}\n").shown(),
+            "test.rtsl:2:8: error[E0111]: expected `)`, found `]`\n"
+            "  |\n"
+            "2 |   foo(a];\n"
+            "  |      - ^\n"
+            "  |      |\n"
+            "  |      opened here\n"
+            "help: replace `]` by `)`\n"
+            "  |\n"
+            "2 |   foo(a);\n"
+            "  |        ~\n"
+            "\n");
+}
+
+//===----------------------------------------------------------------------===//
+// Words
+//===----------------------------------------------------------------------===//
+
+TEST(Words, UnknownCharacters) {
+  EXPECT_EQ(inFunction("a = b @ c;"), "E0103 2:7-2:8 unknown character `@`\n");
+  EXPECT_EQ(inFunction("a = $b + c;"), "E0103 2:5-2:6 unknown character `$`\n");
+  EXPECT_EQ(inFunction("a = \xCF\x80 * 2;"), "E0103 2:5-2:7 unknown character `\xCF\x80`\n");
+  EXPECT_EQ(inFunction("'c';"), "E0103 2:1-2:2 unknown character `'`\n"
+                                "E0103 2:3-2:4 unknown character `'`\n");
+  EXPECT_EQ(Parsed("void f() {\n  a = b \xE2\x80\x93 c;\n}\n").shown(),
+            "test.rtsl:2:9: error[E0103]: unknown character `\xE2\x80\x93`\n"
+            "  |\n"
+            "2 |   a = b \xE2\x80\x93 c;\n"
+            "  |         ^\n"
+            "help: replace `\xE2\x80\x93` by `-`\n"
+            "  |\n"
+            "2 |   a = b - c;\n"
+            "  |         ~\n"
+            "\n");
+}
+
+TEST(Words, CommentsAndStringsWithoutAnEnd) {
+  EXPECT_EQ(Parsed("void f() { }\n  /* never\n  closed * /\n").shown(),
+            "test.rtsl:2:3: error[E0104]: this comment is never closed\n"
+            "  |\n"
+            "2 |   /* never\n"
+            "  |   ^^\n"
+            "\n");
+  EXPECT_EQ(messages("/*"), "E0104 1:1-1:3 this comment is never closed\n");
+  EXPECT_EQ(messages("/*/"), "E0104 1:1-1:3 this comment is never closed\n");
+  EXPECT_EQ(Parsed("void f() {\n  print(\"a \\\" b);\n  c;\n}\n").shown(),
+            "test.rtsl:2:9: error[E0105]: this string is never closed\n"
+            "  |\n"
+            "2 |   print(\"a \\\" b);\n"
+            "  |         ^\n"
+            "help: insert `\"`\n"
+            "  |\n"
+            "2 |   print(\"a \\\" b\");\n"
+            "  |                +\n"
+            "\n");
+  EXPECT_EQ(messages("import \"a"), "E0105 1:8-1:9 this string is never closed\n");
+}
+
+TEST(Words, EscapesThatMeanNothing) {
+  EXPECT_EQ(inFunction(R"(print("a\q b\n\0");)"),
+            "E0107 2:9-2:11 unknown escape `\\q` in a string\n"
+            "E0107 2:15-2:17 unknown escape `\\0` in a string\n");
+}
+
+TEST(Words, NumbersThatAreNone) {
+  EXPECT_EQ(inFunction("a = 09;"), "E0106 2:5-2:7 `09` is not a number\n");
+  EXPECT_EQ(inFunction("a = 0x;"), "E0106 2:5-2:7 `0x` is not a number\n");
+  EXPECT_EQ(inFunction("a = 0xfg;"), "E0106 2:5-2:9 `0xfg` is not a number\n");
+  EXPECT_EQ(inFunction("a = 1.2.3;"), "E0106 2:5-2:10 `1.2.3` is not a number\n");
+  EXPECT_EQ(inFunction("a = 12abc;"), "E0106 2:5-2:10 `12abc` is not a number\n");
+  EXPECT_EQ(inFunction("a = 1e+ + 1;"), "E0106 2:5-2:8 `1e+` is not a number\n");
+  EXPECT_EQ(inFunction("a = 1.5h;"), "E0106 2:5-2:9 `1.5h` is not a number\n");
+  EXPECT_EQ(inFunction("float 3x;"), "E0106 2:7-2:9 `3x` is not a number\n");
+  EXPECT_EQ(Parsed("void f() {\n  a = 1f;\n}\n").shown(),
+            "test.rtsl:2:7: error[E0106]: `1f` is not a number\n"
+            "  |\n"
+            "2 |   a = 1f;\n"
+            "  |       ^^\n"
+            "help: insert `.0`\n"
+            "  |\n"
+            "2 |   a = 1.0f;\n"
+            "  |        ++\n"
+            "\n");
+}
+
+TEST(Words, KeywordsAsNames) {
+  EXPECT_EQ(messages("class A : rt_Light;\npublic float in = 3;\n"),
+            "E0115 2:14-2:16 `in` is a keyword and cannot be a name\n");
+  EXPECT_EQ(messages("void f(float out, vec3 class) { }\n"),
+            "E0115 1:14-1:17 `out` is a keyword and cannot be a name\n"
+            "E0115 1:24-1:29 `class` is a keyword and cannot be a name\n");
+  EXPECT_EQ(inFunction("float default; int for = 1, a;"),
+            "E0115 2:7-2:14 `default` is a keyword and cannot be a name\n"
+            "E0115 2:20-2:23 `for` is a keyword and cannot be a name\n");
+  EXPECT_EQ(inFunction("a.in = 2;"), "E0115 2:3-2:5 `in` is a keyword and cannot be a name\n");
+  EXPECT_EQ(messages("void return() { }"),
+            "E0115 1:6-1:12 `return` is a keyword and cannot be a name\n");
+  EXPECT_EQ(messages("struct switch { float a; };\nclass do : rt_Light { };\n"),
+            "E0115 1:8-1:14 `switch` is a keyword and cannot be a name\n"
+            "E0115 2:7-2:9 `do` is a keyword and cannot be a name\n");
+}
+
+TEST(Words, PrecisionQualifiersAreToBeRemoved) {
+  EXPECT_EQ(Parsed("precision mediump float;\nvoid f(highp vec3 a) { }\n").shown(),
+            "test.rtsl:1:1: error[E0116]: RTSL has no precision qualifiers\n"
+            "  |\n"
+            "1 | precision mediump float;\n"
+            "  | ^^^^^^^^^^^^^^^^^^^^^^^^\n"
+            "help: remove `precision mediump float;`\n"
+            "  |\n"
+            "1 | precision mediump float;\n"
+            "  | ------------------------\n"
+            "\n"
+            "test.rtsl:2:8: error[E0116]: RTSL has no precision qualifiers\n"
+            "  |\n"
+            "2 | void f(highp vec3 a) { }\n"
+            "  |        ^^^^^\n"
+            "help: remove `highp`\n"
+            "  |\n"
+            "2 | void f(highp vec3 a) { }\n"
+            "  |        ------\n"
+            "\n");
+}
+
+TEST(Words, Directives) {
+  EXPECT_EQ(messages("#version 460\n#include <a.h>\n# define A \\\n  more\nvoid f() { }\n"),
+            "E0108 1:1-1:9 preprocessor directives are not supported yet\n"
+            "E0108 2:1-2:9 preprocessor directives are not supported yet\n"
+            "E0108 3:1-3:9 preprocessor directives are not supported yet\n");
+}
+
+//===----------------------------------------------------------------------===//
+// Declarations
+//===----------------------------------------------------------------------===//
+
+TEST(DeclarationErrors, MethodsWithoutBody) {
+  EXPECT_EQ(
+      Parsed("class A : rt_Material;\nvoid shade()\nvoid BSDF();\nvoid emission() { }\n").shown(),
+      "test.rtsl:2:6: error[E0117]: method `shade` has no body\n"
+      "  |\n"
+      "2 | void shade()\n"
+      "  |      ^^^^^\n"
+      "\n"
+      "test.rtsl:3:6: error[E0117]: method `BSDF` has no body\n"
+      "  |\n"
+      "3 | void BSDF();\n"
+      "  |      ^^^^\n"
+      "\n");
+  EXPECT_EQ(messages("class A : rt_Material { void shade(vec3 a) };"),
+            "E0117 1:30-1:35 method `shade` has no body\n");
+  EXPECT_EQ(messages("void f() const { a; }\nvoid g() { }\n"),
+            "E0111 1:10-1:15 expected `{`, found `const`\n");
+}
+
+TEST(DeclarationErrors, FunctionsWithoutReturnType) {
+  EXPECT_EQ(Parsed("class A : rt_Light;\nconstructor(float a) { }\nvoid f() { }\n").shown(),
+            "test.rtsl:2:1: error[E0124]: function `constructor` has no return type\n"
+            "  |\n"
+            "2 | constructor(float a) { }\n"
+            "  | ^^^^^^^^^^^\n"
+            "help: insert `void`\n"
+            "  |\n"
+            "2 | void constructor(float a) { }\n"
+            "  | +++++\n"
+            "\n");
+}
+
+TEST(DeclarationErrors, Classes) {
+  EXPECT_EQ(messages("class A { };\nvoid f() { }\n"),
+            "E0111 1:9-1:10 expected `:` and the class that it derives from, found `{`\n");
+  EXPECT_EQ(messages("class : rt_Light { };\n"), "E0111 1:7-1:8 expected a name, found `:`\n");
+  EXPECT_EQ(messages("class A : public rt_Light { };\n"),
+            "E0119 1:11-1:17 `public` cannot stand here: a class derives in one way only\n");
+  EXPECT_EQ(messages("class A : rt_Light {\npublic:\n  public float a;\n};\n"),
+            "E0119 2:1-2:8 `public:` cannot stand here: write `public` in front of each member\n");
+  EXPECT_EQ(messages("class A : rt_Light {\n  return 1;\n  void f() { }\n};\n"),
+            "E0111 2:3-2:9 expected a member, found `return`\n");
+}
+
+TEST(DeclarationErrors, NothingFollowsAClassToTheEndOfTheFile) {
+  EXPECT_EQ(Parsed("class A : rt_Light;\nfloat a;\nclass B : A { };\n").shown(),
+            "test.rtsl:3:1: error[E0118]: `class A : rt_Light;` holds everything up to the end of "
+            "the file: a class cannot follow it\n"
+            "  |\n"
+            "1 | class A : rt_Light;\n"
+            "  |       - begins here\n"
+            "2 | float a;\n"
+            "3 | class B : A { };\n"
+            "  | ^^^^^\n"
+            "  = note: a file of several declarations is written `class A : rt_Light { ... };`\n"
+            "\n");
+  EXPECT_EQ(messages("class A : rt_Light;\nstruct S { float a; };\nimport std.lights;\n"),
+            "E0118 2:1-2:7 `class A : rt_Light;` holds everything up to the end of the file: a "
+            "struct cannot follow it\n"
+            "E0118 3:1-3:7 `class A : rt_Light;` holds everything up to the end of the file: an "
+            "import cannot follow it\n");
+}
+
+TEST(DeclarationErrors, Qualifiers) {
+  EXPECT_EQ(messages("class A : rt_Light;\npublic private float a;\nconst const float b = 1;\n"),
+            "E0120 2:8-2:15 `private` contradicts or repeats `public`\n"
+            "E0120 3:7-3:12 `const` contradicts or repeats `const`\n");
+  EXPECT_EQ(messages("void f(in out float a, public float b) { }\n"),
+            "E0120 1:11-1:14 `out` contradicts or repeats `in`\n"
+            "E0119 1:24-1:30 `public` cannot stand here: it is for members of classes\n");
+  EXPECT_EQ(messages("struct S { public float a; const float b; inout float c; };\n"),
+            "E0119 1:12-1:18 `public` cannot stand here: it is for members of classes\n"
+            "E0119 1:28-1:33 `const` cannot stand here: the fields of a struct have no qualifiers\n"
+            "E0119 1:43-1:48 `inout` cannot stand here: it is for parameters\n");
+  EXPECT_EQ(messages("public void f() { in float a; }\n"),
+            "E0119 1:1-1:7 `public` cannot stand here: functions have no qualifiers\n"
+            "E0119 1:19-1:21 `in` cannot stand here: it is for parameters\n");
+  EXPECT_EQ(messages("uniform float a;\nvarying highp vec2 b;\nstatic const float c = 1;\n"),
+            "E0121 1:1-1:8 `uniform` is not a qualifier of RTSL\n"
+            "E0121 2:1-2:8 `varying` is not a qualifier of RTSL\n"
+            "E0116 2:9-2:14 RTSL has no precision qualifiers\n"
+            "E0121 3:1-3:7 `static` is not a qualifier of RTSL\n");
+}
+
+TEST(DeclarationErrors, Variables) {
+  EXPECT_EQ(inFunction("float = 3;"), "") << "an assignment to something called float";
+  EXPECT_EQ(inFunction("const float;"), "E0111 2:12-2:13 expected a name, found `;`\n");
+  EXPECT_EQ(inFunction("float a = ;"), "E0111 2:11-2:12 expected an expression, found `;`\n");
+  EXPECT_EQ(inFunction("float a = 1, ;"), "E0111 2:14-2:15 expected a name, found `;`\n");
+  EXPECT_EQ(inFunction("float a b;"), "E0111 2:9-2:10 expected `;`, found `b`\n");
+  EXPECT_EQ(inFunction("float a[2] = {1, 2 3};"),
+            "E0111 2:20-2:21 expected `,` or `}`, found `3`\n");
+  EXPECT_EQ(inFunction("float a[2] = {1, , 3};"),
+            "E0111 2:18-2:19 expected an expression, found `,`\n");
+  EXPECT_EQ(messages("float a 3;\nvoid f() { }"), "E0111 1:9-1:10 expected `;`, found `3`\n");
+  EXPECT_EQ(messages("struct S { float f() { } };"),
+            "E0111 1:18-1:19 expected a field, found function `f`\n");
+}
+
+TEST(DeclarationErrors, Parameters) {
+  EXPECT_EQ(messages("void f(float a float b, vec3 c) { x y z; }\n"),
+            "E0111 1:16-1:21 expected `,` or `)`, found `float`\n"
+            "E0111 1:39-1:40 expected `;`, found `z`\n");
+  EXPECT_EQ(messages("void f(float a,) { }\n"), "E0111 1:16-1:17 expected a type, found `)`\n");
+  EXPECT_EQ(messages("void f(, float a) { }\n"), "E0111 1:8-1:9 expected a parameter, found `,`\n");
+}
+
+TEST(DeclarationErrors, Imports) {
+  EXPECT_EQ(messages("import ;\nimport std.;\nimport std.a b;\nimport <a>;\n"),
+            "E0111 1:8-1:9 expected a module or a file in quotes, found `;`\n"
+            "E0111 2:12-2:13 expected the name of a module, found `;`\n"
+            "E0111 3:14-3:15 expected `;`, found `b`\n"
+            "E0111 4:8-4:9 expected a module or a file in quotes, found `<`\n");
+}
+
+TEST(DeclarationErrors, StatementsOutsideOfFunctions) {
+  EXPECT_EQ(messages("if (a) { b; }\nvoid f() { }\n"),
+            "E0111 1:1-1:3 expected a declaration, found `if`\n");
+  EXPECT_EQ(messages("a = 3;\nvoid f() { }\n"), "E0111 1:3-1:4 expected a name, found `=`\n");
+  EXPECT_EQ(messages("3;\nvoid f() { }\n"), "E0111 1:1-1:2 expected a declaration, found `3`\n");
+}
+
+//===----------------------------------------------------------------------===//
+// Statements and expressions
+//===----------------------------------------------------------------------===//
+
+TEST(StatementErrors, AreReportedOnceEach) {
+  EXPECT_EQ(inFunction("if a > 3 { b; }"), "E0111 2:4-2:5 expected `(`, found `a`\n");
+  EXPECT_EQ(inFunction("if () b;"), "E0111 2:5-2:6 expected an expression, found `)`\n");
+  EXPECT_EQ(inFunction("if (a b) { c; } else { d; }"), "E0111 2:7-2:8 expected `)`, found `b`\n");
+  EXPECT_EQ(inFunction("else { a; }"), "E0111 2:1-2:5 expected a statement, found `else`\n");
+  EXPECT_EQ(inFunction("for (int i = 0, i < 3; i++) { }"),
+            "E0111 2:19-2:20 expected `;`, found `<`\n");
+  EXPECT_EQ(inFunction("for (int i = 0; i < 3) { }"), "E0111 2:22-2:23 expected `;`, found `)`\n");
+  EXPECT_EQ(inFunction("while { a; }"), "E0111 2:7-2:8 expected `(`, found `{`\n");
+  EXPECT_EQ(inFunction("do { a; } until (b);"),
+            "E0111 2:11-2:16 expected `while`, found `until`\n");
+  EXPECT_EQ(inFunction("switch (a) { case 1 b; default: c; }"),
+            "E0111 2:21-2:22 expected `:`, found `b`\n");
+  EXPECT_EQ(inFunction("illuminance { a; }"), "E0111 2:13-2:14 expected `;`, found `{`\n");
+  EXPECT_EQ(inFunction("illuminance () { a; }"), "");
+  EXPECT_EQ(inFunction("illuminance (P,) { a; }"),
+            "E0111 2:16-2:17 expected an expression, found `)`\n");
+}
+
+TEST(StatementErrors, ElseHasANote) {
+  EXPECT_EQ(Parsed("void f() { else a; }").diagnostics.all().at(0).notes.at(0),
+            "there is no `if` that it could belong to");
+}
+
+TEST(ExpressionErrors, AreReportedOnceEach) {
+  EXPECT_EQ(inFunction("a = = b;"), "E0111 2:5-2:6 expected an expression, found `=`\n");
+  EXPECT_EQ(inFunction("a = b +;"), "E0111 2:8-2:9 expected an expression, found `;`\n");
+  EXPECT_EQ(inFunction("a = 3 4;"), "E0111 2:7-2:8 expected `;`, found `4`\n");
+  EXPECT_EQ(inFunction("a = (b c) + d;"), "E0111 2:8-2:9 expected `,` or `)`, found `c`\n");
+  EXPECT_EQ(inFunction("f(a b);"), "E0111 2:5-2:6 expected `,` or `)`, found `b`\n");
+  EXPECT_EQ(inFunction("f(, a);"), "E0111 2:3-2:4 expected an expression, found `,`\n");
+  EXPECT_EQ(inFunction("f(a, );"), "E0111 2:6-2:7 expected an expression, found `)`\n");
+  EXPECT_EQ(inFunction("a[1 2] = 3;"), "E0111 2:5-2:6 expected `]`, found `2`\n");
+  EXPECT_EQ(inFunction("a[b(1 2)] = 3;"), "E0111 2:7-2:8 expected `,` or `)`, found `2`\n");
+  EXPECT_EQ(inFunction("a[1 +] = 3;"), "E0111 2:6-2:7 expected an expression, found `]`\n");
+  EXPECT_EQ(inFunction("a ? b;"), "E0111 2:6-2:7 expected `:`, found `;`\n");
+  EXPECT_EQ(inFunction("a.3;"), "E0111 2:2-2:4 expected `;`, found `.3`\n");
+  EXPECT_EQ(inFunction("a. = 3;"), "E0111 2:4-2:5 expected a name, found `=`\n");
+  EXPECT_EQ(inFunction("a[] = 3;"), "E0123 2:2-2:4 expected an index between `[` and `]`\n");
+  EXPECT_EQ(inFunction("3(4);"), "E0122 2:1-2:2 this cannot be called\n");
+  EXPECT_EQ(inFunction("(a)(b);"), "E0122 2:1-2:4 this cannot be called\n");
+  EXPECT_EQ(inFunction("f()[1](2);"), "E0122 2:1-2:7 this cannot be called\n");
+  EXPECT_EQ(inFunction("f({1, 2});"), "E0111 2:3-2:4 expected an expression, found `{`\n");
+}
+
+TEST(ExpressionErrors, HabitsOfC) {
+  EXPECT_EQ(Parsed("void f() {\n  a->b = c;\n}\n").shown(),
+            "test.rtsl:2:5: error[E0111]: expected an expression, found `>`\n"
+            "  |\n"
+            "2 |   a->b = c;\n"
+            "  |     ^\n"
+            "help: replace `->` by `.`\n"
+            "  |\n"
+            "2 |   a.b = c;\n"
+            "  |    ~\n"
+            "\n");
+  EXPECT_EQ(Parsed("void f() {\n  a = (float)b;\n}\n").shown(),
+            "test.rtsl:2:14: error[E0111]: expected `;`, found `b`\n"
+            "  |\n"
+            "2 |   a = (float)b;\n"
+            "  |              ^\n"
+            "  = note: there are no casts: a value is converted by `float(...)`\n"
+            "\n");
+}
+
+TEST(Recovery, EachStatementGivesItsOwnMessage) {
+  EXPECT_EQ(messages("void f() {\n"
+                     "  a = = 1;\n"
+                     "  if (b +) { c d e; }\n"
+                     "  float x = 3 $ 4;\n"
+                     "  good();\n"
+                     "  for (;;) { y = ; }\n"
+                     "}\n"
+                     "void g() { z z z }\n"
+                     "class A { }\n"
+                     "class B : A { float; };\n"),
+            "E0111 2:7-2:8 expected an expression, found `=`\n"
+            "E0111 3:10-3:11 expected an expression, found `)`\n"
+            "E0111 3:18-3:19 expected `;`, found `e`\n"
+            "E0103 4:15-4:16 unknown character `$`\n"
+            "E0111 6:18-6:19 expected an expression, found `;`\n"
+            "E0111 8:16-8:17 expected `;`, found `z`\n"
+            "E0111 9:9-9:10 expected `:` and the class that it derives from, found `{`\n"
+            "E0111 10:20-10:21 expected a name, found `;`\n");
+}
+
+TEST(Recovery, KeepsWhatWasUnderstood) {
+  const Parsed parsed("void f() {\n"
+                      "  float a = , b = 2;\n"
+                      "  c = +;\n"
+                      "  d(1 2);\n"
+                      "  if (e !) g();\n"
+                      "  float h i;\n"
+                      "  j k 3;\n"
+                      "  return m;\n"
+                      "}\n");
+  EXPECT_EQ(parsed.tree(), "unit\n"
+                           "  function void f\n"
+                           "    block\n"
+                           "      variable float a\n"
+                           "        error\n"
+                           "      variable float b\n"
+                           "        int 2\n"
+                           "      expression\n"
+                           "        error\n"
+                           "      expression\n"
+                           "        error\n"
+                           "      if\n"
+                           "        error\n"
+                           "        expression\n"
+                           "          call g\n"
+                           "      variable float h\n"
+                           "      variable j k\n"
+                           "      return\n"
+                           "        name m\n");
+}
+
+} // namespace
+} // namespace rtsl
