@@ -233,6 +233,43 @@ bool hasSideEffects(const typed::Expr &expr) {
   return found;
 }
 
+// A few operations each, on every target.
+static unsigned costOf(typed::Builtin builtin, unsigned limit) {
+  switch (builtin) {
+  case typed::Builtin::Abs:
+  case typed::Builtin::Floor:
+  case typed::Builtin::Ceil:
+  case typed::Builtin::Trunc:
+  case typed::Builtin::IsNan:
+  case typed::Builtin::IsInf:
+  case typed::Builtin::Not:
+    return 1;
+  case typed::Builtin::Min:
+  case typed::Builtin::Max:
+  case typed::Builtin::Step:
+  case typed::Builtin::Fract:
+  case typed::Builtin::Fma:
+  case typed::Builtin::LessThan:
+  case typed::Builtin::LessThanEqual:
+  case typed::Builtin::GreaterThan:
+  case typed::Builtin::GreaterThanEqual:
+  case typed::Builtin::Equal:
+  case typed::Builtin::NotEqual:
+    return 2;
+  case typed::Builtin::Any:
+  case typed::Builtin::All:
+  case typed::Builtin::Sign:
+  case typed::Builtin::Clamp:
+  case typed::Builtin::Mix:
+    return 4;
+  case typed::Builtin::Dot:
+  case typed::Builtin::Inside:
+    return 6;
+  default:
+    return limit;
+  }
+}
+
 bool isCheap(const typed::Expr &expr) {
   constexpr unsigned limit = 12;
   unsigned cost = 0;
@@ -252,15 +289,21 @@ bool isCheap(const typed::Expr &expr) {
       const auto &binary = cast<typed::BinaryExpr>(inner);
       bool isDivision = binary.op == ast::BinaryOp::Div || binary.op == ast::BinaryOp::Mod;
       bool isLarge = binary.left->type->isMatrix() || binary.right->type->isMatrix();
-      cost += isDivision || isLarge ? limit : 2;
+      cost += isDivision || isLarge ? limit + 1 : 2;
       break;
     }
+    case ExprKind::Builtin:
+      cost += costOf(cast<typed::BuiltinExpr>(inner).builtin, limit + 1);
+      break;
+    case ExprKind::Construct:
+      cost += inner.type->isScalar() || inner.type->isVector() ? 1 : limit + 1;
+      break;
     default:
-      cost += limit;
+      cost += limit + 1;
     }
     if (inner.type->isMatrix() || inner.type->is(TypeKind::Struct) ||
         inner.type->is(TypeKind::Array) || inner.type->is(TypeKind::Buffer))
-      cost += limit;
+      cost += limit + 1;
   });
   return cost <= limit;
 }

@@ -5,6 +5,7 @@
 
 #include "mlir/Dialect/Math/IR/Math.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
+#include "mlir/Interfaces/SideEffectInterfaces.h"
 
 namespace rtsl::lowering {
 
@@ -27,6 +28,18 @@ mlir::Type withScalar(mlir::Type shape, mlir::Type scalar) {
   if (unsigned width = vectorWidth(shape))
     return mlir::VectorType::get({width}, scalar);
   return scalar;
+}
+
+void eraseUnused(mlir::Region &region) {
+  for (mlir::Block &block : region)
+    // From the end, so that what an operation used is unused by the time it is reached.
+    for (mlir::Operation &op : llvm::make_early_inc_range(llvm::reverse(block))) {
+      for (mlir::Region &inner : op.getRegions())
+        eraseUnused(inner);
+      if (op.use_empty() && (mlir::isPure(&op) || llvm::isa<ir::LoadOp>(op)) &&
+          !op.hasTrait<mlir::OpTrait::IsTerminator>())
+        op.erase();
+    }
 }
 
 //===----------------------------------------------------------------------===//

@@ -81,6 +81,10 @@ private:
   void fill(mlir::Region &region, Block body);
 };
 
+/// Erases what was emitted in vain: constants that have been folded away, loads of a statement that
+/// asks for nothing. Variables stay, with their names.
+void eraseUnused(mlir::Region &region);
+
 /// f32 of vector<3xf32>; a scalar is its own.
 mlir::Type scalarType(mlir::Type type);
 /// Components of a vector type; 0 for a scalar.

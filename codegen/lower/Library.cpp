@@ -30,6 +30,7 @@ mlir::func::FuncOp Library::define(const std::string &symbol, mlir::FunctionType
   place->second = function;
   emitter.setInsertionPointToStart(function.addEntryBlock());
   body(emitter, function.getArguments());
+  eraseUnused(function.getBody());
   return function;
 }
 

@@ -56,7 +56,7 @@ static Num scaleBackFor(Num square) {
 Num Library::length(Num v) {
   if (v.width() == 0)
     return abs(v);
-  return callOne("length", {v}, v[0].type(), [](llvm::ArrayRef<Num> arguments) {
+  return callOne("length", {v}, scalarType(v.type()), [](llvm::ArrayRef<Num> arguments) {
     Num v = arguments[0];
     Num square = dot(v, v);
     return choose(

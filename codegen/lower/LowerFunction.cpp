@@ -41,6 +41,7 @@ void FunctionLowering::run() {
   lower(*key.function->body);
   if (!emitter.isTerminated())
     emitReturnOfZero();
+  eraseUnused(function.getBody());
 }
 
 void FunctionLowering::runInitialize(const std::vector<const typed::Member *> &members) {
@@ -50,6 +51,7 @@ void FunctionLowering::runInitialize(const std::vector<const typed::Member *> &m
     lowerInto(*member->init, address);
   }
   emitter.returnValues({});
+  eraseUnused(function.getBody());
 }
 
 //===----------------------------------------------------------------------===//
