@@ -349,23 +349,65 @@ TEST(Examples, AreLowered) {
   EXPECT_GE(number, 5u);
 }
 
-TEST(Unsupported, IsReportedWhereItStands) {
-  Lowered lowered(R"(
-struct Payload { float x; };
-class C : rt_RayGeneration {
-  void generate() {
-    Payload p;
-    trace(vec3(0), vec3(1), 0.0, 1.0, p);
+TEST(Classes, HitsOfFreeFunctionsCountToo) {
+  Shader shader(R"(
+bool report(float t) { return hit(t); }
+class P : rt_Primitive {
+  scratch float best;
+  void intersect() {
+    best = 7.0;
+    if (rt_RayOrigin.x > 0.0)
+      report(rt_RayOrigin.x);
   }
+  void computeBounds() { rt_BoundMin = vec3(0); rt_BoundMax = vec3(1); }
 };
-)",
-                  {}, /*expectErrors=*/true);
-  ASSERT_EQ(lowered.messages().all().size(), 1u) << renderText(lowered.messages(), false);
+)");
+  shader.state.HitDistance = 10;
+  shader.state.instance = RTSL_NO_HIT;
+  shader.callMethod("P.intersect", 0u);
+  EXPECT_EQ(attribute(shader, 0), 0.0F);
+  shader.state.RayOrigin[0] = 3;
+  shader.callMethod("P.intersect", 0u);
+  EXPECT_EQ(attribute(shader, 0), 7.0F);
+  EXPECT_EQ(shader.state.HitDistance, 3.0F);
+}
+
+/// The only message for `source`, or what there was instead.
+std::string onlyMessage(const std::string &source, std::string &place) {
+  Lowered lowered(source, {}, /*expectErrors=*/true);
+  if (lowered.messages().all().size() != 1)
+    return renderText(lowered.messages(), false);
   const Diagnostic &message = lowered.messages().all().front();
   EXPECT_EQ(message.code, Code::notSupportedYet);
-  EXPECT_EQ(message.message, "`trace` with a payload is not supported yet");
-  EXPECT_EQ(lowered.messages().sources().text(message.range),
-            "trace(vec3(0), vec3(1), 0.0, 1.0, p)");
+  place = lowered.messages().sources().text(message.range);
+  return message.message;
+}
+
+TEST(Unsupported, IsReportedWhereItStands) {
+  struct {
+    const char *source, *message, *place;
+  } const cases[] = {
+      {"struct Payload { float x; };\n"
+       "class C : rt_RayGeneration { void generate() { Payload p; p.x = 1.0; trace(vec3(0), "
+       "vec3(1), 0.0, 1.0, p); } };",
+       "`trace` with a payload is not supported yet", "trace(vec3(0), vec3(1), 0.0, 1.0, p)"},
+      {"struct Payload { float x; };\n"
+       "class C : rt_Material { void anyHit(inout Payload p) { p.x = 1.0; ignoreIntersection(); } "
+       "};",
+       "`ignoreIntersection` is not supported yet", "ignoreIntersection()"},
+      {"struct Payload { float x; };\n"
+       "class C : rt_Material { void anyHit(inout Payload p) { p.x = 1.0; terminateRay(); } };",
+       "`terminateRay` is not supported yet", "terminateRay()"},
+      {"class C : rt_Selector { void visit() { visitChild(0); } };",
+       "`visitChild` is not supported yet", "visitChild(0)"},
+      {"float f(float x) { print(\"x is\", x); return x; }", "`print` is not supported yet",
+       "print(\"x is\", x)"},
+  };
+  for (const auto &expected : cases) {
+    std::string place;
+    EXPECT_EQ(onlyMessage(expected.source, place), expected.message);
+    EXPECT_EQ(place, expected.place);
+  }
 }
 
 } // namespace
