@@ -67,7 +67,16 @@ Value VarOp::getDefaultValue(const MemorySlot &slot, OpBuilder &builder) {
   return createZero(builder, getLoc(), slot.elemType);
 }
 
-void VarOp::handleBlockArgument(const MemorySlot &, mlir::BlockArgument, OpBuilder &) {}
+/// Where values are shown to the author they go by the name of the variable that they were.
+static mlir::Location withName(mlir::Location location, VarOp variable) {
+  if (!variable || llvm::isa<mlir::NameLoc>(location))
+    return location;
+  return mlir::NameLoc::get(variable.getNameAttr(), location);
+}
+
+void VarOp::handleBlockArgument(const MemorySlot &, mlir::BlockArgument argument, OpBuilder &) {
+  argument.setLoc(withName(argument.getLoc(), *this));
+}
 
 std::optional<mlir::PromotableAllocationOpInterface>
 VarOp::handlePromotionComplete(const MemorySlot &, Value defaultValue, OpBuilder &) {
@@ -167,8 +176,12 @@ bool StoreOp::canUsesBeRemoved(const MemorySlot &slot, Blocking blockingUses, Ne
                                const mlir::DataLayout &) {
   return blocksByAddress(getAddress(), slot, blockingUses);
 }
-DeletionKind StoreOp::removeBlockingUses(const MemorySlot &, Blocking, OpBuilder &, Value,
+DeletionKind StoreOp::removeBlockingUses(const MemorySlot &slot, Blocking, OpBuilder &, Value,
                                          const mlir::DataLayout &) {
+  // A constant has many uses and is nobody's.
+  mlir::Operation *op = getValue().getDefiningOp();
+  if (op && !op->hasTrait<mlir::OpTrait::ConstantLike>())
+    op->setLoc(withName(op->getLoc(), slot.ptr.getDefiningOp<VarOp>()));
   return DeletionKind::Delete;
 }
 LogicalResult StoreOp::ensureOnlySafeAccesses(const MemorySlot &slot, SafeSlots,

@@ -10,8 +10,9 @@
 namespace rtsl::continuation {
 
 static std::string nameInLocation(mlir::Location location) {
+  // Built-in functions name their code after themselves: that is not a name of the author's.
   if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
-    return name.getName().str();
+    return name.getName().strref().starts_with("rtsl.") ? "" : name.getName().str();
   if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location)) {
     for (mlir::Location part : fused.getLocations()) {
       std::string name = nameInLocation(part);
@@ -19,9 +20,11 @@ static std::string nameInLocation(mlir::Location location) {
         return name;
     }
   }
-  // The name in an inlined function, not that of the place it was inlined at.
-  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location))
-    return nameInLocation(call.getCallee());
+  // The name in an inlined function before that of what it was called for.
+  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location)) {
+    std::string name = nameInLocation(call.getCallee());
+    return name.empty() ? nameInLocation(call.getCaller()) : name;
+  }
   return {};
 }
 

@@ -4,10 +4,9 @@
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/continuation/CostTable.h"
 #include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/Simplify.h"
 
 #include "mlir/IR/Verifier.h"
-#include "mlir/Pass/PassManager.h"
-#include "mlir/Transforms/Passes.h"
 #include "llvm/ADT/StringSet.h"
 #include "llvm/Support/Path.h"
 
@@ -24,8 +23,10 @@ std::string locationText(mlir::Location location) {
         .str();
   if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
     return locationText(name.getChildLoc());
-  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location))
-    return locationText(call.getCallee());
+  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location)) {
+    std::string text = locationText(call.getCallee());
+    return text.empty() ? locationText(call.getCaller()) : text;
+  }
   if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location))
     for (mlir::Location part : fused.getLocations())
       if (std::string text = locationText(part); !text.empty())
@@ -50,8 +51,9 @@ void describe(llvm::ArrayRef<mlir::Value> values, UniqueNames &uniqueNames,
 /// Takes one function through all steps.
 class FunctionSplitter {
 public:
-  FunctionSplitter(FuncOp function, const SplitOptions &options, FunctionReport &report)
-      : function(function), options(options), report(report) {}
+  FunctionSplitter(FuncOp function, const SplitOptions &options, Simplify &simplify,
+                   FunctionReport &report)
+      : function(function), options(options), simplify(simplify), report(report) {}
 
   mlir::LogicalResult run();
 
@@ -63,6 +65,7 @@ private:
 
   FuncOp function;
   const SplitOptions &options;
+  Simplify &simplify;
   FunctionReport &report;
   UniqueNames plainNames;
 };
@@ -114,16 +117,13 @@ mlir::LogicalResult FunctionSplitter::planAndRematerialise() {
 }
 
 mlir::LogicalResult FunctionSplitter::cleanUp(llvm::ArrayRef<FuncOp> states) {
-  mlir::PassManager simplify(function.getContext(), FuncOp::getOperationName());
-  simplify.enableVerifier(options.verifyEach);
-  simplify.addPass(mlir::createCanonicalizerPass());
-  simplify.addPass(mlir::createCSEPass());
   for (FuncOp state : states) {
-    if (mlir::failed(simplify.run(state)))
-      return mlir::failure();
+    function = state;
+    simplify.run(state);
     cleanStores(state);
     sinkLoads(state);
-    if (mlir::failed(simplify.run(state)))
+    simplify.run(state);
+    if (mlir::failed(check("clean-up")))
       return mlir::failure();
   }
   return mlir::success();
@@ -187,6 +187,7 @@ void keepTracingMethods(mlir::ModuleOp module) {
 bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitReport &report) {
   if (mlir::failed(inlineTracingCalls(module)))
     return false;
+  Simplify simplify(module.getContext());
   llvm::SmallVector<FuncOp> functions = tracingFunctions(module);
   for (llvm::StringRef name : machineEntries())
     if (auto entry = module.lookupSymbol<FuncOp>(name);
@@ -196,7 +197,7 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
     if (!isRunnable(function))
       continue; // a function of the author's that others could call, if they were in this program
     FunctionReport ofFunction;
-    if (mlir::failed(FunctionSplitter(function, options, ofFunction).run()))
+    if (mlir::failed(FunctionSplitter(function, options, simplify, ofFunction).run()))
       return false;
     report.functions.push_back(std::move(ofFunction));
   }

@@ -122,7 +122,8 @@ void cleanStores(FuncOp state);
 void sinkLoads(FuncOp state);
 
 /// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in the order in which they
-/// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`, and
+/// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`,
+/// and
 /// `@f_first` for each of machineEntries(), 0 if there is no such function, and for each other
 /// exported function that was split.
 mlir::LogicalResult makeDispatch(mlir::ModuleOp module);

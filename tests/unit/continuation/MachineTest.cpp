@@ -114,7 +114,12 @@ public:
       uint32_t none[4] = {0, 0, 0, 0};
       Record records[4] = {{1, 0.5f}, {2, -1.25f}, {3, 2.0f}, {9, 0}};
     } memory;
-    RtslInstance instances[2] = {{40, 16, 0, 0}, {40, 24, 0, 1}};
+    RtslInstance instances[2] = {};
+    for (uint32_t i = 0; i < 2; ++i) {
+      instances[i].primitive = 40;
+      instances[i].material = 16 + 8 * i;
+      instances[i].firstPrimitive = i;
+    }
     RtslLaunch launch = {};
     launch.records = reinterpret_cast<uint8_t *>(&memory);
     launch.instances = instances;

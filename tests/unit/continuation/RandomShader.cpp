@@ -32,6 +32,7 @@ private:
     return emit("rtsl.state \"" + name + "\" : !rtsl.ptr<" + type + ">");
   }
 
+  bool isMiss() const { return className == "Sky"; }
   std::string floatValue(unsigned size);
   std::string intValue(unsigned size);
   std::string boolValue(unsigned size);
@@ -85,7 +86,7 @@ std::string Generator::floatValue(unsigned size) {
     return emit("arith.select " + c + ", " + a + ", " + b + " : f32");
   }
   case 9:
-    return load(state("HitDistance", "f32"), "f32");
+    return load(state(isMiss() ? "Epsilon" : "HitDistance", "f32"), "f32");
   default: {
     static const char *ops[] = {"arith.addf", "arith.mulf", "arith.subf", "arith.divf"};
     std::string a = floatValue(size - 1), b = floatValue(size - 1);
@@ -131,9 +132,10 @@ std::string Generator::vectorValue(unsigned size) {
   case 1:
     return load("%v" + std::to_string(below(3)), vec3);
   case 2: {
-    static const char *names[] = {"HitPoint", "RayDirection", "GeometricNormal", "SampleColor",
-                                  "RayOrigin"};
-    return load(state(names[below(5)], vec3), vec3);
+    // A ray that hit nothing has no hit point.
+    static const char *names[] = {"RayDirection", "SampleColor", "RayOrigin", "HitPoint",
+                                  "GeometricNormal"};
+    return load(state(names[below(isMiss() ? 3 : 5)], vec3), vec3);
   }
   case 3: {
     std::string x = floatValue(size - 1), y = floatValue(size - 1), z = floatValue(size - 1);
@@ -280,7 +282,7 @@ void Generator::method(const std::string &name, const std::string &methodName) {
   line("%a = rtsl.var \"a\" : !rtsl.ptr<" + array + ">");
   for (int i = 0; i < 3; ++i)
     store(emit("rtsl.rand"), "%f" + std::to_string(i), "f32");
-  store(load(state("HitPoint", vec3), vec3), "%v0", vec3);
+  store(load(state(isMiss() ? "RayOrigin" : "HitPoint", vec3), vec3), "%v0", vec3);
   store(load(state("RayDirection", vec3), vec3), "%v1", vec3);
   for (unsigned n = 3 + below(5); n-- > 0;)
     statement(3);

@@ -1,0 +1,107 @@
+//===- Simplify.cpp - folding in states -----------------------------------===//
+#include "codegen/passes/continuation/Simplify.h"
+
+#include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
+#include "mlir/IR/Dominance.h"
+#include "mlir/IR/Matchers.h"
+#include "mlir/IR/PatternMatch.h"
+#include "mlir/Transforms/CSE.h"
+#include "mlir/Transforms/GreedyPatternRewriteDriver.h"
+#include "mlir/Transforms/RegionUtils.h"
+
+namespace rtsl::continuation {
+
+namespace cf = mlir::cf;
+
+Simplify::Simplify(mlir::MLIRContext *context) {
+  mlir::RewritePatternSet all(context);
+  llvm::StringRef branches = cf::ControlFlowDialect::getDialectNamespace();
+  for (mlir::Dialect *dialect : context->getLoadedDialects())
+    if (dialect->getNamespace() != branches)
+      dialect->getCanonicalizationPatterns(all);
+  for (mlir::RegisteredOperationName op : context->getRegisteredOperations())
+    if (op.getDialectNamespace() != branches)
+      op.getCanonicalizationPatterns(all, context);
+  patterns = mlir::FrozenRewritePatternSet(std::move(all));
+}
+
+/// Where a branch on a constant, or one with one target, goes; nothing if that is open.
+static std::optional<unsigned> onlySuccessor(mlir::Operation *terminator) {
+  llvm::APInt value;
+  if (auto branch = llvm::dyn_cast<cf::CondBranchOp>(terminator)) {
+    if (mlir::matchPattern(branch.getCondition(), mlir::m_ConstantInt(&value)))
+      return value.isZero() ? 1 : 0;
+    if (branch.getTrueDest() == branch.getFalseDest() &&
+        llvm::equal(branch.getTrueDestOperands(), branch.getFalseDestOperands()))
+      return 0;
+  }
+  if (auto choice = llvm::dyn_cast<cf::SwitchOp>(terminator)) {
+    if (!mlir::matchPattern(choice.getFlag(), mlir::m_ConstantInt(&value)))
+      return std::nullopt;
+    if (auto cases = choice.getCaseValues())
+      for (auto [index, one] : llvm::enumerate(cases->getValues<llvm::APInt>()))
+        if (one == value)
+          return index + 1;
+    return 0; // the default
+  }
+  return std::nullopt;
+}
+
+static bool foldBranches(mlir::IRRewriter &rewriter, mlir::Region &body) {
+  bool changed = false;
+  for (mlir::Block &block : body) {
+    mlir::Operation *terminator = block.getTerminator();
+    std::optional<unsigned> only = onlySuccessor(terminator);
+    if (!only)
+      continue;
+    auto branch = llvm::cast<mlir::BranchOpInterface>(terminator);
+    llvm::SmallVector<mlir::Value> operands(
+        branch.getSuccessorOperands(*only).getForwardedOperands());
+    rewriter.setInsertionPoint(terminator);
+    rewriter.replaceOpWithNewOp<cf::BranchOp>(terminator, terminator->getSuccessor(*only),
+                                              operands);
+    changed = true;
+  }
+  return changed;
+}
+
+/// ^a: x; br ^b(%v)   ^b(%p): y     ==>     ^a: x; y        if that is the only way to ^b
+static bool mergeChains(mlir::IRRewriter &rewriter, mlir::Region &body) {
+  bool changed = false;
+  for (mlir::Block &block : body)
+    while (auto branch = llvm::dyn_cast<cf::BranchOp>(block.getTerminator())) {
+      mlir::Block *next = branch.getDest();
+      if (next == &block || next->isEntryBlock() || !next->getSinglePredecessor())
+        break;
+      llvm::SmallVector<mlir::Value> operands(branch.getDestOperands());
+      rewriter.eraseOp(branch);
+      rewriter.mergeBlocks(next, &block, operands);
+      changed = true;
+    }
+  return changed;
+}
+
+void Simplify::run(FuncOp function) {
+  mlir::IRRewriter rewriter(function.getContext());
+  mlir::GreedyRewriteConfig config;
+  config.setRegionSimplificationLevel(mlir::GreedySimplifyRegionLevel::Normal);
+  bool changed = true;
+  for (int round = 0; changed && round < 10; ++round) { // each folds what the one before uncovered
+    changed = false;
+    (void)mlir::eraseUnreachableBlocks(rewriter, function->getRegions());
+    (void)mlir::applyPatternsGreedily(function, patterns, config, &changed);
+    bool folded = true;
+    while (folded) {
+      folded = foldBranches(rewriter, function.getBody());
+      (void)mlir::eraseUnreachableBlocks(rewriter, function->getRegions());
+      folded |= mergeChains(rewriter, function.getBody());
+      changed |= folded;
+    }
+    mlir::DominanceInfo dominance(function);
+    bool unified = false;
+    mlir::eliminateCommonSubExpressions(rewriter, dominance, function, &unified);
+    changed |= unified;
+  }
+}
+
+} // namespace rtsl::continuation
