@@ -102,7 +102,8 @@ private:
   Diagnostics &diagnostics;
   const SourceManager &sources;
   std::unique_ptr<ast::TranslationUnit> unit;
-  bool hasFileClass = false; // `class Name : Base;`, the last one of the unit
+  bool hasFileClass = false;  // `class Name : Base;`, the last one of the unit
+  bool hasBrokenItem = false; // at file level
 };
 
 } // namespace rtsl

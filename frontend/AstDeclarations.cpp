@@ -6,6 +6,10 @@ namespace rtsl {
 using namespace ast;
 
 void AstBuilder::addItem(Parser::FileItemContext *item) {
+  // Behind a broken head of a class stand members, perhaps.
+  for (const antlr4::tree::ParseTree *child : item->children)
+    if (auto *part = dynamic_cast<const antlr4::ParserRuleContext *>(child))
+      hasBrokenItem |= part->exception != nullptr;
   if (auto *import = item->importDeclaration()) {
     addImport(import);
   } else if (auto *declared = item->structDeclaration()) {
@@ -143,7 +147,7 @@ Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContex
         result.access = type == Parser::PUBLIC    ? Access::Public
                         : type == Parser::PRIVATE ? Access::Private
                                                   : Access::Scratch;
-      else
+      else if (place != Place::File || !hasBrokenItem)
         refuseQualifier(where, "it is for members of classes");
     }
   }

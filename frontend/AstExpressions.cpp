@@ -252,7 +252,8 @@ ExprPtr AstBuilder::buildCall(Parser::CallContext *context) {
     result->receiver = buildExpr(method->expr());
     result->callee = name(method->IDENTIFIER());
   } else {
-    diagnostics.report(Code::notCallable, range(callee));
+    if (!words[callee->start->getTokenIndex()].isBroken)
+      diagnostics.report(Code::notCallable, range(callee));
     return error(range(context));
   }
   result->args = buildArguments(context->arguments());

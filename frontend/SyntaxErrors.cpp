@@ -58,8 +58,6 @@ std::string SyntaxErrors::describe(std::size_t index) const {
   if (word(index).type == Token::endOfFile)
     return "the end of the file";
   const std::string_view text = textOf(index);
-  if (text.empty()) // a bracket that was put in
-    return "the end of the brackets";
   return text.size() > maxQuotedBytes ? fmt::format("`{}...`", text.substr(0, maxQuotedBytes))
                                       : fmt::format("`{}`", text);
 }
@@ -69,12 +67,8 @@ bool SyntaxErrors::isConsequence(std::size_t index) const {
   const Token &token = word(index);
   if (token.followsMistake || token.isBroken)
     return true;
-  if (index == 0)
-    return false;
-  const Token &previous = word(index - 1);
   // A string without an end may have taken anything.
-  return previous.followsMistake ||
-         (previous.isBroken && previous.type == RtslLexer::STRING_LITERAL);
+  return index > 0 && word(index - 1).isBroken && word(index - 1).type == RtslLexer::STRING_LITERAL;
 }
 
 /// True if a statement that lacks its semicolon ends in front of this word.
@@ -268,7 +262,7 @@ std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) co
       continue;
     if (isClosing(token.type) && (token.depth < depth || index == start))
       return index;
-    if (token.type == RtslLexer::SEMICOLON)
+    if (token.type == RtslLexer::SEMICOLON && word(index + 1).type != RtslLexer::ELSE)
       return index + 1;
     if (token.type == RtslLexer::RIGHT_BRACE && index > start) { // a block of the broken statement
       const Token &next = word(index + 1);

@@ -127,9 +127,11 @@ private:
   void retag(Token &token, std::size_t index);
 
   void put(Token token);
+  void breakStatement();
   void open(Token token);
   void close(const Token &token);
   void closeMissing(bool isReported);
+  bool isClosedSoon(std::size_t index) const;
   void handleClosing(const Token &token);
   void handleUnclosedAtEnd();
   void measure(const Token &token, unsigned next);
@@ -142,6 +144,7 @@ private:
   std::vector<Token> in, out;
   std::vector<Level> levels{1};
   Token lastOuterClose; // the last brace that closed all
+  bool isStatementBroken = false;
 };
 
 //===----------------------------------------------------------------------===//
@@ -255,7 +258,29 @@ void TokenChecker::retag(Token &token, std::size_t index) {
 
 void TokenChecker::put(Token token) {
   token.depth = static_cast<std::uint16_t>(levels.size() - 1);
+  // A mistake with brackets explains what the parser says about the rest of the statement.
+  if (token.type == RtslLexer::SEMICOLON || token.type == RtslLexer::LEFT_BRACE ||
+      token.type == RtslLexer::RIGHT_BRACE)
+    isStatementBroken = false;
+  token.followsMistake |= isStatementBroken;
   out.push_back(token);
+}
+
+/// What the parser says about the statement at hand is explained by a mistake with its brackets.
+void TokenChecker::breakStatement() {
+  isStatementBroken = true;
+  // So far as it goes: a list of thousands of values need not be looked through for each mistake in
+  // it.
+  constexpr std::size_t farthest = 500;
+  for (std::size_t back = 1; back <= std::min(out.size(), farthest); ++back) {
+    Token &token = out[out.size() - back];
+    const bool isOutside = token.type == RtslLexer::LEFT_BRACE ||
+                           token.type == RtslLexer::RIGHT_BRACE ||
+                           (token.type == RtslLexer::SEMICOLON && levels.back().isBlock());
+    if (isOutside)
+      break;
+    token.followsMistake = true;
+  }
 }
 
 void TokenChecker::open(Token token) {
@@ -298,7 +323,22 @@ void TokenChecker::closeMissing(bool isReported) {
   if (isReported)
     diagnostics.report(Code::unclosedBracket, rangeOf(opening), textOf(opening))
         .fix({file, closing.begin, closing.begin}, std::string(spellingOf(closing.type)));
+  breakStatement();
   close(closing);
+}
+
+/// True if the parenthesis around the word at `index` is closed before the next brace.
+bool TokenChecker::isClosedSoon(std::size_t index) const {
+  int depth = 0;
+  for (; index < in.size(); ++index) {
+    const unsigned type = typeAt(index);
+    if (type == RtslLexer::LEFT_BRACE || type == RtslLexer::RIGHT_BRACE)
+      return false;
+    depth += (type == RtslLexer::LEFT_PAREN) - (type == RtslLexer::RIGHT_PAREN);
+    if (depth < 0)
+      return true;
+  }
+  return false;
 }
 
 void TokenChecker::handleClosing(const Token &token) {
@@ -333,13 +373,19 @@ void TokenChecker::handleClosing(const Token &token) {
     close(closing);
     return;
   }
+  if (token.type != RtslLexer::RIGHT_BRACE) {
+    if (!isStatementBroken)
+      diagnostics.report(Code::unmatchedBracket, rangeOf(token), textOf(token));
+    breakStatement();
+    return;
+  }
   Diagnostic &diagnostic =
       diagnostics.report(Code::unmatchedBracket, rangeOf(token), textOf(token));
-  if (token.type == RtslLexer::RIGHT_BRACE && lastOuterClose.end != 0)
+  if (lastOuterClose.end != 0)
     diagnostic.label(rangeOf(lastOuterClose), "all brackets were closed here");
   // Directly behind another closing brace it is just one too many. Elsewhere, an earlier one closed
   // too much, and what stood in between makes no sense outside.
-  if (token.type == RtslLexer::RIGHT_BRACE && before() != RtslLexer::RIGHT_BRACE)
+  if (before() != RtslLexer::RIGHT_BRACE)
     list.isUsable = false;
 }
 
@@ -453,13 +499,19 @@ void TokenChecker::run() {
 
     // Parentheses end at the latest where a statement does.
     const unsigned previous = before();
-    const bool opensBlock = token.type == RtslLexer::LEFT_BRACE && previous != RtslLexer::ASSIGN &&
-                            previous != RtslLexer::COMMA && previous != RtslLexer::LEFT_PAREN &&
-                            !levels.back().isBlock();
+    const bool isOfFunction = previous == RtslLexer::LEFT_PAREN &&
+                              before(2) == RtslLexer::IDENTIFIER &&
+                              before(3) == RtslLexer::IDENTIFIER; // `void f( {`
+    const bool isList = previous == RtslLexer::ASSIGN || previous == RtslLexer::COMMA ||
+                        previous == RtslLexer::LEFT_PAREN;
+    const bool opensBlock = token.type == RtslLexer::LEFT_BRACE && !levels.back().isBlock() &&
+                            (!isList || isOfFunction || levels.back().kind == Level::Index);
     const auto endsHeader = [&] {
       Level &level = levels.back();
-      return token.type == RtslLexer::SEMICOLON && !level.isBlock() &&
-             (level.kind != Level::ForHeader || level.semicolons++ == 2);
+      if (token.type != RtslLexer::SEMICOLON || level.isBlock())
+        return false;
+      // One semicolon too many is a matter for the parser, so long as the header ends at all.
+      return level.kind != Level::ForHeader || (++level.semicolons > 2 && !isClosedSoon(index));
     };
     if (opensBlock || endsHeader()) {
       // One message for them all, at the outermost; a `for` whose semicolons are still to come

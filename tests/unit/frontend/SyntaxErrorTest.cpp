@@ -6,6 +6,8 @@
 //===----------------------------------------------------------------------===//
 #include "Parsed.h"
 
+#include "frontend/Tokenizer.h"
+
 #include <gtest/gtest.h>
 
 namespace rtsl {
@@ -542,6 +544,68 @@ TEST(Recovery, KeepsWhatWasUnderstood) {
                            "      variable j k\n"
                            "      return\n"
                            "        name m\n");
+}
+
+/// Leaves out or repeats each word of a file in turn, and looks how many messages that one slip
+/// gives.
+TEST(Recovery, OneSlipGivesOneMessage) {
+  const std::string text =
+      "// A dielectric.\n"
+      "import std.fresnel;\n"
+      "\n"
+      "class Glass : rt_Material;\n"
+      "\n"
+      "public float ior = 1.5, weights[2] = {1., 2.f};\n"
+      "private rt_Texture tint;\n"
+      "scratch vec3 n;\n"
+      "\n"
+      "void constructor(float i, vec3 a[2]) { ior = i; }\n"
+      "\n"
+      "float fresnel(float c) {\n"
+      "  float r = (1 - ior) / (1 + ior), q[3];\n"
+      "  return r * r + (1 - r * r) * pow(1 - c, 5);\n"
+      "}\n"
+      "\n"
+      "void shade() {\n"
+      "  color c = trace(rt_HitPoint, reflect(d, n)) * fresnel(dot(a, b).x);\n"
+      "  if (c.x > 3 && !done) f(); else if (b) { x.xy = y.yx; } else return;\n"
+      "  for (int i = 0; i < 10; ++i) a[i].x += float[3](1, 2, 3)[i];\n"
+      "  while (true) { x--; break; }\n"
+      "  do { ; } while (x <= 3 ? false : true);\n"
+      "  switch (x) { case 1: case 2: y = 3; break; default: print(\"%f\", x); }\n"
+      "  illuminance (rt_HitPoint, n, 1.57) {\n"
+      "    c += rt_LightColor * tint.lookup();\n"
+      "  }\n"
+      "  rt_SampleColor = c;\n"
+      "}\n";
+  SourceManager sources;
+  const FileId file = sources.add("test.rtsl", text);
+  Diagnostics diagnostics(sources);
+  const TokenList list = tokenize(file, diagnostics);
+  ASSERT_FALSE(diagnostics.hasErrors());
+  std::size_t slips = 0, silent = 0, several = 0;
+  for (const Token &token : list.tokens) {
+    if (token.begin == token.end)
+      continue;
+    const std::string word = text.substr(token.begin, token.end - token.begin);
+    for (const bool isRepeated : {false, true}) {
+      std::string slip = text;
+      if (isRepeated)
+        slip.insert(token.begin, word + " ");
+      else
+        slip.erase(token.begin, word.size());
+      const Parsed parsed(slip);
+      const std::size_t count = parsed.diagnostics.errorCount();
+      ++slips;
+      silent += count == 0; // still RTSL: `+` for `++`, say
+      several += count > 1;
+      EXPECT_LE(count, 2u) << slip.substr(token.begin > 40 ? token.begin - 40 : 0, 80) << "\n"
+                           << parsed.messages();
+    }
+  }
+  EXPECT_GT(slips, 500u);
+  EXPECT_LT(silent * 4, slips);
+  EXPECT_LT(several * 50, slips) << "more than 2 of 100 slips give a second message";
 }
 
 } // namespace
