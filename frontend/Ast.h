@@ -284,7 +284,7 @@ struct ImportDecl {
   SourceRange range;
 };
 
-/// One file. Each list is in source order; `order` keeps the order between them, for printing.
+/// One file. Each list is in source order; the ranges tell the order between them.
 struct TranslationUnit {
   FileId file = 0;
   std::string comment; // at the head of the file

@@ -232,8 +232,9 @@ void TokenChecker::retag(Token &token, std::size_t index) {
   }
   if (!isKeyword(token.type) || token.startsLine)
     return;
-  const bool isNamed =
-      before() == RtslLexer::CLASS || before() == RtslLexer::STRUCT || before() == RtslLexer::DOT;
+  const bool isNamed = before() == RtslLexer::DOT ||
+                       (before() == RtslLexer::CLASS && next == RtslLexer::COLON) ||
+                       (before() == RtslLexer::STRUCT && next == RtslLexer::LEFT_BRACE);
   bool isDeclared = false;
   if (before() == RtslLexer::IDENTIFIER && out.size() >= 2) {
     const Token type = out.back();
