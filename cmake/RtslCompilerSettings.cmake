@@ -1,8 +1,10 @@
 # How everything is compiled: warnings, the host's baseline and floating point that means what it says.
 find_program(RTSL_CCACHE ccache)
 if(RTSL_CCACHE)
+  # The sloppiness is what ccache asks for to know precompiled headers.
   set(CMAKE_C_COMPILER_LAUNCHER "${RTSL_CCACHE}")
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${RTSL_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${RTSL_CCACHE}")
 endif()
 
 # Optimised lightly, with assertions and line tables: tests run fast and a crash still has a backtrace.
@@ -37,4 +39,9 @@ function(rtsl_library name)
   target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}")
   target_link_libraries(${name} PUBLIC ${ARG_LINK})
   rtsl_warnings(${name})
+endfunction()
+
+# For targets that read MLIR's headers: they are precompiled once, by rtslIr.
+function(rtsl_precompiled_ir target)
+  target_precompile_headers(${target} REUSE_FROM rtslIr)
 endfunction()

@@ -18,12 +18,17 @@
 namespace rtsl {
 
 /// What can be looked at on the way, in order.
-enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Llvm };
+enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Split, Llvm };
+
+/// How `trace` runs: as a call, or as the end of one state and the beginning of another, without recursion
+/// (docs/continuations.md). The picture is the same, bit for bit.
+enum class TraceMode : std::uint8_t { Recurse, Split };
 
 struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool checkIndices = true;
   unsigned optimization = 2; // of machine code, 0 to 3
+  TraceMode trace = TraceMode::Recurse;
 };
 
 /// What a scene tells the linker.
@@ -35,10 +40,15 @@ struct LinkRequest {
   std::vector<std::pair<std::string, std::string>> surfaces;
 };
 
-/// The text of `stage` (Ir, Ssa or Llvm) for a module without a scene: what is called through references stays a
+/// The text of `stage` (Ir, Ssa, Split or Llvm) for a module without a scene: what is called through references stays a
 /// declared slot. Nothing if there were errors.
 std::optional<std::string> emit(const typed::Module &module, Stage stage, const CompileOptions &options,
                                 Diagnostics &diagnostics);
+
+/// What splitting at `trace` saves and recomputes in each function that traces, and the states that it makes: text, or
+/// one JSON document. Nothing if there were errors.
+std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options, bool json,
+                                         Diagnostics &diagnostics);
 
 /// Compiles and links the module for a scene, in this process. Null if there were errors.
 std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,

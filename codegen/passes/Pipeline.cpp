@@ -5,6 +5,7 @@
 #include "codegen/passes/ExpandCopies.h"
 #include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/InlineFunctions.h"
+#include "codegen/passes/Simplify.h"
 #include "codegen/passes/ToControlFlow.h"
 
 #include "mlir/Dialect/Func/Extensions/InlinerExtension.h"
@@ -22,8 +23,7 @@ static void addPromotion(mlir::OpPassManager &function) {
   for (int round = 0; round < 2; ++round) {
     function.addPass(mlir::createSROA());
     function.addPass(mlir::createMem2Reg());
-    function.addPass(mlir::createCanonicalizerPass());
-    function.addPass(mlir::createCSEPass());
+    function.addPass(createSimplifyPass());
   }
 }
 
@@ -39,8 +39,7 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   addPromotion(inlined);
   inlined.addPass(mlir::createSCCPPass());
   inlined.addPass(createExpandCopiesPass());
-  inlined.addPass(mlir::createCanonicalizerPass());
-  inlined.addPass(mlir::createCSEPass());
+  inlined.addPass(createSimplifyPass());
 
   module.addPass(mlir::createSymbolDCEPass());
 }
@@ -55,6 +54,7 @@ void registerPasses() {
   mlir::registerPass(createHoistVariablesPass);
   mlir::registerPass(createExpandCopiesPass);
   mlir::registerPass(createInlineFunctionsPass);
+  mlir::registerPass(createSimplifyPass);
   mlir::PassPipelineRegistration<>("rtsl-ssa", "level 1 to level 2, optimised", buildSsaPipeline);
 }
 

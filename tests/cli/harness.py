@@ -12,7 +12,7 @@ RTSLC = os.environ["RTSLC"]
 EXAMPLES = pathlib.Path(os.environ["EXAMPLES"])
 
 FINE, DIAGNOSED, USAGE = 0, 1, 2
-SECONDS = 60  # far beyond what any of these takes: only a hang ends there
+SECONDS = 300  # far beyond what any of these takes: only a hang ends there
 
 
 def as_nobody():

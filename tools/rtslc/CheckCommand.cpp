@@ -1,9 +1,8 @@
 //===- CheckCommand.cpp - rtslc check -------------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "codegen/driver/SourceLoader.h"
+#include "Shaders.h"
 #include "runtime/AtomicFile.h"
-#include "sema/Sema.h"
 
 #include <fmt/format.h>
 
@@ -50,14 +49,8 @@ void writeFixes(const Messages &messages) {
 
 int check(const CheckOptions &options) {
   Messages messages(options.common);
-  SourceLoader loader(messages.sources, messages.diagnostics);
-  std::vector<const ast::TranslationUnit *> units;
-  for (const std::string &file : options.files)
-    if (const ast::TranslationUnit *unit = loader.load(file))
-      units.push_back(unit);
-  rtsl::check(
-      units, [&](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
-      messages.diagnostics);
+  Shaders shaders(messages, options.files);
+  shaders.check();
   messages.print();
   if (options.fix)
     try {

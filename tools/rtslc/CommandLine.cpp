@@ -1,6 +1,8 @@
 //===- CommandLine.cpp - what the commands of rtslc share -----------------===//
 #include "CommandLine.h"
 
+#include <map>
+
 namespace rtsl::tool {
 
 namespace {
@@ -51,6 +53,13 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
   command.add_flag_callback(
       "--unchecked", [&options] { options.compile.checkIndices = false; },
       "trust array and buffer indices: one out of range is then undefined");
+  command
+      .add_option("--trace", options.compile.trace,
+                  "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, TraceMode>{{"recurse", TraceMode::Recurse},
+                                                                           {"split", TraceMode::Split}})
+                      .description(""))
+      ->type_name("recurse|split");
   command.add_option("-O", options.compile.optimization, "optimisation of machine code, 0 to 3")
       ->check(CLI::Range(0, 3))
       ->type_name("LEVEL");

@@ -28,7 +28,7 @@ struct CommonOptions {
 
 /// Adds --diagnostics, --ansi and --error-limit.
 void addMessageOptions(CLI::App &command, CommonOptions &options);
-/// Adds --color, --unchecked and -O.
+/// Adds --color, --unchecked, --trace and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);
 
 /// What a command does once the arguments are read; gives the exit status.
@@ -36,6 +36,7 @@ using Action = std::function<int()>;
 
 void addCheckCommand(CLI::App &app, Action &action);
 void addCompileCommand(CLI::App &app, Action &action);
+void addExplainCommand(CLI::App &app, Action &action);
 void addRenderCommand(CLI::App &app, Action &action);
 void addCompareCommand(CLI::App &app, Action &action);
 

@@ -1,14 +1,11 @@
 //===- CompileCommand.cpp - rtslc compile ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
+#include "Output.h"
+#include "Shaders.h"
 #include "codegen/driver/Compiler.h"
-#include "codegen/driver/SourceLoader.h"
 #include "frontend/Parser.h"
-#include "runtime/AtomicFile.h"
-#include "sema/Sema.h"
 
-#include <cerrno>
-#include <cstring>
 #include <map>
 #include <memory>
 
@@ -20,6 +17,7 @@ const std::map<std::string, Stage> stages = {{"ast", Stage::Ast},
                                              {"typed-ast", Stage::TypedAst},
                                              {"ir", Stage::Ir},
                                              {"ssa", Stage::Ssa},
+                                             {"split", Stage::Split},
                                              {"llvm", Stage::Llvm}};
 
 struct CompileCommandOptions {
@@ -31,22 +29,15 @@ struct CompileCommandOptions {
 
 /// The text of the asked stage; nothing if there were errors.
 std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages) {
-  SourceLoader loader(messages.sources, messages.diagnostics);
-  std::vector<const ast::TranslationUnit *> units;
-  for (const std::string &file : options.files)
-    if (const ast::TranslationUnit *unit = loader.load(file))
-      units.push_back(unit);
-
+  Shaders shaders(messages, options.files);
   if (options.stage == Stage::Ast) {
     std::string text;
-    for (const ast::TranslationUnit *unit : units)
+    for (const ast::TranslationUnit *unit : shaders.units())
       text += dump(*unit);
     return messages.diagnostics.hasErrors() ? std::nullopt : std::optional(text);
   }
 
-  const std::unique_ptr<typed::Module> module = rtsl::check(
-      units, [&](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
-      messages.diagnostics);
+  const std::unique_ptr<typed::Module> module = shaders.check();
   if (messages.diagnostics.hasErrors())
     return std::nullopt;
   if (options.stage == Stage::TypedAst)
@@ -57,16 +48,10 @@ std::optional<std::string> translate(const CompileCommandOptions &options, Messa
 int compile(const CompileCommandOptions &options) {
   Messages messages(options.common);
   try {
-    if (options.output != "-")
-      runtime::checkFileWritable(options.output);
+    checkOutput(options.output);
     const std::optional<std::string> text = translate(options, messages);
-    if (!text || messages.diagnostics.hasErrors())
-      return messages.status();
-    if (options.output != "-")
-      runtime::writeFileAtomically(options.output, *text);
-    else if (std::fwrite(text->data(), 1, text->size(), stdout) != text->size() || std::fflush(stdout) != 0)
-      throw runtime::Error(runtime::ErrorCode::FileUnwritable,
-                           fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+    if (text && !messages.diagnostics.hasErrors())
+      writeOutput(options.output, *text);
   } catch (const runtime::Error &error) {
     messages.report(error);
   }
@@ -81,7 +66,7 @@ void addCompileCommand(CLI::App &app, Action &action) {
   command->add_option("FILE", options->files, "RTSL files; - is standard input")->required();
   command->add_option("--emit", options->stage, "what to write")
       ->transform(CLI::CheckedTransformer(stages).description(""))
-      ->type_name("ast|typed-ast|ir|ssa|llvm")
+      ->type_name("ast|typed-ast|ir|ssa|split|llvm")
       ->required();
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
   addCompileOptions(*command, options->common);

@@ -26,6 +26,7 @@ int main(int argc, char **argv) {
   Action action;
   addCheckCommand(app, action);
   addCompileCommand(app, action);
+  addExplainCommand(app, action);
   addRenderCommand(app, action);
   addCompareCommand(app, action);
 

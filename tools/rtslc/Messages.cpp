@@ -58,7 +58,7 @@ Messages::Messages(const CommonOptions &options) : options(options) {
 }
 
 SourceRange Messages::rangeOf(const runtime::Place &place) {
-  if (place.file.empty())
+  if (place.line == 0) // a file as a whole: the message names it, and it may be a device or a gigabyte
     return {};
   FileId file = sources.find(place.file);
   std::string whyNot;
@@ -66,8 +66,6 @@ SourceRange Messages::rangeOf(const runtime::Place &place) {
     file = sources.addFile(place.file, whyNot).value_or(0);
   if (!file) // it is gone or unreadable: the name still helps
     file = sources.add(place.file, "");
-  if (place.line == 0)
-    return {file, 0, 0};
   const std::uint32_t begin = sources.offset(file, {place.line, place.column});
   return {file, begin, begin + place.length};
 }

@@ -2,11 +2,11 @@
 #include "CommandLine.h"
 #include "Messages.h"
 #include "Progress.h"
+#include "Shaders.h"
 #include "codegen/driver/Compiler.h"
-#include "codegen/driver/SourceLoader.h"
+#include "runtime/MachineStack.h"
 #include "runtime/Renderer.h"
 #include "scene/SceneFile.h"
-#include "sema/Sema.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -86,18 +86,15 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
 
 /// Reads and checks the files that the scene imports; null if there were errors.
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, Messages &messages) {
-  SourceLoader loader(messages.sources, messages.diagnostics);
-  std::vector<const ast::TranslationUnit *> units;
+  Shaders shaders(messages);
   for (const scene::ImportDescription &import : description.imports) {
     const SourceRange range = messages.rangeOf(import.name.place);
     if (import.path.empty())
       messages.diagnostics.report(Code::unknownModule, range, import.name.text);
-    else if (const ast::TranslationUnit *unit = loader.load(import.path, range))
-      units.push_back(unit);
+    else
+      shaders.add(import.path, range);
   }
-  std::unique_ptr<typed::Module> module = rtsl::check(
-      units, [&](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
-      messages.diagnostics);
+  std::unique_ptr<typed::Module> module = shaders.check();
   return messages.diagnostics.hasErrors() ? nullptr : std::move(module);
 }
 
@@ -165,6 +162,11 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   runtime::RenderStatistics statistics;
   const runtime::Image image = runtime::render(scene, render, &statistics);
   progress.finish();
+  std::uint64_t stackBytes = 0;
+  if (runtime::failedMachineStacks(&stackBytes))
+    throw runtime::Error(runtime::ErrorCode::OutOfMemory,
+                         fmt::format("no memory for rays in flight: a thread needs {} bytes; ask for a smaller `--depth`",
+                                     stackBytes));
 
   start = Clock::now();
   runtime::writeImage(options.output, image);

@@ -2,9 +2,9 @@
 #include "codegen/passes/continuation/Split.h"
 
 #include "codegen/ir/Layout.h"
+#include "codegen/passes/Simplify.h"
 #include "codegen/passes/continuation/CostTable.h"
 #include "codegen/passes/continuation/Names.h"
-#include "codegen/passes/continuation/Simplify.h"
 
 #include "mlir/IR/Verifier.h"
 #include "llvm/ADT/StringSet.h"
@@ -51,7 +51,7 @@ void describe(llvm::ArrayRef<mlir::Value> values, UniqueNames &uniqueNames,
 /// Takes one function through all steps.
 class FunctionSplitter {
 public:
-  FunctionSplitter(FuncOp function, const SplitOptions &options, Simplify &simplify,
+  FunctionSplitter(FuncOp function, const SplitOptions &options, const codegen::Simplify &simplify,
                    FunctionReport &report)
       : function(function), options(options), simplify(simplify), report(report) {}
 
@@ -65,7 +65,7 @@ private:
 
   FuncOp function;
   const SplitOptions &options;
-  Simplify &simplify;
+  const codegen::Simplify &simplify;
   FunctionReport &report;
   UniqueNames plainNames;
 };
@@ -187,7 +187,7 @@ void keepTracingMethods(mlir::ModuleOp module) {
 bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitReport &report) {
   if (mlir::failed(inlineTracingCalls(module)))
     return false;
-  Simplify simplify(module.getContext());
+  codegen::Simplify simplify(module.getContext());
   llvm::SmallVector<FuncOp> functions = tracingFunctions(module);
   for (llvm::StringRef name : machineEntries())
     if (auto entry = module.lookupSymbol<FuncOp>(name);

@@ -1,15 +1,16 @@
-//===- Simplify.cpp - folding in states -----------------------------------===//
-#include "codegen/passes/continuation/Simplify.h"
+//===- Simplify.cpp - folding over `cf` -----------------------------------===//
+#include "codegen/passes/Simplify.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/IR/Dominance.h"
 #include "mlir/IR/Matchers.h"
 #include "mlir/IR/PatternMatch.h"
+#include "mlir/Pass/Pass.h"
 #include "mlir/Transforms/CSE.h"
 #include "mlir/Transforms/GreedyPatternRewriteDriver.h"
 #include "mlir/Transforms/RegionUtils.h"
 
-namespace rtsl::continuation {
+namespace rtsl::codegen {
 
 namespace cf = mlir::cf;
 
@@ -81,7 +82,7 @@ static bool mergeChains(mlir::IRRewriter &rewriter, mlir::Region &body) {
   return changed;
 }
 
-void Simplify::run(FuncOp function) {
+void Simplify::run(mlir::func::FuncOp function) const {
   mlir::IRRewriter rewriter(function.getContext());
   mlir::GreedyRewriteConfig config;
   config.setRegionSimplificationLevel(mlir::GreedySimplifyRegionLevel::Normal);
@@ -104,4 +105,27 @@ void Simplify::run(FuncOp function) {
   }
 }
 
-} // namespace rtsl::continuation
+namespace {
+
+struct SimplifyPass : mlir::PassWrapper<SimplifyPass, mlir::OperationPass<mlir::func::FuncOp>> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(SimplifyPass)
+  llvm::StringRef getArgument() const override { return "rtsl-simplify"; }
+  llvm::StringRef getDescription() const override { return "folds, and drops what is dead"; }
+  mlir::LogicalResult initialize(mlir::MLIRContext *context) override {
+    simplify = std::make_shared<Simplify>(context);
+    return mlir::success();
+  }
+  void runOnOperation() override {
+    if (!getOperation().isExternal())
+      simplify->run(getOperation());
+  }
+  std::shared_ptr<const Simplify> simplify;
+};
+
+} // namespace
+
+std::unique_ptr<mlir::Pass> createSimplifyPass() {
+  return std::make_unique<SimplifyPass>();
+}
+
+} // namespace rtsl::codegen

@@ -1,0 +1,53 @@
+//===- ExplainCommand.cpp - rtslc explain ---------------------------------===//
+#include "CommandLine.h"
+#include "Messages.h"
+#include "Output.h"
+#include "Shaders.h"
+
+#include <memory>
+
+namespace rtsl::tool {
+
+namespace {
+
+struct ExplainOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string output = "-";
+  bool states = false;
+  bool json = false;
+};
+
+int explain(const ExplainOptions &options) {
+  Messages messages(options.common);
+  try {
+    checkOutput(options.output);
+    Shaders shaders(messages, options.files);
+    const std::unique_ptr<typed::Module> module = shaders.check();
+    if (!messages.diagnostics.hasErrors())
+      if (const auto text = explainStates(*module, options.common.compile, options.json, messages.diagnostics))
+        writeOutput(options.output, *text);
+  } catch (const runtime::Error &error) {
+    messages.report(error);
+  }
+  return messages.status();
+}
+
+} // namespace
+
+void addExplainCommand(CLI::App &app, Action &action) {
+  auto options = std::make_shared<ExplainOptions>();
+  CLI::App *command = app.add_subcommand("explain", "say what the compiler made of a shader, and why");
+  command->add_option("FILE", options->files, "RTSL files; - is standard input")->required();
+  command->add_flag("--states", options->states,
+                    "where shaders that trace are cut: their states, and what each trace saves and recomputes")
+      ->required();
+  command->add_flag("--json", options->json, "as JSON");
+  command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
+  addCompileOptions(*command, options->common);
+  addMessageOptions(*command, options->common);
+  command->footer("example:\n  rtslc explain --states Glass.rtsl");
+  command->callback([options, &action] { action = [options] { return explain(*options); }; });
+}
+
+} // namespace rtsl::tool

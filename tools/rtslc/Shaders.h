@@ -1,0 +1,44 @@
+//===- Shaders.h - RTSL files, read and checked ---------------------------===//
+#pragma once
+
+#include "Messages.h"
+#include "codegen/driver/SourceLoader.h"
+#include "sema/Sema.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rtsl::tool {
+
+/// The files of one run with all that they import. What is wrong with them goes to the run's messages.
+class Shaders {
+public:
+  explicit Shaders(Messages &messages) : messages(messages), loader(messages.sources, messages.diagnostics) {}
+  Shaders(Messages &messages, const std::vector<std::string> &files) : Shaders(messages) {
+    for (const std::string &file : files)
+      add(file);
+  }
+
+  /// Reads and parses a file that was named at `where`, or on the command line.
+  void add(const std::string &file, SourceRange where = {}) {
+    if (const ast::TranslationUnit *unit = loader.load(file, where))
+      parsed.push_back(unit);
+  }
+
+  const std::vector<const ast::TranslationUnit *> &units() const { return parsed; }
+
+  /// Checks everything together.
+  std::unique_ptr<typed::Module> check() {
+    return rtsl::check(
+        parsed, [this](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
+        messages.diagnostics);
+  }
+
+private:
+  Messages &messages;
+  SourceLoader loader;
+  std::vector<const ast::TranslationUnit *> parsed;
+};
+
+} // namespace rtsl::tool
