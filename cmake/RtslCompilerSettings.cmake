@@ -15,6 +15,11 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 # correctly rounded functions ask for by name.
 add_compile_options(-ffp-contract=off -march=x86-64-v3 -ffunction-sections -fdata-sections)
 
+# g++ 12 vectorises {float(a), float(b)} in doubles and forgets to round one of them.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-tree-slp-vectorize>)
+endif()
+
 # lld links the static LLVM components in seconds.
 if(EXISTS /usr/lib/llvm-22/bin/ld.lld)
   add_link_options(-B/usr/lib/llvm-22/bin -fuse-ld=lld)

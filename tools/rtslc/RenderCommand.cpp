@@ -123,7 +123,7 @@ void printSummary(const RenderCommandOptions &options, const runtime::RenderOpti
         {"rescaledRays", statistics.rescaledRays},
         {"samplesNotFinite", statistics.samplesNotFinite}};
     fmt::print("{}\n", document.dump(2));
-  } else if (!options.quiet) {
+  } else if (!options.quiet && !options.common.jsonDiagnostics) { // there standard error is one JSON document
     fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
                options.output, render.width, render.height, render.samplesPerPixel, times.compile * 1e3,
                statistics.renderSeconds, double(statistics.samples) / statistics.renderSeconds * 1e-6);
