@@ -9,6 +9,7 @@
 #include "mlir/Transforms/CSE.h"
 #include "mlir/Transforms/GreedyPatternRewriteDriver.h"
 #include "mlir/Transforms/RegionUtils.h"
+#include "llvm/ADT/SetVector.h"
 
 namespace rtsl::codegen {
 
@@ -48,6 +49,41 @@ static std::optional<unsigned> onlySuccessor(mlir::Operation *terminator) {
   return std::nullopt;
 }
 
+/// An argument that is the same value whichever way control comes is that value.
+static bool dropSameArguments(mlir::Region &body) {
+  bool changed = false;
+  for (mlir::Block &block : llvm::drop_begin(body))
+    for (unsigned i = block.getNumArguments(); i-- > 0;) {
+      mlir::BlockArgument argument = block.getArgument(i);
+      mlir::Value only;
+      bool isOne = true;
+      auto forEachWay = [&](llvm::function_ref<void(mlir::SuccessorOperands)> act) {
+        for (mlir::Block *predecessor :
+             llvm::SetVector<mlir::Block *>(block.pred_begin(), block.pred_end())) {
+          auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(predecessor->getTerminator());
+          for (unsigned way = 0; branch && way < predecessor->getNumSuccessors(); ++way)
+            if (predecessor->getSuccessor(way) == &block)
+              act(branch.getSuccessorOperands(way));
+          isOne &= static_cast<bool>(branch);
+        }
+      };
+      forEachWay([&](mlir::SuccessorOperands operands) {
+        mlir::Value incoming = operands[i];
+        if (incoming == argument)
+          return;
+        isOne &= incoming && (!only || only == incoming);
+        only = incoming;
+      });
+      if (!isOne || !only)
+        continue;
+      argument.replaceAllUsesWith(only);
+      forEachWay([&](mlir::SuccessorOperands operands) { operands.erase(i); });
+      block.eraseArgument(i);
+      changed = true;
+    }
+  return changed;
+}
+
 static bool foldBranches(mlir::IRRewriter &rewriter, mlir::Region &body) {
   bool changed = false;
   for (mlir::Block &block : body) {
@@ -62,6 +98,46 @@ static bool foldBranches(mlir::IRRewriter &rewriter, mlir::Region &body) {
     rewriter.replaceOpWithNewOp<cf::BranchOp>(terminator, terminator->getSuccessor(*only),
                                               operands);
     changed = true;
+  }
+  return changed;
+}
+
+/// ^a: x; br ^b(%v)   ^b(%p): br ^c(%p)   ==>     ^a: x; br ^c(%v)
+static bool skipPassThrough(mlir::Region &body) {
+  bool changed = false;
+  for (mlir::Block &block : llvm::drop_begin(body)) {
+    auto through = llvm::dyn_cast<cf::BranchOp>(block.front());
+    if (!through || through.getDest() == &block)
+      continue;
+    auto usedElsewhere = [&](mlir::BlockArgument argument) {
+      return llvm::any_of(argument.getUsers(),
+                          [&](mlir::Operation *user) { return user != through; });
+    };
+    llvm::SmallSetVector<mlir::Block *, 4> predecessors;
+    predecessors.insert(block.pred_begin(), block.pred_end());
+    if (llvm::any_of(block.getArguments(), usedElsewhere) ||
+        llvm::any_of(predecessors, [](mlir::Block *predecessor) {
+          return !llvm::isa<cf::BranchOp, cf::CondBranchOp, cf::SwitchOp>(
+              predecessor->getTerminator());
+        }))
+      continue;
+    for (mlir::Block *predecessor : predecessors) {
+      auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
+      for (unsigned i = 0; i < branch->getNumSuccessors(); ++i) {
+        if (branch->getSuccessor(i) != &block)
+          continue;
+        mlir::SuccessorOperands incoming = branch.getSuccessorOperands(i);
+        llvm::SmallVector<mlir::Value> operands;
+        for (mlir::Value operand : through.getDestOperands()) {
+          auto argument = llvm::dyn_cast<mlir::BlockArgument>(operand);
+          bool isOwn = argument && argument.getOwner() == &block;
+          operands.push_back(isOwn ? incoming[argument.getArgNumber()] : operand);
+        }
+        incoming.getMutableForwardedOperands().assign(operands);
+        branch->setSuccessor(through.getDest(), i);
+        changed = true;
+      }
+    }
   }
   return changed;
 }
@@ -94,7 +170,9 @@ void Simplify::run(mlir::func::FuncOp function) const {
     bool folded = true;
     while (folded) {
       folded = foldBranches(rewriter, function.getBody());
+      folded |= skipPassThrough(function.getBody());
       (void)mlir::eraseUnreachableBlocks(rewriter, function->getRegions());
+      folded |= dropSameArguments(function.getBody());
       folded |= mergeChains(rewriter, function.getBody());
       changed |= folded;
     }

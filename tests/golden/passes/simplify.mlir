@@ -1,0 +1,45 @@
+// RUN: rtsl-opt %s --rtsl-simplify | FileCheck %s
+
+// A loop that nobody enters is gone before anything folds in it.
+// CHECK-LABEL: func.func @deadLoop
+// CHECK-NEXT:   return %arg0
+func.func @deadLoop(%n: i32) -> i32 {
+  %false = arith.constant false
+  %one = arith.constant 1 : i32
+  cf.cond_br %false, ^loop(%one, %n : i32, i32), ^end(%n : i32)
+^loop(%i: i32, %j: i32):
+  %next = arith.addi %i, %one : i32
+  %more = arith.cmpi slt, %next, %j : i32
+  cf.cond_br %more, ^again, ^end(%j : i32)
+^again:
+  cf.br ^loop(%next, %i : i32, i32)
+^end(%r: i32):
+  return %r : i32
+}
+
+// Blocks that only lead on are skipped, and a value that is the same on both ways is passed on none.
+// CHECK-LABEL: func.func @through
+// CHECK-NEXT:   cf.cond_br %arg0, ^bb1(%arg1 : i32), ^bb1(%arg2 : i32)
+// CHECK-NEXT: ^bb1(%[[V:.*]]: i32):
+// CHECK-NEXT:   %[[S:.*]] = arith.addi %[[V]], %arg1
+// CHECK-NEXT:   return %[[S]]
+func.func @through(%p: i1, %a: i32, %b: i32) -> i32 {
+  cf.cond_br %p, ^left, ^right
+^left:
+  cf.br ^end(%a, %a : i32, i32)
+^right:
+  cf.br ^end(%b, %a : i32, i32)
+^end(%v: i32, %w: i32):
+  %s = arith.addi %v, %w : i32
+  return %s : i32
+}
+
+// A switch on a constant goes one way.
+// CHECK-LABEL: func.func @choice
+// CHECK-NEXT:   return %arg1
+func.func @choice(%a: i32, %b: i32) -> i32 {
+  %two = arith.constant 2 : i32
+  cf.switch %two : i32, [default: ^end(%a : i32), 1: ^end(%a : i32), 2: ^end(%b : i32)]
+^end(%r: i32):
+  return %r : i32
+}
