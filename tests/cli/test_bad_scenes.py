@@ -131,6 +131,8 @@ class BadScenes(Case):
                 self.assertIn(arguments[0], error)
         self.run_rtslc("render", "scene.json", status=USAGE)
         self.run_rtslc(status=USAGE)
+        _, error = self.run_rtslc("rendr", status=USAGE)
+        self.assertIn("unknown command `rendr`", error)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ MATERIAL = "class Grey : rt_Material;\n\nvoid shade() {\n  rt_SampleColor = colo
 class Commands(Case):
     def test_help_has_an_example_for_each_command(self):
         out, _ = self.run_rtslc("--help")
-        for command in ("check", "compile", "render", "compare"):
+        for command in ("check", "compile", "explain", "render", "compare"):
             self.assertIn(command, out)
             text, _ = self.run_rtslc(command, "--help")
             self.assertIn("example:\n  rtslc " + command, text)
@@ -67,6 +67,15 @@ class Commands(Case):
         self.glass_scene()
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "--size", "32x18", "--spp", "1", "--set",
                        f"objects.3.mesh={path}")
+
+    def test_explain_says_what_each_trace_saves(self):
+        glass = EXAMPLES / "glass" / "Glass.rtsl"
+        text, _ = self.run_rtslc("explain", "--states", glass)
+        self.assertIn("Glass.shade: 4 states, frame of 28 bytes", text)
+        out, _ = self.run_rtslc("explain", "--states", "--json", glass)
+        figures = json.loads(out)
+        self.assertEqual([f["name"] for f in figures["functions"]], ["Glass.shade"])
+        self.assertEqual(figures["frameSize"], 28)
 
     def test_compare(self):
         self.glass_scene()

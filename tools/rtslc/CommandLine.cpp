@@ -1,7 +1,12 @@
 //===- CommandLine.cpp - what the commands of rtslc share -----------------===//
 #include "CommandLine.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
 #include <map>
+#include <new>
 
 namespace rtsl::tool {
 
@@ -22,6 +27,12 @@ std::string parseColor(const std::string &text, CompileOptions &options) {
     return "give rgb, mono, spectral:N or N, with N from 1 to " + std::to_string(RTSL_MAX_COLOR);
   options.colorComponents = static_cast<std::uint32_t>(count);
   return {};
+}
+
+bool hasCommand(const CLI::App &app, const std::string &name) {
+  const std::vector<const CLI::App *> commands = app.get_subcommands([](const CLI::App *) { return true; });
+  return std::any_of(commands.begin(), commands.end(),
+                     [&](const CLI::App *command) { return command->get_name() == name; });
 }
 
 } // namespace
@@ -63,6 +74,27 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
   command.add_option("-O", options.compile.optimization, "optimisation of machine code, 0 to 3")
       ->check(CLI::Range(0, 3))
       ->type_name("LEVEL");
+}
+
+int run(CLI::App &app, Action &action, int argc, char **argv, const std::function<void()> &first) {
+  try {
+    first();
+    if (argc > 1 && argv[1][0] != '-' && !hasCommand(app, argv[1])) {
+      fmt::print(stderr, "rtslc: unknown command `{}`; `rtslc --help` lists them\n", argv[1]);
+      return Usage;
+    }
+    app.parse(argc, argv);
+    return action();
+  } catch (const CLI::ParseError &error) {
+    return app.exit(error) == 0 ? Fine : Usage;
+  } catch (const std::bad_alloc &) {
+    fmt::print(stderr, "rtslc: out of memory\n");
+  } catch (const std::exception &error) {
+    fmt::print(stderr, "rtslc: internal error: {}\nThis is a fault of rtslc; please report it with the files that "
+                       "show it.\n",
+               error.what());
+  }
+  return InternalError;
 }
 
 } // namespace rtsl::tool

@@ -31,6 +31,14 @@ void addMessageOptions(CLI::App &command, CommonOptions &options);
 /// Adds --color, --unchecked, --trace and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);
 
+/// A command's name and what `rtslc --help` says of it.
+struct Summary {
+  const char *command;
+  const char *text;
+};
+constexpr Summary renderSummary = {"render", "compile a scene's shaders and render it"};
+constexpr Summary compareSummary = {"compare", "say how far two pictures are apart (exit status 1: too far)"};
+
 /// What a command does once the arguments are read; gives the exit status.
 using Action = std::function<int()>;
 
@@ -39,5 +47,8 @@ void addCompileCommand(CLI::App &app, Action &action);
 void addExplainCommand(CLI::App &app, Action &action);
 void addRenderCommand(CLI::App &app, Action &action);
 void addCompareCommand(CLI::App &app, Action &action);
+
+/// Does `first`, reads the arguments and does what they ask for. Gives the exit status, whatever is thrown.
+int run(CLI::App &app, Action &action, int argc, char **argv, const std::function<void()> &first = [] {});
 
 } // namespace rtsl::tool

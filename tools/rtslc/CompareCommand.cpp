@@ -58,7 +58,7 @@ int compare(const CompareOptions &options) {
 
 void addCompareCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App *command = app.add_subcommand("compare", "say how far two pictures are apart (exit status 1: too far)");
+  CLI::App *command = app.add_subcommand(compareSummary.command, compareSummary.text);
   command->add_option("A", options->first, "a picture, .png or .exr")->required();
   command->add_option("B", options->second, "another of the same size")->required();
   command->add_option("--threshold", options->threshold, "largest root mean square error; 0: the same bits")

@@ -5,11 +5,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
-
-#include <fmt/format.h>
-
-#include <exception>
-#include <new>
+#include "HandOver.h"
 
 using namespace rtsl::tool;
 
@@ -27,21 +23,7 @@ int main(int argc, char **argv) {
   addCheckCommand(app, action);
   addCompileCommand(app, action);
   addExplainCommand(app, action);
-  addRenderCommand(app, action);
-  addCompareCommand(app, action);
+  addHandedOverCommands(app);
 
-  try {
-    app.parse(argc, argv);
-    return action();
-  } catch (const CLI::ParseError &error) {
-    return app.exit(error) == 0 ? Fine : Usage;
-  } catch (const std::bad_alloc &) {
-    fmt::print(stderr, "rtslc: out of memory\n");
-    return InternalError;
-  } catch (const std::exception &error) {
-    fmt::print(stderr, "rtslc: internal error: {}\nThis is a fault of rtslc; please report it with the files that "
-                       "show it.\n",
-               error.what());
-    return InternalError;
-  }
+  return run(app, action, argc, argv, [argv] { handOver(argv); });
 }

@@ -189,7 +189,7 @@ int render(const RenderCommandOptions &options) {
 
 void addRenderCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<RenderCommandOptions>();
-  CLI::App *command = app.add_subcommand("render", "compile a scene's shaders and render it");
+  CLI::App *command = app.add_subcommand(renderSummary.command, renderSummary.text);
   command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
   command->add_option("-o,--output", options->output, "the picture: .png or .exr")->required()->type_name("IMAGE");
   command->add_option("--spp", options->samples, "samples a pixel")->check(CLI::Range(1u, 1u << 24))->type_name("N");

@@ -1,0 +1,17 @@
+//===- RenderMain.cpp - rtslc-render, the commands that need the runtime --===//
+//
+// Started by rtslc (HandOver.h); it can be called as well.
+//
+//===----------------------------------------------------------------------===//
+#include "CommandLine.h"
+
+using namespace rtsl::tool;
+
+int main(int argc, char **argv) {
+  CLI::App app("renders with RTSL and compares pictures", "rtslc");
+  app.require_subcommand(1);
+  Action action;
+  addRenderCommand(app, action);
+  addCompareCommand(app, action);
+  return run(app, action, argc, argv);
+}
