@@ -74,29 +74,4 @@ Image readImage(const std::string &path) {
   return format == Format::Png ? decodePng(bytes, path) : decodeExr(bytes, path);
 }
 
-ImageDifference compareImages(const Image &a, const Image &b) {
-  if (a.width != b.width || a.height != b.height || a.channels != b.channels)
-    throw Error(
-        ErrorCode::BadImage,
-        fmt::format("the pictures differ in shape: {}x{} with {} channels, and {}x{} with {}",
-                    a.width, a.height, a.channels, b.width, b.height, b.channels));
-  ImageDifference difference;
-  double sum = 0;
-  std::size_t count = std::size_t(a.width) * a.height;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float *p = a.pixels.data() + i * a.channels, *q = b.pixels.data() + i * b.channels;
-    if (std::memcmp(p, q, sizeof(float) * a.channels) != 0)
-      ++difference.pixelsThatDiffer;
-    for (std::uint32_t c = 0; c < a.channels; ++c) {
-      double d = std::fabs(double(p[c]) - double(q[c]));
-      if (std::isnan(d)) // one of them is not a number, or both are the same infinity
-        d = std::memcmp(p + c, q + c, sizeof(float)) == 0 ? 0 : INFINITY;
-      difference.largest = std::max(difference.largest, d);
-      sum += d * d;
-    }
-  }
-  difference.rootMeanSquare = count ? std::sqrt(sum / double(count * a.channels)) : 0;
-  return difference;
-}
-
 } // namespace rtsl::runtime

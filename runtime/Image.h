@@ -50,13 +50,4 @@ Image readImage(const std::string &path);
 float encodeSrgb(float linear);
 float decodeSrgb(float encoded);
 
-/// How far two pictures of the same shape are apart.
-struct ImageDifference {
-  double rootMeanSquare = 0; // over all channels of all pixels
-  double largest = 0;
-  std::size_t pixelsThatDiffer = 0; // not the same bits in some channel
-};
-/// Throws BadImage if the shapes differ.
-ImageDifference compareImages(const Image &a, const Image &b);
-
 } // namespace rtsl::runtime

@@ -1,53 +1,127 @@
 //===- CompareCommand.cpp - rtslc compare ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
+#include "report/ErrorMetrics.h"
+#include "report/Flip.h"
 #include "runtime/Image.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <limits>
+#include <map>
 #include <memory>
 
 namespace rtsl::tool {
 
 namespace {
 
+enum class Metric : std::uint8_t { Rmse, RelMse, Flip, FlipHdr };
+const std::map<std::string, Metric> metrics = {
+    {"rmse", Metric::Rmse}, {"relmse", Metric::RelMse}, {"flip", Metric::Flip}, {"flip-hdr", Metric::FlipHdr}};
+
 struct CompareOptions {
   CommonOptions common;
-  std::string first, second;
+  std::string reference, test;
+  Metric metric = Metric::Rmse;
   double threshold = 0;
   bool json = false;
 };
 
-void print(const CompareOptions &options, const runtime::ImageDifference &difference, bool isEqualEnough) {
-  if (options.json) {
-    const nlohmann::ordered_json document = {{"version", 1},
-                                             {"rmse", difference.rootMeanSquare},
-                                             {"largest", difference.largest},
-                                             {"pixelsThatDiffer", difference.pixelsThatDiffer},
-                                             {"threshold", options.threshold},
-                                             {"equalEnough", isEqualEnough}};
-    fmt::print("{}\n", document.dump(2));
+/// Everything that is said of two pictures.
+struct Comparison {
+  report::ErrorMetrics error;
+  report::FlipExposures exposures;
+  double flip = 0, flipHdr = 0;
+  bool isEqualEnough = false;
+
+  double value(Metric metric) const {
+    switch (metric) {
+    case Metric::Rmse: return error.rmse;
+    case Metric::RelMse: return error.relMse;
+    case Metric::Flip: return flip;
+    case Metric::FlipHdr: return flipHdr;
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
+/// One mean a channel, which is how scripts see that a picture has become darker.
+std::vector<double> meansOf(const runtime::Image &image) {
+  std::vector<double> sums(image.channels, 0.0);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    sums[i % image.channels] += image.pixels[i];
+  for (double &sum : sums)
+    sum /= double(image.width) * image.height;
+  return sums;
+}
+
+Comparison comparePictures(const runtime::Image &reference, const runtime::Image &test, const CompareOptions &options) {
+  Comparison comparison;
+  comparison.error = report::measureError(reference, test);
+  const runtime::Image a = runtime::toRgb(reference), b = runtime::toRgb(test);
+  comparison.exposures = report::exposuresFor(a);
+  if (comparison.error.pixelsThatDiffer) { // otherwise both are 0, without the work
+    comparison.flip = report::flip(a, b).mean();
+    comparison.flipHdr = report::flipHdr(a, b, comparison.exposures).mean();
+  }
+  // A threshold of 0 asks for the same bits; a difference that is not a number is never small enough.
+  comparison.isEqualEnough =
+      options.threshold == 0 ? comparison.error.pixelsThatDiffer == 0
+                             : comparison.error.incomparable == 0 && comparison.value(options.metric) <= options.threshold;
+  return comparison;
+}
+
+void printJson(const CompareOptions &options, const Comparison &comparison, const runtime::Image &reference,
+               const runtime::Image &test) {
+  const report::ErrorMetrics &error = comparison.error;
+  const nlohmann::ordered_json document = {
+      {"version", 2},
+      {"size", {test.width, test.height}},
+      {"means", {meansOf(reference), meansOf(test)}},
+      {"rmse", error.rmse},
+      {"relMse", error.relMse},
+      {"bias", error.bias},
+      {"largest", error.largest},
+      {"flip", comparison.flip},
+      {"flipHdr", comparison.flipHdr},
+      {"exposures", {{"first", comparison.exposures.first}, {"last", comparison.exposures.last}, {"count", comparison.exposures.count}}},
+      {"pixelsThatDiffer", error.pixelsThatDiffer},
+      {"incomparablePixels", error.incomparable},
+      {"nanPixels", error.nanPixels},
+      {"infinitePixels", error.infinitePixels},
+      {"threshold", options.threshold},
+      {"equalEnough", comparison.isEqualEnough}};
+  fmt::print("{}\n", document.dump(2));
+}
+
+void printText(const Comparison &comparison) {
+  const report::ErrorMetrics &error = comparison.error;
+  if (error.pixelsThatDiffer == 0) {
+    fmt::print("the pictures are the same, bit for bit\n");
     return;
   }
-  if (difference.pixelsThatDiffer == 0)
-    fmt::print("the pictures are the same, bit for bit\n");
-  else
-    fmt::print("RMSE {:.6g}, largest difference {:.6g}, {} pixels differ\n", difference.rootMeanSquare,
-               difference.largest, difference.pixelsThatDiffer);
+  fmt::print("RMSE      {:.6g}\nrelMSE    {:.6g}\nbias      {:+.6g}\nlargest   {:.6g}\nFLIP      {:.6g}\nHDR-FLIP  {:.6g} ({} "
+             "exposures, {:+.2f} to {:+.2f} stops)\n{} pixels differ\n",
+             error.rmse, error.relMse, error.bias, error.largest, comparison.flip, comparison.flipHdr,
+             comparison.exposures.count, comparison.exposures.first, comparison.exposures.last, error.pixelsThatDiffer);
+  if (error.nanPixels || error.infinitePixels)
+    fmt::print("of the second picture, {} pixels are not a number and {} infinite\n", error.nanPixels, error.infinitePixels);
+  if (error.incomparable)
+    fmt::print("{} pixels are not finite in one picture or both, and differ: no figure above counts them\n", error.incomparable);
 }
 
 int compare(const CompareOptions &options) {
   Messages messages(options.common);
   try {
-    const runtime::Image first = runtime::readImage(options.first);
-    const runtime::Image second = runtime::readImage(options.second);
-    const runtime::ImageDifference difference = runtime::compareImages(first, second);
-    // A threshold of 0 asks for the same bits; a difference that is not a number is never small enough.
-    const bool isEqualEnough = options.threshold == 0 ? difference.pixelsThatDiffer == 0
-                                                      : difference.rootMeanSquare <= options.threshold;
-    print(options, difference, isEqualEnough);
-    return isEqualEnough ? Fine : Diagnosed;
+    const runtime::Image reference = runtime::readImage(options.reference);
+    const runtime::Image test = runtime::readImage(options.test);
+    const Comparison comparison = comparePictures(reference, test, options);
+    if (options.json)
+      printJson(options, comparison, reference, test);
+    else
+      printText(comparison);
+    return comparison.isEqualEnough ? Fine : Diagnosed;
   } catch (const runtime::Error &error) {
     messages.report(error);
   }
@@ -59,11 +133,14 @@ int compare(const CompareOptions &options) {
 void addCompareCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App *command = app.add_subcommand(compareSummary.command, compareSummary.text);
-  command->add_option("A", options->first, "a picture, .png or .exr")->required();
-  command->add_option("B", options->second, "another of the same size")->required();
-  command->add_option("--threshold", options->threshold, "largest root mean square error; 0: the same bits")
+  command->add_option("REFERENCE", options->reference, "a picture, .png or .exr")->required();
+  command->add_option("TEST", options->test, "another of the same size")->required();
+  command->add_option("--threshold", options->threshold, "largest error that passes; 0: the same bits")
       ->check(CLI::NonNegativeNumber)
       ->type_name("X");
+  command->add_option("--metric", options->metric, "the error that the threshold limits; rmse if not given")
+      ->transform(CLI::CheckedTransformer(metrics).description(""))
+      ->type_name("rmse|relmse|flip|flip-hdr");
   command->add_flag("--json", options->json, "write the figures as JSON");
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc compare embree.exr device.exr --threshold 1e-4");

@@ -1,3 +1,4 @@
+#include "report/ErrorMetrics.h"
 #include "runtime/AtomicFile.h"
 #include "runtime/Image.h"
 #include "runtime/Mesh.h"
@@ -14,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace report = rtsl::report;
 using namespace rtsl::runtime;
 namespace fs = std::filesystem;
 
@@ -127,7 +129,7 @@ TEST_F(Pictures, ExrKeepsEveryBit) {
     image.pixels[6] = -0.0f;
     writeImage(path("a.exr"), image);
     Image back = readImage(path("a.exr"));
-    EXPECT_EQ(compareImages(image, back).pixelsThatDiffer, 0u) << channels;
+    EXPECT_EQ(report::measureError(image, back).pixelsThatDiffer, 0u) << channels;
   }
 }
 
@@ -176,8 +178,6 @@ TEST_F(Pictures, BadFiles) {
     put(file, bytes.substr(0, bytes.size() / 2));
     EXPECT_EQ(errorOf([&] { readImage(path(file)); }).substr(0, 8), "badImage") << file;
   }
-  EXPECT_EQ(errorOf([] { compareImages(Image(2, 2, 3), Image(2, 3, 3)); }),
-            "badImage: the pictures differ in shape: 2x2 with 3 channels, and 2x3 with 3");
 }
 
 TEST(Srgb, RoundTrips) {

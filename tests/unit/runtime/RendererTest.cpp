@@ -1,5 +1,6 @@
 #include "FakeProgram.h"
 
+#include "report/ErrorMetrics.h"
 #include "runtime/Renderer.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <cstdlib>
 #include <random>
 
+namespace report = rtsl::report;
 using namespace rtsl::runtime;
 using namespace rtsl::runtime::test;
 
@@ -63,9 +65,9 @@ TEST(Renderer, EmbreeAndDeviceTraversalSeeTheSame) {
   EXPECT_EQ(statistics.samplesNotFinite, 0u);
   options.traversal = Traversal::Device;
   Image device = render(scene, options);
-  ImageDifference difference = compareImages(embree, device);
+  report::ErrorMetrics difference = report::measureError(embree, device);
   EXPECT_LE(difference.pixelsThatDiffer, 2u);
-  EXPECT_LT(difference.rootMeanSquare, 1e-3);
+  EXPECT_LT(difference.rmse, 1e-3);
   if (const char *path = std::getenv("RTSL_TEST_PICTURE"))
     writeImage(path, embree);
 }
@@ -79,7 +81,7 @@ TEST(Renderer, PictureDoesNotDependOnThreads) {
     Image one = render(scene, options);
     options.threads = 7;
     Image seven = render(scene, options);
-    EXPECT_EQ(compareImages(one, seven).pixelsThatDiffer, 0u);
+    EXPECT_EQ(report::measureError(one, seven).pixelsThatDiffer, 0u);
   }
 }
 
@@ -87,11 +89,11 @@ TEST(Renderer, SeedChangesTheNoiseAndNothingElse) {
   Scene scene = room();
   RenderOptions options = small();
   Image a = render(scene, options), b = render(scene, options);
-  EXPECT_EQ(compareImages(a, b).pixelsThatDiffer, 0u);
+  EXPECT_EQ(report::measureError(a, b).pixelsThatDiffer, 0u);
   options.seed = 2;
   Image c = render(scene, options);
-  EXPECT_GT(compareImages(a, c).pixelsThatDiffer, 100u);
-  EXPECT_LT(compareImages(a, c).rootMeanSquare, 0.2);
+  EXPECT_GT(report::measureError(a, c).pixelsThatDiffer, 100u);
+  EXPECT_LT(report::measureError(a, c).rmse, 0.2);
 }
 
 TEST(Renderer, RowZeroIsTheTop) {
