@@ -19,6 +19,7 @@
 #include "llvm/TargetParser/Host.h"
 #include "llvm/TargetParser/SubtargetFeature.h"
 #include "llvm/Transforms/IPO/Internalize.h"
+#include "llvm/Transforms/Scalar/Scalarizer.h"
 
 #include <mutex>
 
@@ -173,6 +174,21 @@ llvm::Error linkDeviceCode(llvm::Module &module, std::string_view bitcode,
   return llvm::Error::success();
 }
 
+/// Takes vectors apart, memory included. A vec3 in a register of four lanes would drag along a lane
+/// with whatever lay behind it in memory, and where that is a denormal number each product costs
+/// over a hundred cycles; its load would be 16 bytes wide and wait for the three stores of 4 that
+/// wrote it. LLVM's SLP pass joins again what fills a register.
+static void addScalarization(llvm::PassBuilder &builder) {
+  builder.registerPipelineStartEPCallback(
+      [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level) {
+        if (level == llvm::OptimizationLevel::O0)
+          return;
+        llvm::ScalarizerPassOptions options;
+        options.ScalarizeLoadStore = true;
+        passes.addPass(llvm::createModuleToFunctionPassAdaptor(llvm::ScalarizerPass(options)));
+      });
+}
+
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
   llvm::PipelineTuningOptions tuning;
   tuning.LoopVectorization = options.optimization > 1;
@@ -189,6 +205,8 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   builder.registerFunctionAnalyses(functions);
   builder.registerLoopAnalyses(loops);
   builder.crossRegisterProxies(loops, functions, components, modules);
+
+  addScalarization(builder);
 
   static constexpr const llvm::OptimizationLevel *levels[] = {
       &llvm::OptimizationLevel::O0, &llvm::OptimizationLevel::O1, &llvm::OptimizationLevel::O2,
