@@ -1,29 +1,32 @@
-# rtsl_bitcode(library header_symbol SOURCES...): compiles freestanding C++ to LLVM bitcode for the host and embeds the
-# linked module into a static library, as the bytes between the symbols <symbol>Begin and <symbol>End.
+# rtsl_bitcode(library symbol TARGET SOURCES...): compiles freestanding C++ to LLVM bitcode for a TARGET, host or gpu, and
+# embeds the linked module into a static library, as the bytes between the symbols <symbol>Begin and <symbol>End.
 find_program(RTSL_CLANG NAMES clang++-22 PATHS /usr/lib/llvm-22/bin REQUIRED)
 find_program(RTSL_LLVM_LINK NAMES llvm-link-22 llvm-link PATHS /usr/lib/llvm-22/bin REQUIRED)
 
-# The target's features are those of the host baseline and no others, so that the code generator may inline these functions
-# into shaders. No errno: a square root is then one instruction.
-set(RTSL_BITCODE_FLAGS -std=c++17 -O2 -ffreestanding -nostdlib -ffp-contract=off -fno-math-errno -march=x86-64-v3
+# No errno: a square root is then one instruction.
+set(RTSL_BITCODE_FLAGS -std=c++17 -O2 -ffreestanding -nostdlib -ffp-contract=off -fno-math-errno
     -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wall -Wextra)
+# The features are those of the host's baseline and no others, so that the code generator may inline these functions into
+# shaders. For a GPU the code generator replaces them by those of the processor that is asked for.
+set(RTSL_BITCODE_FLAGS_host -march=x86-64-v3)
+set(RTSL_BITCODE_FLAGS_gpu --target=nvptx64-nvidia-cuda -march=sm_75)
 
-function(rtsl_bitcode library symbol)
+function(rtsl_bitcode library symbol target)
   set(modules)
   foreach(source IN LISTS ARGN)
     get_filename_component(stem "${source}" NAME_WE)
-    set(module "${CMAKE_CURRENT_BINARY_DIR}/${library}.${stem}.bc")
+    set(module "${CMAKE_CURRENT_BINARY_DIR}/${symbol}.${stem}.bc")
     add_custom_command(OUTPUT "${module}"
-      COMMAND "${RTSL_CLANG}" ${RTSL_BITCODE_FLAGS} -I "${PROJECT_SOURCE_DIR}" -MD -MF "${module}.d" -MT "${module}"
+      COMMAND "${RTSL_CLANG}" ${RTSL_BITCODE_FLAGS} ${RTSL_BITCODE_FLAGS_${target}} -I "${PROJECT_SOURCE_DIR}" -MD -MF "${module}.d" -MT "${module}"
               -emit-llvm -c "${source}" -o "${module}"
-      DEPENDS "${source}" DEPFILE "${module}.d" COMMENT "Compiling ${stem} to bitcode" VERBATIM)
+      DEPENDS "${source}" DEPFILE "${module}.d" COMMENT "Compiling ${stem} to bitcode for the ${target}" VERBATIM)
     list(APPEND modules "${module}")
   endforeach()
-  set(linked "${CMAKE_CURRENT_BINARY_DIR}/${library}.bc")
+  set(linked "${CMAKE_CURRENT_BINARY_DIR}/${symbol}.bc")
   add_custom_command(OUTPUT "${linked}" COMMAND "${RTSL_LLVM_LINK}" ${modules} -o "${linked}"
-    DEPENDS ${modules} COMMENT "Linking ${library}.bc" VERBATIM)
+    DEPENDS ${modules} COMMENT "Linking ${symbol}.bc" VERBATIM)
   # The assembler puts the file into the object as it is: no megabytes of C++ to parse.
-  set(embedding "${CMAKE_CURRENT_BINARY_DIR}/${library}Bytes.cpp")
+  set(embedding "${CMAKE_CURRENT_BINARY_DIR}/${symbol}Bytes.cpp")
   file(CONFIGURE OUTPUT "${embedding}" CONTENT [[
 // Made by cmake/RtslBitcode.cmake.
 asm(".section .rodata.@symbol@, \"a\", @progbits\n"

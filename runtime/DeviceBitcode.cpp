@@ -2,10 +2,15 @@
 
 #include <cstddef>
 
-// Defined by the generated file that embeds the bitcode.
-extern "C" const char rtslDeviceBitcodeBegin[];
-extern "C" const char rtslDeviceBitcodeEnd[];
+// Defined by the generated files that embed the bitcode.
+#define RTSL_EMBEDDED(function, symbol)                                                            \
+  extern "C" const char symbol##Begin[];                                                           \
+  extern "C" const char symbol##End[];                                                             \
+  std::string_view rtsl::runtime::function() {                                                     \
+    return {symbol##Begin, std::size_t(symbol##End - symbol##Begin)};                              \
+  }
 
-std::string_view rtsl::runtime::deviceBitcode() {
-  return {rtslDeviceBitcodeBegin, std::size_t(rtslDeviceBitcodeEnd - rtslDeviceBitcodeBegin)};
-}
+RTSL_EMBEDDED(deviceBitcode, rtslDevice_host)
+RTSL_EMBEDDED(gpuDeviceBitcode, rtslDevice_gpu)
+RTSL_EMBEDDED(megakernelBitcode, rtslMegakernel_host)
+RTSL_EMBEDDED(gpuMegakernelBitcode, rtslMegakernel_gpu)

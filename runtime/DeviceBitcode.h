@@ -1,13 +1,23 @@
 //===- DeviceBitcode.h - the device runtime as LLVM bitcode ---------------===//
+//
+// runtime/device compiled twice, for the host (x86-64-v3) and for GPUs (nvptx64), to be linked into
+// compiled shaders. The slots of Slots.def and the functions of split programs stay open.
+//
+//===----------------------------------------------------------------------===//
 #pragma once
 
 #include <string_view>
 
 namespace rtsl::runtime {
 
-/// runtime/device compiled for the host (x86-64-v3), to be linked into compiled shaders. It defines
-/// what Abi.h calls "defined by the runtime" but rtsl_traverse, which the host defines
-/// (runtime/HostTraversal.h), and leaves the slots open.
+/// What Abi.h calls "defined by the runtime" but rtsl_traverse, which the host defines
+/// (runtime/HostTraversal.h), and the elementary functions.
 std::string_view deviceBitcode();
+std::string_view gpuDeviceBitcode();
+
+/// rtsl_traverse and what runs lanes: for programs that need nobody else
+/// (runtime/device/Megakernel.h).
+std::string_view megakernelBitcode();
+std::string_view gpuMegakernelBitcode();
 
 } // namespace rtsl::runtime

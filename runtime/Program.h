@@ -58,6 +58,12 @@ struct ClassInfo {
   void (*construct)(RtslState *state, RtslRef object, const void *arguments) = nullptr;
 };
 
+/// Code that renders a flat scene and needs nobody else (device/Megakernel.h); null if there is none.
+struct MegakernelCode {
+  std::uint64_t (*laneBytes)(std::uint32_t maxDepth) = nullptr;
+  void (*runLane)(const RtslJob *, std::uint32_t lane) = nullptr;
+};
+
 struct Program {
   std::vector<ClassInfo> classes;
   std::uint32_t colorComponents = 3;
@@ -73,6 +79,7 @@ struct Program {
   /// The program's rtsl_sample.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                  float *color) = nullptr;
+  MegakernelCode megakernel;
 
   std::shared_ptr<void> code; // keeps the code alive
 

@@ -2,13 +2,10 @@
 
 #include "runtime/HostScene.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -24,26 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-unsigned threadCount(std::uint32_t asked) {
-  if (asked)
-    return std::min(asked, 1024u);
-  return std::max(1u, std::thread::hardware_concurrency());
-}
-
-void check(const RenderOptions &options) {
-  auto range = [](const char *what, std::uint64_t value, std::uint64_t lowest,
-                  std::uint64_t highest) {
-    if (value < lowest || value > highest)
-      throw Error(ErrorCode::OutOfRange, fmt::format("the {} must lie between {} and {}, not be {}",
-                                                     what, lowest, highest, value));
-  };
-  range("width", options.width, 1, 65536);
-  range("height", options.height, 1, 65536);
-  range("number of samples per pixel", options.samplesPerPixel, 1, 0xfffffffe);
-  // Each level of trace takes stack of the thread.
-  range("depth", options.maxDepth, 0, 256);
 }
 
 } // namespace
@@ -75,7 +52,7 @@ struct Renderer::Implementation {
 
 Renderer::Renderer(const Scene &scene, const RenderOptions &options)
     : self(std::make_unique<Implementation>(scene, options)) {
-  check(options);
+  checkOptions(options);
   Clock::time_point start = Clock::now();
   self->launch = scene.launch();
   const Program &program = scene.program();
@@ -83,7 +60,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
     throw Error(ErrorCode::Internal, "the program has no code for samples");
   try {
     self->host = std::make_unique<HostScene>(scene, options.traversal == Traversal::Embree,
-                                             threadCount(options.threads));
+                                             threadCount(options));
     if (options.traversal == Traversal::Device)
       self->launch = self->host->deviceLaunch();
     self->image = Image(options.width, options.height, program.colorComponents);
@@ -183,7 +160,7 @@ Image Renderer::render(RenderStatistics *statistics) {
   s.failure = nullptr;
 
   std::vector<std::thread> helpers;
-  unsigned threads = unsigned(std::min<std::uint64_t>(threadCount(s.options.threads), s.tileCount));
+  unsigned threads = unsigned(std::min<std::uint64_t>(threadCount(s.options), s.tileCount));
   try {
     for (unsigned i = 1; i < threads; ++i)
       helpers.emplace_back([&s] { s.work(); });

@@ -443,6 +443,27 @@ std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material) {
                            self->meshTable[mesh].triangleCount);
 }
 
+std::size_t Scene::recordBytes() const {
+  return self->records.size();
+}
+
+std::vector<Scene::BufferPlace> Scene::buffers() const {
+  std::vector<BufferPlace> places;
+  for (const ObjectInfo &object : self->objects)
+    for (const MemberInfo &member : object.classInfo->members) {
+      if (member.type.bufferRank == 0)
+        continue;
+      const std::uint32_t offset = object.object + member.offset;
+      RtslBuffer buffer;
+      std::memcpy(&buffer, self->records.data() + offset, sizeof buffer);
+      std::size_t bytes = member.type.elementSize;
+      for (std::uint8_t i = 0; i < member.type.bufferRank; ++i)
+        bytes *= buffer.size[i];
+      places.push_back({offset, bytes});
+    }
+  return places;
+}
+
 const Bounds &Scene::primitiveBounds(std::uint32_t instance) const {
   return self->instanceBounds.at(instance);
 }

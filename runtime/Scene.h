@@ -81,6 +81,15 @@ public:
   /// at 0. It stays valid until the scene changes. Throws IncompleteScene if there is no camera.
   RtslLaunch launch() const;
 
+  /// Bytes of all records, from RtslLaunch::records.
+  std::size_t recordBytes() const;
+  /// The RtslBuffers in the records.
+  struct BufferPlace {
+    std::uint32_t offset; // from the start of the records
+    std::size_t bytes;    // of its elements
+  };
+  std::vector<BufferPlace> buffers() const;
+
   /// World bounds of an RTSL primitive's instance, as computeBounds gave them, a few units in the
   /// last place larger.
   const Bounds &primitiveBounds(std::uint32_t instance) const;

@@ -4,6 +4,7 @@
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/emit/Ptx.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
@@ -98,6 +99,31 @@ std::string print(mlir::ModuleOp ir) {
   return text;
 }
 
+/// LLVM IR on its way to code.
+struct LlvmCode {
+  LlvmCode() = default;
+  LlvmCode(LlvmCode &&) = default;
+  std::unique_ptr<llvm::LLVMContext> context = std::make_unique<llvm::LLVMContext>();
+  std::unique_ptr<llvm::TargetMachine> machine;
+  std::unique_ptr<llvm::Module> module;
+  codegen::MachineOptions options;
+};
+
+/// Level 2 as LLVM IR that is not linked with device code yet.
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
+  run(ir, codegen::buildLlvmPipeline);
+  LlvmCode code;
+  code.options = options;
+  code.machine = take(codegen::createTargetMachine(options));
+  code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
+  return code;
+}
+
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, llvm::ArrayRef<std::string> exports) {
+  if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
+    fail(llvm::toString(std::move(error)));
+}
+
 codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu) {
   codegen::MachineOptions machine;
   machine.optimization = options.optimization;
@@ -105,14 +131,41 @@ codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostC
   return machine;
 }
 
-/// The device code's function for one sample.
-std::string sampleSymbol(const CompileOptions &options) {
-  return options.trace == TraceMode::Split ? "rtsl_sample_split" : "rtsl_sample";
+codegen::MachineOptions gpuOptions(const CompileOptions &options) {
+  codegen::MachineOptions machine;
+  machine.optimization = options.optimization;
+  machine.gpu = options.gpu;
+  return machine;
+}
+
+std::string toPtx(LlvmCode code) {
+  codegen::nameForPtx(*code.module);
+  codegen::optimize(*code.module, *code.machine, code.options);
+  return take(codegen::printPtx(*code.module, *code.machine));
+}
+
+/// The PTX of a module without a scene: a function a method, or a state where it traces. What others supply is declared:
+/// slots, and the functions of runtime/device.
+std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
+  LlvmCode code = translate(ir, gpuOptions(options));
+  for (llvm::Function &function : *code.module)
+    if (function.getName().ends_with("_first")) // no scene, so nothing begins anywhere
+      function.setLinkage(llvm::GlobalValue::InternalLinkage);
+    else
+      function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them
+  return toPtx(std::move(code));
+}
+
+/// What samples of a linked program come from.
+std::vector<std::string> sampleSymbols(const CompileOptions &options) {
+  if (options.target == Target::HostMegakernel)
+    return {"rtsl_lane_bytes", "rtsl_run_lane"};
+  return {options.trace == TraceMode::Split ? "rtsl_sample_split" : "rtsl_sample"};
 }
 
 /// The functions of a linked program that the runtime asks for.
 std::vector<std::string> entries(const runtime::Program &program, const CompileOptions &options) {
-  std::vector<std::string> names = {sampleSymbol(options)};
+  std::vector<std::string> names = sampleSymbols(options);
 #define RTSL_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
 #include "runtime/device/Slots.def"
   for (const runtime::ClassInfo &info : program.classes) {
@@ -129,7 +182,12 @@ void find(const codegen::Jit &jit, const std::string &name, Function *&function)
 
 /// Looks up the entries of a compiled program.
 void fillEntries(runtime::Program &program, const codegen::Jit &jit, const CompileOptions &options) {
-  find(jit, sampleSymbol(options), program.sample);
+  if (options.target == Target::HostMegakernel) {
+    find(jit, "rtsl_lane_bytes", program.megakernel.laneBytes);
+    find(jit, "rtsl_run_lane", program.megakernel.runLane);
+  } else {
+    find(jit, sampleSymbols(options).front(), program.sample);
+  }
 #define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "runtime/device/Slots.def"
   for (runtime::ClassInfo &info : program.classes) {
@@ -148,18 +206,17 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
     return std::nullopt;
   if (stage == Stage::Ir)
     return print(*ir);
-  runToSsa(*ir, stage == Stage::Split ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/false);
+  const bool isSplit = stage == Stage::Split || stage == Stage::Ptx;
+  runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/stage == Stage::Ptx);
   if (stage == Stage::Ssa || stage == Stage::Split)
     return print(*ir);
 
   declareSlots(*ir);
-  run(*ir, codegen::buildLlvmPipeline);
-  llvm::LLVMContext llvmContext;
-  const codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/false);
-  const auto target = take(codegen::createTargetMachine(machine));
-  const auto llvmModule = take(codegen::translateToLlvm(*ir, llvmContext, *target));
-  codegen::optimize(*llvmModule, *target, machine);
-  return codegen::printLlvm(*llvmModule);
+  if (stage == Stage::Ptx)
+    return modulePtx(*ir, options);
+  const LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/false));
+  codegen::optimize(*code.module, *code.machine, code.options);
+  return codegen::printLlvm(*code.module);
 }
 
 std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options, bool json,
@@ -172,28 +229,74 @@ std::optional<std::string> explainStates(const typed::Module &module, const Comp
   return json ? toJson(report) : toText(report);
 }
 
+namespace {
+
+/// A linked scene on level 1; null if there were errors.
+mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const LinkRequest &request,
+                                            const CompileOptions &options, Diagnostics &diagnostics,
+                                            mlir::MLIRContext &context, runtime::Program &program) {
+  mlir::OwningOpRef<mlir::ModuleOp> ir =
+      lowerModule(module, options, {request.classes.begin(), request.classes.end()}, diagnostics, context);
+  if (!ir || !link(*ir, module, request, options.colorComponents, diagnostics, program))
+    return nullptr;
+  return ir;
+}
+
+/// What a GPU's program needs of runtime/device, for one or for the CPU.
+const std::vector<std::string_view> &megakernelCode(bool forGpu) {
+  static const std::vector<std::string_view> host = {runtime::deviceBitcode(), runtime::megakernelBitcode()};
+  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(), runtime::gpuMegakernelBitcode()};
+  return forGpu ? gpu : host;
+}
+
+} // namespace
+
+std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
+                                     const CompileOptions &options, Diagnostics &diagnostics) {
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  runtime::Program program;
+  const auto ir = linkScene(module, request, options, diagnostics, *context, program);
+  if (!ir)
+    return std::nullopt;
+  if (stage == Stage::Ir)
+    return print(*ir);
+  runToSsa(*ir, stage == Stage::Ssa ? TraceMode::Recurse : TraceMode::Split, /*dispatch=*/stage != Stage::Split);
+  if (stage == Stage::Ssa || stage == Stage::Split)
+    return print(*ir);
+
+  if (stage == Stage::Ptx) {
+    LlvmCode code = translate(*ir, gpuOptions(options));
+    linkDeviceCode(code, megakernelCode(/*forGpu=*/true), {"rtsl_render"});
+    return toPtx(std::move(code));
+  }
+  LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/false));
+  linkDeviceCode(code, megakernelCode(/*forGpu=*/false), {"rtsl_lane_bytes", "rtsl_run_lane"});
+  codegen::optimize(*code.module, *code.machine, code.options);
+  return codegen::printLlvm(*code.module);
+}
+
 std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
                                                        const CompileOptions &options, Diagnostics &diagnostics) {
+  const bool isMegakernel = options.target == Target::HostMegakernel;
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
-  const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(
-      module, options, {request.classes.begin(), request.classes.end()}, diagnostics, *context);
   auto program = std::make_shared<runtime::Program>();
-  if (!ir || !link(*ir, module, request, options.colorComponents, diagnostics, *program))
+  const auto ir = linkScene(module, request, options, diagnostics, *context, *program);
+  if (!ir)
     return nullptr;
-  runToSsa(*ir, options.trace);
-  run(*ir, codegen::buildLlvmPipeline);
+  runToSsa(*ir, isMegakernel ? TraceMode::Split : options.trace);
 
-  auto llvmContext = std::make_unique<llvm::LLVMContext>();
-  const codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
-  auto target = take(codegen::createTargetMachine(machine));
-  auto llvmModule = take(codegen::translateToLlvm(*ir, *llvmContext, *target));
-  if (llvm::Error error = codegen::linkDeviceCode(*llvmModule, runtime::deviceBitcode(), entries(*program, options)))
-    fail(llvm::toString(std::move(error)));
-  codegen::optimize(*llvmModule, *target, machine);
-  std::shared_ptr<codegen::Jit> jit =
-      take(codegen::Jit::create(std::move(llvmContext), std::move(llvmModule), std::move(target),
-                                {{"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)},
-                                 {"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)}}));
+  LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/true));
+  std::vector<codegen::HostSymbol> symbols;
+  if (isMegakernel) {
+    linkDeviceCode(code, megakernelCode(/*forGpu=*/false), entries(*program, options));
+  } else {
+    linkDeviceCode(code, runtime::deviceBitcode(), entries(*program, options));
+    symbols = {{"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)},
+               {"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)}};
+  }
+  codegen::optimize(*code.module, *code.machine, code.options);
+  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
+                                                                std::move(code.machine), symbols));
   fillEntries(*program, *jit, options);
   program->code = jit;
   return program;

@@ -18,17 +18,24 @@
 namespace rtsl {
 
 /// What can be looked at on the way, in order.
-enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Split, Llvm };
+enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Split, Llvm, Ptx };
 
 /// How `trace` runs: as a call, or as the end of one state and the beginning of another, without recursion
 /// (docs/continuations.md). The picture is the same, bit for bit.
 enum class TraceMode : std::uint8_t { Recurse, Split };
 
+/// What renders a scene in this process: the runtime with its own traversals, or the GPU's whole program, compiled for
+/// the CPU. The picture is the same, bit for bit, if the runtime traverses as GPUs do.
+enum class Target : std::uint8_t { Host, HostMegakernel };
+
 struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool checkIndices = true;
   unsigned optimization = 2; // of machine code, 0 to 3
-  TraceMode trace = TraceMode::Recurse;
+  TraceMode trace = TraceMode::Recurse; // of Target::Host; there is no recursion elsewhere
+  Target target = Target::Host;
+  /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
+  std::string gpu = "sm_75";
 };
 
 /// What a scene tells the linker.
@@ -40,10 +47,16 @@ struct LinkRequest {
   std::vector<std::pair<std::string, std::string>> surfaces;
 };
 
-/// The text of `stage` (Ir, Ssa, Split or Llvm) for a module without a scene: what is called through references stays a
+/// The text of `stage` (Ir and what follows) for a module without a scene: what is called through references stays a
 /// declared slot. Nothing if there were errors.
 std::optional<std::string> emit(const typed::Module &module, Stage stage, const CompileOptions &options,
                                 Diagnostics &diagnostics);
+
+/// The same for the linked program of a scene. From Split on it is what GPUs run: without recursion, with the traversal of
+/// runtime/device. Its PTX has one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/Abi.h); its LLVM IR is that
+/// of Target::HostMegakernel.
+std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
+                                     const CompileOptions &options, Diagnostics &diagnostics);
 
 /// What splitting at `trace` saves and recomputes in each function that traces, and the states that it makes: text, or
 /// one JSON document. Nothing if there were errors.

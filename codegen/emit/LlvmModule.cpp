@@ -55,8 +55,38 @@ static std::string hostFeatures() {
   return features.getString();
 }
 
+static llvm::Expected<std::unique_ptr<llvm::TargetMachine>>
+createTargetMachine(const llvm::Triple &triple, const std::string &cpu, const std::string &features,
+                    unsigned optimization) {
+  std::string error;
+  const llvm::Target *target = llvm::TargetRegistry::lookupTarget(triple, error);
+  if (!target)
+    return llvm::createStringError("no code generator for `%s`: %s", triple.str().c_str(),
+                                   error.c_str());
+  llvm::TargetOptions targetOptions;
+  targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Strict;
+  targetOptions.MCOptions.AsmVerbose = true;
+  std::unique_ptr<llvm::TargetMachine> machine(
+      target->createTargetMachine(triple, cpu, features, targetOptions, llvm::Reloc::PIC_,
+                                  llvm::CodeModel::Small, codeGenLevel(optimization), /*JIT=*/true));
+  if (!machine)
+    return llvm::createStringError("no machine for `%s`", triple.str().c_str());
+  return machine;
+}
+
 llvm::Expected<std::unique_ptr<llvm::TargetMachine>>
 createTargetMachine(const MachineOptions &options) {
+  if (!options.gpu.empty()) {
+    static std::once_flag once;
+    std::call_once(once, [] {
+      LLVMInitializeNVPTXTargetInfo();
+      LLVMInitializeNVPTXTarget();
+      LLVMInitializeNVPTXTargetMC();
+      LLVMInitializeNVPTXAsmPrinter();
+    });
+    return createTargetMachine(llvm::Triple("nvptx64-nvidia-cuda"), options.gpu, "",
+                               options.optimization);
+  }
   static std::once_flag once;
   std::call_once(once, [] {
     LLVMInitializeX86TargetInfo();
@@ -65,21 +95,9 @@ createTargetMachine(const MachineOptions &options) {
     LLVMInitializeX86AsmPrinter();
   });
 
-  llvm::Triple triple(llvm::sys::getProcessTriple());
-  std::string error;
-  const llvm::Target *target = llvm::TargetRegistry::lookupTarget(triple, error);
-  if (!target)
-    return llvm::createStringError("no code generator for `%s`: %s", triple.str().c_str(),
-                                   error.c_str());
-  llvm::TargetOptions targetOptions;
-  targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Strict;
-  std::unique_ptr<llvm::TargetMachine> machine(target->createTargetMachine(
-      triple, options.hostCpu ? llvm::sys::getHostCPUName() : "x86-64-v3",
-      options.hostCpu ? hostFeatures() : "", targetOptions, llvm::Reloc::PIC_,
-      llvm::CodeModel::Small, codeGenLevel(options.optimization), /*JIT=*/true));
-  if (!machine)
-    return llvm::createStringError("no machine for `%s`", triple.str().c_str());
-  return machine;
+  return createTargetMachine(llvm::Triple(llvm::sys::getProcessTriple()),
+                             options.hostCpu ? llvm::sys::getHostCPUName().str() : "x86-64-v3",
+                             options.hostCpu ? hostFeatures() : "", options.optimization);
 }
 
 /// Functions are inlined only where their features allow it, so all of them say the same.
@@ -131,18 +149,10 @@ struct CollectMessages : llvm::DiagnosticHandler {
 
 } // namespace
 
-llvm::Error linkDeviceCode(llvm::Module &module, std::string_view bitcode,
-                           llvm::ArrayRef<std::string> exports) {
+/// Read lazily: a function that nobody calls is never looked at.
+static llvm::Error linkBitcode(llvm::Module &module, std::string_view bitcode,
+                               llvm::ArrayRef<std::string> exports) {
   llvm::LLVMContext &context = module.getContext();
-  std::string cpu, features;
-  for (const llvm::Function &function : module)
-    if (!function.isDeclaration()) {
-      cpu = function.getFnAttribute("target-cpu").getValueAsString();
-      features = function.getFnAttribute("target-features").getValueAsString();
-      break;
-    }
-
-  // Read lazily: a function that nobody calls is never looked at.
   llvm::Expected<std::unique_ptr<llvm::Module>> device = llvm::getLazyBitcodeModule(
       llvm::MemoryBufferRef(llvm::StringRef(bitcode.data(), bitcode.size()), "device"), context);
   if (!device)
@@ -163,7 +173,21 @@ llvm::Error linkDeviceCode(llvm::Module &module, std::string_view bitcode,
   context.setDiagnosticHandler(std::move(previous));
   if (failed)
     return llvm::createStringError("device code does not fit: %s", messages.c_str());
+  return llvm::Error::success();
+}
 
+llvm::Error linkDeviceCode(llvm::Module &module, llvm::ArrayRef<std::string_view> bitcodes,
+                           llvm::ArrayRef<std::string> exports) {
+  std::string cpu, features;
+  for (const llvm::Function &function : module)
+    if (!function.isDeclaration()) {
+      cpu = function.getFnAttribute("target-cpu").getValueAsString();
+      features = function.getFnAttribute("target-features").getValueAsString();
+      break;
+    }
+  for (std::string_view bitcode : bitcodes)
+    if (llvm::Error error = linkBitcode(module, bitcode, exports))
+      return error;
   if (!cpu.empty())
     setProcessor(module, cpu, features);
   llvm::StringSet<> kept;

@@ -7,7 +7,7 @@
 //   linkDeviceCode(*module, runtime::deviceBitcode(), exports);
 //   optimize(*module, *machine, options);
 //
-// Then printLlvm shows it and Jit.h runs it.
+// Then printLlvm shows it, Jit.h runs it, and Ptx.h makes it PTX.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -36,6 +36,8 @@ struct MachineOptions {
   /// Code for the processor that this runs on, rather than for every x86-64-v3. Results are the
   /// same.
   bool hostCpu = false;
+  /// Code for an NVIDIA GPU, rather than for the host: "sm_75" and the like. Empty: the host.
+  std::string gpu;
 };
 
 /// What MLIR needs to be translated; call before the context is made, or append the registry to it.
@@ -51,10 +53,10 @@ llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp mod
                                                               llvm::LLVMContext &context,
                                                               const llvm::TargetMachine &machine);
 
-/// Links those functions of `bitcode` that the module calls, and what these call. After that
-/// everything is internal but `exports`: names of functions that stay visible. A name that is not
-/// defined is no error.
-llvm::Error linkDeviceCode(llvm::Module &module, std::string_view bitcode,
+/// Links those functions of `bitcodes`, one after the other, that are called by what is there
+/// already. After that everything is internal but `exports`: names of functions that stay visible.
+/// A name that is not defined is no error.
+llvm::Error linkDeviceCode(llvm::Module &module, llvm::ArrayRef<std::string_view> bitcodes,
                            llvm::ArrayRef<std::string> exports);
 
 /// LLVM's default pipeline at the options' level, with clang's settings.

@@ -74,7 +74,30 @@ typedef struct RtslLaunch {
   uint32_t rootIsLeaf, nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items to be tested one by one
   uint32_t needs;               // RTSL_NEEDS_*: what the classes of the scene read
   const void *host;             // the host's own (for example its Embree scene); never read by device code
+  struct RtslStatus *status;    // of the job that runs the launch; null outside of the megakernel
 } RtslLaunch;
+
+/// What all lanes of a job write, one after the other. The host clears it before.
+typedef struct RtslStatus {
+  uint64_t nextPixel; // the first that nobody has taken; row by row from the top left
+  uint64_t badRays;   // not finite, or without a direction: they saw color 0
+  uint64_t samplesNotFinite;
+  uint32_t stop;    // set by anybody: no lane begins another pixel
+  uint32_t problem; // RTSL_PROBLEM_*
+} RtslStatus;
+
+#define RTSL_PROBLEM_NONE 0u
+#define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane has begun
+
+/// A picture for the megakernel (runtime/device/Megakernel.h) to render.
+typedef struct RtslJob {
+  const RtslLaunch *launch;
+  RtslStatus *status;
+  uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
+  uint64_t laneBytes; // a multiple of 16
+  float *pixels;      // colorComponents a pixel, row by row from the top
+  uint32_t samplesPerPixel;
+} RtslJob;
 
 /// The state of one ray. Parent and child ray have one each.
 typedef struct RtslState {
@@ -188,6 +211,16 @@ void *rtsl_machine_stack(uint64_t bytes);
 
 /// rtsl_sample by the machine: the same color, bit for bit. Black if there is no memory for the stack.
 void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
+
+//===----------------------------------------------------------------------===//
+// The megakernel: programs that bring their own traversal and need nobody else.
+//===----------------------------------------------------------------------===//
+
+/// Bytes that a lane needs for rays up to this depth, a multiple of 16. Exact: no shader can ask for more.
+uint64_t rtsl_lane_bytes(uint32_t maxDepth);
+
+/// Renders pixels of the job until none is left, in the lane's own memory. Lanes of different numbers may run at once.
+void rtsl_run_lane(const RtslJob *job, uint32_t lane);
 
 #ifdef __cplusplus
 }

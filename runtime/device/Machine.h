@@ -78,36 +78,72 @@ inline int32_t begin(Level &level) {
   return 0;
 }
 
+/// The rays of one sample between two steps of the machine.
+struct Rays {
+  Level *bottom; // the camera ray
+  Level *top;    // the ray whose turn it is
+  int32_t next;  // n > 0: its state n is to be run; or one of these:
+
+  static constexpr int32_t none = 0;   // the sample is over
+  static constexpr int32_t trace = -1; // what it meets is to be found
+};
+
+/// Makes the camera ray of a sample, on a stack of stackSize(launch) bytes.
+inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
+                      uint32_t index) {
+  startSample(rays.bottom->state, launch, x, y, index);
+  rays.top = rays.bottom;
+  rays.next = Rays::trace;
+}
+
+/// The ray on top is over: its color goes to the one that sent it.
+inline void endRay(Rays &rays) {
+  rays.next = Rays::none;
+  if (rays.top == rays.bottom)
+    return;
+  const RtslState &state = rays.top->state;
+  rays.top = below(rays.top, levelSize(&rays.top->state));
+  copyColor(rays.top->color, state.SampleColor, state.launch->colorComponents);
+  rays.next = rays.top->resume;
+}
+
+/// The step for Rays::trace.
+inline void traceRay(Rays &rays) {
+  rays.next = begin(*rays.top);
+  if (rays.next == 0)
+    endRay(rays);
+}
+
+/// Runs state `number` of the ray on top, which is rays.next.
+inline void runState(Rays &rays, int32_t number) {
+  Level &level = *rays.top;
+  int32_t after = rtsl_run_state(&level.state, number, level.object, frameOf(&level));
+  if (after == 0) {
+    endRay(rays);
+  } else if (after < 0) {
+    rays.next = -after;
+  } else {
+    rays.next = level.resume = after;
+    if (level.isSpawned) {
+      rays.top = above(&level, levelSize(&level.state));
+      rays.next = Rays::trace;
+    }
+  }
+}
+
 /// One sample of one pixel on a stack of stackSize(launch) bytes.
 inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index,
                        void *stack, float *color) {
-  Level *const bottom = static_cast<Level *>(stack);
-  const uint64_t size = levelSize(&bottom->state);
-  startSample(bottom->state, launch, x, y, index);
-
-  Level *level = bottom;
-  int32_t next = begin(*level);
-  while (true) {
-    if (next == 0) { // the ray is over
-      if (level == bottom)
-        break;
-      Level *parent = below(level, size);
-      copyColor(parent->color, level->state.SampleColor, launch.colorComponents);
-      level = parent;
-      next = level->resume;
-    }
-    int32_t after = rtsl_run_state(&level->state, next, level->object, frameOf(level));
-    if (after <= 0) {
-      next = -after;
-      continue;
-    }
-    next = level->resume = after;
-    if (level->isSpawned) {
-      level = above(level, size);
-      next = begin(*level);
-    }
+  Rays rays;
+  rays.bottom = static_cast<Level *>(stack);
+  startRays(rays, launch, x, y, index);
+  while (rays.next != Rays::none) {
+    if (rays.next == Rays::trace)
+      traceRay(rays);
+    else
+      runState(rays, rays.next);
   }
-  copyColor(color, bottom->state.SampleColor, launch.colorComponents);
+  copyColor(color, rays.bottom->state.SampleColor, launch.colorComponents);
 }
 
 } // namespace rtsl::device

@@ -71,6 +71,9 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
                                                                            {"split", TraceMode::Split}})
                       .description(""))
       ->type_name("recurse|split");
+  command.add_option("--gpu-arch", options.compile.gpu, "the oldest NVIDIA GPU that PTX is for; sm_75 if not given")
+      ->check(CLI::IsMember({"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"}))
+      ->type_name("sm_75|sm_80|sm_86|sm_89|sm_90|sm_100|sm_120");
   command.add_option("-O", options.compile.optimization, "optimisation of machine code, 0 to 3")
       ->check(CLI::Range(0, 3))
       ->type_name("LEVEL");

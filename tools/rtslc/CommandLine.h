@@ -28,7 +28,7 @@ struct CommonOptions {
 
 /// Adds --diagnostics, --ansi and --error-limit.
 void addMessageOptions(CLI::App &command, CommonOptions &options);
-/// Adds --color, --unchecked, --trace and -O.
+/// Adds --color, --unchecked, --trace, --gpu-arch and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);
 
 /// A command's name and what `rtslc --help` says of it.

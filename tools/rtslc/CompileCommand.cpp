@@ -2,10 +2,12 @@
 #include "CommandLine.h"
 #include "Messages.h"
 #include "Output.h"
+#include "SceneShaders.h"
 #include "Shaders.h"
 #include "codegen/driver/Compiler.h"
 #include "frontend/Parser.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -18,14 +20,30 @@ const std::map<std::string, Stage> stages = {{"ast", Stage::Ast},
                                              {"ir", Stage::Ir},
                                              {"ssa", Stage::Ssa},
                                              {"split", Stage::Split},
-                                             {"llvm", Stage::Llvm}};
+                                             {"llvm", Stage::Llvm},
+                                             {"ptx", Stage::Ptx}};
 
 struct CompileCommandOptions {
   CommonOptions common;
   std::vector<std::string> files;
   Stage stage = Stage::Ir;
+  std::vector<std::string> overrides;
   std::string output = "-";
 };
+
+bool isScene(const std::string &file) {
+  const std::string extension = ".json";
+  return file.size() > extension.size() && file.compare(file.size() - extension.size(), extension.size(), extension) == 0;
+}
+
+/// The text of the asked stage of a whole scene; nothing if there were errors.
+std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages) {
+  const scene::SceneDescription description = scene::readSceneFile(options.files.front(), options.overrides);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, messages);
+  if (!module)
+    return std::nullopt;
+  return emitScene(*module, linkRequest(description), options.stage, options.common.compile, messages.diagnostics);
+}
 
 /// The text of the asked stage; nothing if there were errors.
 std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages) {
@@ -45,11 +63,23 @@ std::optional<std::string> translate(const CompileCommandOptions &options, Messa
   return emit(*module, options.stage, options.common.compile, messages.diagnostics);
 }
 
+/// A scene names its shaders itself, and has stages from the IR on.
+void checkInputs(const CompileCommandOptions &options) {
+  const auto scenes = std::count_if(options.files.begin(), options.files.end(), isScene);
+  if (scenes > 0 && options.files.size() > 1)
+    throw CLI::ValidationError("FILE", "give RTSL files or one scene");
+  if (scenes > 0 && (options.stage == Stage::Ast || options.stage == Stage::TypedAst))
+    throw CLI::ValidationError("--emit", "a scene has no syntax tree; give one of its RTSL files");
+  if (scenes == 0 && !options.overrides.empty())
+    throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
+}
+
 int compile(const CompileCommandOptions &options) {
   Messages messages(options.common);
   try {
     checkOutput(options.output);
-    const std::optional<std::string> text = translate(options, messages);
+    const std::optional<std::string> text =
+        isScene(options.files.front()) ? translateScene(options, messages) : translate(options, messages);
     if (text && !messages.diagnostics.hasErrors())
       writeOutput(options.output, *text);
   } catch (const runtime::Error &error) {
@@ -63,16 +93,24 @@ int compile(const CompileCommandOptions &options) {
 void addCompileCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<CompileCommandOptions>();
   CLI::App *command = app.add_subcommand("compile", "translate RTSL files, and show any stage on the way");
-  command->add_option("FILE", options->files, "RTSL files; - is standard input")->required();
+  command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
   command->add_option("--emit", options->stage, "what to write")
       ->transform(CLI::CheckedTransformer(stages).description(""))
-      ->type_name("ast|typed-ast|ir|ssa|split|llvm")
+      ->type_name("ast|typed-ast|ir|ssa|split|llvm|ptx")
       ->required();
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
+  command->add_option("--set", options->overrides, "change a value of the scene file, such as camera.fov=30")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
-  command->footer("example:\n  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir");
-  command->callback([options, &action] { action = [options] { return compile(*options); }; });
+  command->footer("examples:\n"
+                  "  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir\n"
+                  "  rtslc compile scene.json --emit=ptx --gpu-arch=sm_90 -o scene.ptx");
+  command->callback([options, &action] {
+    checkInputs(*options);
+    action = [options] { return compile(*options); };
+  });
 }
 
 } // namespace rtsl::tool

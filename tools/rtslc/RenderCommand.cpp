@@ -2,8 +2,10 @@
 #include "CommandLine.h"
 #include "Messages.h"
 #include "Progress.h"
-#include "Shaders.h"
+#include "SceneShaders.h"
 #include "codegen/driver/Compiler.h"
+#include "runtime/FlatScene.h"
+#include "runtime/HostMegakernel.h"
 #include "runtime/MachineStack.h"
 #include "runtime/Renderer.h"
 #include "scene/SceneFile.h"
@@ -68,36 +70,6 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options, const 
   return render;
 }
 
-/// Which classes the scene has objects of, and which materials meet which primitives.
-LinkRequest linkRequest(const scene::SceneDescription &description) {
-  LinkRequest request;
-  request.classes = scene::classesUsed(description);
-  for (const scene::GeometryDescription &geometry : description.objects) {
-    const scene::ObjectDescription *material = geometry.material.object.get();
-    if (!material)
-      if (auto named = description.materials.find(geometry.material.name.text); named != description.materials.end())
-        material = &named->second;
-    if (material)
-      request.surfaces.push_back({geometry.primitive ? geometry.primitive->className.text : std::string(),
-                                  material->className.text});
-  }
-  return request;
-}
-
-/// Reads and checks the files that the scene imports; null if there were errors.
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, Messages &messages) {
-  Shaders shaders(messages);
-  for (const scene::ImportDescription &import : description.imports) {
-    const SourceRange range = messages.rangeOf(import.name.place);
-    if (import.path.empty())
-      messages.diagnostics.report(Code::unknownModule, range, import.name.text);
-    else
-      shaders.add(import.path, range);
-  }
-  std::unique_ptr<typed::Module> module = shaders.check();
-  return messages.diagnostics.hasErrors() ? nullptr : std::move(module);
-}
-
 struct Times {
   double compile = 0, scene = 0, image = 0;
 };
@@ -134,6 +106,17 @@ void printSummary(const RenderCommandOptions &options, const runtime::RenderOpti
   }
 }
 
+/// By the GPU's program.
+runtime::Image renderFlat(const runtime::Scene &scene, const runtime::RenderOptions &options,
+                          runtime::RenderStatistics &statistics) {
+  const Clock::time_point start = Clock::now();
+  runtime::FlatScene flat = runtime::flatten(scene);
+  const double seconds = secondsSince(start);
+  runtime::Image image = runtime::renderOnHost(scene.program().megakernel, std::move(flat), options, &statistics);
+  statistics.buildSeconds = seconds;
+  return image;
+}
+
 void renderScene(const RenderCommandOptions &options, Messages &messages) {
   runtime::checkWritable(options.output);
   const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
@@ -160,7 +143,9 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   if (!options.quiet)
     render.progress = [&](double share) { progress.update(share); };
   runtime::RenderStatistics statistics;
-  const runtime::Image image = runtime::render(scene, render, &statistics);
+  const runtime::Image image = options.common.compile.target == Target::HostMegakernel
+                                   ? renderFlat(scene, render, statistics)
+                                   : runtime::render(scene, render, &statistics);
   progress.finish();
   std::uint64_t stackBytes = 0;
   if (runtime::failedMachineStacks(&stackBytes))
@@ -212,6 +197,13 @@ void addRenderCommand(CLI::App &app, Action &action) {
                                               {"embree", runtime::Traversal::Embree}, {"device", runtime::Traversal::Device}})
                       .description(""))
       ->type_name("embree|device");
+  command
+      ->add_option("--target", options->common.compile.target,
+                   "host: the fastest way on this machine; host-megakernel: the program that GPUs run, on the CPU")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Target>{{"host", Target::Host},
+                                                                        {"host-megakernel", Target::HostMegakernel}})
+                      .description(""))
+      ->type_name("host|host-megakernel");
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
   addCompileOptions(*command, options->common);

@@ -1,0 +1,84 @@
+#include "runtime/FlatScene.h"
+
+#include "runtime/BvhBuilder.h"
+#include "runtime/Scene.h"
+
+#include <algorithm>
+
+namespace rtsl::runtime {
+
+namespace {
+
+/// A line of a cache; nodes are as large.
+constexpr std::uint64_t alignment = 64;
+
+class Flattener {
+public:
+  FlatScene take() {
+    std::sort(flat.pointers.begin(), flat.pointers.end());
+    return std::move(flat);
+  }
+
+  /// Adds a copy of an array; gives its distance from the start.
+  template <typename Element>
+  std::uint64_t add(const Element *elements, std::size_t count) {
+    std::uint64_t start = (flat.bytes.size() + alignment - 1) / alignment * alignment;
+    flat.bytes.resize(start + count * sizeof(Element));
+    std::memcpy(flat.bytes.data() + start, elements, count * sizeof(Element));
+    return start;
+  }
+
+  /// Adds an array and makes the pointer at `place` lead there. An absent or empty array is null.
+  template <typename Element>
+  std::uint64_t addAt(std::uint64_t place, const Element *elements, std::size_t count) {
+    std::uint64_t start = 0;
+    if (elements && count) {
+      start = add(elements, count);
+      flat.pointers.push_back(place);
+    }
+    std::memcpy(flat.bytes.data() + place, &start, sizeof start);
+    return start;
+  }
+
+private:
+  FlatScene flat;
+};
+
+} // namespace
+
+FlatScene flatten(const Scene &scene) {
+  const Bvh bvh = buildBvh(scene);
+  RtslLaunch launch = scene.launch();
+  bvh.install(launch);
+
+  Flattener flattener;
+  flattener.add(&launch, 1);
+  const std::uint64_t records =
+      flattener.addAt(offsetof(RtslLaunch, records), launch.records, scene.recordBytes());
+  flattener.addAt(offsetof(RtslLaunch, instances), launch.instances, launch.instanceCount);
+  const std::uint64_t meshes =
+      flattener.addAt(offsetof(RtslLaunch, meshes), launch.meshes, launch.meshCount);
+  flattener.addAt(offsetof(RtslLaunch, lights), launch.lights, launch.lightCount);
+  flattener.addAt(offsetof(RtslLaunch, nodes), launch.nodes, bvh.nodes.size());
+  flattener.addAt(offsetof(RtslLaunch, leafItems), launch.leafItems, bvh.items.size());
+  for (std::uint32_t i = 0; i < launch.meshCount; ++i) {
+    const RtslMesh &mesh = launch.meshes[i];
+    const std::uint64_t place = meshes + i * sizeof(RtslMesh);
+    const std::size_t vertices = mesh.vertexCount;
+    flattener.addAt(place + offsetof(RtslMesh, positions), mesh.positions, 3 * vertices);
+    flattener.addAt(place + offsetof(RtslMesh, normals), mesh.normals, 3 * vertices);
+    flattener.addAt(place + offsetof(RtslMesh, uvs), mesh.uvs, 2 * vertices);
+    flattener.addAt(place + offsetof(RtslMesh, indices), mesh.indices,
+                    3 * std::size_t(mesh.triangleCount));
+  }
+  static_assert(offsetof(RtslBuffer, addressHigh) == offsetof(RtslBuffer, addressLow) + 4);
+  for (const Scene::BufferPlace &buffer : scene.buffers()) {
+    std::uint64_t elements;
+    std::memcpy(&elements, launch.records + buffer.offset, sizeof elements);
+    flattener.addAt(records + buffer.offset, reinterpret_cast<const std::uint8_t *>(elements),
+                    buffer.bytes);
+  }
+  return flattener.take();
+}
+
+} // namespace rtsl::runtime

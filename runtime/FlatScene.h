@@ -1,0 +1,48 @@
+//===- FlatScene.h - a scene as one block of bytes ------------------------===//
+//
+// Everything that an RtslLaunch leads to, the launch first: records, tables, the tree, meshes,
+// buffers. Pointers hold distances from the start; the scene runs wherever it lies once its address
+// was added to them, in the memory of this process or of a GPU.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace rtsl::runtime {
+
+class Scene;
+
+struct FlatScene {
+  std::vector<std::uint8_t> bytes;
+  /// Where the pointers lie, in bytes from the start and ascending. Each is 64 bits wide, with an
+  /// alignment of 4; null pointers are not in here.
+  std::vector<std::uint64_t> pointers;
+
+  RtslLaunch launch() const {
+    RtslLaunch launch;
+    std::memcpy(&launch, bytes.data(), sizeof launch);
+    return launch;
+  }
+  void setLaunch(const RtslLaunch &launch) { std::memcpy(bytes.data(), &launch, sizeof launch); }
+
+  /// Makes the pointers those of a scene that lies at `address`, which is a multiple of 64.
+  void relocate(std::uint64_t address) {
+    for (std::uint64_t place : pointers) {
+      std::uint64_t pointer;
+      std::memcpy(&pointer, bytes.data() + place, sizeof pointer);
+      pointer += address;
+      std::memcpy(bytes.data() + place, &pointer, sizeof pointer);
+    }
+  }
+};
+
+/// The scene with a tree for the device traversal. Width, height, depth and seed of its launch are
+/// 0, and nothing in it depends on where anything lay: the same scene gives the same bytes.
+FlatScene flatten(const Scene &scene);
+
+} // namespace rtsl::runtime

@@ -1,0 +1,33 @@
+#include "runtime/RenderOptions.h"
+
+#include "runtime/Error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace rtsl::runtime {
+
+static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowest,
+                       std::uint64_t highest) {
+  if (value < lowest || value > highest)
+    throw Error(ErrorCode::OutOfRange, fmt::format("the {} must lie between {} and {}, not be {}",
+                                                   what, lowest, highest, value));
+}
+
+void checkOptions(const RenderOptions &options) {
+  checkRange("width", options.width, 1, 65536);
+  checkRange("height", options.height, 1, 65536);
+  checkRange("number of samples per pixel", options.samplesPerPixel, 1, 0xfffffffe);
+  // Each level of trace takes stack of the thread.
+  checkRange("depth", options.maxDepth, 0, 256);
+}
+
+unsigned threadCount(const RenderOptions &options) {
+  if (options.threads)
+    return std::min(options.threads, 1024u);
+  return std::max(1u, std::thread::hardware_concurrency());
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,38 @@
+//===- Megakernel.cpp - what makes a program need nobody else -------------===//
+//
+// Linked into programs for the GPU and for `--target=host-megakernel`: traversal by our own tree,
+// memory functions, and the entries that run lanes.
+//
+//===----------------------------------------------------------------------===//
+#include "runtime/device/Megakernel.h"
+
+#include "runtime/device/Traverse.h"
+
+using namespace rtsl;
+
+extern "C" {
+
+uint32_t rtsl_traverse(RtslState *state, uint32_t anyHit) {
+  uint32_t answer = device::traverseDevice(*state, anyHit, rtsl_rt_Primitive_intersect);
+  if (answer == RTSL_BAD_RAY)
+    device::countUp(&state->launch->status->badRays);
+  return answer;
+}
+
+uint64_t rtsl_lane_bytes(uint32_t maxDepth) {
+  return device::laneBytes(maxDepth);
+}
+
+void rtsl_run_lane(const RtslJob *job, uint32_t lane) {
+  device::runLane(*job, lane);
+}
+
+#ifdef __NVPTX__
+/// The kernel: a thread a lane, in whole warps.
+__attribute__((nvptx_kernel)) void rtsl_render(const RtslJob *job) {
+  device::runLane(*job, __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
+                            __nvvm_read_ptx_sreg_tid_x());
+}
+#endif
+
+} // extern "C"

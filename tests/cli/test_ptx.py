@@ -1,0 +1,49 @@
+"""PTX: the same on every run, and accepted by NVIDIA's assembler where that is installed."""
+
+import shutil
+import subprocess
+import unittest
+
+from harness import EXAMPLES, USAGE, Case
+
+PTXAS = shutil.which("ptxas") or shutil.which("/usr/local/cuda/bin/ptxas")
+SCENES = sorted(EXAMPLES.glob("*/scene.json"))
+
+
+class Ptx(Case):
+    def test_it_is_the_same_on_every_run(self):
+        sources = sorted((EXAMPLES / "glass").glob("*.rtsl"))
+        for inputs in (sources, [EXAMPLES / "glass" / "scene.json"]):
+            first, _ = self.run_rtslc("compile", *inputs, "--emit=ptx")
+            second, _ = self.run_rtslc("compile", *inputs, "--emit=ptx")
+            self.assertEqual(first, second)
+
+    @unittest.skipUnless(PTXAS, "ptxas is not installed")
+    def test_the_assembler_accepts_it(self):
+        self.assertTrue(SCENES)
+        for arch in ("sm_75", "sm_80", "sm_90"):
+            for scene in SCENES:
+                with self.subTest(arch=arch, scene=scene.parent.name):
+                    self.assemble(arch, scene)
+                    self.assemble(arch, *sorted(scene.parent.glob("*.rtsl")), relocatable=True)
+
+    def assemble(self, arch, *inputs, relocatable=False):
+        self.run_rtslc("compile", *inputs, "--emit=ptx", f"--gpu-arch={arch}", "-o", "out.ptx")
+        done = subprocess.run([PTXAS, f"-arch={arch}", "-O1", *(["-c"] if relocatable else []), "out.ptx", "-o", "out.cubin"],
+                              cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr[:2000])
+
+    def test_the_architecture_is_one_of_those_listed(self):
+        _, error = self.run_rtslc("compile", EXAMPLES / "glass" / "Glass.rtsl", "--emit=ptx", "--gpu-arch=sm_42", status=USAGE)
+        self.assertIn("sm_75", error)
+
+    def test_a_scene_stands_alone(self):
+        glass = EXAMPLES / "glass"
+        _, error = self.run_rtslc("compile", glass / "scene.json", glass / "Glass.rtsl", "--emit=ptx", status=USAGE)
+        self.assertIn("one scene", error)
+        self.run_rtslc("compile", glass / "scene.json", "--emit=ast", status=USAGE)
+        self.run_rtslc("compile", glass / "Glass.rtsl", "--emit=ptx", "--set", "camera.fov=30", status=USAGE)
+
+
+if __name__ == "__main__":
+    unittest.main()

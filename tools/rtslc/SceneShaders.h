@@ -1,0 +1,19 @@
+//===- SceneShaders.h - the shaders that a scene file names ---------------===//
+#pragma once
+
+#include "Messages.h"
+#include "codegen/driver/Compiler.h"
+#include "scene/SceneFile.h"
+#include "sema/TypedAst.h"
+
+#include <memory>
+
+namespace rtsl::tool {
+
+/// Reads and checks the files that the scene imports; null if there were errors.
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, Messages &messages);
+
+/// Which classes the scene has objects of, and which materials meet which primitives.
+LinkRequest linkRequest(const scene::SceneDescription &description);
+
+} // namespace rtsl::tool
