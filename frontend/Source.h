@@ -51,6 +51,9 @@ public:
   /// `whyNot` (as the operating system puts it).
   std::optional<FileId> addFile(const std::string &path, std::string &whyNot);
 
+  /// Ids are 1 to this.
+  FileId count() const { return static_cast<FileId>(files.size()); }
+
   std::string_view name(FileId file) const;
   std::string_view text(FileId file) const;
   std::string_view text(SourceRange range) const;

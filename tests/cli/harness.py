@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -61,6 +62,25 @@ class Case(unittest.TestCase):
             self.assertEqual(message["range"]["begin"]["column"], column, message)
         if file is not None:
             self.assertTrue(message["range"]["file"].endswith(file), message)
+
+    def write_exr(self, name, width, height, value):
+        """A picture of one value everywhere: R, G and B of 32 bits, not compressed."""
+        def attribute(name, kind, data):
+            return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(data)) + data
+
+        channels = b"".join(c + b"\0" + struct.pack("<iBxxxii", 2, 0, 1, 1) for c in (b"B", b"G", b"R")) + b"\0"
+        window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+        header = struct.pack("<ii", 20000630, 2)
+        header += attribute("channels", "chlist", channels) + attribute("compression", "compression", b"\0")
+        header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
+        header += attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+        header += attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
+        header += attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0"
+        line = struct.pack("<f", value) * (3 * width)
+        first = len(header) + 8 * height
+        offsets = b"".join(struct.pack("<q", first + y * (8 + len(line))) for y in range(height))
+        lines = b"".join(struct.pack("<ii", y, len(line)) + line for y in range(height))
+        return self.write(name, header + offsets + lines)
 
     def files(self):
         return sorted(p.name for p in self.folder.iterdir())

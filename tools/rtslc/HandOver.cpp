@@ -15,7 +15,7 @@ namespace rtsl::tool {
 
 namespace {
 
-constexpr Summary handedOver[] = {renderSummary, compareSummary};
+constexpr Summary handedOver[] = {renderSummary, reportSummary, compareSummary};
 
 } // namespace
 

@@ -1,6 +1,7 @@
 //===- RenderCommand.cpp - rtslc render -----------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
+#include "PictureSize.h"
 #include "Progress.h"
 #include "SceneShaders.h"
 #include "codegen/driver/Compiler.h"
@@ -34,7 +35,7 @@ struct RenderCommandOptions {
   std::vector<std::string> overrides;
   std::optional<std::uint32_t> samples, depth, seed;
   std::uint32_t threads = 0;
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+  std::optional<PictureSize> size;
   runtime::Traversal traversal = runtime::Traversal::Embree;
   bool json = false;
   bool quiet = false;
@@ -42,25 +43,14 @@ struct RenderCommandOptions {
 
 std::atomic<bool> interrupted{false};
 
-/// "960x540" to its two numbers, each from 1 to 65536.
-std::pair<std::uint32_t, std::uint32_t> parseSize(const std::string &text) {
-  unsigned width = 0, height = 0;
-  int used = 0;
-  const bool isSize = text.size() < 32 && std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) == 2 &&
-                      static_cast<std::size_t>(used) == text.size();
-  if (!isSize || width < 1 || height < 1 || width > 65536 || height > 65536)
-    throw CLI::ValidationError("--size", "give WIDTHxHEIGHT in pixels, each from 1 to 65536, such as 960x540");
-  return {width, height};
-}
-
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 runtime::RenderOptions renderOptions(const RenderCommandOptions &options, const scene::RenderSettings &settings) {
   runtime::RenderOptions render;
-  render.width = options.size ? options.size->first : settings.width;
-  render.height = options.size ? options.size->second : settings.height;
+  render.width = options.size ? options.size->width : settings.width;
+  render.height = options.size ? options.size->height : settings.height;
   render.samplesPerPixel = options.samples.value_or(settings.samplesPerPixel);
   render.maxDepth = options.depth.value_or(settings.depth);
   render.seed = options.seed.value_or(settings.seed);
@@ -178,10 +168,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
   command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
   command->add_option("-o,--output", options->output, "the picture: .png or .exr")->required()->type_name("IMAGE");
   command->add_option("--spp", options->samples, "samples a pixel")->check(CLI::Range(1u, 1u << 24))->type_name("N");
-  command
-      ->add_option_function<std::string>(
-          "--size", [options](const std::string &text) { options->size = parseSize(text); }, "size in pixels")
-      ->type_name("WxH");
+  addSizeOption(*command, options->size);
   command->add_option("--threads", options->threads, "threads; all cores if not given")
       ->check(CLI::Range(1u, 4096u))
       ->type_name("N");

@@ -8,10 +8,11 @@
 using namespace rtsl::tool;
 
 int main(int argc, char **argv) {
-  CLI::App app("renders with RTSL and compares pictures", "rtslc");
+  CLI::App app("renders with RTSL, compares pictures and reports what they cost", "rtslc");
   app.require_subcommand(1);
   Action action;
   addRenderCommand(app, action);
+  addReportCommand(app, action);
   addCompareCommand(app, action);
   return run(app, action, argc, argv);
 }

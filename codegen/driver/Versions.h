@@ -1,0 +1,11 @@
+//===- Versions.h - what the compiler was built with ----------------------===//
+#pragma once
+
+#include <string>
+
+namespace rtsl {
+
+/// The version of LLVM and MLIR, such as "22.1.0".
+std::string llvmVersion();
+
+} // namespace rtsl

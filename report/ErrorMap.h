@@ -1,0 +1,20 @@
+//===- ErrorMap.h - where a picture is wrong, in false colours ------------===//
+#pragma once
+
+#include "report/Flip.h"
+#include "runtime/Image.h"
+
+#include <string>
+
+namespace rtsl::report {
+
+/// FLIP's errors from 0 (black) through violet and orange to 1 (pale yellow), in linear light.
+runtime::Image colorFlipMap(const FlipMap &map);
+
+/// A map of one channel on a logarithmic scale from `low` (black) to `high` (pale yellow).
+runtime::Image colorLogMap(const runtime::Image &map, double low, double high);
+
+/// "data:image/png;base64,...": a picture as part of a page.
+std::string dataUrl(const runtime::Image &rgb);
+
+} // namespace rtsl::report

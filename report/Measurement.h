@@ -1,0 +1,46 @@
+//===- Measurement.h - what one picture cost and how wrong it is ----------===//
+#pragma once
+
+#include "runtime/Error.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rtsl::report {
+
+/// One picture of a study. Errors are not a number where the reference cannot be compared with.
+struct Measurement {
+  std::string configuration;
+  std::uint32_t samplesPerPixel = 0;
+  std::uint32_t run = 0;  // from 0: which of the independent runs with this number of samples
+  std::uint32_t seed = 0; // of the random numbers
+  double buildSeconds = 0, renderSeconds = 0;
+  double rmse = 0, relMse = 0, bias = 0, flip = 0, flipHdr = 0;
+  std::uint64_t nanPixels = 0, infinitePixels = 0;
+  std::uint64_t samplesNotFinite = 0; // counted as black by the renderer
+  std::uint64_t pictureHash = 0;      // the same for the same bits
+};
+
+/// What all runs of a configuration with one number of samples say together.
+struct LevelVariance {
+  std::string configuration;
+  std::uint32_t samplesPerPixel = 0;
+  double variance = 0;    // of a picture: the unbiased sample variance over the runs, mean over pixels and channels
+  double meanSeconds = 0; // of rendering one picture
+  double efficiency = 0;  // 1 / (variance x time); not finite if the variance is 0
+};
+
+/// Tables with a header line that grow by whole lines, so that an interrupted study can go on. Reading leaves out a
+/// last line that was cut off. Writing throws FileUnwritable; reading gives nothing for a file that is not there and
+/// throws BadImage for one that is no such table.
+std::vector<Measurement> readMeasurements(const std::string &path);
+void appendMeasurement(const std::string &path, const Measurement &measurement);
+std::vector<LevelVariance> readLevels(const std::string &path);
+void appendLevel(const std::string &path, const LevelVariance &level);
+
+/// FNV-1a over the bits of the pixels.
+std::uint64_t hashOf(const std::vector<float> &pixels);
+
+} // namespace rtsl::report

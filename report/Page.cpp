@@ -1,0 +1,225 @@
+//===- Page.cpp - a study as an HTML page ---------------------------------===//
+#include "report/Page.h"
+
+#include "report/ErrorMap.h"
+#include "report/LogPlot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace rtsl::report {
+
+namespace {
+
+constexpr const char *style = R"(:root { color-scheme: light dark; --paper: #ffffff; --ink: #1c2126; --muted: #68707a; --grid: #e4e7eb; --card: #f6f7f9; --warn: #8a4b00; }
+@media (prefers-color-scheme: dark) { :root { --paper: #16191d; --ink: #e6e9ec; --muted: #9aa3ad; --grid: #2b3138; --card: #1e2227; --warn: #f0b060; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 1360px; padding: 24px clamp(12px, 3vw, 40px) 64px; background: var(--paper); color: var(--ink);
+       font: 15px/1.5 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
+h1 { font-size: 26px; line-height: 1.2; margin: 0 0 4px; overflow-wrap: anywhere; }
+h2 { font-size: 19px; margin: 36px 0 10px; }
+p, li { max-width: 78ch; }
+.muted { color: var(--muted); }
+.problems { background: var(--card); border-left: 4px solid var(--warn); padding: 8px 16px; margin: 16px 0; }
+.problems h2 { margin: 4px 0; font-size: 16px; color: var(--warn); }
+.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 520px), 1fr)); gap: 20px; }
+.legend { display: flex; flex-wrap: wrap; gap: 4px 20px; padding: 0; margin: 8px 0 14px; list-style: none; }
+.legend li { white-space: nowrap; }
+.table { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: 14px; }
+th, td { text-align: right; padding: 5px 10px; border-bottom: 1px solid var(--grid); white-space: nowrap; }
+th { color: var(--muted); font-weight: 600; vertical-align: bottom; }
+th:first-child, td:first-child { text-align: left; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 300px), 1fr)); gap: 18px; }
+figure { margin: 0; }
+img { width: 100%; height: auto; display: block; border-radius: 4px; image-rendering: auto; }
+figcaption { font-size: 13px; color: var(--muted); margin-top: 4px; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: 2px 18px; margin: 0; }
+dt { color: var(--muted); } dd { margin: 0; overflow-wrap: anywhere; }
+code { background: var(--card); padding: 1px 5px; border-radius: 3px; overflow-wrap: anywhere; }
+summary { cursor: pointer; margin: 24px 0 8px; font-weight: 600; }
+)";
+
+/// Three significant digits, and words for what is no number.
+std::string figure(double value) {
+  if (std::isnan(value))
+    return "–";
+  if (std::isinf(value))
+    return "∞";
+  return fmt::format("{:.3g}", value);
+}
+
+std::string seconds(double value) {
+  if (!std::isfinite(value))
+    return figure(value);
+  return value < 0.1 ? fmt::format("{:.3g} ms", value * 1e3) : fmt::format("{:.3g} s", value);
+}
+
+std::string interval(const Estimate &estimate, const char *format = "{:.3f}") {
+  const auto text = [&](double value) { return fmt::format(fmt::runtime(format), value); };
+  return fmt::format("{} <span class=\"muted\">[{}, {}]</span>", text(estimate.value), text(estimate.low), text(estimate.high));
+}
+
+std::string row(const std::vector<std::string> &cells, const char *tag = "td") {
+  std::string html = "<tr>";
+  for (const std::string &cell : cells)
+    html += fmt::format("<{}>{}</{}>", tag, cell, tag);
+  return html + "</tr>\n";
+}
+
+std::string table(const std::vector<std::string> &header, const std::string &rows) {
+  return fmt::format("<div class=\"table\"><table><thead>{}</thead><tbody>\n{}</tbody></table></div>\n", row(header, "th"), rows);
+}
+
+std::string definitions(const std::vector<std::pair<std::string, std::string>> &facts) {
+  std::string html = "<dl>";
+  for (const auto &[name, value] : facts)
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>", escapeHtml(name), escapeHtml(value));
+  return html + "</dl>\n";
+}
+
+//===-- what it says ------------------------------------------------------===//
+
+std::vector<std::string> findings(const Summary &summary) {
+  std::vector<std::string> sentences;
+  std::vector<const SubjectSummary *> fitted;
+  for (const SubjectSummary &subject : summary.subjects)
+    if (subject.relMseOverSeconds.points && std::isfinite(subject.secondsTo(summary.commonRelMse)))
+      fitted.push_back(&subject);
+  if (!fitted.empty()) {
+    const auto slower = [&](const SubjectSummary *a, const SubjectSummary *b) {
+      return a->secondsTo(summary.commonRelMse) < b->secondsTo(summary.commonRelMse);
+    };
+    const SubjectSummary *fastest = *std::min_element(fitted.begin(), fitted.end(), slower);
+    const SubjectSummary *slowest = *std::max_element(fitted.begin(), fitted.end(), slower);
+    const double best = fastest->secondsTo(summary.commonRelMse), worst = slowest->secondsTo(summary.commonRelMse);
+    sentences.push_back(fmt::format("<b>{}</b> comes to a relMSE of {} first, in {} a picture.", escapeHtml(fastest->name), figure(summary.commonRelMse), seconds(best)));
+    if (fastest != slowest)
+      sentences.push_back(fmt::format("<b>{}</b> takes longest: {:.2f} times as long.", escapeHtml(slowest->name), worst / best));
+    const LineFit &line = fastest->relMseOverSamples;
+    sentences.push_back(fmt::format("Its relMSE falls with the samples to the power of {}; independent samples give -1{}.", interval(line.slope, "{:.3f}"),
+                                    line.slope.low <= -1 && -1 <= line.slope.high ? ", which this agrees with" : ", which this does <b>not</b> agree with"));
+  }
+  std::map<std::uint64_t, std::vector<std::string>> byPicture;
+  for (const SubjectSummary &subject : summary.subjects)
+    if (!subject.levels.empty())
+      byPicture[subject.commonPicture].push_back(subject.name);
+  for (const auto &[picture, names] : byPicture)
+    if (names.size() > 1) {
+      std::string list;
+      for (std::size_t i = 0; i < names.size(); ++i)
+        list += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + escapeHtml(names[i]);
+      sentences.push_back(fmt::format("The same picture, bit for bit: {}.", list));
+    }
+  return sentences;
+}
+
+//===-- plots -------------------------------------------------------------===//
+
+std::string drawError(const Summary &summary, const std::string &title, const std::string &unit, Estimate LevelSummary::*error,
+                      bool hasLines, double floor) {
+  LogPlot plot;
+  plot.title = title;
+  plot.xLabel = "seconds of rendering for one picture";
+  plot.yLabel = unit;
+  plot.floor = floor;
+  plot.floorText = "the reference's own error";
+  for (std::size_t i = 0; i < summary.subjects.size(); ++i) {
+    const SubjectSummary &subject = summary.subjects[i];
+    PlotSeries series{subject.name, unsigned(i), {}, {}};
+    for (const LevelSummary &level : subject.levels)
+      series.points.push_back({level.seconds.value, level.*error,
+                               fmt::format("{}, {} spp: {} in {}", subject.name, level.samplesPerPixel, figure((level.*error).value), seconds(level.seconds.value))});
+    if (hasLines)
+      series.line = subject.relMseOverSeconds;
+    plot.series.push_back(std::move(series));
+  }
+  return drawLogPlot(plot);
+}
+
+std::string plots(const Summary &summary, const Reference &reference) {
+  std::string html = "<ul class=\"legend\">";
+  for (std::size_t i = 0; i < summary.subjects.size(); ++i)
+    html += fmt::format("<li>{} {}</li>", drawLegendKey(unsigned(i)), escapeHtml(summary.subjects[i].name));
+  html += "</ul>\n<div class=\"plots\">\n";
+  const double relMseFloor = reference.ownError ? reference.ownError->relMse : 0, rmseFloor = reference.ownError ? reference.ownError->rmse : 0;
+  html += drawError(summary, "Relative mean square error, with fitted lines and 95 % bands", "relMSE", &LevelSummary::relMse, true, relMseFloor) + "\n";
+  html += drawError(summary, "Root mean square error", "RMSE", &LevelSummary::rmse, false, rmseFloor) + "\n";
+  html += drawError(summary, "FLIP, as seen on a screen", "mean FLIP", &LevelSummary::flip, false, 0) + "\n";
+  html += drawError(summary, "HDR-FLIP, over all exposures", "mean HDR-FLIP", &LevelSummary::flipHdr, false, 0) + "\n";
+  return html + "</div>\n<p class=\"muted\">Points are medians of the runs, bars their 95 % intervals. Rest the pointer on a point for its figures.</p>\n";
+}
+
+//===-- tables ------------------------------------------------------------===//
+
+std::string configurations(const Summary &summary) {
+  std::string rows;
+  for (const SubjectSummary &subject : summary.subjects) {
+    const bool hasLine = subject.relMseOverSeconds.points != 0;
+    const double lastSeconds = subject.levels.empty() ? 0 : subject.levels.back().seconds.value;
+    rows += row({escapeHtml(subject.name), seconds(subject.compileSeconds), seconds(subject.buildSeconds.value),
+                 subject.levels.empty() ? "–" : fmt::format("{} <span class=\"muted\">at {} spp</span>", seconds(lastSeconds), subject.levels.back().samplesPerPixel),
+                 hasLine ? interval(subject.relMseOverSeconds.slope) : "–", hasLine ? interval(subject.relMseOverSamples.slope) : "–",
+                 hasLine ? seconds(subject.secondsTo(summary.commonRelMse)) : "–", subject.efficiency > 0 ? figure(subject.efficiency) : "–",
+                 fmt::format("{} / {} / {}", subject.nanPixels, subject.infinitePixels, subject.samplesNotFinite)});
+  }
+  return table({"configuration", "compile", "build", "trace", "slope over seconds", "slope over samples",
+                fmt::format("time to relMSE {}", figure(summary.commonRelMse)), "efficiency<br>1/(variance·s)", "NaN / Inf pixels<br>/ bad samples"},
+               rows);
+}
+
+std::string levels(const Summary &summary) {
+  std::string rows;
+  for (const SubjectSummary &subject : summary.subjects)
+    for (const LevelSummary &level : subject.levels)
+      rows += row({escapeHtml(subject.name), fmt::format("{}", level.samplesPerPixel), fmt::format("{}", level.runs), seconds(level.seconds.value), figure(level.rmse.value),
+                   figure(level.relMse.value) + (level.isResolved ? "" : " *"), figure(level.flip.value), figure(level.flipHdr.value), figure(level.variance),
+                   level.variance > 0 ? figure(level.efficiency) : "–"});
+  return table({"configuration", "spp", "runs", "seconds", "RMSE", "relMSE", "FLIP", "HDR-FLIP", "variance", "efficiency"}, rows);
+}
+
+} // namespace
+
+std::string writePage(const Context &context, const Summary &summary, const Reference &reference, const std::vector<Exhibit> &exhibits) {
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  html += fmt::format("<title>Error against run time: {}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n", escapeHtml(context.scene), style, plotStyle());
+  html += fmt::format("<h1>Error against run time</h1>\n<p class=\"muted\"><code>{}</code>, {}x{} pixels, {} independent runs with each number of samples, {} of rendering for "
+                      "each configuration.</p>\n",
+                      escapeHtml(context.scene), context.width, context.height, context.runs, seconds(context.budgetSeconds));
+  if (!summary.problems.empty()) {
+    html += "<div class=\"problems\"><h2>Before you trust a figure</h2><ul>\n";
+    for (const std::string &problem : summary.problems)
+      html += fmt::format("<li>{}</li>\n", escapeHtml(problem));
+    html += "</ul></div>\n";
+  }
+  if (const std::vector<std::string> sentences = findings(summary); !sentences.empty()) {
+    html += "<ul>\n";
+    for (const std::string &sentence : sentences)
+      html += fmt::format("<li>{}</li>\n", sentence);
+    html += "</ul>\n";
+  }
+  html += fmt::format("<p>The reference is {}.</p>\n", escapeHtml(reference.origin));
+  html += "<h2>Error against seconds</h2>\n" + plots(summary, reference);
+  html += "<h2>Configurations</h2>\n" + configurations(summary);
+  html += "<p class=\"muted\">Slopes are of log relMSE, by least squares over all runs, with 95 % confidence. The time to an error is read off the fitted line. Compile, build "
+          "and trace are apart: compiling the shaders, building acceleration structures, tracing one picture.</p>\n";
+  if (!exhibits.empty()) {
+    html += "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
+    for (const Exhibit &exhibit : exhibits)
+      html += fmt::format("<figure><img alt=\"{}\" src=\"{}\" width=\"{}\" height=\"{}\"><figcaption>{}</figcaption></figure>\n", escapeHtml(exhibit.caption),
+                          dataUrl(exhibit.rgb), exhibit.rgb.width, exhibit.rgb.height, escapeHtml(exhibit.caption));
+    html += "</div>\n";
+  }
+  html += "<details><summary>All numbers of samples</summary>\n" + levels(summary) +
+          "<p class=\"muted\">* the reference's own error is more than a tenth of this one; the fitted line leaves it out.</p></details>\n";
+  html += "<h2>How it was made</h2>\n" + definitions(context.versions) + "<br>" + definitions(context.machine);
+  html += fmt::format("<p>Again: <code>{}</code></p>\n", escapeHtml(context.command));
+  html += "<p class=\"muted\">RMSE: root mean square difference. relMSE: mean of (difference)² / (reference² + 0.01). FLIP: Andersson et al. 2020; HDR-FLIP: Andersson et al. 2021; 67 "
+          "pixels a degree. Variance: of a picture over the runs, mean over pixels and channels.</p>\n</body>\n</html>\n";
+  return html;
+}
+
+} // namespace rtsl::report

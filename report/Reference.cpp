@@ -1,0 +1,100 @@
+//===- Reference.cpp ------------------------------------------------------===//
+#include "report/Reference.h"
+
+#include "report/ErrorMetrics.h"
+#include "report/RunningVariance.h"
+#include "runtime/AtomicFile.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <unistd.h>
+
+namespace rtsl::report {
+
+namespace {
+
+constexpr std::uint32_t firstSeed = 1u << 24; // far from those of a study
+constexpr std::uint32_t mostSamples = 1u << 20;
+
+std::string picturePath(const std::string &folder) { return folder + "/reference.exr"; }
+std::string factsPath(const std::string &folder) { return folder + "/reference.json"; }
+
+std::string describe(const Subject &subject, const Reference::OwnError &own) {
+  return fmt::format("the mean of {} runs with {} samples a pixel ({}), in {:.3g} s; its own RMSE is about {:.2g}, its relMSE {:.2g}",
+                     own.runs, own.samplesPerPixel, subject.name, own.seconds, own.rmse, own.relMse);
+}
+
+std::optional<Reference> readEarlier(const Subject &subject, const std::string &folder) {
+  if (::access(picturePath(folder).c_str(), R_OK) != 0 || ::access(factsPath(folder).c_str(), R_OK) != 0)
+    return std::nullopt;
+  const nlohmann::json facts = nlohmann::json::parse(runtime::readFile(factsPath(folder)), nullptr, false);
+  if (facts.is_discarded() || facts.value("subject", "") != subject.name)
+    return std::nullopt;
+  Reference reference;
+  reference.image = runtime::readImage(picturePath(folder));
+  reference.ownError = Reference::OwnError{facts.value("rmse", 0.0), facts.value("relMse", 0.0), facts.value("runs", 0u),
+                                           facts.value("spp", 0u), facts.value("seconds", 0.0)};
+  reference.origin = describe(subject, *reference.ownError);
+  return reference;
+}
+
+/// Samples a pixel so that one run takes about `seconds`, from runs that take less.
+std::uint32_t samplesFor(const Subject &subject, double seconds) {
+  std::uint32_t samples = 1;
+  for (;;) {
+    const double taken = std::max(subject.render(samples, firstSeed - 1).statistics.renderSeconds, 1e-6);
+    const double possible = samples * seconds / taken;
+    if (possible < 8.0 * samples || samples >= mostSamples / 8) // long enough to go by
+      return std::uint32_t(std::clamp(possible, 1.0, double(mostSamples)));
+    samples *= 8;
+  }
+}
+
+} // namespace
+
+Reference readReference(const std::string &path, std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+  Reference reference;
+  reference.image = runtime::readImage(path);
+  reference.origin = path;
+  const runtime::Image &image = reference.image;
+  if (image.width != width || image.height != height || image.channels != channels)
+    reference.problem = fmt::format("`{}` has {}x{} pixels of {} channels, the pictures {}x{} of {}: no errors are measured", path,
+                                    image.width, image.height, image.channels, width, height, channels);
+  else if (std::none_of(image.pixels.begin(), image.pixels.end(), [](float value) { return std::isfinite(value); }))
+    reference.problem = fmt::format("`{}` has no finite pixel: no errors are measured", path);
+  return reference;
+}
+
+Reference makeReference(const Subject &subject, const std::string &folder, std::uint32_t runs, double seconds,
+                        const ProgressFunction &progress) {
+  if (std::optional<Reference> earlier = readEarlier(subject, folder))
+    return *std::move(earlier);
+  Reference::OwnError own;
+  own.runs = runs;
+  own.samplesPerPixel = samplesFor(subject, seconds / runs);
+  RunningVariance spread;
+  for (std::uint32_t run = 0; run < runs; ++run) {
+    progress(double(run) / runs, "rendering the reference");
+    const Picture picture = subject.render(own.samplesPerPixel, firstSeed + run);
+    own.seconds += picture.statistics.renderSeconds;
+    spread.add(picture.image);
+  }
+  Reference reference;
+  reference.image = spread.mean();
+  own.rmse = std::sqrt(spread.meanVariance() / runs);
+  own.relMse = spread.meanRelativeVariance(relMseEpsilon) / runs;
+  reference.ownError = own;
+  reference.origin = describe(subject, own);
+  runtime::writeImage(picturePath(folder), reference.image);
+  const nlohmann::ordered_json facts = {{"version", 1},         {"subject", subject.name},
+                                        {"runs", own.runs},     {"spp", own.samplesPerPixel},
+                                        {"seconds", own.seconds}, {"rmse", own.rmse},
+                                        {"relMse", own.relMse}};
+  runtime::writeFileAtomically(factsPath(folder), facts.dump(2) + "\n");
+  return reference;
+}
+
+} // namespace rtsl::report

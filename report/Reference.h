@@ -1,0 +1,34 @@
+//===- Reference.h - what the pictures of a study are compared with -------===//
+#pragma once
+
+#include "report/Subject.h"
+
+#include <optional>
+#include <string>
+
+namespace rtsl::report {
+
+struct Reference {
+  runtime::Image image;
+  std::string origin; // for people: where it comes from
+  /// How wrong the reference itself is, if it was rendered here: the standard error of its mean.
+  struct OwnError {
+    double rmse = 0, relMse = 0;
+    std::uint32_t runs = 0, samplesPerPixel = 0; // of each run
+    double seconds = 0;
+  };
+  std::optional<OwnError> ownError;
+  /// Why errors cannot be measured against it; empty if they can.
+  std::string problem;
+};
+
+/// Reads a picture; one that is not finite anywhere or of another shape than `width` x `height` x `channels` is no
+/// error but a `problem`. Throws as readImage.
+Reference readReference(const std::string &path, std::uint32_t width, std::uint32_t height, std::uint32_t channels);
+
+/// Renders one as the mean of independent runs that take about `seconds` together, or takes the one that an earlier
+/// call left in `folder`. Its own error is estimated from the spread of the runs.
+Reference makeReference(const Subject &subject, const std::string &folder, std::uint32_t runs, double seconds,
+                        const ProgressFunction &progress);
+
+} // namespace rtsl::report

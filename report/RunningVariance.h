@@ -1,0 +1,30 @@
+//===- RunningVariance.h - mean and variance of a picture over runs -------===//
+#pragma once
+
+#include "runtime/Image.h"
+
+#include <vector>
+
+namespace rtsl::report {
+
+/// The mean and the unbiased sample variance of each value over pictures of one shape, by Welford's update (B. P. Welford,
+/// "Note on a method for calculating corrected sums of squares and products", 1962), which does not cancel. Values that
+/// are not finite count as 0.
+class RunningVariance {
+public:
+  void add(const runtime::Image &picture);
+
+  std::size_t pictures() const { return count; }
+  runtime::Image mean() const;
+  /// Over all values; 0 with fewer than two pictures.
+  double meanVariance() const;
+  /// Of variance / (mean^2 + epsilon) over all values.
+  double meanRelativeVariance(double epsilon) const;
+
+private:
+  std::size_t count = 0;
+  runtime::Image shape; // of the first picture, without its values
+  std::vector<double> means, squares;
+};
+
+} // namespace rtsl::report

@@ -1,0 +1,38 @@
+//===- Study.h - error against run time, measured -------------------------===//
+//
+// Renders each subject with 1, 2, 4, ... samples a pixel, several independent runs each, and compares every picture with
+// the reference. The subjects take turns, so that a machine that grows slower is unfair to none.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "report/Measurement.h"
+#include "report/Reference.h"
+#include "report/Subject.h"
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace rtsl::report {
+
+struct StudyOptions {
+  std::string folder;         // keeps measurements.csv, levels.csv, pictures/ and, while running, partial/
+  std::uint32_t runs = 8;     // with each number of samples
+  double budgetSeconds = 10;  // of rendering, for each subject; the first three levels run in any case
+  std::uint32_t mostSamples = 1u << 16;
+  ProgressFunction progress = [](double, const std::string &) {};
+};
+
+struct Study {
+  std::vector<Measurement> measurements; // in the order in which they were made
+  std::vector<LevelVariance> levels;
+};
+
+/// The picture of a subject with the most samples so far, first run.
+std::string lastPicturePath(const std::string &folder, const Subject &subject);
+
+/// Goes on where an earlier run in the same folder was interrupted; what it finds there it does not measure again.
+Study runStudy(const std::vector<Subject> &subjects, const Reference &reference, const StudyOptions &options);
+
+} // namespace rtsl::report

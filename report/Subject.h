@@ -1,0 +1,31 @@
+//===- Subject.h - what a study compares ----------------------------------===//
+#pragma once
+
+#include "runtime/Image.h"
+#include "runtime/Renderer.h"
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl::report {
+
+struct Picture {
+  runtime::Image image;
+  runtime::RenderStatistics statistics;
+};
+
+/// One way to render the scene. The name has no commas, for it goes into tables.
+struct Subject {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> settings; // what tells it from the others: {"traversal", "embree"}
+  double compileSeconds = 0;
+  /// The same arguments must give the same bits, and different seeds independent pictures.
+  std::function<Picture(std::uint32_t samplesPerPixel, std::uint32_t seed)> render;
+};
+
+/// Told how far a long piece of work is, in [0, 1], and what it does now.
+using ProgressFunction = std::function<void(double, const std::string &)>;
+
+} // namespace rtsl::report

@@ -1,0 +1,13 @@
+//===- Versions.h - what the runtime was built with -----------------------===//
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// Libraries that decide on speed or on pictures, as (name, version).
+std::vector<std::pair<std::string, std::string>> libraryVersions();
+
+} // namespace rtsl::runtime

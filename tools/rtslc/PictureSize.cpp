@@ -1,0 +1,30 @@
+//===- PictureSize.cpp ----------------------------------------------------===//
+#include "PictureSize.h"
+
+#include <cstdio>
+#include <string>
+
+namespace rtsl::tool {
+
+namespace {
+
+PictureSize parseSize(const std::string &text) {
+  unsigned width = 0, height = 0;
+  int used = 0;
+  const bool isSize = text.size() < 32 && std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) == 2 &&
+                      static_cast<std::size_t>(used) == text.size();
+  if (!isSize || width < 1 || height < 1 || width > 65536 || height > 65536)
+    throw CLI::ValidationError("--size", "give WIDTHxHEIGHT in pixels, each from 1 to 65536, such as 960x540");
+  return {width, height};
+}
+
+} // namespace
+
+void addSizeOption(CLI::App &command, std::optional<PictureSize> &size) {
+  command
+      .add_option_function<std::string>(
+          "--size", [&size](const std::string &text) { size = parseSize(text); }, "size in pixels")
+      ->type_name("WxH");
+}
+
+} // namespace rtsl::tool

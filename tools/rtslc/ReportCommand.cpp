@@ -1,0 +1,355 @@
+//===- ReportCommand.cpp - rtslc report -----------------------------------===//
+//
+// Error against run time of one scene, in every configuration that renders it.
+//
+//===----------------------------------------------------------------------===//
+#include "CommandLine.h"
+#include "Messages.h"
+#include "PictureSize.h"
+#include "Progress.h"
+#include "SceneShaders.h"
+#include "codegen/driver/Compiler.h"
+#include "codegen/driver/Versions.h"
+#include "report/ErrorMap.h"
+#include "report/ErrorMetrics.h"
+#include "report/Flip.h"
+#include "report/Machine.h"
+#include "report/Page.h"
+#include "runtime/AtomicFile.h"
+#include "runtime/MachineStack.h"
+#include "runtime/Renderer.h"
+#include "runtime/Versions.h"
+#include "scene/SceneFile.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace rtsl::tool {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct ReportOptions {
+  CommonOptions common;
+  std::string scene, folder, reference;
+  std::vector<std::string> overrides, only;
+  std::optional<std::uint32_t> depth;
+  std::optional<PictureSize> size;
+  std::uint32_t threads = 0, runs = 8;
+  double budget = 10; // seconds
+  bool fresh = false, json = false, quiet = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+double parseSeconds(const std::string &text) {
+  const std::map<std::string, double> units = {{"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}, {"h", 3600}};
+  char *end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const auto unit = units.find(end);
+  if (end == text.c_str() || unit == units.end() || !(number * unit->second >= 1e-3 && number * unit->second <= 1e6))
+    throw CLI::ValidationError("--budget", "give a time of at least 1 ms, such as 10s, 500ms or 2m");
+  return number * unit->second;
+}
+
+/// A scene that is ready to be rendered.
+struct LoadedScene {
+  scene::SceneDescription description;
+  std::unique_ptr<typed::Module> module;
+  runtime::RenderOptions render;
+};
+
+/// One scene for each program, which the subjects that differ in traversal share.
+struct Build {
+  std::shared_ptr<const runtime::Program> program;
+  std::shared_ptr<const runtime::Scene> scene;
+  double compileSeconds = 0;
+};
+
+/// Compiles the scene's shaders; nothing if there were errors.
+std::optional<Build> build(const LoadedScene &loaded, const CompileOptions &options, Messages &messages) {
+  Build result;
+  const Clock::time_point start = Clock::now();
+  result.program = compileProgram(*loaded.module, linkRequest(loaded.description), options, messages.diagnostics);
+  if (!result.program)
+    return std::nullopt;
+  result.compileSeconds = std::chrono::duration<double>(Clock::now() - start).count();
+  result.scene = std::make_shared<const runtime::Scene>(scene::buildScene(loaded.description, result.program));
+  return result;
+}
+
+report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions options, std::uint32_t samples,
+                           std::uint32_t seed) {
+  options.samplesPerPixel = samples;
+  options.seed = seed;
+  report::Picture picture;
+  picture.image = runtime::render(scene, options, &picture.statistics);
+  if (runtime::failedMachineStacks(nullptr))
+    throw runtime::Error(runtime::ErrorCode::OutOfMemory, "no memory for rays in flight; ask for a smaller `--depth`");
+  return picture;
+}
+
+/// Every way to render, the usual one first.
+std::vector<report::Subject> subjectsFor(const LoadedScene &loaded, const ReportOptions &options, Messages &messages) {
+  const std::pair<TraceMode, const char *> traceModes[] = {{TraceMode::Recurse, "recurse"}, {TraceMode::Split, "split"}};
+  const std::pair<runtime::Traversal, const char *> traversals[] = {{runtime::Traversal::Embree, "embree"},
+                                                                    {runtime::Traversal::Device, "device"}};
+  const auto isWanted = [&](const std::string &name) {
+    return options.only.empty() || std::any_of(options.only.begin(), options.only.end(), [&](const std::string &part) {
+             return name.find(part) != std::string::npos;
+           });
+  };
+  std::vector<report::Subject> subjects;
+  for (const auto &[trace, traceName] : traceModes) {
+    std::optional<Build> shared; // compiled when the first one is wanted
+    for (const auto &[traversal, traversalName] : traversals) {
+      report::Subject subject;
+      subject.name = fmt::format("strict {} {}", traversalName, traceName);
+      if (!isWanted(subject.name))
+        continue;
+      CompileOptions compile = options.common.compile;
+      compile.trace = trace;
+      if (!shared)
+        shared = build(loaded, compile, messages);
+      if (!shared)
+        return {};
+      subject.settings = {{"fp", "strict"}, {"traversal", traversalName}, {"trace", traceName}};
+      subject.compileSeconds = shared->compileSeconds;
+      subject.render = [scene = shared->scene, render = loaded.render, traversal](std::uint32_t samples, std::uint32_t seed) {
+        runtime::RenderOptions options = render;
+        options.traversal = traversal;
+        return renderOnce(*scene, options, samples, seed);
+      };
+      subjects.push_back(std::move(subject));
+    }
+  }
+  if (subjects.empty())
+    throw runtime::Error(runtime::ErrorCode::UnknownName,
+                         "no configuration is left by `--only`; their names are made of strict, embree or device, and recurse or split");
+  return subjects;
+}
+
+/// What a study must have in common with the one that it goes on with: everything that changes a picture or a time.
+std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options, const Messages &messages) {
+  std::string all = fmt::format("{} {}x{} depth {} threads {} runs {} colors {} checked {} O{}", RTSL_VERSION, loaded.render.width,
+                                loaded.render.height, loaded.render.maxDepth, options.threads, options.runs,
+                                options.common.compile.colorComponents, options.common.compile.checkIndices,
+                                options.common.compile.optimization);
+  for (FileId file = 1; file <= messages.sources.count(); ++file)
+    all += std::string(messages.sources.name(file)) + '\0' + std::string(messages.sources.text(file)) + '\0';
+  all += runtime::readFile(loaded.description.file);
+  for (const std::string &value : options.overrides)
+    all += '\0' + value;
+  for (const scene::GeometryDescription &geometry : loaded.description.objects)
+    if (!geometry.meshPath.empty())
+      all += runtime::readFile(geometry.meshPath);
+  if (!options.reference.empty())
+    all += runtime::readFile(options.reference);
+  std::uint64_t hash = 14695981039346656037ull; // FNV-1a
+  for (char c : all)
+    hash = (hash ^ std::uint8_t(c)) * 1099511628211ull;
+  return fmt::format("{:016x}", hash);
+}
+
+/// Makes the folder, or finds the same study in it. Throws if it holds another one.
+void openFolder(const ReportOptions &options, const std::string &fingerprint) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error || !fs::is_directory(options.folder))
+    throw runtime::Error(runtime::ErrorCode::FileUnwritable,
+                         fmt::format("cannot make the folder `{}`: {}", options.folder, error ? error.message() : "there is a file of that name"),
+                         runtime::Place{options.folder});
+  const std::string identity = options.folder + "/study.json";
+  if (options.fresh)
+    for (const char *part : {"study.json", "measurements.csv", "levels.csv", "report.json", "index.html", "reference.exr", "reference.json", "partial", "pictures"})
+      fs::remove_all(fs::path(options.folder) / part, error);
+  if (fs::exists(identity)) {
+    const nlohmann::json earlier = nlohmann::json::parse(runtime::readFile(identity), nullptr, false);
+    if (earlier.is_discarded() || earlier.value("fingerprint", "") != fingerprint)
+      throw runtime::Error(runtime::ErrorCode::FileUnwritable,
+                           fmt::format("`{}` holds a report of another scene, shader, size or version; choose another `--out`, or pass `--fresh` to begin it anew",
+                                       options.folder),
+                           runtime::Place{options.folder});
+    return;
+  }
+  const nlohmann::ordered_json document = {{"version", 1}, {"scene", options.scene}, {"fingerprint", fingerprint}};
+  runtime::writeFileAtomically(identity, document.dump(2) + "\n");
+}
+
+/// The pictures of the page: the reference, and each different picture with its two maps.
+std::vector<report::Exhibit> exhibitsFor(const std::vector<report::Subject> &subjects, const report::Reference &reference, const std::string &folder) {
+  std::vector<report::Exhibit> exhibits;
+  if (reference.problem.empty())
+    exhibits.push_back({"the reference", runtime::toRgb(reference.image)});
+  std::map<std::uint64_t, std::string> shown;
+  for (const report::Subject &subject : subjects) {
+    const std::string path = report::lastPicturePath(folder, subject);
+    if (!std::filesystem::exists(path))
+      continue;
+    const runtime::Image image = runtime::readImage(path);
+    if (!shown.try_emplace(report::hashOf(image.pixels), subject.name).second)
+      continue;
+    exhibits.push_back({fmt::format("{}: one picture with the most samples", subject.name), runtime::toRgb(image)});
+    if (!reference.problem.empty())
+      continue;
+    const report::FlipMap map = report::flip(runtime::toRgb(reference.image), runtime::toRgb(image));
+    exhibits.push_back({fmt::format("{}: FLIP, mean {:.3g}; black 0, pale yellow 1", subject.name, map.mean()), report::colorFlipMap(map)});
+    exhibits.push_back({fmt::format("{}: relative squared error, logarithmic from 1e-6 (black) to 1 (pale yellow)", subject.name),
+                        report::colorLogMap(report::relativeSquaredErrorMap(reference.image, image), 1e-6, 1)});
+  }
+  return exhibits;
+}
+
+std::string commandLine(const ReportOptions &options, const runtime::RenderOptions &render) {
+  std::string line = fmt::format("rtslc report {} --out {} --size {}x{} --budget {:g}s --runs {}", options.scene, options.folder, render.width, render.height,
+                                 options.budget, options.runs);
+  if (!options.reference.empty())
+    line += " --reference " + options.reference;
+  for (const std::string &value : options.overrides)
+    line += " --set " + value;
+  for (const std::string &part : options.only)
+    line += " --only " + part;
+  return line;
+}
+
+void printSummary(const ReportOptions &options, const report::Summary &summary, const std::string &json) {
+  if (options.json) {
+    fmt::print("{}", json);
+    return;
+  }
+  fmt::print("{:<24} {:>9} {:>22} {:>14}\n", "configuration", "compile", "slope of relMSE", fmt::format("s to {:.2g}", summary.commonRelMse));
+  for (const report::SubjectSummary &subject : summary.subjects) {
+    const report::Estimate &slope = subject.relMseOverSeconds.slope;
+    const bool hasLine = subject.relMseOverSeconds.points != 0;
+    fmt::print("{:<24} {:>7.0f}ms {:>22} {:>14}\n", subject.name, subject.compileSeconds * 1e3,
+               hasLine ? fmt::format("{:.3f} [{:.3f}, {:.3f}]", slope.value, slope.low, slope.high) : "-",
+               hasLine ? fmt::format("{:.3g}", subject.secondsTo(summary.commonRelMse)) : "-");
+  }
+  for (const std::string &problem : summary.problems)
+    fmt::print("note: {}\n", problem);
+  fmt::print("the report is {}/index.html\n", options.folder);
+}
+
+std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages) {
+  LoadedScene loaded;
+  loaded.description = scene::readSceneFile(options.scene, options.overrides);
+  loaded.module = loadShaders(loaded.description, messages);
+  if (!loaded.module)
+    return std::nullopt;
+  const scene::RenderSettings &settings = loaded.description.render;
+  loaded.render.width = options.size ? options.size->width : settings.width;
+  loaded.render.height = options.size ? options.size->height : settings.height;
+  if (!options.size && !options.reference.empty()) { // the size that can be compared
+    const runtime::Image reference = runtime::readImage(options.reference);
+    loaded.render.width = reference.width;
+    loaded.render.height = reference.height;
+  }
+  loaded.render.maxDepth = options.depth.value_or(settings.depth);
+  loaded.render.threads = options.threads;
+  loaded.render.cancel = &interrupted;
+  return loaded;
+}
+
+void makeReport(const ReportOptions &options, Messages &messages) {
+  const std::optional<LoadedScene> loaded = load(options, messages);
+  if (!loaded)
+    return;
+  openFolder(options, fingerprint(*loaded, options, messages));
+  const std::vector<report::Subject> subjects = subjectsFor(*loaded, options, messages);
+  if (subjects.empty())
+    return;
+
+  Progress progress("measuring");
+  const auto show = [&](double share) {
+    if (!options.quiet)
+      progress.update(share);
+  };
+  constexpr double referenceShare = 4; // its time, in budgets
+  const double total = referenceShare + double(subjects.size());
+  const report::Reference reference =
+      options.reference.empty()
+          ? report::makeReference(subjects.front(), options.folder, options.runs, referenceShare * options.budget,
+                                  [&](double share, const std::string &) { show(share * referenceShare / total); })
+          : report::readReference(options.reference, loaded->render.width, loaded->render.height, options.common.compile.colorComponents);
+  report::StudyOptions study;
+  study.folder = options.folder;
+  study.runs = options.runs;
+  study.budgetSeconds = options.budget;
+  study.progress = [&](double share, const std::string &) { show((referenceShare + share * double(subjects.size())) / total); };
+  const report::Summary summary = report::summarise(subjects, report::runStudy(subjects, reference, study), reference);
+  progress.finish();
+
+  report::Context context;
+  context.scene = options.scene;
+  context.width = loaded->render.width;
+  context.height = loaded->render.height;
+  context.runs = options.runs;
+  context.budgetSeconds = options.budget;
+  context.command = commandLine(options, loaded->render);
+  context.versions = runtime::libraryVersions();
+  context.versions.insert(context.versions.begin(), {{"rtslc", RTSL_VERSION}, {"LLVM", llvmVersion()}});
+  context.machine = report::machineFacts();
+  const std::string json = report::writeJson(context, summary, reference);
+  runtime::writeFileAtomically(options.folder + "/report.json", json);
+  runtime::writeFileAtomically(options.folder + "/index.html",
+                               report::writePage(context, summary, reference, exhibitsFor(subjects, reference, options.folder)));
+  printSummary(options, summary, json);
+}
+
+int report(const ReportOptions &options) {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  Messages messages(options.common);
+  try {
+    makeReport(options, messages);
+  } catch (runtime::Error &error) {
+    if (error.code == runtime::ErrorCode::Cancelled)
+      error.note("the same command goes on from here");
+    messages.report(error);
+  }
+  return messages.status();
+}
+
+} // namespace
+
+void addReportCommand(CLI::App &app, Action &action) {
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App *command = app.add_subcommand(reportSummary.command, reportSummary.text);
+  command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
+  command->add_option("--out", options->folder, "the folder of the report; an interrupted one goes on")->required()->type_name("DIR");
+  command->add_option("--reference", options->reference, "what to compare with; rendered if not given")->type_name("IMAGE");
+  command
+      ->add_option_function<std::string>(
+          "--budget", [options](const std::string &text) { options->budget = parseSeconds(text); },
+          "time of rendering for each configuration; the reference gets four times as much; 10s if not given")
+      ->type_name("TIME");
+  command->add_option("--runs", options->runs, "independent runs with each number of samples; 8 if not given")
+      ->check(CLI::Range(2u, 1000u))
+      ->type_name("N");
+  addSizeOption(*command, options->size);
+  command->add_option("--threads", options->threads, "threads; all cores if not given")->check(CLI::Range(1u, 4096u))->type_name("N");
+  command->add_option("--depth", options->depth, "how often a ray may lead to another")->check(CLI::Range(0u, 1000u))->type_name("N");
+  command->add_option("--set", options->overrides, "change a value of the scene file")->type_name("PATH=VALUE")->allow_extra_args(false);
+  command->add_option("--only", options->only, "only configurations with this in their names, such as embree; may be repeated")
+      ->type_name("TEXT")
+      ->allow_extra_args(false);
+  command->add_flag("--fresh", options->fresh, "throw away what is in the folder");
+  command->add_flag("--json", options->json, "write the report's JSON to standard output as well");
+  command->add_flag("-q,--quiet", options->quiet, "no progress");
+  addCompileOptions(*command, options->common);
+  command->remove_option(command->get_option("--trace")); // both are measured
+  addMessageOptions(*command, options->common);
+  command->footer("example:\n  rtslc report examples/glass/scene.json --out report --size 320x180 --budget 20s");
+  command->callback([options, &action] { action = [options] { return report(*options); }; });
+}
+
+} // namespace rtsl::tool
