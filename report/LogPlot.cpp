@@ -70,15 +70,23 @@ std::string tickText(int decade) {
   return fmt::format("10<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", decade);
 }
 
-/// Grid lines and numbers at the decades, and at 2 and 5 between them where there are few decades.
+/// Which multiples of a decade have a grid line: the more decades there are, the fewer.
+std::vector<int> gridFactors(const Range &range) {
+  const double decades = range.high - range.low;
+  if (decades > 2.5)
+    return {1};
+  if (decades > 0.9)
+    return {1, 2, 5};
+  return {1, 2, 3, 4, 5, 6, 7, 8, 9};
+}
+
 std::string drawGrid(const Axes &axes) {
   std::string svg;
   const auto ticks = [&](const Range &range, auto drawTick) {
-    const bool hasFew = range.high - range.low < 2.5;
     for (int decade = int(std::floor(range.low)); decade <= int(std::ceil(range.high)); ++decade)
-      for (int factor : {1, 2, 5}) {
+      for (int factor : gridFactors(range)) {
         const double place = decade + std::log10(double(factor));
-        if (place < range.low || place > range.high || (factor != 1 && !hasFew))
+        if (place < range.low || place > range.high)
           continue;
         drawTick(place, factor == 1 ? tickText(decade) : decade >= -3 && decade <= 4 ? fmt::format("{:g}", factor * std::pow(10.0, decade)) : "",
                  factor == 1);

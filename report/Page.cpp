@@ -29,11 +29,11 @@ p, li { max-width: 78ch; }
 .legend { display: flex; flex-wrap: wrap; gap: 4px 20px; padding: 0; margin: 8px 0 14px; list-style: none; }
 .legend li { white-space: nowrap; }
 .table { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: 14px; }
-th, td { text-align: right; padding: 5px 10px; border-bottom: 1px solid var(--grid); white-space: nowrap; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: 13px; }
+th, td { text-align: right; padding: 5px 7px; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 th { color: var(--muted); font-weight: 600; vertical-align: bottom; }
 th:first-child, td:first-child { text-align: left; }
-.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 300px), 1fr)); gap: 18px; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 250px), 1fr)); gap: 18px; }
 figure { margin: 0; }
 img { width: 100%; height: auto; display: block; border-radius: 4px; image-rendering: auto; }
 figcaption { font-size: 13px; color: var(--muted); margin-top: 4px; }
@@ -100,8 +100,10 @@ std::vector<std::string> findings(const Summary &summary) {
     if (fastest != slowest)
       sentences.push_back(fmt::format("<b>{}</b> takes longest: {:.2f} times as long.", escapeHtml(slowest->name), worst / best));
     const LineFit &line = fastest->relMseOverSamples;
-    sentences.push_back(fmt::format("Its relMSE falls with the samples to the power of {}; independent samples give -1{}.", interval(line.slope, "{:.3f}"),
-                                    line.slope.low <= -1 && -1 <= line.slope.high ? ", which this agrees with" : ", which this does <b>not</b> agree with"));
+    const char *verdict = line.slope.high < -1  ? "steeper than the -1 of independent samples, as it is where samples are spread evenly over a pixel"
+                          : line.slope.low > -1 ? "<b>flatter</b> than the -1 of independent samples: some of the error does not fall with the samples"
+                                                : "as the -1 of independent samples";
+    sentences.push_back(fmt::format("Its relMSE falls with the samples to the power of {}: {}.", interval(line.slope, "{:.3f}"), verdict));
   }
   std::map<std::uint64_t, std::vector<std::string>> byPicture;
   for (const SubjectSummary &subject : summary.subjects)
@@ -167,7 +169,7 @@ std::string configurations(const Summary &summary) {
                  fmt::format("{} / {} / {}", subject.nanPixels, subject.infinitePixels, subject.samplesNotFinite)});
   }
   return table({"configuration", "compile", "build", "trace", "slope over seconds", "slope over samples",
-                fmt::format("time to relMSE {}", figure(summary.commonRelMse)), "efficiency<br>1/(variance·s)", "NaN / Inf pixels<br>/ bad samples"},
+                fmt::format("time to relMSE {}", figure(summary.commonRelMse)), "efficiency<br>1/(variance·s)", "NaN / Inf<br>/ samples"},
                rows);
 }
 
