@@ -20,4 +20,7 @@ std::string_view gpuDeviceBitcode();
 std::string_view megakernelBitcode();
 std::string_view gpuMegakernelBitcode();
 
+/// memcpy and the like, for machine code of the host that runs without a C library.
+std::string_view hostMemoryBitcode();
+
 } // namespace rtsl::runtime

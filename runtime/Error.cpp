@@ -16,6 +16,8 @@ const char *name(ErrorCode code) {
     return "badMesh";
   case ErrorCode::BadImage:
     return "badImage";
+  case ErrorCode::BadPackage:
+    return "badPackage";
   case ErrorCode::JsonSyntax:
     return "jsonSyntax";
   case ErrorCode::DuplicateKey:
@@ -58,6 +60,8 @@ const char *name(ErrorCode code) {
     return "cancelled";
   case ErrorCode::OutOfMemory:
     return "outOfMemory";
+  case ErrorCode::NoDevice:
+    return "noDevice";
   case ErrorCode::Internal:
     return "internal";
   }

@@ -24,6 +24,7 @@ enum class ErrorCode : std::uint8_t {
   // Meshes and images.
   BadMesh, // truncated, empty, not finite, an index out of range
   BadImage,
+  BadPackage, // no package, of another version, truncated, damaged
   // Scene files.
   JsonSyntax,
   DuplicateKey,
@@ -48,6 +49,7 @@ enum class ErrorCode : std::uint8_t {
   // Running.
   Cancelled,
   OutOfMemory,
+  NoDevice, // no GPU, or none that can be used
   Internal,
 };
 

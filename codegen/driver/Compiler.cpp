@@ -4,6 +4,7 @@
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/emit/NativeImage.h"
 #include "codegen/emit/Ptx.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
@@ -273,6 +274,37 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
   linkDeviceCode(code, megakernelCode(/*forGpu=*/false), {"rtsl_lane_bytes", "rtsl_run_lane"});
   codegen::optimize(*code.module, *code.machine, code.options);
   return codegen::printLlvm(*code.module);
+}
+
+bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+                    Diagnostics &diagnostics, runtime::Package &package) {
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  runtime::Program program;
+  auto ir = linkScene(module, request, options, diagnostics, *context, program);
+  if (!ir)
+    return false;
+  const SplitReport report = runToSsa(*ir, TraceMode::Split);
+  package.frameBytes = report.frameSize();
+  package.stateCount = 0;
+  for (const FunctionReport &function : report.functions)
+    package.stateCount += static_cast<std::uint32_t>(function.states.size());
+
+  const mlir::OwningOpRef<mlir::ModuleOp> forGpu = ir->clone();
+  LlvmCode gpu = translate(*forGpu, gpuOptions(options));
+  linkDeviceCode(gpu, megakernelCode(/*forGpu=*/true), {"rtsl_render"});
+  package.ptx = toPtx(std::move(gpu));
+
+  LlvmCode host = translate(*ir, machineOptions(options, /*hostCpu=*/false));
+  const std::vector<std::string> entries = {"rtsl_lane_bytes", "rtsl_run_lane"};
+  std::vector<std::string> kept = {"memcpy", "memmove", "memset"};
+  kept.insert(kept.end(), entries.begin(), entries.end());
+  std::vector<std::string_view> bitcodes = megakernelCode(/*forGpu=*/false);
+  bitcodes.push_back(runtime::hostMemoryBitcode());
+  linkDeviceCode(host, bitcodes, kept);
+  codegen::optimize(*host.module, *host.machine, host.options);
+  codegen::NativeImage image = take(codegen::makeNativeImage(*host.module, *host.machine, entries));
+  package.host = {std::move(image.bytes), image.entries[0], image.entries[1]};
+  return true;
 }
 
 std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,

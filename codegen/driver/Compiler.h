@@ -7,6 +7,7 @@
 
 #include "frontend/Diagnostics.h"
 #include "runtime/Program.h"
+#include "runtime/package/Package.h"
 #include "sema/TypedAst.h"
 
 #include <memory>
@@ -62,6 +63,11 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
 /// one JSON document. Nothing if there were errors.
 std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options, bool json,
                                          Diagnostics &diagnostics);
+
+/// What a package needs of a program (runtime/package/Package.h): everything but the scene and its options. False if there
+/// were errors.
+bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+                    Diagnostics &diagnostics, runtime::Package &package);
 
 /// Compiles and links the module for a scene, in this process. Null if there were errors.
 std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,

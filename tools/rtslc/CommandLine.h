@@ -38,6 +38,7 @@ struct Summary {
 };
 constexpr Summary renderSummary = {"render", "compile a scene's shaders and render it"};
 constexpr Summary reportSummary = {"report", "measure error against run time, in each configuration"};
+constexpr Summary packSummary = {"pack", "write a scene with its compiled code to one file, for rtsl-run"};
 constexpr Summary compareSummary = {"compare", "say how far two pictures are apart (exit status 1: too far)"};
 
 /// What a command does once the arguments are read; gives the exit status.
@@ -48,6 +49,7 @@ void addCompileCommand(CLI::App &app, Action &action);
 void addExplainCommand(CLI::App &app, Action &action);
 void addRenderCommand(CLI::App &app, Action &action);
 void addReportCommand(CLI::App &app, Action &action);
+void addPackCommand(CLI::App &app, Action &action);
 void addCompareCommand(CLI::App &app, Action &action);
 
 /// Does `first`, reads the arguments and does what they ask for. Gives the exit status, whatever is thrown.

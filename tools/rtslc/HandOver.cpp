@@ -15,7 +15,7 @@ namespace rtsl::tool {
 
 namespace {
 
-constexpr Summary handedOver[] = {renderSummary, reportSummary, compareSummary};
+constexpr Summary handedOver[] = {renderSummary, packSummary, reportSummary, compareSummary};
 
 } // namespace
 

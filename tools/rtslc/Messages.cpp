@@ -39,6 +39,9 @@ Code codeFor(runtime::ErrorCode code) {
   case E::IncompleteScene: return Code::sceneIncomplete;
   case E::Cancelled: return Code::cancelled;
   case E::OutOfMemory: return Code::outOfMemory;
+  // rtslc reads no packages and runs nothing on a GPU; rtsl-run has messages of its own.
+  case E::BadPackage:
+  case E::NoDevice:
   case E::Internal: break; // Main.cpp ends the run with its own status
   }
   throw std::logic_error("a fault of the runtime reached the user's messages");

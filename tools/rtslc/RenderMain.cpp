@@ -13,6 +13,7 @@ int main(int argc, char **argv) {
   Action action;
   addRenderCommand(app, action);
   addReportCommand(app, action);
+  addPackCommand(app, action);
   addCompareCommand(app, action);
   return run(app, action, argc, argv);
 }

@@ -1,0 +1,190 @@
+//===- NativeImage.cpp - machine code that runs wherever it lies ----------===//
+//
+// An object file goes through LLVM's JITLink, which lays it out, takes away what no entry reaches
+// and fills in distances; but the memory is a vector of ours and never runs here.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/emit/NativeImage.h"
+
+#include "llvm/ADT/BitmaskEnum.h"
+#include "llvm/ExecutionEngine/JITLink/ELF_x86_64.h"
+#include "llvm/ExecutionEngine/JITLink/JITLinkMemoryManager.h"
+#include "llvm/ExecutionEngine/JITLink/x86_64.h"
+#include "llvm/IR/LegacyPassManager.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/MemoryBuffer.h"
+#include "llvm/Support/raw_ostream.h"
+#include "llvm/Target/TargetMachine.h"
+
+namespace rtsl::codegen {
+
+namespace jitlink = llvm::jitlink;
+namespace orc = llvm::orc;
+
+namespace {
+
+LLVM_ENABLE_BITMASK_ENUMS_IN_NAMESPACE();
+
+/// Where the linker believes the code to lie: beyond 4 GiB, so that it does not shorten a distance to
+/// an absolute address.
+constexpr std::uint64_t linkAddress = 0x100000000000;
+constexpr std::uint64_t segmentAlignment = 64;
+
+/// What is linked, and what went wrong on the way.
+struct Result {
+  NativeImage image;
+  llvm::Error error = llvm::Error::success();
+  void fail(llvm::Error problem) { error = llvm::joinErrors(std::move(error), std::move(problem)); }
+};
+
+class Memory : public jitlink::JITLinkMemoryManager {
+public:
+  explicit Memory(Result &result) : result(result) {}
+
+  void allocate(const jitlink::JITLinkDylib *, jitlink::LinkGraph &graph,
+                OnAllocatedFunction whenDone) override {
+    jitlink::BasicLayout layout(graph);
+    std::uint64_t end = 0;
+    for (auto &[group, segment] : layout.segments()) {
+      const std::uint64_t size = segment.ContentSize + segment.ZeroFillSize;
+      if (size != 0 && (group.getMemProt() & orc::MemProt::Write) != orc::MemProt::None)
+        return whenDone(llvm::createStringError("the program has data that it writes"));
+      const std::uint64_t alignment = std::max(segment.Alignment.value(), segmentAlignment);
+      const std::uint64_t start = (end + alignment - 1) / alignment * alignment;
+      segment.Addr = orc::ExecutorAddr(linkAddress + start);
+      end = start + size;
+    }
+    result.image.bytes.resize(end);
+    for (auto &[group, segment] : layout.segments())
+      segment.WorkingMem = reinterpret_cast<char *>(result.image.bytes.data()) +
+                           (segment.Addr.getValue() - linkAddress);
+    if (llvm::Error error = layout.apply())
+      return whenDone(std::move(error));
+    whenDone(std::make_unique<Kept>());
+  }
+
+  void deallocate(std::vector<FinalizedAlloc> allocations,
+                  OnDeallocatedFunction whenDone) override {
+    for (FinalizedAlloc &allocation : allocations)
+      allocation.release();
+    whenDone(llvm::Error::success());
+  }
+
+private:
+  /// The bytes stay where they are.
+  struct Kept : InFlightAlloc {
+    void abandon(OnAbandonedFunction whenDone) override { whenDone(llvm::Error::success()); }
+    void finalize(OnFinalizedFunction whenDone) override {
+      whenDone(FinalizedAlloc(orc::ExecutorAddr(linkAddress)));
+    }
+  };
+  Result &result;
+};
+
+class Context : public jitlink::JITLinkContext {
+public:
+  Context(Result &result, llvm::ArrayRef<std::string> entries)
+      : JITLinkContext(nullptr), result(result), entries(entries), memory(result) {}
+
+  jitlink::JITLinkMemoryManager &getMemoryManager() override { return memory; }
+  void notifyFailed(llvm::Error error) override { result.fail(std::move(error)); }
+  void notifyFinalized(jitlink::JITLinkMemoryManager::FinalizedAlloc allocation) override {
+    allocation.release();
+  }
+
+  void lookup(const LookupMap &symbols,
+              std::unique_ptr<jitlink::JITLinkAsyncLookupContinuation> then) override {
+    std::vector<std::string> names;
+    for (const auto &symbol : symbols)
+      names.push_back((*symbol.first).str());
+    std::sort(names.begin(), names.end());
+    std::string list;
+    for (const std::string &name : names)
+      list += " " + name;
+    then->run(llvm::createStringError("nobody defines%s", list.c_str()));
+  }
+
+  llvm::Error notifyResolved(jitlink::LinkGraph &graph) override {
+    for (const std::string &entry : entries) {
+      const jitlink::Symbol *symbol = find(graph, entry);
+      if (!symbol)
+        return llvm::createStringError("the program lacks %s", entry.c_str());
+      result.image.entries.push_back(symbol->getAddress().getValue() - linkAddress);
+    }
+    return llvm::Error::success();
+  }
+
+  /// Only what entries reach is kept.
+  jitlink::LinkGraphPassFunction getMarkLivePass(const llvm::Triple &) const override {
+    return [this](jitlink::LinkGraph &graph) {
+      for (const std::string &entry : entries)
+        if (jitlink::Symbol *symbol = find(graph, entry))
+          symbol->setLive(true);
+      return llvm::Error::success();
+    };
+  }
+
+  llvm::Error modifyPassConfig(jitlink::LinkGraph &,
+                               jitlink::PassConfiguration &passes) override {
+    passes.PreFixupPasses.push_back(refuseAbsoluteAddresses);
+    return llvm::Error::success();
+  }
+
+private:
+  static jitlink::Symbol *find(jitlink::LinkGraph &graph, llvm::StringRef name) {
+    for (jitlink::Symbol *symbol : graph.defined_symbols())
+      if (symbol->hasName() && *symbol->getName() == name)
+        return symbol;
+    return nullptr;
+  }
+
+  /// Only differences of places inside of the image do not depend on where it lies.
+  static llvm::Error refuseAbsoluteAddresses(jitlink::LinkGraph &graph) {
+    namespace x86 = jitlink::x86_64;
+    for (jitlink::Block *block : graph.blocks())
+      for (const jitlink::Edge &edge : block->edges())
+        switch (edge.getKind()) {
+        case jitlink::Edge::KeepAlive:
+        case x86::Delta64:
+        case x86::Delta32:
+        case x86::Delta8:
+        case x86::NegDelta64:
+        case x86::NegDelta32:
+        case x86::PCRel32:
+        case x86::BranchPCRel32:
+          break;
+        default:
+          return llvm::createStringError("the code depends on its address (%s)",
+                                         graph.getEdgeKindName(edge.getKind()));
+        }
+    return llvm::Error::success();
+  }
+
+  Result &result;
+  llvm::ArrayRef<std::string> entries;
+  Memory memory;
+};
+
+} // namespace
+
+llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMachine &machine,
+                                            llvm::ArrayRef<std::string> entries) {
+  llvm::SmallString<0> object;
+  llvm::raw_svector_ostream stream(object);
+  llvm::legacy::PassManager passes;
+  if (machine.addPassesToEmitFile(passes, stream, nullptr, llvm::CodeGenFileType::ObjectFile))
+    return llvm::createStringError("the code generator writes no object files");
+  passes.run(module);
+
+  auto graph = jitlink::createLinkGraphFromELFObject_x86_64(
+      llvm::MemoryBufferRef(object.str(), "host code"), std::make_shared<orc::SymbolStringPool>());
+  if (!graph)
+    return graph.takeError();
+  Result result;
+  jitlink::link_ELF_x86_64(std::move(*graph), std::make_unique<Context>(result, entries));
+  if (result.error)
+    return std::move(result.error);
+  return std::move(result.image);
+}
+
+} // namespace rtsl::codegen

@@ -1,0 +1,234 @@
+#include "runtime/gpu/CudaDriver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <dlfcn.h>
+#include <memory>
+
+namespace rtsl::runtime {
+
+namespace {
+
+/// CUDA 10.0: the first that knows PTX 6.3, which sm_75 needs.
+constexpr int oldestDriver = 10000;
+
+// Values of the driver API's enumerations (CUDA Driver API reference, chapter "Data types").
+enum Status {
+  Success = 0,
+  OutOfMemory = 2,
+  NoDevice = 100,
+  InvalidPtx = 218,
+  NoBinaryForGpu = 209,
+  UnsupportedPtxVersion = 222,
+};
+enum DeviceAttribute {
+  MultiprocessorCount = 16,
+  ComputeCapabilityMajor = 75,
+  ComputeCapabilityMinor = 76,
+};
+enum FunctionAttribute { LocalSizeBytes = 3, RegisterCount = 4 };
+enum JitOption { MaxRegisters = 0, ErrorLogBuffer = 5, ErrorLogBufferBytes = 6 };
+
+std::string version(int number) {
+  return fmt::format("{}.{}", number / 1000, number % 1000 / 10);
+}
+
+[[noreturn]] void fail(const std::string &message) {
+  throw Error(ErrorCode::NoDevice, message);
+}
+
+} // namespace
+
+// Every function gives a status.
+struct CudaDevice::Functions {
+  int (*init)(unsigned flags);
+  int (*driverGetVersion)(int *);
+  int (*getErrorString)(int status, const char **);
+  int (*deviceGetCount)(int *);
+  int (*deviceGet)(int *device, int ordinal);
+  int (*deviceGetName)(char *, int size, int device);
+  int (*deviceGetAttribute)(int *, int attribute, int device);
+  int (*primaryContextRetain)(void **context, int device);
+  int (*primaryContextRelease)(int device);
+  int (*contextSetCurrent)(void *context);
+  int (*memoryGetInfo)(std::size_t *free, std::size_t *total);
+  int (*memoryAllocate)(Address *, std::size_t bytes);
+  int (*memorySet)(Address, unsigned char value, std::size_t bytes);
+  int (*copyToDevice)(Address to, const void *from, std::size_t bytes);
+  int (*copyToHost)(void *to, Address from, std::size_t bytes);
+  int (*moduleLoad)(void **module, const void *image, unsigned count, int *options, void **values);
+  int (*moduleUnload)(void *module);
+  int (*moduleGetFunction)(void **function, void *module, const char *name);
+  int (*functionGetAttribute)(int *, int attribute, void *function);
+  int (*occupancy)(int *blocks, void *function, int threads, std::size_t sharedBytes);
+  int (*launch)(void *function, unsigned gridX, unsigned gridY, unsigned gridZ, unsigned blockX,
+                unsigned blockY, unsigned blockZ, unsigned sharedBytes, void *stream,
+                void **arguments, void **extra);
+  int (*synchronize)();
+};
+
+template <typename Function>
+void CudaDevice::find(Function &function, const char *name) {
+  function = reinterpret_cast<Function>(dlsym(library, name));
+  if (!function)
+    fail(fmt::format("the CUDA driver is too old: it lacks `{}`; install version {} or newer", name,
+                     version(oldestDriver)));
+}
+
+void CudaDevice::open() {
+  library = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (!library)
+    fail(fmt::format("there is no CUDA driver: {}", dlerror()));
+  functions = new Functions;
+  Functions &f = *functions;
+  find(f.init, "cuInit");
+  find(f.driverGetVersion, "cuDriverGetVersion");
+  find(f.getErrorString, "cuGetErrorString");
+  find(f.deviceGetCount, "cuDeviceGetCount");
+  find(f.deviceGet, "cuDeviceGet");
+  find(f.deviceGetName, "cuDeviceGetName");
+  find(f.deviceGetAttribute, "cuDeviceGetAttribute");
+  find(f.primaryContextRetain, "cuDevicePrimaryCtxRetain");
+  find(f.primaryContextRelease, "cuDevicePrimaryCtxRelease_v2");
+  find(f.contextSetCurrent, "cuCtxSetCurrent");
+  find(f.memoryGetInfo, "cuMemGetInfo_v2");
+  find(f.memoryAllocate, "cuMemAlloc_v2");
+  find(f.memorySet, "cuMemsetD8_v2");
+  find(f.copyToDevice, "cuMemcpyHtoD_v2");
+  find(f.copyToHost, "cuMemcpyDtoH_v2");
+  find(f.moduleLoad, "cuModuleLoadDataEx");
+  find(f.moduleUnload, "cuModuleUnload");
+  find(f.moduleGetFunction, "cuModuleGetFunction");
+  find(f.functionGetAttribute, "cuFuncGetAttribute");
+  find(f.occupancy, "cuOccupancyMaxActiveBlocksPerMultiprocessor");
+  find(f.launch, "cuLaunchKernel");
+  find(f.synchronize, "cuCtxSynchronize");
+
+  int driver = 0;
+  check(f.driverGetVersion(&driver), "cuDriverGetVersion");
+  if (driver < oldestDriver)
+    fail(fmt::format("the CUDA driver is too old: it is of version {}; install {} or newer",
+                     version(driver), version(oldestDriver)));
+  const int status = f.init(0);
+  int count = 0;
+  if (status == NoDevice || (status == Success && (f.deviceGetCount(&count) != Success || count == 0)))
+    fail("there is a CUDA driver, but no device");
+  check(status, "cuInit");
+  check(f.deviceGet(&device, 0), "cuDeviceGet");
+  char text[256] = {};
+  check(f.deviceGetName(text, sizeof text - 1, device), "cuDeviceGetName");
+  deviceName = text;
+  int major = 0, minor = 0;
+  check(f.deviceGetAttribute(&major, ComputeCapabilityMajor, device), "cuDeviceGetAttribute");
+  check(f.deviceGetAttribute(&minor, ComputeCapabilityMinor, device), "cuDeviceGetAttribute");
+  computeCapability = 10 * major + minor;
+  check(f.deviceGetAttribute(&multiprocessorCount, MultiprocessorCount, device),
+        "cuDeviceGetAttribute");
+  check(f.primaryContextRetain(&context, device), "cuDevicePrimaryCtxRetain");
+  check(f.contextSetCurrent(context), "cuCtxSetCurrent");
+}
+
+CudaDevice::CudaDevice() {
+  try {
+    open();
+  } catch (...) {
+    this->~CudaDevice();
+    throw;
+  }
+}
+
+CudaDevice::~CudaDevice() {
+  if (context) // its memory and module go with it
+    functions->primaryContextRelease(device);
+  delete functions;
+  if (library)
+    dlclose(library);
+}
+
+void CudaDevice::check(int status, const char *call) const {
+  if (status == Success)
+    return;
+  const char *text = nullptr;
+  if (functions->getErrorString(status, &text) != Success || !text)
+    text = "unknown error";
+  const std::string message = fmt::format("the GPU failed in {}: {} (status {})", call, text, status);
+  if (status == runtime::OutOfMemory)
+    throw Error(ErrorCode::OutOfMemory, message);
+  throw Error(ErrorCode::Internal, message);
+}
+
+std::size_t CudaDevice::freeMemory() const {
+  std::size_t free = 0, total = 0;
+  check(functions->memoryGetInfo(&free, &total), "cuMemGetInfo");
+  return free;
+}
+
+CudaDevice::Address CudaDevice::allocate(std::size_t bytes, const char *what) {
+  Address address = 0;
+  const int status = functions->memoryAllocate(&address, std::max<std::size_t>(bytes, 1));
+  if (status == runtime::OutOfMemory)
+    throw Error(ErrorCode::OutOfMemory,
+                fmt::format("not enough GPU memory for {}: {:.1f} MiB, of which {:.1f} are free", what,
+                            double(bytes) / (1 << 20), double(freeMemory()) / (1 << 20)));
+  check(status, "cuMemAlloc");
+  return address;
+}
+
+void CudaDevice::clear(Address address, std::size_t bytes) {
+  check(functions->memorySet(address, 0, bytes), "cuMemsetD8");
+}
+
+void CudaDevice::upload(Address to, const void *from, std::size_t bytes) {
+  check(functions->copyToDevice(to, from, bytes), "cuMemcpyHtoD");
+}
+
+void CudaDevice::download(void *to, Address from, std::size_t bytes) {
+  check(functions->copyToHost(to, from, bytes), "cuMemcpyDtoH");
+}
+
+void CudaDevice::load(const std::string &ptx, unsigned maxRegisters) {
+  if (module)
+    check(functions->moduleUnload(module), "cuModuleUnload");
+  module = nullptr;
+  std::string log(4096, '\0');
+  const auto value = [](std::uintptr_t number) { return reinterpret_cast<void *>(number); };
+  int options[] = {ErrorLogBuffer, ErrorLogBufferBytes, MaxRegisters};
+  void *values[] = {log.data(), value(log.size() - 1), value(maxRegisters)};
+  const int status =
+      functions->moduleLoad(&module, ptx.c_str(), maxRegisters ? 3 : 2, options, values);
+  log.resize(log.find('\0'));
+  if (status == UnsupportedPtxVersion)
+    fail("the CUDA driver is too old for the package's PTX");
+  if (status == NoBinaryForGpu || status == InvalidPtx)
+    fail(fmt::format("{} (sm_{}) does not take the package's code: {}", deviceName,
+                     computeCapability, log.empty() ? "it was made for a newer GPU" : log));
+  check(status, "cuModuleLoadDataEx");
+}
+
+CudaDevice::Kernel CudaDevice::kernel(const char *name) const {
+  Kernel kernel;
+  check(functions->moduleGetFunction(&kernel.function, module, name), "cuModuleGetFunction");
+  check(functions->functionGetAttribute(&kernel.registers, RegisterCount, kernel.function),
+        "cuFuncGetAttribute");
+  check(functions->functionGetAttribute(&kernel.localBytes, LocalSizeBytes, kernel.function),
+        "cuFuncGetAttribute");
+  return kernel;
+}
+
+int CudaDevice::blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) const {
+  int blocks = 0;
+  check(functions->occupancy(&blocks, kernel.function, int(threadsPerBlock), 0),
+        "cuOccupancyMaxActiveBlocksPerMultiprocessor");
+  return blocks;
+}
+
+void CudaDevice::launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
+                        void **arguments) {
+  check(functions->launch(kernel.function, blocks, 1, 1, threadsPerBlock, 1, 1, 0, nullptr,
+                          arguments, nullptr),
+        "cuLaunchKernel");
+  check(functions->synchronize(), "cuCtxSynchronize");
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,68 @@
+//===- CudaDriver.h - a CUDA device through the driver alone --------------===//
+//
+// What we need of the CUDA driver API, declared here and looked up in libcuda.so.1 at run time:
+// nothing of CUDA is needed to build, and a program without a driver says so and ends in order.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/Error.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace rtsl::runtime {
+
+/// The first CUDA device of the machine. Calls throw NoDevice (no driver, one that is too old, no
+/// device, a device that refuses the code), OutOfMemory, or Internal (the code failed).
+class CudaDevice {
+public:
+  CudaDevice();
+  ~CudaDevice();
+  CudaDevice(const CudaDevice &) = delete;
+  CudaDevice &operator=(const CudaDevice &) = delete;
+
+  const std::string &name() const { return deviceName; }
+  /// 90 for sm_90.
+  int capability() const { return computeCapability; }
+  int multiprocessors() const { return multiprocessorCount; }
+  std::size_t freeMemory() const;
+
+  using Address = std::uint64_t;
+  /// `what` is for messages. All memory is freed with the device.
+  Address allocate(std::size_t bytes, const char *what);
+  void clear(Address address, std::size_t bytes);
+  void upload(Address to, const void *from, std::size_t bytes);
+  void download(void *to, Address from, std::size_t bytes);
+
+  /// Compiles PTX for the device; one module at a time. `maxRegisters` 0: as many as the code wants.
+  void load(const std::string &ptx, unsigned maxRegisters = 0);
+
+  struct Kernel {
+    void *function = nullptr;
+    int registers = 0;  // of a thread
+    int localBytes = 0; // of a thread: spills and arrays
+  };
+  Kernel kernel(const char *name) const;
+  /// How many blocks of the kernel run at once on a multiprocessor.
+  int blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) const;
+  /// Runs a kernel and waits for it. `arguments` points to as many pointers to arguments as it has.
+  void launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock, void **arguments);
+
+private:
+  struct Functions;
+  template <typename Function>
+  void find(Function &function, const char *name);
+  void check(int status, const char *call) const;
+  void open();
+
+  void *library = nullptr;
+  Functions *functions = nullptr;
+  int device = 0;
+  void *context = nullptr, *module = nullptr;
+  std::string deviceName;
+  int computeCapability = 0, multiprocessorCount = 0;
+};
+
+} // namespace rtsl::runtime

@@ -1,0 +1,39 @@
+#include "runtime/package/NativeCode.h"
+
+#include "runtime/Error.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <sys/mman.h>
+
+namespace rtsl::runtime {
+
+NativeCode::NativeCode(const NativeImage &image)
+    : size(image.bytes.size()), laneBytes(image.laneBytes), runLane(image.runLane) {
+  memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED)
+    throw Error(ErrorCode::OutOfMemory, "not enough memory for the package's code");
+  std::memcpy(memory, image.bytes.data(), size);
+  if (::mprotect(memory, size, PROT_READ | PROT_EXEC) != 0) {
+    const int error = errno;
+    ::munmap(memory, size);
+    throw Error(ErrorCode::NotSupported,
+                fmt::format("the system refuses to run the package's code: {}", std::strerror(error)));
+  }
+}
+
+NativeCode::~NativeCode() {
+  ::munmap(memory, size);
+}
+
+MegakernelCode NativeCode::entries() const {
+  const auto at = [this](std::uint64_t offset) { return static_cast<char *>(memory) + offset; };
+  MegakernelCode code;
+  code.laneBytes = reinterpret_cast<decltype(code.laneBytes)>(at(laneBytes));
+  code.runLane = reinterpret_cast<decltype(code.runLane)>(at(runLane));
+  return code;
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,261 @@
+//===- Package.cpp - a scene and its compiled code in one file ------------===//
+#include "runtime/package/Package.h"
+
+#include "runtime/AtomicFile.h"
+#include "runtime/Error.h"
+#include "runtime/package/Crc64.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace rtsl::runtime {
+
+namespace {
+
+constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
+/// Counts up with every change that older programs would misread.
+constexpr std::uint32_t formatVersion = 1;
+constexpr std::uint64_t alignment = 64;
+
+struct Header {
+  char magic[8];
+  std::uint32_t version;
+  std::uint32_t sectionCount;
+  std::uint64_t fileBytes;
+  std::uint64_t checksum; // CRC-64 of the whole file, with 0 here
+  char compiler[32];      // ends in zeros
+};
+static_assert(sizeof(Header) == 64);
+
+enum class SectionKind : std::uint32_t { Info = 1, Ptx, HostCode, Scene, Pointers };
+constexpr SectionKind allKinds[] = {SectionKind::Info, SectionKind::Ptx, SectionKind::HostCode,
+                                    SectionKind::Scene, SectionKind::Pointers};
+
+struct Section {
+  std::uint32_t kind;
+  std::uint32_t reserved; // 0
+  std::uint64_t offset;   // from the start of the file, a multiple of 64
+  std::uint64_t bytes;
+};
+static_assert(sizeof(Section) == 24);
+
+/// What runs and what is run must mean the same by a launch.
+struct Layouts {
+  std::uint32_t launch = sizeof(RtslLaunch), state = sizeof(RtslState), status = sizeof(RtslStatus),
+                job = sizeof(RtslJob), node = sizeof(RtslBvhNode), instance = sizeof(RtslInstance),
+                mesh = sizeof(RtslMesh), statusOffset = offsetof(RtslLaunch, status);
+};
+
+struct Info {
+  Layouts layouts;
+  std::uint32_t width, height, samplesPerPixel, maxDepth, seed;
+  std::uint32_t stateCount, frameBytes, reserved;
+  std::uint64_t laneBytes, levelBytes;
+  std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
+};
+static_assert(sizeof(Info) == 96);
+
+std::string_view bytesOf(const void *data, std::size_t size) {
+  return {static_cast<const char *>(data), size};
+}
+
+std::uint64_t aligned(std::uint64_t offset) {
+  return (offset + alignment - 1) / alignment * alignment;
+}
+
+/// The checksum of a file whose header is there.
+std::uint64_t checksumOf(std::string_view file) {
+  Header header;
+  std::memcpy(&header, file.data(), sizeof header);
+  header.checksum = 0;
+  const std::uint64_t start = crc64(bytesOf(&header, sizeof header));
+  return crc64(file.substr(sizeof header), start);
+}
+
+Info infoOf(const Package &package) {
+  Info info{};
+  info.layouts = Layouts();
+  info.width = package.options.width;
+  info.height = package.options.height;
+  info.samplesPerPixel = package.options.samplesPerPixel;
+  info.maxDepth = package.options.maxDepth;
+  info.seed = package.options.seed;
+  info.stateCount = package.stateCount;
+  info.frameBytes = package.frameBytes;
+  info.laneBytes = package.laneBytes;
+  info.levelBytes = package.levelBytes;
+  info.hostLaneBytes = package.host.laneBytes;
+  info.hostRunLane = package.host.runLane;
+  return info;
+}
+
+} // namespace
+
+std::string serialize(const Package &package) {
+  const Info info = infoOf(package);
+  const std::string_view contents[] = {
+      bytesOf(&info, sizeof info), package.ptx,
+      bytesOf(package.host.bytes.data(), package.host.bytes.size()),
+      bytesOf(package.scene.bytes.data(), package.scene.bytes.size()),
+      bytesOf(package.scene.pointers.data(), package.scene.pointers.size() * 8)};
+  constexpr std::size_t count = std::size(contents);
+  static_assert(count == std::size(allKinds));
+
+  Section sections[count];
+  std::uint64_t end = sizeof(Header) + sizeof sections;
+  for (std::size_t i = 0; i < count; ++i) {
+    sections[i] = {std::uint32_t(allKinds[i]), 0, aligned(end), contents[i].size()};
+    end = sections[i].offset + sections[i].bytes;
+  }
+
+  std::string file(end, '\0');
+  Header header{};
+  std::memcpy(header.magic, magic, sizeof magic);
+  header.version = formatVersion;
+  header.sectionCount = count;
+  header.fileBytes = end;
+  package.compiler.copy(header.compiler, sizeof header.compiler - 1);
+  std::memcpy(file.data(), &header, sizeof header);
+  std::memcpy(file.data() + sizeof header, sections, sizeof sections);
+  for (std::size_t i = 0; i < count; ++i)
+    contents[i].copy(file.data() + sections[i].offset, contents[i].size());
+  header.checksum = checksumOf(file);
+  std::memcpy(file.data(), &header, sizeof header);
+  return file;
+}
+
+namespace {
+
+class Reader {
+public:
+  Reader(std::string_view file, const std::string &name) : file(file), name(name) {}
+
+  Package read() {
+    checkFile();
+    readSections();
+    Package package;
+    package.compiler = compiler;
+    readInfo(package);
+    package.ptx = std::string(content(SectionKind::Ptx));
+    const std::string_view code = content(SectionKind::HostCode);
+    package.host.bytes.assign(code.begin(), code.end());
+    readScene(package.scene);
+    return package;
+  }
+
+private:
+  template <typename... Arguments>
+  [[noreturn]] void refuse(fmt::format_string<Arguments...> text, Arguments &&...arguments) const {
+    throw Error(ErrorCode::BadPackage,
+                fmt::format("`{}` {}", name, fmt::format(text, std::forward<Arguments>(arguments)...)),
+                Place{name});
+  }
+  [[noreturn]] void refuseDamaged() const { refuse("is damaged: pack the scene again"); }
+
+  /// Is it a package, of ours, whole and unharmed?
+  void checkFile() {
+    Header header;
+    if (file.size() < sizeof magic || std::memcmp(file.data(), magic, sizeof magic) != 0)
+      refuse("is not a package of rtslc");
+    if (file.size() < sizeof header)
+      refuse("is truncated: it ends inside of its header");
+    std::memcpy(&header, file.data(), sizeof header);
+    if (header.version != formatVersion)
+      refuse("is a package of format {}, and this program reads format {}: {}", header.version,
+             formatVersion, header.version > formatVersion ? "use a newer rtsl-run" : "pack the scene again");
+    if (file.size() < header.fileBytes)
+      refuse("is truncated: it has {} bytes of {}", file.size(), header.fileBytes);
+    if (file.size() > header.fileBytes)
+      refuse("is damaged: {} bytes follow its end", file.size() - header.fileBytes);
+    if (header.checksum != checksumOf(file))
+      refuseDamaged();
+    sectionCount = header.sectionCount;
+    compiler.assign(header.compiler, strnlen(header.compiler, sizeof header.compiler));
+  }
+
+  void readSections() {
+    if (sectionCount > (file.size() - sizeof(Header)) / sizeof(Section))
+      refuseDamaged();
+    sections.resize(sectionCount);
+    std::memcpy(sections.data(), file.data() + sizeof(Header), sectionCount * sizeof(Section));
+    for (const Section &section : sections)
+      if (section.offset % alignment != 0 || section.offset > file.size() ||
+          section.bytes > file.size() - section.offset)
+        refuseDamaged();
+  }
+
+  std::string_view content(SectionKind kind) const {
+    for (const Section &section : sections)
+      if (section.kind == std::uint32_t(kind))
+        return file.substr(section.offset, section.bytes);
+    refuseDamaged();
+  }
+
+  void readInfo(Package &package) const {
+    const std::string_view bytes = content(SectionKind::Info);
+    const Layouts ours;
+    if (bytes.size() < sizeof ours)
+      refuseDamaged();
+    if (std::memcmp(bytes.data(), &ours, sizeof ours) != 0)
+      refuse("was made by {}, whose programs do not fit this rtsl-run: use the one of that version",
+             compiler);
+    Info info;
+    if (bytes.size() != sizeof info)
+      refuseDamaged();
+    std::memcpy(&info, bytes.data(), sizeof info);
+    package.options.width = info.width;
+    package.options.height = info.height;
+    package.options.samplesPerPixel = info.samplesPerPixel;
+    package.options.maxDepth = info.maxDepth;
+    package.options.seed = info.seed;
+    package.stateCount = info.stateCount;
+    package.frameBytes = info.frameBytes;
+    package.laneBytes = info.laneBytes;
+    package.levelBytes = info.levelBytes;
+    package.host.laneBytes = info.hostLaneBytes;
+    package.host.runLane = info.hostRunLane;
+    const std::uint64_t code = content(SectionKind::HostCode).size();
+    if (info.hostLaneBytes >= code || info.hostRunLane >= code)
+      refuseDamaged();
+  }
+
+  /// Every pointer must lie in the scene and lead there.
+  void readScene(FlatScene &scene) const {
+    const std::string_view bytes = content(SectionKind::Scene);
+    const std::string_view pointers = content(SectionKind::Pointers);
+    if (bytes.size() < sizeof(RtslLaunch) || pointers.size() % 8 != 0)
+      refuseDamaged();
+    scene.bytes.assign(bytes.begin(), bytes.end());
+    scene.pointers.resize(pointers.size() / 8);
+    if (!pointers.empty())
+      std::memcpy(scene.pointers.data(), pointers.data(), pointers.size());
+    for (std::uint64_t place : scene.pointers) {
+      std::uint64_t target;
+      if (place > bytes.size() - 8)
+        refuseDamaged();
+      std::memcpy(&target, bytes.data() + place, sizeof target);
+      if (target >= bytes.size())
+        refuseDamaged();
+    }
+  }
+
+  std::string_view file;
+  const std::string &name;
+  std::uint32_t sectionCount = 0;
+  std::string compiler;
+  std::vector<Section> sections;
+};
+
+} // namespace
+
+Package parsePackage(std::string_view bytes, const std::string &name) {
+  return Reader(bytes, name).read();
+}
+
+Package readPackage(const std::string &path) {
+  return parsePackage(readFile(path), path);
+}
+
+} // namespace rtsl::runtime

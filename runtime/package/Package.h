@@ -1,0 +1,52 @@
+//===- Package.h - a scene and its compiled code in one file --------------===//
+//
+// What `rtslc pack` writes and `rtsl-run` renders: PTX for GPUs, machine code for CPUs, and the flat
+// scene. docs/packages.md describes the file.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/FlatScene.h"
+#include "runtime/RenderOptions.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// Machine code that runs wherever it lies: it refers to itself alone, and by distances.
+struct NativeImage {
+  std::vector<std::uint8_t> bytes;
+  std::uint64_t laneBytes = 0, runLane = 0; // where these functions begin (MegakernelCode)
+};
+
+struct Package {
+  std::string compiler; // "rtslc 0.1.0", at most 31 bytes
+  RenderOptions options; // the scene's own size, samples, depth and seed
+  std::uint32_t stateCount = 0, frameBytes = 0; // of the largest frame
+  std::uint64_t laneBytes = 0;  // of a lane for camera rays alone
+  std::uint64_t levelBytes = 0; // for each level of depth beyond
+
+  std::string ptx;
+  NativeImage host;
+  FlatScene scene; // not relocated
+
+  /// What rtsl_lane_bytes of its code says.
+  std::uint64_t laneBytesFor(std::uint32_t maxDepth) const {
+    return laneBytes + maxDepth * levelBytes;
+  }
+};
+
+/// The same package gives the same bytes.
+std::string serialize(const Package &package);
+
+/// `name` is for messages. Throws BadPackage: no package, one of another version, truncated, or
+/// damaged. A change of any one byte is found.
+Package parsePackage(std::string_view bytes, const std::string &name);
+
+/// Throws FileNotFound, FileUnreadable, BadPackage.
+Package readPackage(const std::string &path);
+
+} // namespace rtsl::runtime

@@ -1,0 +1,184 @@
+// Stands in for libcuda.so.1: a device whose memory is the process's, and whose one kernel paints a
+// pattern after having checked that it was launched as rtsl_render has to be. FAKE_CUDA makes it fail in
+// one of the ways in which drivers and devices do.
+#include "runtime/device/Abi.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+
+namespace {
+
+enum Status {
+  Success = 0,
+  InvalidValue = 1,
+  OutOfMemory = 2,
+  NoDevice = 100,
+  NoBinaryForGpu = 209,
+  UnsupportedPtxVersion = 222,
+  IllegalAddress = 700,
+};
+
+constexpr std::size_t littleMemory = 100000;
+constexpr unsigned multiprocessors = 2, blocksAtOnce = 3;
+
+bool is(const char *failure) {
+  const char *wanted = std::getenv("FAKE_CUDA");
+  return wanted && std::strcmp(wanted, failure) == 0;
+}
+
+std::map<std::uintptr_t, std::size_t> allocations;
+std::size_t allocated = 0;
+
+std::size_t totalMemory() {
+  return is("little-memory") ? littleMemory : std::size_t(1) << 30;
+}
+
+/// Do `bytes` at the address belong to one allocation?
+bool isAllocated(const void *address, std::size_t bytes) {
+  const auto start = reinterpret_cast<std::uintptr_t>(address);
+  auto after = allocations.upper_bound(start);
+  if (after == allocations.begin())
+    return false;
+  --after;
+  return start + bytes <= after->first + after->second;
+}
+
+} // namespace
+
+extern "C" {
+
+int cuInit(unsigned) { return is("no-device") ? NoDevice : Success; }
+int cuDriverGetVersion(int *version) {
+  *version = is("old-driver") ? 9020 : 12040;
+  return Success;
+}
+int cuGetErrorString(int status, const char **text) {
+  *text = status == IllegalAddress ? "an illegal memory access was encountered" : "some error";
+  return Success;
+}
+int cuDeviceGetCount(int *count) {
+  *count = 1;
+  return Success;
+}
+int cuDeviceGet(int *device, int) {
+  *device = 0;
+  return Success;
+}
+int cuDeviceGetName(char *name, int size, int) {
+  std::snprintf(name, std::size_t(size), "Fake 1000");
+  return Success;
+}
+int cuDeviceGetAttribute(int *value, int attribute, int) {
+  *value = attribute == 16 ? int(multiprocessors) : attribute == 75 ? 7 : 5;
+  return Success;
+}
+int cuDevicePrimaryCtxRetain(void **context, int) {
+  *context = &allocations;
+  return Success;
+}
+int cuDevicePrimaryCtxRelease_v2(int) {
+  for (auto &one : allocations)
+    std::free(reinterpret_cast<void *>(one.first));
+  allocations.clear();
+  return Success;
+}
+int cuCtxSetCurrent(void *) { return Success; }
+int cuMemGetInfo_v2(std::size_t *free, std::size_t *total) {
+  *total = totalMemory();
+  *free = *total - allocated;
+  return Success;
+}
+int cuMemAlloc_v2(std::uint64_t *address, std::size_t bytes) {
+  if (bytes > totalMemory() - allocated)
+    return OutOfMemory;
+  const std::size_t rounded = (bytes + 255) / 256 * 256;
+  void *memory = std::aligned_alloc(256, rounded);
+  std::memset(memory, 0xa5, rounded);
+  *address = reinterpret_cast<std::uintptr_t>(memory);
+  allocations[*address] = bytes;
+  allocated += bytes;
+  return Success;
+}
+int cuMemsetD8_v2(std::uint64_t address, unsigned char value, std::size_t bytes) {
+  if (!isAllocated(reinterpret_cast<void *>(address), bytes))
+    return InvalidValue;
+  std::memset(reinterpret_cast<void *>(address), value, bytes);
+  return Success;
+}
+int cuMemcpyHtoD_v2(std::uint64_t to, const void *from, std::size_t bytes) {
+  if (!isAllocated(reinterpret_cast<void *>(to), bytes))
+    return InvalidValue;
+  std::memcpy(reinterpret_cast<void *>(to), from, bytes);
+  return Success;
+}
+int cuMemcpyDtoH_v2(void *to, std::uint64_t from, std::size_t bytes) {
+  if (!isAllocated(reinterpret_cast<void *>(from), bytes))
+    return InvalidValue;
+  std::memcpy(to, reinterpret_cast<void *>(from), bytes);
+  return Success;
+}
+int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *options, void **values) {
+  if (is("old-ptx"))
+    return UnsupportedPtxVersion;
+  if (is("other-gpu")) {
+    for (unsigned i = 0; i < count; ++i)
+      if (options[i] == 5)
+        std::strcpy(static_cast<char *>(values[i]), "SM version 120 is needed");
+    return NoBinaryForGpu;
+  }
+  const char *ptx = static_cast<const char *>(image);
+  *module = &allocations;
+  return std::strstr(ptx, ".entry rtsl_render") ? Success : InvalidValue;
+}
+int cuModuleUnload(void *) { return Success; }
+int cuModuleGetFunction(void **function, void *, const char *name) {
+  *function = &allocations;
+  return std::strcmp(name, "rtsl_render") == 0 ? Success : InvalidValue;
+}
+int cuFuncGetAttribute(int *value, int, void *) {
+  *value = 40;
+  return Success;
+}
+int cuOccupancyMaxActiveBlocksPerMultiprocessor(int *blocks, void *, int, std::size_t) {
+  *blocks = blocksAtOnce;
+  return Success;
+}
+
+/// Paints (x, y, seed): the launch must have arrived, and every pointer of it must lead to device memory.
+int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned, unsigned, unsigned, void *,
+                   void **arguments, void **) {
+  if (is("fault"))
+    return Success; // it shows when the kernel is waited for
+  const RtslJob &job = **static_cast<RtslJob **>(arguments[0]);
+  if (!isAllocated(&job, sizeof job) || !isAllocated(job.launch, sizeof *job.launch))
+    return IllegalAddress;
+  const RtslLaunch &launch = *job.launch;
+  const std::uint64_t pixels = std::uint64_t(launch.width) * launch.height;
+  bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
+  isFine &= isAllocated(job.lanes, blocks * threads * job.laneBytes);
+  isFine &= isAllocated(job.pixels, pixels * launch.colorComponents * sizeof(float));
+  isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status && job.status->nextPixel == 0;
+  isFine &= isAllocated(launch.records, 16) && isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef));
+  isFine &= isAllocated(launch.instances, launch.instanceCount * sizeof(RtslInstance));
+  isFine &= isAllocated(launch.nodes, launch.nodeCount * sizeof(RtslBvhNode));
+  for (std::uint32_t i = 0; i < launch.meshCount; ++i)
+    isFine &= isAllocated(launch.meshes[i].positions, 12 * launch.meshes[i].vertexCount) &&
+              isAllocated(launch.meshes[i].indices, 12 * launch.meshes[i].triangleCount);
+  if (!isFine)
+    return IllegalAddress;
+  for (std::uint64_t i = 0; i < pixels; ++i) {
+    job.pixels[3 * i] = float(i % launch.width);
+    job.pixels[3 * i + 1] = float(i / launch.width);
+    job.pixels[3 * i + 2] = float(launch.seed);
+  }
+  job.status->nextPixel = pixels;
+  if (is("overflow"))
+    job.status->problem = RTSL_PROBLEM_STACK;
+  return Success;
+}
+int cuCtxSynchronize() { return is("fault") ? IllegalAddress : Success; }
+
+} // extern "C"

@@ -1,0 +1,98 @@
+//===- PackCommand.cpp - rtslc pack ---------------------------------------===//
+#include "CommandLine.h"
+#include "Messages.h"
+#include "SceneShaders.h"
+#include "runtime/AtomicFile.h"
+#include "runtime/FlatScene.h"
+#include "runtime/package/NativeCode.h"
+#include "runtime/package/Package.h"
+#include "scene/SceneFile.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace rtsl::tool {
+
+namespace {
+
+struct PackOptions {
+  CommonOptions common;
+  std::string scene, output;
+  std::vector<std::string> overrides;
+  bool quiet = false;
+};
+
+runtime::RenderOptions renderOptions(const scene::RenderSettings &settings) {
+  runtime::RenderOptions options;
+  options.width = settings.width;
+  options.height = settings.height;
+  options.samplesPerPixel = settings.samplesPerPixel;
+  options.maxDepth = settings.depth;
+  options.seed = settings.seed;
+  return options;
+}
+
+void packScene(const PackOptions &options, Messages &messages) {
+  runtime::checkFileWritable(options.output);
+  const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, messages);
+  if (!module)
+    return;
+  const LinkRequest request = linkRequest(description);
+  runtime::Package package;
+  package.compiler = "rtslc " RTSL_VERSION;
+  package.options = renderOptions(description.render);
+  if (!compilePackage(*module, request, options.common.compile, messages.diagnostics, package))
+    return;
+
+  // Constructors and bounds run here and now; what is packed has only their results.
+  const std::shared_ptr<const runtime::Program> program =
+      compileProgram(*module, request, options.common.compile, messages.diagnostics);
+  if (!program)
+    return;
+  const runtime::Scene scene = scene::buildScene(description, program);
+  for (const runtime::Warning &warning : scene.warnings())
+    messages.report(warning);
+  package.scene = runtime::flatten(scene);
+
+  const runtime::NativeCode code(package.host);
+  package.laneBytes = code.entries().laneBytes(0);
+  package.levelBytes = code.entries().laneBytes(1) - package.laneBytes;
+
+  const std::string bytes = runtime::serialize(package);
+  runtime::writeFileAtomically(options.output, bytes);
+  if (!options.quiet && !options.common.jsonDiagnostics)
+    fmt::print(stderr, "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB\n", options.output,
+               double(bytes.size()) / (1 << 20), package.ptx.size() / 1000, options.common.compile.gpu,
+               package.host.bytes.size() / 1000, double(package.scene.bytes.size()) / (1 << 20));
+}
+
+int pack(const PackOptions &options) {
+  Messages messages(options.common);
+  try {
+    packScene(options, messages);
+  } catch (const runtime::Error &error) {
+    messages.report(error);
+  }
+  return messages.status();
+}
+
+} // namespace
+
+void addPackCommand(CLI::App &app, Action &action) {
+  auto options = std::make_shared<PackOptions>();
+  CLI::App *command = app.add_subcommand(packSummary.command, packSummary.text);
+  command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
+  command->add_option("-o,--output", options->output, "the package, by custom .rtslpkg")->required()->type_name("PACKAGE");
+  command->add_option("--set", options->overrides, "change a value of the scene file, such as objects.3.mesh=bunny.obj")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("-q,--quiet", options->quiet, "no summary");
+  addCompileOptions(*command, options->common);
+  addMessageOptions(*command, options->common);
+  command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run glass.rtslpkg -o glass.png --target=gpu");
+  command->callback([options, &action] { action = [options] { return pack(*options); }; });
+}
+
+} // namespace rtsl::tool
