@@ -36,14 +36,16 @@ std::string renderJson(const Diagnostics &diagnostics) {
       fixes.push_back({{"range", rangeJson(sources, fix.range)},
                        {"replacement", fix.replacement},
                        {"sure", fix.sure}});
-    messages.push_back({{"code", info(diagnostic.code).number},
-                        {"name", info(diagnostic.code).name},
-                        {"severity", diagnostic.severity == Severity::Error ? "error" : "warning"},
-                        {"message", diagnostic.message},
-                        {"range", rangeJson(sources, diagnostic.range)},
-                        {"labels", std::move(labels)},
-                        {"notes", diagnostic.notes},
-                        {"fixes", std::move(fixes)}});
+    messages.push_back(
+        {{"code", info(diagnostic.code).number},
+         {"name", info(diagnostic.code).name},
+         {"warning", info(diagnostic.code).warning ? Json(info(diagnostic.code).warning) : Json()},
+         {"severity", diagnostic.severity == Severity::Error ? "error" : "warning"},
+         {"message", diagnostic.message},
+         {"range", rangeJson(sources, diagnostic.range)},
+         {"labels", std::move(labels)},
+         {"notes", diagnostic.notes},
+         {"fixes", std::move(fixes)}});
   }
   const Json document = {{"version", 1},
                          {"diagnostics", std::move(messages)},

@@ -401,6 +401,8 @@ void TextRenderer::render(const Diagnostic &diagnostic) {
   out += paint(palette.severity,
                fmt::format("{}[{}]", isError ? "error" : "warning", info(diagnostic.code).number));
   out += paint(palette.bold, fmt::format(": {}", printable(diagnostic.message)));
+  if (const char *warning = info(diagnostic.code).warning)
+    out += fmt::format(" [-W{}{}]", isError ? "error=" : "", warning);
   endLine();
 
   // Each text that is shown, that of the message first. A label at the range of the message is its

@@ -6,12 +6,15 @@
 
 namespace rtsl {
 
-const CodeInfo &info(Code code) {
-  static constexpr CodeInfo table[] = {
+const std::vector<CodeInfo> codeTable = {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) {#id, #number, Severity::severity, message},
+#define RTSL_WARNING(id, number, group, name, message)                                             \
+  {#id, #number, Severity::Warning, message, name, WarningGroup::group},
 #include "frontend/DiagnosticCodes.def"
-  };
-  return table[static_cast<std::size_t>(code)];
+};
+
+const CodeInfo &info(Code code) {
+  return codeTable[static_cast<std::size_t>(code)];
 }
 
 Diagnostic &Diagnostics::add(Code code, SourceRange range, std::string message) {
@@ -19,9 +22,13 @@ Diagnostic &Diagnostics::add(Code code, SourceRange range, std::string message) 
 }
 
 Diagnostic &Diagnostics::add(Diagnostic diagnostic) {
-  if (warningsAreErrors)
-    diagnostic.severity = Severity::Error;
-  const bool isError = diagnostic.severity == Severity::Error;
+  const bool isWarning = info(diagnostic.code).severity == Severity::Warning;
+  if (isWarning && !warnings.isOn(diagnostic.code)) {
+    dropped = std::move(diagnostic);
+    return dropped;
+  }
+  const bool isError = !isWarning || warnings.isError(diagnostic.code);
+  diagnostic.severity = isError ? Severity::Error : Severity::Warning;
   const SourceRange range = diagnostic.range;
   const auto code = static_cast<int>(diagnostic.code);
   const bool isNew = seen.insert(range.isValid() ? fmt::format("{} {} {} {}", code, range.file,

@@ -26,14 +26,42 @@ enum class Code : std::uint16_t {
 #include "frontend/DiagnosticCodes.def"
 };
 
+/// What turns a warning on: nothing more, or `-Wperf`.
+enum class WarningGroup : std::uint8_t { Usual, Perf };
+
 /// The row of the table for a code.
 struct CodeInfo {
   const char *name;   // "unknownName"
   const char *number; // "E0201"
   Severity severity;
-  const char *message; // fmt format string
+  const char *message;                      // fmt format string
+  const char *warning = nullptr;            // "unused-variable", as `-W` says it; null for errors
+  WarningGroup group = WarningGroup::Usual; // of a warning
 };
 const CodeInfo &info(Code code);
+/// The table, one row a code.
+extern const std::vector<CodeInfo> codeTable;
+
+/// Which warnings are shown, and which of these are errors.
+class WarningOptions {
+public:
+  /// Takes over what stands behind `-W`: `NAME`, `no-NAME`, `error`, `error=NAME`, `no-error`,
+  /// `no-error=NAME`, where NAME is a warning, `perf` or `all`. What comes later counts. Returns
+  /// what is wrong with it, or an empty text.
+  std::string apply(std::string_view text);
+
+  bool isOn(Code code) const;
+  /// Of a warning that is on.
+  bool isError(Code code) const;
+
+private:
+  struct State {
+    bool isSet = false, isOn = false;         // otherwise as its group says
+    bool isErrorSet = false, isError = false; // otherwise as all of them
+  };
+  std::vector<State> states; // by code; empty: nothing was asked
+  bool allAreErrors = false;
+};
 
 /// A second place that helps to understand the message.
 struct Label {
@@ -85,7 +113,8 @@ public:
     return add(code, range, fmt::format(fmt::runtime(info(code).message), args...));
   }
 
-  /// Takes over the messages of `other`, in the order of their places: what several steps found in one text.
+  /// Takes over the messages of `other`, in the order of their places: what several steps found in
+  /// one text.
   void addSorted(Diagnostics &&other);
 
   bool hasErrors() const { return numErrors != 0; }
@@ -99,7 +128,7 @@ public:
   const SourceManager &sources() const { return sourceManager; }
 
   std::size_t errorLimit = 20; // 0: no limit
-  bool warningsAreErrors = false;
+  WarningOptions warnings;
 
 private:
   Diagnostic &add(Diagnostic diagnostic);

@@ -77,7 +77,7 @@ std::unique_ptr<ast::TranslationUnit> parse(FileId file, Diagnostics &diagnostic
   Diagnostics found(diagnostics.sources());
   found.errorLimit =
       diagnostics.errorLimit == 0 ? 0 : std::max(diagnostics.errorLimit, maxFoundErrors);
-  found.warningsAreErrors = diagnostics.warningsAreErrors;
+  found.warnings = diagnostics.warnings;
   std::unique_ptr<ast::TranslationUnit> unit = parseText(file, found);
   diagnostics.addSorted(std::move(found));
   return unit;

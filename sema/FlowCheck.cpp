@@ -9,30 +9,13 @@
 #include "sema/Casting.h"
 #include "sema/ConstantFold.h"
 #include "sema/Program.h"
+#include "sema/Walk.h"
 
 #include <unordered_set>
 
 namespace rtsl {
 
 using namespace typed;
-
-bool isOutArgument(Builtin builtin, std::size_t index) {
-  switch (builtin) {
-  case Builtin::Modf:
-  case Builtin::Frexp:
-    return index == 1;
-  case Builtin::UaddCarry:
-  case Builtin::UsubBorrow:
-    return index == 2;
-  case Builtin::UmulExtended:
-  case Builtin::ImulExtended:
-    return index >= 2;
-  case Builtin::TracePayload:
-    return index == 4;
-  default:
-    return false;
-  }
-}
 
 namespace {
 
@@ -93,18 +76,6 @@ private:
   State state, atExit;
 };
 
-/// Finds what a statement may write.
-class WriteCollector {
-public:
-  std::unordered_set<const Variable *> variables;
-
-  void visit(const Stmt *stmt);
-  void visit(const Expr *expr);
-
-private:
-  void target(const Expr *expr);
-};
-
 bool isAlwaysTrue(const Expr *condition) {
   if (!condition)
     return true;
@@ -117,148 +88,19 @@ bool isAlwaysTrue(const Expr *condition) {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// What a loop writes
+// Variables
 //===----------------------------------------------------------------------===//
 
-void WriteCollector::target(const Expr *expr) {
-  for (;;) {
-    if (const auto *field = dynCast<FieldExpr>(expr))
-      expr = field->base.get();
-    else if (const auto *swizzle = dynCast<SwizzleExpr>(expr))
-      expr = swizzle->base.get();
-    else if (const auto *index = dynCast<IndexExpr>(expr)) {
-      visit(index->index.get());
-      expr = index->base.get();
-    } else
-      break;
-  }
-  if (const auto *variable = dynCast<VariableExpr>(expr))
-    variables.insert(variable->variable);
-}
-
-void WriteCollector::visit(const Expr *expr) {
-  if (!expr)
-    return;
-  switch (expr->kind) {
-  case ExprKind::Field:
-    return visit(cast<FieldExpr>(*expr).base.get());
-  case ExprKind::Swizzle:
-    return visit(cast<SwizzleExpr>(*expr).base.get());
-  case ExprKind::Index:
-    visit(cast<IndexExpr>(*expr).base.get());
-    return visit(cast<IndexExpr>(*expr).index.get());
-  case ExprKind::Length:
-    return visit(cast<LengthExpr>(*expr).base.get());
-  case ExprKind::Unary:
-    return visit(cast<UnaryExpr>(*expr).operand.get());
-  case ExprKind::IncDec:
-    return target(cast<IncDecExpr>(*expr).target.get());
-  case ExprKind::Binary:
-    visit(cast<BinaryExpr>(*expr).left.get());
-    return visit(cast<BinaryExpr>(*expr).right.get());
-  case ExprKind::Assign:
-    target(cast<AssignExpr>(*expr).target.get());
-    return visit(cast<AssignExpr>(*expr).value.get());
-  case ExprKind::Conditional:
-    visit(cast<ConditionalExpr>(*expr).condition.get());
-    visit(cast<ConditionalExpr>(*expr).whenTrue.get());
-    return visit(cast<ConditionalExpr>(*expr).whenFalse.get());
-  case ExprKind::Comma:
-    visit(cast<CommaExpr>(*expr).left.get());
-    return visit(cast<CommaExpr>(*expr).right.get());
-  case ExprKind::Convert:
-    return visit(cast<ConvertExpr>(*expr).operand.get());
-  case ExprKind::Construct:
-    for (const ExprPtr &arg : cast<ConstructExpr>(*expr).args)
-      visit(arg.get());
-    return;
-  case ExprKind::Builtin: {
-    const auto &call = cast<BuiltinExpr>(*expr);
-    for (std::size_t i = 0; i != call.args.size(); ++i)
-      isOutArgument(call.builtin, i) ? target(call.args[i].get()) : visit(call.args[i].get());
-    return;
-  }
-  case ExprKind::Call: {
-    const auto &call = cast<CallExpr>(*expr);
-    for (std::size_t i = 0; i != call.args.size(); ++i)
-      call.function->parameters[i]->direction == ast::Direction::In ? visit(call.args[i].get())
-                                                                    : target(call.args[i].get());
-    return;
-  }
-  case ExprKind::MethodCall: {
-    const auto &call = cast<MethodCallExpr>(*expr);
-    visit(call.receiver.get());
-    for (std::size_t i = 0; i != call.args.size(); ++i)
-      !call.function || call.function->parameters[i]->direction == ast::Direction::In
-          ? visit(call.args[i].get())
-          : target(call.args[i].get());
-    return;
-  }
-  default:
-    return;
-  }
-}
-
-void WriteCollector::visit(const Stmt *stmt) {
-  if (!stmt)
-    return;
-  switch (stmt->kind) {
-  case ast::StmtKind::Compound:
-    for (const StmtPtr &inner : cast<CompoundStmt>(*stmt).body)
-      visit(inner.get());
-    return;
-  case ast::StmtKind::Declaration:
-    for (const Variable *variable : cast<DeclarationStmt>(*stmt).variables)
-      visit(variable->init.get());
-    return;
-  case ast::StmtKind::Expression:
-    return visit(cast<ExpressionStmt>(*stmt).expr.get());
-  case ast::StmtKind::If:
-    visit(cast<IfStmt>(*stmt).condition.get());
-    visit(cast<IfStmt>(*stmt).thenStmt.get());
-    return visit(cast<IfStmt>(*stmt).elseStmt.get());
-  case ast::StmtKind::For:
-    visit(cast<ForStmt>(*stmt).init.get());
-    visit(cast<ForStmt>(*stmt).condition.get());
-    visit(cast<ForStmt>(*stmt).step.get());
-    return visit(cast<ForStmt>(*stmt).body.get());
-  case ast::StmtKind::While:
-    visit(cast<WhileStmt>(*stmt).condition.get());
-    return visit(cast<WhileStmt>(*stmt).body.get());
-  case ast::StmtKind::DoWhile:
-    visit(cast<DoWhileStmt>(*stmt).body.get());
-    return visit(cast<DoWhileStmt>(*stmt).condition.get());
-  case ast::StmtKind::Switch:
-    visit(cast<SwitchStmt>(*stmt).value.get());
-    for (const SwitchStmt::Arm &arm : cast<SwitchStmt>(*stmt).arms)
-      for (const StmtPtr &inner : arm.body)
-        visit(inner.get());
-    return;
-  case ast::StmtKind::Return:
-    return visit(cast<ReturnStmt>(*stmt).value.get());
-  case ast::StmtKind::Illuminance:
-    visit(cast<IlluminanceStmt>(*stmt).point.get());
-    visit(cast<IlluminanceStmt>(*stmt).normal.get());
-    visit(cast<IlluminanceStmt>(*stmt).angle.get());
-    return visit(cast<IlluminanceStmt>(*stmt).body.get());
-  default:
-    return;
-  }
-}
-
+/// What a loop may write is not known to be unwritten at its head.
 void FlowCheck::assumeWritten(const Stmt *body, const Expr *condition, const Expr *step) {
-  WriteCollector collector;
-  collector.visit(body);
-  collector.visit(condition);
-  collector.visit(step);
-  for (const Variable *variable : collector.variables)
+  std::set<const Variable *> assigned = assignedVariables(*body);
+  for (const Expr *expr : {condition, step})
+    if (expr)
+      assigned.merge(assignedVariables(*expr));
+  for (const Variable *variable : assigned)
     if (auto found = tracked.find(variable); found != tracked.end())
       state.variables[found->second] |= written;
 }
-
-//===----------------------------------------------------------------------===//
-// Variables
-//===----------------------------------------------------------------------===//
 
 void FlowCheck::track(const Variable &variable) {
   auto [entry, fresh] = tracked.emplace(&variable, state.variables.size());
@@ -310,22 +152,6 @@ void FlowCheck::visitTarget(const Expr &target, bool reads) {
     return;
   if (reads)
     read(*variable->variable, variable->range);
-}
-
-static const Variable *rootVariable(const Expr &target) {
-  const Expr *at = &target;
-  for (;;) {
-    if (const auto *field = dynCast<FieldExpr>(at))
-      at = field->base.get();
-    else if (const auto *swizzle = dynCast<SwizzleExpr>(at))
-      at = swizzle->base.get();
-    else if (const auto *index = dynCast<IndexExpr>(at))
-      at = index->base.get();
-    else
-      break;
-  }
-  const auto *variable = dynCast<VariableExpr>(at);
-  return variable ? variable->variable : nullptr;
 }
 
 void FlowCheck::visitArgument(const Expr &arg, ast::Direction direction) {

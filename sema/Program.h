@@ -132,6 +132,8 @@ public:
   void declareFunctions();
   void checkBodies();
   void judgeCalls(); // CallGraph.cpp
+  /// Of a program without mistakes.
+  void checkPerformance();
 
 private:
   struct PendingBody {
@@ -183,5 +185,8 @@ bool judgeUse(Diagnostics &diagnostics, const Use &use, const RootModel &root,
 /// Control flow of a checked body: missing returns, statements that are never reached, variables
 /// that are read before they were written or never read (FlowCheck.cpp).
 void checkFlow(const typed::Function &function, Diagnostics &diagnostics);
+
+/// What costs on a GPU and shows in the source: `-Wperf` (PerformanceCheck.cpp).
+void checkPerformance(const typed::Function &function, Diagnostics &diagnostics);
 
 } // namespace rtsl

@@ -16,6 +16,7 @@ std::unique_ptr<typed::Module> check(const std::vector<const ast::TranslationUni
   program.declareFunctions();
   program.checkBodies();
   program.judgeCalls();
+  program.checkPerformance();
   return module;
 }
 

@@ -1,14 +1,11 @@
 //===- Suggest.h - what the author may have meant -------------------------===//
 #pragma once
 
+#include "frontend/ClosestName.h"
+
 #include <string>
-#include <vector>
 
 namespace rtsl {
-
-/// The candidate that is most like `name`, or empty: at most a third of its letters may be wrong,
-/// missing, doubled or swapped. Case alone never counts as more than one mistake.
-std::string closestName(const std::string &name, const std::vector<std::string> &candidates);
 
 /// How other shading languages spell something, and how RTSL does.
 struct ForeignSpelling {

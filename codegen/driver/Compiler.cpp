@@ -20,6 +20,7 @@
 #include "llvm/Support/raw_ostream.h"
 #include "llvm/Target/TargetMachine.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace rtsl {
@@ -197,6 +198,39 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
   }
 }
 
+/// Warns of a trace over which much is alive: values that are saved, and variables that lie in the frame all the time.
+void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &frame, Diagnostics &diagnostics) {
+  struct Part {
+    std::string name;
+    std::uint32_t bytes;
+  };
+  std::vector<Part> parts;
+  std::uint32_t bytes = trace.savedBytes;
+  for (std::size_t i = 0; i != trace.saved.size(); ++i)
+    parts.push_back({trace.saved[i], trace.savedSizes[i]});
+  for (const continuation::FrameSlot &slot : frame.slots)
+    if (slot.isObject) {
+      parts.push_back({slot.name, slot.size});
+      bytes += slot.size;
+    }
+  if (bytes <= largeLiveState)
+    return;
+  std::stable_sort(parts.begin(), parts.end(), [](const Part &a, const Part &b) { return a.bytes > b.bytes; });
+
+  SourceRange range;
+  if (const FileId file = diagnostics.sources().find(trace.place.file)) {
+    const std::uint32_t begin = diagnostics.sources().offset(file, {trace.place.line, trace.place.column});
+    range = {file, begin, begin + static_cast<std::uint32_t>(std::string_view("trace").size())};
+  }
+  Diagnostic &diagnostic = diagnostics.report(Code::liveState, range, bytes, largeLiveState, parts.front().name,
+                                              parts.front().bytes);
+  std::string others;
+  for (std::size_t i = 1; i < parts.size(); ++i)
+    others += fmt::format("{}`{}` {}", i == 1 ? "" : ", ", parts[i].name, parts[i].bytes);
+  if (!others.empty())
+    diagnostic.note("and then: " + others);
+}
+
 } // namespace
 
 std::optional<std::string> emit(const typed::Module &module, Stage stage, const CompileOptions &options,
@@ -228,6 +262,19 @@ std::optional<std::string> explainStates(const typed::Module &module, const Comp
     return std::nullopt;
   const SplitReport report = runToSsa(*ir, TraceMode::Split);
   return json ? toJson(report) : toText(report);
+}
+
+void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics) {
+  if (!diagnostics.warnings.isOn(Code::liveState))
+    return;
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  Diagnostics refusals(diagnostics.sources()); // whoever asks for more than a warning hears them
+  const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, refusals, *context);
+  if (!ir || refusals.hasErrors())
+    return;
+  for (const FunctionReport &function : runToSsa(*ir, TraceMode::Split).functions)
+    for (const TraceReport &trace : function.traces)
+      warnOfLiveState(trace, function.frame, diagnostics);
 }
 
 namespace {

@@ -64,6 +64,13 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
 std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options, bool json,
                                          Diagnostics &diagnostics);
 
+/// Splits the module at `trace` and warns where more than `largeLiveState` bytes are saved: -Wlive-state. Does nothing
+/// if that warning is off, or if the module cannot be lowered.
+void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics);
+
+/// Half of the registers that a GPU thread of a ray tracer has: 32 of 64.
+constexpr std::uint32_t largeLiveState = 128;
+
 /// What a package needs of a program (runtime/package/Package.h): everything but the scene and its options. False if there
 /// were errors.
 bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,

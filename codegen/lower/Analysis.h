@@ -1,19 +1,9 @@
 //===- Analysis.h - what lowering asks about a typed tree -----------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
-
-#include <functional>
-#include <set>
+#include "sema/Walk.h"
 
 namespace rtsl::lowering {
-
-/// Calls `visit` for each expression of a statement or below an expression, outer ones first.
-void forEachExpr(const typed::Stmt &stmt, const std::function<void(const typed::Expr &)> &visit);
-void forEachExpr(const typed::Expr &expr, const std::function<void(const typed::Expr &)> &visit);
-
-/// The variables that are assigned somewhere in `body`, as a whole or in part.
-std::set<const typed::Variable *> assignedVariables(const typed::Stmt &body);
 
 /// May evaluation change something, or end in another way than with a value?
 bool hasSideEffects(const typed::Expr &expr);

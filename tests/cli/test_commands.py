@@ -1,6 +1,7 @@
 """The commands on good input."""
 
 import json
+import re
 import unittest
 
 from harness import EXAMPLES, Case
@@ -77,6 +78,54 @@ class Commands(Case):
         figures = json.loads(out)
         self.assertEqual([f["name"] for f in figures["functions"]], ["Glass.shade"])
         self.assertEqual(figures["frameSize"], 28)
+
+    def test_warnings_are_turned_on_and_off(self):
+        self.write("odd.rtsl", MATERIAL.replace("  rt_", "  float x = 1.0;\n  rt_"))
+        _, error = self.run_rtslc("check", "odd.rtsl")
+        self.assertIn("odd.rtsl:4:9: warning[W2200]: `x` is never used [-Wunused-variable]\n", error)
+        self.assertEqual(self.run_rtslc("check", "odd.rtsl", "-Wno-unused-variable"), ("", ""))
+        self.assertEqual(self.run_rtslc("check", "odd.rtsl", "-Wno-all", "-Wperf"), ("", ""))
+        for arguments in (["-Werror"], ["-Werror=unused-variable"], ["-Wno-all", "-Werror=unused-variable"]):
+            _, error = self.run_rtslc("check", "odd.rtsl", *arguments, status=1)
+            self.assertIn("error[W2200]: `x` is never used [-Werror=unused-variable]\n", error)
+        self.run_rtslc("check", "odd.rtsl", "-Werror", "-Wno-error=unused-variable")
+        self.run_rtslc("compile", "odd.rtsl", "--emit=ir", "-Werror", status=1)
+        self.run_rtslc("explain", "--states", "odd.rtsl", "-Werror", status=1)
+        _, error = self.run_rtslc("check", "odd.rtsl", "-Wunused-varable", status=2)
+        self.assertIn("there is no warning `unused-varable`; did you mean `unused-variable`?", error)
+
+    def test_warnings_of_a_scene(self):
+        self.glass_scene()
+        render = ("render", "scene.json", "-o", "picture.png", "--size", "8x8", "--spp", "1", "--set",
+                  "objects.1.primitive.radius=0")
+        _, error = self.run_rtslc(*render)
+        self.assertIn("[-Wscene]", error)
+        self.run_rtslc(*render, "-Werror=scene", status=1)
+
+    def test_much_live_state_is_warned_of(self):
+        text = ("class Wide : rt_Material;\n\nvoid shade() {\n  float w[32];\n"
+                "  for (int i = 0; i < 32; ++i)\n    w[i] = rand();\n  vec3 p = rt_HitPoint * rand();\n"
+                "  vec4 q = vec4(rand(), rand(), rand(), rand());\n  vec4 r = q.wzyx * rand();\n"
+                "  color c = trace(p, rt_RayDirection);\n  float s = p.x + p.y + p.z;\n"
+                "  for (int i = 0; i < 32; ++i)\n    s += w[i];\n"
+                "  rt_SampleColor = c * (s + dot(q, r) * q.x * r.y);\n}\n")
+        self.write("wide.rtsl", text)
+        _, error = self.run_rtslc("check", "wide.rtsl", "-Wlive-state", "--diagnostics=json")
+        (message,) = json.loads(error)["diagnostics"]
+        self.assertEqual((message["code"], message["warning"], message["range"]["begin"]["line"]),
+                         ("W2901", "live-state", 10))
+        self.assertRegex(message["message"], "^1[0-9][0-9] bytes .*more than 128; `w` costs most: 128 bytes$")
+        self.write("narrow.rtsl", text.replace("32", "12"))
+        self.assertEqual(self.run_rtslc("check", "narrow.rtsl", "-Wlive-state"), ("", ""))
+
+    def test_documented_warnings_are_those_of_the_compiler(self):
+        out, _ = self.run_rtslc("check", "-Whelp")
+        listed = [(name, code, "perf" if rest else "on") for name, code, rest in
+                  re.findall(r"^(\S+) +(W\d+)  (?:on|(with -Wperf))$", out, re.M)]
+        page = (EXAMPLES.parent / "docs" / "warnings.md").read_text()
+        documented = re.findall(r"^\| `([a-z-]+)` \| (W\d+) \| (on|perf) \|", page, re.M)
+        self.assertEqual(len(listed), out.count("\n"))
+        self.assertEqual(listed, documented)
 
     def test_compare(self):
         self.glass_scene()

@@ -50,7 +50,7 @@ void writeFixes(const Messages &messages) {
 int check(const CheckOptions &options) {
   Messages messages(options.common);
   Shaders shaders(messages, options.files);
-  shaders.check();
+  shaders.check(options.common.compile);
   messages.print();
   if (options.fix)
     try {

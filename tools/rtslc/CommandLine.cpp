@@ -29,6 +29,25 @@ std::string parseColor(const std::string &text, CompileOptions &options) {
   return {};
 }
 
+/// What -Whelp says: the table of warnings, a line each.
+std::string warningList() {
+  std::string text;
+  for (const CodeInfo &row : codeTable)
+    if (row.warning)
+      text += fmt::format("{:<26} {}  {}\n", row.warning, row.number,
+                          row.group == WarningGroup::Perf ? "with -Wperf" : "on");
+  return text;
+}
+
+void applyWarning(const std::string &text, WarningOptions &warnings) {
+  if (text == "help") {
+    fmt::print("{}", warningList());
+    throw CLI::Success();
+  }
+  if (const std::string complaint = warnings.apply(text); !complaint.empty())
+    throw CLI::ValidationError("-W" + text, complaint);
+}
+
 bool hasCommand(const CLI::App &app, const std::string &name) {
   const std::vector<const CLI::App *> commands = app.get_subcommands([](const CLI::App *) { return true; });
   return std::any_of(commands.begin(), commands.end(),
@@ -49,6 +68,18 @@ void addMessageOptions(CLI::App &command, CommonOptions &options) {
       ->type_name("auto|always|never");
   command.add_option("--error-limit", options.errorLimit, "stop showing errors after this many; 0 shows all")
       ->type_name("N");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "-W",
+          [&options](const std::vector<std::string> &texts) {
+            for (const std::string &text : texts)
+              applyWarning(text, options.warnings);
+          },
+          "turn a warning on, or off with no-NAME; NAME can be all or perf; error[=NAME] makes them errors; "
+          "-Whelp lists them")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void addCompileOptions(CLI::App &command, CommonOptions &options) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "codegen/driver/Compiler.h"
+#include "frontend/Diagnostics.h"
 
 #include <CLI/CLI.hpp>
 
@@ -23,10 +24,11 @@ struct CommonOptions {
   bool jsonDiagnostics = false;
   std::string ansi = "auto"; // colour on the terminal: auto, always, never
   std::size_t errorLimit = 20;
+  WarningOptions warnings;
   CompileOptions compile;
 };
 
-/// Adds --diagnostics, --ansi and --error-limit.
+/// Adds --diagnostics, --ansi, --error-limit and -W.
 void addMessageOptions(CLI::App &command, CommonOptions &options);
 /// Adds --color, --unchecked, --trace, --gpu-arch and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);

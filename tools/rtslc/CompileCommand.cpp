@@ -39,7 +39,7 @@ bool isScene(const std::string &file) {
 /// The text of the asked stage of a whole scene; nothing if there were errors.
 std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages) {
   const scene::SceneDescription description = scene::readSceneFile(options.files.front(), options.overrides);
-  const std::unique_ptr<typed::Module> module = loadShaders(description, messages);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common.compile, messages);
   if (!module)
     return std::nullopt;
   return emitScene(*module, linkRequest(description), options.stage, options.common.compile, messages.diagnostics);
@@ -55,7 +55,7 @@ std::optional<std::string> translate(const CompileCommandOptions &options, Messa
     return messages.diagnostics.hasErrors() ? std::nullopt : std::optional(text);
   }
 
-  const std::unique_ptr<typed::Module> module = shaders.check();
+  const std::unique_ptr<typed::Module> module = shaders.check(options.common.compile);
   if (messages.diagnostics.hasErrors())
     return std::nullopt;
   if (options.stage == Stage::TypedAst)

@@ -23,7 +23,7 @@ int explain(const ExplainOptions &options) {
   try {
     checkOutput(options.output);
     Shaders shaders(messages, options.files);
-    const std::unique_ptr<typed::Module> module = shaders.check();
+    const std::unique_ptr<typed::Module> module = shaders.check(options.common.compile);
     if (!messages.diagnostics.hasErrors())
       if (const auto text = explainStates(*module, options.common.compile, options.json, messages.diagnostics))
         writeOutput(options.output, *text);

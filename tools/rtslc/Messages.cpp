@@ -58,6 +58,7 @@ bool wantsColour(const std::string &ansi) {
 
 Messages::Messages(const CommonOptions &options) : options(options) {
   diagnostics.errorLimit = options.errorLimit;
+  diagnostics.warnings = options.warnings;
 }
 
 SourceRange Messages::rangeOf(const runtime::Place &place) {

@@ -36,7 +36,7 @@ runtime::RenderOptions renderOptions(const scene::RenderSettings &settings) {
 void packScene(const PackOptions &options, Messages &messages) {
   runtime::checkFileWritable(options.output);
   const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
-  const std::unique_ptr<typed::Module> module = loadShaders(description, messages);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common.compile, messages);
   if (!module)
     return;
   const LinkRequest request = linkRequest(description);

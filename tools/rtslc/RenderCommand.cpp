@@ -113,7 +113,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
 
   Times times;
   Clock::time_point start = Clock::now();
-  const std::unique_ptr<typed::Module> module = loadShaders(description, messages);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common.compile, messages);
   if (!module)
     return;
   const std::shared_ptr<const runtime::Program> program =

@@ -243,7 +243,7 @@ void printSummary(const ReportOptions &options, const report::Summary &summary, 
 std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages) {
   LoadedScene loaded;
   loaded.description = scene::readSceneFile(options.scene, options.overrides);
-  loaded.module = loadShaders(loaded.description, messages);
+  loaded.module = loadShaders(loaded.description, options.common.compile, messages);
   if (!loaded.module)
     return std::nullopt;
   const scene::RenderSettings &settings = loaded.description.render;

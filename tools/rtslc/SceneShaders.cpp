@@ -5,7 +5,8 @@
 
 namespace rtsl::tool {
 
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, Messages &messages) {
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CompileOptions &options,
+                                           Messages &messages) {
   Shaders shaders(messages);
   for (const scene::ImportDescription &import : description.imports) {
     const SourceRange range = messages.rangeOf(import.name.place);
@@ -14,7 +15,7 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
     else
       shaders.add(import.path, range);
   }
-  std::unique_ptr<typed::Module> module = shaders.check();
+  std::unique_ptr<typed::Module> module = shaders.check(options);
   return messages.diagnostics.hasErrors() ? nullptr : std::move(module);
 }
 

@@ -11,7 +11,8 @@
 namespace rtsl::tool {
 
 /// Reads and checks the files that the scene imports; null if there were errors.
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, Messages &messages);
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CompileOptions &options,
+                                           Messages &messages);
 
 /// Which classes the scene has objects of, and which materials meet which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);

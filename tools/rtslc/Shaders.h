@@ -28,11 +28,14 @@ public:
 
   const std::vector<const ast::TranslationUnit *> &units() const { return parsed; }
 
-  /// Checks everything together.
-  std::unique_ptr<typed::Module> check() {
-    return rtsl::check(
+  /// Checks everything together, down to what splitting at `trace` would save if that is asked for (-Wlive-state).
+  std::unique_ptr<typed::Module> check(const CompileOptions &options) {
+    std::unique_ptr<typed::Module> module = rtsl::check(
         parsed, [this](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
         messages.diagnostics);
+    if (!messages.diagnostics.hasErrors())
+      checkLiveState(*module, options, messages.diagnostics);
+    return module;
   }
 
 private:

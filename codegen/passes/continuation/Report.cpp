@@ -3,11 +3,19 @@
 
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/Support/JSON.h"
+#include "llvm/Support/Path.h"
 #include "llvm/Support/raw_ostream.h"
 
 #include <algorithm>
 
 namespace rtsl {
+
+std::string TracePlace::text() const {
+  if (file.empty())
+    return {};
+  return (llvm::sys::path::filename(file) + ":" + llvm::Twine(line) + ":" + llvm::Twine(column))
+      .str();
+}
 
 std::uint32_t SplitReport::frameSize() const {
   std::uint32_t size = 0;
@@ -28,7 +36,8 @@ std::string toText(const SplitReport &report) {
         << (function.states.size() == 1 ? " state" : " states") << ", frame of "
         << function.frame.size << " bytes\n";
     for (const TraceReport &trace : function.traces) {
-      out << "  trace" << (trace.location.empty() ? "" : " at " + trace.location) << ", resumes at "
+      const std::string place = trace.place.text();
+      out << "  trace" << (place.empty() ? "" : " at " + place) << ", resumes at "
           << trace.resumesAt << "\n";
       out << "    live           " << trace.liveBytes << " bytes" << list(trace.live) << "\n";
       out << "    saved          " << trace.savedBytes << " bytes" << list(trace.saved) << "\n";
@@ -72,7 +81,7 @@ std::string toJson(const SplitReport &report) {
           json.attributeArray("traces", [&] {
             for (const TraceReport &trace : function.traces)
               json.object([&] {
-                json.attribute("location", trace.location);
+                json.attribute("location", trace.place.text());
                 json.attribute("resumesAt", trace.resumesAt);
                 json.attribute("liveBytes", trace.liveBytes);
                 names("live", trace.live);

@@ -9,13 +9,22 @@
 
 namespace rtsl {
 
+/// Where a trace stands.
+struct TracePlace {
+  std::string file; // as messages name it; empty: unknown
+  std::uint32_t line = 0, column = 0;
+  /// "glass.rtsl:40:20", or empty.
+  std::string text() const;
+};
+
 /// One trace of a function, in the order in which they stand.
 struct TraceReport {
-  std::string location;          // "glass.rtsl:40:20", or empty
+  TracePlace place;
   std::string resumesAt;         // the state
   std::vector<std::string> live; // what plain liveness would save, constants included
   std::uint32_t liveBytes = 0;
   std::vector<std::string> saved;
+  std::vector<std::uint32_t> savedSizes;   // bytes of each; 0 of a bool
   std::uint32_t savedBytes = 0;            // bools as bits of one word
   std::vector<std::string> rematerialised; // of what was live; not what it is made from
   std::int64_t rematerialisedCost =

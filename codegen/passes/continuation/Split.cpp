@@ -8,7 +8,6 @@
 
 #include "mlir/IR/Verifier.h"
 #include "llvm/ADT/StringSet.h"
-#include "llvm/Support/Path.h"
 
 namespace rtsl {
 
@@ -16,34 +15,35 @@ using namespace continuation;
 
 namespace {
 
-std::string locationText(mlir::Location location) {
+TracePlace placeOf(mlir::Location location) {
   if (auto file = llvm::dyn_cast<mlir::FileLineColLoc>(location))
-    return (llvm::sys::path::filename(file.getFilename().getValue()) + ":" +
-            llvm::Twine(file.getLine()) + ":" + llvm::Twine(file.getColumn()))
-        .str();
+    return {file.getFilename().str(), file.getLine(), file.getColumn()};
   if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
-    return locationText(name.getChildLoc());
+    return placeOf(name.getChildLoc());
   if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location)) {
-    std::string text = locationText(call.getCallee());
-    return text.empty() ? locationText(call.getCaller()) : text;
+    TracePlace place = placeOf(call.getCallee());
+    return place.file.empty() ? placeOf(call.getCaller()) : place;
   }
   if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location))
     for (mlir::Location part : fused.getLocations())
-      if (std::string text = locationText(part); !text.empty())
-        return text;
+      if (TracePlace place = placeOf(part); !place.file.empty())
+        return place;
   return {};
 }
 
 /// Names and bytes of what would be or is saved at a trace.
 void describe(llvm::ArrayRef<mlir::Value> values, UniqueNames &uniqueNames,
-              std::vector<std::string> &names, std::uint32_t &bytes) {
+              std::vector<std::string> &names, std::uint32_t &bytes,
+              std::vector<std::uint32_t> *sizes = nullptr) {
   unsigned bools = 0;
   for (mlir::Value value : values) {
     names.push_back(uniqueNames.of(value));
-    if (value.getType().isInteger(1))
-      ++bools;
-    else
-      bytes += ir::sizeInBytes(value.getType());
+    const bool isBool = value.getType().isInteger(1);
+    const std::uint32_t size = isBool ? 0 : ir::sizeInBytes(value.getType());
+    bools += isBool;
+    bytes += size;
+    if (sizes)
+      sizes->push_back(size);
   }
   bytes += (bools + 31) / 32 * 4;
 }
@@ -86,7 +86,7 @@ mlir::LogicalResult FunctionSplitter::reportPlainLiveness() {
     return mlir::failure();
   for (const SuspendPlan &plan : *plans) {
     TraceReport trace;
-    trace.location = locationText(ir::SuspendOp(plan.suspend).getLoc());
+    trace.place = placeOf(ir::SuspendOp(plan.suspend).getLoc());
     trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
     describe(plan.saved, plainNames, trace.live, trace.liveBytes);
     report.traces.push_back(std::move(trace));
@@ -102,7 +102,7 @@ mlir::LogicalResult FunctionSplitter::planAndRematerialise() {
     return mlir::failure();
   UniqueNames names;
   for (auto [plan, trace] : llvm::zip(*plans, report.traces)) {
-    describe(plan.saved, names, trace.saved, trace.savedBytes);
+    describe(plan.saved, names, trace.saved, trace.savedBytes, &trace.savedSizes);
     llvm::StringSet<> live;
     for (const std::string &name : trace.live)
       live.insert(name);

@@ -351,8 +351,8 @@ TEST_F(Messages, AreNotLimitedByZero) {
 TEST_F(Messages, TurnWarningsIntoErrors) {
   diagnostics.report(Code::sceneWarning, at("b"), "odd");
   EXPECT_FALSE(diagnostics.hasErrors());
-  EXPECT_EQ(shown().substr(0, shown().find('\n')), "a.rtsl:1:10: warning[W2800]: odd");
-  diagnostics.warningsAreErrors = true;
+  EXPECT_EQ(shown().substr(0, shown().find('\n')), "a.rtsl:1:10: warning[W2800]: odd [-Wscene]");
+  EXPECT_EQ(diagnostics.warnings.apply("error"), "");
   diagnostics.report(Code::sceneWarning, at("c"), "odd");
   EXPECT_TRUE(diagnostics.hasErrors());
 }
@@ -385,7 +385,7 @@ TEST_F(Messages, AsJson) {
   const auto expected = nlohmann::json::parse(R"({
     "version": 1,
     "diagnostics": [{
-      "code": "E0103", "name": "unknownCharacter", "severity": "error",
+      "code": "E0103", "name": "unknownCharacter", "warning": null, "severity": "error",
       "message": "unknown character `b`",
       "range": {"file": "a.rtsl",
                 "begin": {"offset": 9, "line": 1, "column": 10},

@@ -42,6 +42,8 @@ std::unique_ptr<Checked> checkText(const std::string &text) {
   for (const std::string &line : splitLines(text)) {
     if (startsWith(line, "//=== "))
       name = line.substr(6);
+    if (startsWith(line, "//! -W"))
+      checked->diagnostics.warnings.apply(line.substr(6));
     // Lines keep their numbers in the whole text, whatever file they belong to.
     for (auto &[file, content] : texts)
       if (file != name)

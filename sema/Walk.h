@@ -1,0 +1,35 @@
+//===- Walk.h - over the parts of a typed tree ----------------------------===//
+#pragma once
+
+#include "sema/TypedAst.h"
+
+#include <functional>
+#include <set>
+
+namespace rtsl {
+
+using ExprVisitor = std::function<void(const typed::Expr &)>;
+using StmtVisitor = std::function<void(const typed::Stmt &)>;
+
+/// Calls the visitors for the direct parts of an expression or statement, in the order of the text.
+void forEachChild(const typed::Expr &expr, const ExprVisitor &visit);
+void forEachChild(const typed::Stmt &stmt, const StmtVisitor &visitStmt,
+                  const ExprVisitor &visitExpr);
+
+/// Calls `visit` for each expression of a statement or below an expression, outer ones first.
+void forEachExpr(const typed::Stmt &stmt, const ExprVisitor &visit);
+void forEachExpr(const typed::Expr &expr, const ExprVisitor &visit);
+/// Calls `visit` for a statement and each one in it, outer ones first.
+void forEachStmt(const typed::Stmt &stmt, const StmtVisitor &visit);
+
+/// The variable that a place is, or is part of; null if it is no part of one.
+const typed::Variable *rootVariable(const typed::Expr &place);
+
+/// Is this argument of a built-in function written to?
+bool isOutArgument(typed::Builtin builtin, std::size_t index);
+
+/// The variables that are assigned somewhere in a statement or expression, as a whole or in part.
+std::set<const typed::Variable *> assignedVariables(const typed::Stmt &stmt);
+std::set<const typed::Variable *> assignedVariables(const typed::Expr &expr);
+
+} // namespace rtsl
