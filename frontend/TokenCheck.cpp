@@ -197,6 +197,18 @@ std::size_t TokenChecker::skipForeignWords(std::size_t index) {
                        fmt::format("write `{}` in front of each member", textOf(token)));
     return 2;
   }
+  // `const T &x`: values are passed as if they were copied.
+  if (token.type == RtslLexer::AMPERSAND && before() == RtslLexer::IDENTIFIER &&
+      before(2) == RtslLexer::CONST && typeAt(index + 1) == RtslLexer::IDENTIFIER) {
+    Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), "&");
+    const bool isBetween = out.back().end < token.begin && token.end < at(index + 1).begin;
+    if (out.back().end == token.begin && token.end == at(index + 1).begin)
+      diagnostic.fix(rangeOf(token), " ", true);
+    else
+      diagnostic.fix(isBetween ? removal(1) : rangeOf(token), "", true);
+    diagnostic.note("a parameter is a copy; `inout` gives a value back");
+    return 1;
+  }
   // Two names in a row are a type and what it declares; three begin with a qualifier.
   if (token.type == RtslLexer::IDENTIFIER && isDeclarationStart() &&
       (typeAt(index + 1) == RtslLexer::IDENTIFIER || isQualifier(typeAt(index + 1)) ||

@@ -78,19 +78,16 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
     return checkTracePayload(expr);
   if (const BuiltinOverloads *overloads = program.builtins.find(name))
     return checkBuiltinCall(expr, *overloads);
-  reportUnknownFunction(expr.callee);
+  reportUnknownFunction(expr.callee, expr.range);
   for (const ast::ExprPtr &arg : expr.args)
     checkExpr(*arg);
   return errorExpr(expr.range);
 }
 
-void FunctionChecker::reportUnknownFunction(const ast::Name &callee) {
+void FunctionChecker::reportUnknownFunction(const ast::Name &callee, SourceRange call) {
   Diagnostic &diagnostic = diagnostics.report(Code::unknownFunction, callee.range, callee.text);
   if (const ForeignSpelling *foreign = foreignSpelling(callee.text)) {
-    if (!foreign->replacement.empty())
-      diagnostic.fix(callee.range, foreign->replacement);
-    if (!foreign->advice.empty())
-      diagnostic.note(foreign->advice);
+    suggestSpelling(diagnostic, *foreign, callee.range, call);
     return;
   }
   std::vector<std::string> candidates = builtinNames();

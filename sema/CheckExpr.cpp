@@ -193,9 +193,12 @@ void FunctionChecker::explainConversion(Diagnostic &diagnostic, const typed::Exp
                                         const Type *to) {
   const Type *from = expr.type;
   const std::string text = sourceText(expr.range);
-  auto wrap = [&](const std::string &function) {
-    diagnostic.fix(expr.range, function + "(" + text + ")");
+  auto wrap = [&](const std::string &function, bool sure = false) {
+    diagnostic.fix(expr.range, function + "(" + text + ")", sure);
   };
+  // What C converts without being asked, and to the same value.
+  const bool isNumeric = from->scalar() && from->scalar()->isNumericScalar() && to->scalar() &&
+                         to->scalar()->isNumericScalar();
   if (to->is(TypeKind::Color)) {
     diagnostic.note("a color has as many components as the target chooses, so nothing turns into "
                     "one by itself");
@@ -211,9 +214,9 @@ void FunctionChecker::explainConversion(Diagnostic &diagnostic, const typed::Exp
     if (to->is(TypeKind::Float))
       wrap("luminance");
   } else if (from->isScalar() && to->isScalar()) {
-    wrap(toString(to));
+    wrap(toString(to), isNumeric);
   } else if (from->isVector() && to->isVector() && from->count == to->count) {
-    wrap(toString(to));
+    wrap(toString(to), isNumeric);
   } else if (from->isVector() && to->isVector() && from->element == to->element &&
              from->count > to->count) {
     diagnostic.fix({expr.range.file, expr.range.end, expr.range.end},

@@ -97,10 +97,11 @@ ExprPtr FunctionChecker::checkName(const ast::NameExpr &expr, Access access) {
 void FunctionChecker::reportUnknownName(const std::string &name, SourceRange range) {
   Diagnostic &diagnostic = diagnostics.report(Code::unknownName, range, name);
   if (const ForeignSpelling *foreign = foreignSpelling(name)) {
-    if (!foreign->replacement.empty())
-      diagnostic.fix(range, foreign->replacement);
-    if (!foreign->advice.empty())
-      diagnostic.note(foreign->advice);
+    suggestSpelling(diagnostic, *foreign, range);
+    const SourceRange dot{range.file, range.end, range.end + 1};
+    if ((name == "this" || name == "self") &&
+        range.end < diagnostics.sources().text(range.file).size() && sourceText(dot) == ".")
+      diagnostic.fix(range.to(dot), "", true);
     return;
   }
   std::vector<std::string> candidates = locals.names();

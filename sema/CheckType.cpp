@@ -29,10 +29,7 @@ static const Type *typeOfName(const ast::Name &name, Program &program) {
   }
   Diagnostic &diagnostic = program.diagnostics.report(Code::unknownType, name.range, name.text);
   if (const ForeignSpelling *foreign = foreignSpelling(name.text)) {
-    if (!foreign->replacement.empty())
-      diagnostic.fix(name.range, foreign->replacement);
-    if (!foreign->advice.empty())
-      diagnostic.note(foreign->advice);
+    suggestSpelling(diagnostic, *foreign, name.range);
     return program.types.error;
   }
   std::vector<std::string> candidates = {"bool",  "int",   "uint",  "float", "vec2",  "vec3",

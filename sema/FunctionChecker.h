@@ -137,7 +137,7 @@ private:
   typed::ExprPtr checkBuiltinCall(const ast::CallExpr &expr, const BuiltinOverloads &overloads);
   typed::ExprPtr checkTracePayload(const ast::CallExpr &expr);
   typed::ExprPtr checkPrint(const ast::CallExpr &expr);
-  void reportUnknownFunction(const ast::Name &callee);
+  void reportUnknownFunction(const ast::Name &callee, SourceRange call);
   /// Checks the arguments. Those that some candidate takes as `out` or `inout` are checked as
   /// targets.
   std::vector<typed::ExprPtr> checkArguments(const std::vector<ast::ExprPtr> &args,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "frontend/ClosestName.h"
+#include "frontend/Diagnostics.h"
 
 #include <string>
 
@@ -11,8 +12,15 @@ namespace rtsl {
 struct ForeignSpelling {
   std::string replacement; // empty: there is no word for word replacement, only the advice
   std::string advice;
+  /// It means the same, with the same arguments: `check --fix` may write it.
+  bool sure = false;
+  std::string append = {}; // at the end of the call's arguments
+  std::string behind = {}; // behind the call
 };
 /// Null if `name` is not known from HLSL, CUDA, OptiX, GLSL's rasteriser or the RenderMan language.
 const ForeignSpelling *foreignSpelling(const std::string &name);
+/// Adds the fix and the advice to a message about `name`, which calls something if `call` is valid.
+void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign, SourceRange name,
+                     SourceRange call = {});
 
 } // namespace rtsl

@@ -33,22 +33,29 @@ std::string count(std::size_t number, const char *noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
-/// Writes the mended texts back. What came from standard input goes to standard output.
+/// Writes the mended texts back, all of them or, if one cannot be written, none. What came from standard input goes to
+/// standard output.
 void writeFixes(const Messages &messages) {
-  for (const FileId file : filesToFix(messages.diagnostics)) {
+  const std::set<FileId> files = filesToFix(messages.diagnostics);
+  const auto path = [&](FileId file) { return std::string(messages.sources.name(file)); };
+  for (const FileId file : files)
+    if (path(file) != "<stdin>")
+      runtime::checkFileWritable(path(file));
+  for (const FileId file : files) {
     const FixedText fixed = applyFixes(messages.diagnostics, file);
-    const std::string path(messages.sources.name(file));
-    if (path == "<stdin>")
+    if (path(file) == "<stdin>")
       fmt::print("{}", fixed.text);
     else
-      runtime::writeFileAtomically(path, fixed.text);
-    fmt::print(stderr, "{}: {} fixed", path, count(fixed.applied, "mistake"));
+      runtime::writeFileAtomically(path(file), fixed.text);
+    fmt::print(stderr, "{}: {} fixed", path(file), count(fixed.applied, "mistake"));
     fmt::print(stderr, fixed.skipped ? ", {} left that overlap with these: run again\n" : "\n", fixed.skipped);
   }
 }
 
 int check(const CheckOptions &options) {
   Messages messages(options.common);
+  if (options.fix)
+    messages.diagnostics.errorLimit = 0; // what is not recorded cannot be fixed
   Shaders shaders(messages, options.files);
   shaders.check(options.common.compile);
   messages.print();

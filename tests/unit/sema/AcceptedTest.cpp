@@ -1,7 +1,7 @@
 //===- AcceptedTest.cpp - what the language allows, and what it means -----===//
 //
-// Each file of tests/language/accepted is checked without a message, and its typed tree is compared
-// with the `.typed` file beside it.
+// Each tests/language/*/accepted.rtsl is checked without a message, and its typed tree is compared
+// with the `accepted.typed` beside it.
 //
 //===----------------------------------------------------------------------===//
 #include "Harness.h"
@@ -27,9 +27,9 @@ TEST_P(Accepted, HasTheTypedTree) {
   EXPECT_EQ(typed::dump(*checked->module), readFile(golden));
 }
 
-INSTANTIATE_TEST_SUITE_P(Language, Accepted, testing::ValuesIn(languageFiles("accepted", ".rtsl")),
+INSTANTIATE_TEST_SUITE_P(Language, Accepted, testing::ValuesIn(languageFiles("accepted.rtsl")),
                          [](const testing::TestParamInfo<std::string> &param) {
-                           return std::filesystem::path(param.param).stem().string();
+                           return testName(chapterOf(param.param));
                          });
 
 } // namespace

@@ -1,6 +1,6 @@
 //===- ErrorsTest.cpp - every message, at its exact place -----------------===//
 //
-// The texts stand in tests/language/errors. Adding a case there adds a test here.
+// The texts stand in tests/language/*/errors.rtsl. Adding a case there adds a test here.
 //
 //===----------------------------------------------------------------------===//
 #include "Harness.h"
@@ -27,9 +27,9 @@ void PrintTo(const NamedCase &named, std::ostream *stream) {
 
 std::vector<NamedCase> allCases() {
   std::vector<NamedCase> cases;
-  for (const std::string &path : languageFiles("errors", ".rtsl"))
+  for (const std::string &path : languageFiles("errors.rtsl"))
     for (Case &each : splitCases(readFile(path)))
-      cases.push_back({std::filesystem::path(path).stem().string() + "_" + testName(each.title),
+      cases.push_back({testName(chapterOf(path) + "_" + each.title),
                        std::move(each)});
   return cases;
 }
@@ -52,7 +52,7 @@ const char *const provokedElsewhere[] = {"E0320", "E0606", "E0608", "E0609", "E0
 
 TEST(Errors, EveryMessageOfSemaHasATest) {
   std::string expectations;
-  for (const std::string &path : languageFiles("errors", ".rtsl"))
+  for (const std::string &path : languageFiles("errors.rtsl"))
     expectations += readFile(path);
   static const char *const numbers[] = {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) #number,
@@ -69,7 +69,7 @@ TEST(Errors, EveryMessageOfSemaHasATest) {
       elsewhere |= std::strcmp(number, other) == 0;
     if (isSemas && !elsewhere) {
       EXPECT_NE(expectations.find(std::string("^ ") + number + " "), std::string::npos)
-          << number << " has no test in tests/language/errors";
+          << number << " has no test in tests/language/*/errors.rtsl";
     }
   }
 }
@@ -79,7 +79,7 @@ TEST(Errors, EveryMessageOfSemaHasATest) {
 TEST(Errors, AreRenewedOnRequest) {
   if (!renewing())
     GTEST_SKIP() << "only with RTSL_RENEW_GOLDEN=1";
-  for (const std::string &path : languageFiles("errors", ".rtsl")) {
+  for (const std::string &path : languageFiles("errors.rtsl")) {
     std::string renewed;
     for (const Case &each : splitCases(readFile(path)))
       renewed += "//--- " + each.title + "\n" + withActualMessages(each.text);

@@ -149,14 +149,17 @@ void writeFile(const std::string &path, const std::string &text) {
   stream << text;
 }
 
-std::vector<std::string> languageFiles(const std::string &folder, const std::string &extension) {
+std::vector<std::string> languageFiles(const std::string &name) {
   std::vector<std::string> paths;
-  for (const auto &entry :
-       std::filesystem::directory_iterator(std::string(RTSL_LANGUAGE_TESTS) + "/" + folder))
-    if (entry.path().extension() == extension)
-      paths.push_back(entry.path().string());
+  for (const auto &chapter : std::filesystem::directory_iterator(RTSL_LANGUAGE_TESTS))
+    if (const auto path = chapter.path() / name; std::filesystem::exists(path))
+      paths.push_back(path.string());
   std::sort(paths.begin(), paths.end());
   return paths;
+}
+
+std::string chapterOf(const std::string &path) {
+  return std::filesystem::path(path).parent_path().filename().string();
 }
 
 bool renewing() {

@@ -53,8 +53,10 @@ std::vector<Case> splitCases(const std::string &fileText);
 std::string testName(const std::string &title);
 std::string readFile(const std::string &path);
 void writeFile(const std::string &path, const std::string &text);
-/// Files of a folder below tests/language, sorted.
-std::vector<std::string> languageFiles(const std::string &folder, const std::string &extension);
+/// The files of this name in the chapters of tests/language, sorted.
+std::vector<std::string> languageFiles(const std::string &name);
+/// The folder of such a file: "04-numbers".
+std::string chapterOf(const std::string &path);
 /// Expected output is renewed instead of compared: `RTSL_RENEW_GOLDEN=1`, as `make golden` sets it.
 bool renewing();
 

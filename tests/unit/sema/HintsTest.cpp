@@ -41,6 +41,28 @@ std::string hints(const std::string &text) {
   return result;
 }
 
+/// The text with all sure fixes of all messages applied, which leaves nothing to fix.
+std::string mended(const std::string &text) {
+  const std::unique_ptr<Checked> checked = checkText(text);
+  const FixedText result = applyFixes(checked->diagnostics, checked->files.at("main.rtsl"));
+  EXPECT_EQ(result.skipped, 0u);
+  const std::unique_ptr<Checked> again = checkText(result.text);
+  EXPECT_EQ(applyFixes(again->diagnostics, again->files.at("main.rtsl")).text, result.text) << "not at once";
+  return result.text;
+}
+
+/// `check --fix` turns one into the other, which is right.
+void expectMended(const std::string &before, const std::string &after) {
+  EXPECT_EQ(mended(before + "\n"), after + "\n");
+  EXPECT_EQ(render(*checkText(after)), "");
+}
+
+/// `check --fix` does not touch what is only a guess.
+void expectLeft(const std::string &text) {
+  EXPECT_TRUE(checkText(text)->diagnostics.hasErrors());
+  EXPECT_EQ(mended(text + "\n"), text + "\n");
+}
+
 TEST(Hints, MistypedNamesAreMended) {
   expectFix("float f(float radius) { return radus; }", "float f(float radius) { return radius; }");
   expectFix("struct Ray { vec3 origin; };\nvec3 f(Ray r) { return r.orign; }",
@@ -124,6 +146,53 @@ TEST(Hints, StateSaysWhoSeesIt) {
   EXPECT_EQ(hints("class C : rt_Camera; void generateRay() { rt_RayOrigin = "
                   "vec3(luminance(rt_LightColor)); }"),
             "`rt_LightColor` belongs to rt_Material and rt_Light\n");
+}
+
+TEST(SureFixes, SpellingsOfHlslAndCuda) {
+  expectMended("float3 f(float2 v, uint3 n) { return float3(v, 1.0) * lerp(2.0, 3.0, frac(v.x)); }",
+               "vec3 f(vec2 v, uvec3 n) { return vec3(v, 1.0) * mix(2.0, 3.0, fract(v.x)); }");
+  expectMended("half4 f(half x) { return make_float4(x, 0.0, rsqrt(x), sinf(x)); }",
+               "vec4 f(float x) { return vec4(x, 0.0, inversesqrt(x), sin(x)); }");
+  expectMended("vec3 f(vec3 c) { return saturate(c * 2.0); }",
+               "vec3 f(vec3 c) { return clamp(c * 2.0, 0.0, 1.0); }");
+  expectMended("float f(float x) { return saturate(saturate(x) + rcp(x + 1.0)); }",
+               "float f(float x) { return clamp(clamp(x, 0.0, 1.0) + (1.0 / (x + 1.0)), 0.0, 1.0); }");
+  expectMended("float f(float x) { return sqr(x) + log10(x) + fmaf(x, powf(x, 2.0), fabsf(x)); }",
+               "float f(float x) { return pow(x, 2) + (log(x) / log(10.0)) + fma(x, pow(x, 2.0), abs(x)); }");
+  expectMended("float f(float y, float x) { return atan2(y, x) + float(asuint(x)) + fmaxf(x, y); }",
+               "float f(float y, float x) { return atan(y, x) + float(floatBitsToUint(x)) + max(x, y); }");
+}
+
+TEST(SureFixes, SpellingsOfOptix) {
+  expectMended("struct P { float x; };\nclass A : rt_Material {\n  void anyHit(inout P p) {\n    if (p.x > 0.5) "
+               "rtIgnoreIntersection();\n    optixTerminateRay();\n  }\n};",
+               "struct P { float x; };\nclass A : rt_Material {\n  void anyHit(inout P p) {\n    if (p.x > 0.5) "
+               "ignoreIntersection();\n    terminateRay();\n  }\n};");
+}
+
+TEST(SureFixes, HabitsOfOtherLanguages) {
+  expectMended("static float f(const vec3& a, const vec3 & b, const vec3 &c, const vec3&d)\n{ return a.x + b.x + c.x + d.x }",
+               "float f(const vec3 a, const vec3 b, const vec3 c, const vec3 d)\n{ return a.x + b.x + c.x + d.x; }");
+  expectMended("class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = color(this.k); }\n};",
+               "class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = color(k); }\n};");
+}
+
+TEST(SureFixes, NumbersThatDoNotConvertByThemselves) {
+  expectMended("int f(float x) { int i = x; i = x * 2.0; uint u = 3.0; return u; }",
+               "int f(float x) { int i = int(x); i = int(x * 2.0); uint u = uint(3.0); return int(u); }");
+  expectMended("ivec3 f(vec3 x) { return x; }", "ivec3 f(vec3 x) { return ivec3(x); }");
+}
+
+TEST(SureFixes, AreNoGuesses) {
+  expectLeft("float f(float radius) { return radus; }");
+  expectLeft("double f() { return 1.0; }");
+  expectLeft("vec3 f(mat3 m, vec3 a) { return mul(m, a); }");
+  expectLeft("float f(float x) { return fmod(x, 2.0); }");
+  expectLeft("bool f(float x) { return x; }");
+  expectLeft("vec2 f(vec4 v) { return v; }");
+  expectLeft("color f(vec3 v) { return v; }");
+  expectLeft("float4x4 f(float4x4 m) { return m; }");
+  expectLeft("class A : rt_Material { void shade() { rt_SampleColor = rtTrace(rt_HitPoint, rt_RayDirection); } };");
 }
 
 } // namespace

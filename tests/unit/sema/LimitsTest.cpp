@@ -241,7 +241,7 @@ TEST(Robustness, CallsOfFunctionsThatWereNeverDefined) {
 }
 
 TEST(Robustness, EveryLineMayBeMissing) {
-  for (const std::string &path : languageFiles("accepted", ".rtsl")) {
+  for (const std::string &path : languageFiles("accepted.rtsl")) {
     const std::string text = readFile(path);
     for (std::size_t begin = 0; begin < text.size();) {
       const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;

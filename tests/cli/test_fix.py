@@ -1,0 +1,100 @@
+"""rtslc check --fix: what it writes, and what it leaves alone."""
+
+import json
+import os
+import unittest
+
+from harness import DIAGNOSED, Case
+
+BEFORE = """class Grey : rt_Material;
+
+public float3 tint
+
+void shade() {
+  float x = saturate(tint.x)
+  int n = x * 2.0;
+  rt_SampleColor = color(lerp(x, 0.5f, 1f / n));
+}
+"""
+AFTER = """class Grey : rt_Material;
+
+public vec3 tint;
+
+void shade() {
+  float x = clamp(tint.x, 0.0, 1.0);
+  int n = int(x * 2.0);
+  rt_SampleColor = color(mix(x, 0.5f, 1.0f / n));
+}
+"""
+
+
+class Fixes(Case):
+    def fix(self, *files, status=DIAGNOSED):
+        return self.run_rtslc("check", "--fix", *files, status=status)
+
+    def test_common_slips(self):
+        path = self.write("grey.rtsl", BEFORE)
+        rounds = 0
+        while path.read_text() != AFTER and rounds < 3:  # the types are looked at once the syntax is right
+            _, error = self.fix("grey.rtsl")
+            self.assertRegex(error, r"\ngrey.rtsl: \d+ mistakes? fixed\n$")
+            rounds += 1
+        self.assertEqual(path.read_text(), AFTER)
+        out, error = self.fix("grey.rtsl", status=0)
+        self.assertEqual((out, error, path.read_text()), ("", "", AFTER))
+
+    def test_standard_input_goes_to_standard_output(self):
+        out, _ = self.run_rtslc("check", "--fix", "-", stdin=b"float3 f() { return float3(1); }\n", status=DIAGNOSED)
+        self.assertEqual(out, "vec3 f() { return vec3(1); }\n")
+
+    def test_several_files_and_what_they_import(self):
+        self.write("a.rtsl", 'import "c.rtsl";\nfloat2 a() { return c(); }\n')
+        self.write("b.rtsl", "float3 b() { return vec3(1); }\n")
+        self.write("c.rtsl", "float2 c() { return vec2(1); }\n")
+        _, error = self.fix("a.rtsl", "b.rtsl")
+        for name in "abc":
+            self.assertIn(f"{name}.rtsl: 1 mistake fixed\n", error)
+            self.assertNotIn("float", (self.folder / f"{name}.rtsl").read_text())
+        self.run_rtslc("check", "a.rtsl", "b.rtsl")
+
+    def test_more_mistakes_than_are_usually_shown(self):
+        path = self.write("many.rtsl", "".join(f"float3 f{i}() {{ return vec3(1); }}\n" for i in range(50)))
+        _, error = self.fix("many.rtsl")
+        self.assertIn("many.rtsl: 50 mistakes fixed\n", error)
+        self.assertNotIn("float3", path.read_text())
+
+    def test_guesses_change_nothing(self):
+        text = "float f(float radius) { return radus; }\ndouble g() { return 1.0; }\n"
+        path = self.write("guess.rtsl", text)
+        _, error = self.fix("guess.rtsl")
+        self.assertEqual(path.read_text(), text)
+        self.assertNotIn("fixed", error)
+        messages = self.diagnose("check", "guess.rtsl")
+        self.assertEqual([fix["sure"] for message in messages for fix in message["fixes"]], [False, False])
+
+    def test_overlapping_fixes_wait_for_the_next_run(self):
+        path = self.write("nested.rtsl", "int f(float x) { return lerp(x, 1.0, 0.5) + frac(x); }\n")
+        for _ in range(3):
+            self.fix("nested.rtsl") if self.run_messages("nested.rtsl") else None
+        self.assertEqual(path.read_text(), "int f(float x) { return int(mix(x, 1.0, 0.5) + fract(x)); }\n")
+
+    def run_messages(self, name):
+        done = self.run_rtslc("check", name, "--diagnostics=json", status=None)
+        return json.loads(done[1])["diagnostics"]
+
+    def test_all_files_or_none(self):
+        self.write("a.rtsl", "float3 a() { return vec3(1); }\n")
+        locked = self.folder / "locked"
+        locked.mkdir()
+        (locked / "b.rtsl").write_text("float3 b() { return vec3(1); }\n")
+        os.chmod(locked, 0o555)
+        self.addCleanup(os.chmod, locked, 0o755)
+        os.chmod(self.folder, 0o777)
+        _, error = self.run_rtslc("check", "--fix", "a.rtsl", "locked/b.rtsl", status=DIAGNOSED, unprivileged=True)
+        self.assertIn("rtslc: ", error)
+        self.assertIn("float3", (self.folder / "a.rtsl").read_text())
+        self.assertIn("float3", (locked / "b.rtsl").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

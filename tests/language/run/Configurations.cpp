@@ -1,0 +1,36 @@
+//===- Configurations.cpp - every path that a program takes ---------------===//
+#include "Configurations.h"
+
+namespace rtsl::test {
+
+static CompileOptions options(TraceMode trace, unsigned optimization, std::uint32_t colorComponents = 3,
+                              bool checkIndices = true) {
+  CompileOptions options;
+  options.trace = trace;
+  options.optimization = optimization;
+  options.colorComponents = colorComponents;
+  options.checkIndices = checkIndices;
+  return options;
+}
+
+static CompileOptions megakernel(unsigned optimization) {
+  CompileOptions compile = options(TraceMode::Split, optimization);
+  compile.target = Target::HostMegakernel;
+  return compile;
+}
+
+const std::vector<Configuration> &configurations() {
+  using runtime::Traversal;
+  static const std::vector<Configuration> table = {
+      {"recurse_O2", options(TraceMode::Recurse, 2)},
+      {"recurse_O0", options(TraceMode::Recurse, 0)},
+      {"split_O2_mono", options(TraceMode::Split, 2, 1), Traversal::Device},
+      {"split_O0_spectral4", options(TraceMode::Split, 0, 4)},
+      {"recurse_O1_spectral16_unchecked", options(TraceMode::Recurse, 1, 16, false)},
+      {"split_O2_unchecked", options(TraceMode::Split, 2, 3, false)},
+      {"host_megakernel_O1", megakernel(1)},
+  };
+  return table;
+}
+
+} // namespace rtsl::test

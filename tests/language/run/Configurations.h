@@ -1,0 +1,25 @@
+//===- Configurations.h - every path that a program takes -----------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+#include "runtime/Renderer.h"
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace rtsl::test {
+
+/// One way to compile and run a program. A new path is a new row of the table in Configurations.cpp.
+struct Configuration {
+  std::string name;
+  CompileOptions compile;
+  runtime::Traversal traversal = runtime::Traversal::Embree;
+};
+
+const std::vector<Configuration> &configurations();
+
+/// What GoogleTest shows of one.
+inline void PrintTo(const Configuration &configuration, std::ostream *stream) { *stream << configuration.name; }
+
+} // namespace rtsl::test
