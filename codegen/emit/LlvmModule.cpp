@@ -100,7 +100,8 @@ createTargetMachine(const MachineOptions &options) {
                              options.hostCpu ? hostFeatures() : "", options.optimization);
 }
 
-/// Functions are inlined only where their features allow it, so all of them say the same.
+/// Functions are inlined only where their features allow it, so all of them say the same; also that
+/// there is no C library whose functions could be recognised, as is said of the device code.
 static void setProcessor(llvm::Module &module, llvm::StringRef cpu, llvm::StringRef features) {
   for (llvm::Function &function : module) {
     if (function.isDeclaration())
@@ -111,6 +112,7 @@ static void setProcessor(llvm::Module &module, llvm::StringRef cpu, llvm::String
     else
       function.addFnAttr("target-features", features);
     function.removeFnAttr("tune-cpu");
+    function.addFnAttr("no-builtins");
   }
 }
 
