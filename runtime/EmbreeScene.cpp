@@ -85,6 +85,8 @@ struct EmbreeScene::Implementation {
   RTCError error = RTC_ERROR_NONE;
   std::string errorText;
 
+  EmbreeAnswer query(RtslState &state, bool anyHit, float toEmbree, float fromEmbree) const;
+
   ~Implementation() {
     if (scene)
       rtcReleaseScene(scene);
@@ -168,23 +170,11 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
 
 EmbreeScene::~EmbreeScene() = default;
 
-EmbreeAnswer EmbreeScene::traverse(RtslState &state, bool anyHit) const {
-  if (!(device::largest(device::load(state.RayOrigin)) < largestOrigin))
-    return EmbreeAnswer::Refused;
-  float length = device::largest(device::load(state.RayDirection));
-  if (length > shortest && length < longest)
-    return query(state, anyHit, 1, 1);
-  // Beyond these exponents the scale or its inverse would not be exact.
-  int exponent = device::exponentOf(length);
-  if (exponent < -100 || exponent > 100)
-    return EmbreeAnswer::Refused;
-  ++rayCounters().rescaledRays;
-  return query(state, anyHit, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
-}
-
-/// `toEmbree` and `fromEmbree` are powers of two and turn our t into Embree's, and back.
-EmbreeAnswer EmbreeScene::query(RtslState &state, bool anyHit, float toEmbree,
-                                float fromEmbree) const {
+/// `toEmbree` and `fromEmbree` are powers of two and turn our t into Embree's, and back. Inlined,
+/// so that nothing is left of them where they are 1.
+[[gnu::always_inline]] inline EmbreeAnswer
+EmbreeScene::Implementation::query(RtslState &state, bool anyHit, float toEmbree,
+                                   float fromEmbree) const {
   using namespace device;
   Vec3 origin = load(state.RayOrigin), direction = load(state.RayDirection);
   Vec3 scaled = direction * fromEmbree;
@@ -205,27 +195,45 @@ EmbreeAnswer EmbreeScene::query(RtslState &state, bool anyHit, float toEmbree,
   ray.id = 0;
   ray.flags = 0;
   if (anyHit) {
-    rtcOccluded1(self->scene, &context.embree, &ray);
+    rtcOccluded1(scene, &context.embree, &ray);
     return ray.tfar < 0 ? EmbreeAnswer::Hit : EmbreeAnswer::Miss;
   }
 
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(self->scene, &context.embree, &rayHit);
+  rtcIntersect1(scene, &context.embree, &rayHit);
   std::uint32_t instance = rayHit.hit.geomID;
   if (instance == RTC_INVALID_GEOMETRY_ID)
     return EmbreeAnswer::Miss;
-  const RtslInstance &hit = self->instances[instance];
+  const RtslInstance &hit = instances[instance];
   if (hit.primitive != 0)
     return EmbreeAnswer::Hit; // its `intersect` has committed it
 
   // Of a triangle only the name is taken from Embree.
   state.HitDistance = distance;
   state.instance = RTSL_NO_HIT;
-  if (testTriangle(state, makeTriangleRay(origin, direction), self->meshes[hit.mesh], instance,
+  if (testTriangle(state, makeTriangleRay(origin, direction), meshes[hit.mesh], instance,
                    rayHit.hit.primID))
     return EmbreeAnswer::Hit;
   return EmbreeAnswer::Refused;
+}
+
+EmbreeAnswer EmbreeScene::traverseEasy(RtslState &state, bool anyHit) const {
+  return self->query(state, anyHit, 1, 1);
+}
+
+EmbreeAnswer EmbreeScene::traverse(RtslState &state, bool anyHit) const {
+  if (!(device::largest(device::load(state.RayOrigin)) < largestOrigin))
+    return EmbreeAnswer::Refused;
+  float length = device::largest(device::load(state.RayDirection));
+  if (length > shortest && length < longest)
+    return traverseEasy(state, anyHit);
+  // Beyond these exponents the scale or its inverse would not be exact.
+  int exponent = device::exponentOf(length);
+  if (exponent < -100 || exponent > 100)
+    return EmbreeAnswer::Refused;
+  ++rayCounters().rescaledRays;
+  return self->query(state, anyHit, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
 }
 
 } // namespace rtsl::runtime

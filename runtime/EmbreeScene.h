@@ -35,9 +35,7 @@ public:
   EmbreeAnswer traverse(RtslState &state, bool anyHit) const;
 
   /// The same for a ray that isEasy.
-  EmbreeAnswer traverseEasy(RtslState &state, bool anyHit) const {
-    return query(state, anyHit, 1, 1);
-  }
+  EmbreeAnswer traverseEasy(RtslState &state, bool anyHit) const;
 
   /// Is the ray of `state` good, and can Embree take it as it is? Most are; the test is made for
   /// them.
@@ -57,8 +55,6 @@ private:
   static constexpr float largestOrigin = 1e18f;
   /// Lengths of directions for which Embree works as it should, with room on both sides.
   static constexpr float shortest = 0x1p-20f, longest = 0x1p20f;
-
-  EmbreeAnswer query(RtslState &state, bool anyHit, float toEmbree, float fromEmbree) const;
 
   struct Implementation;
   std::unique_ptr<Implementation> self;

@@ -27,7 +27,16 @@ public:
   /// The launch with our own tree; with Embree it is built when the first ray needs it.
   const RtslLaunch &deviceLaunch() const;
 
-  std::uint32_t traverse(RtslState &state, bool anyHit) const;
+  /// rtsl_traverse. Here, so that it is not a call of its own there.
+  std::uint32_t traverse(RtslState &state, bool anyHit) const {
+    if (!embree || !EmbreeScene::isEasy(state))
+      return traverseCarefully(state, anyHit);
+    float distance = state.HitDistance;
+    EmbreeAnswer answer = embree->traverseEasy(state, anyHit);
+    if (answer == EmbreeAnswer::Refused)
+      return retrace(state, anyHit, distance);
+    return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
+  }
 
 private:
   std::uint32_t traverseCarefully(RtslState &state, bool anyHit) const;

@@ -28,16 +28,6 @@ const RtslLaunch &HostScene::deviceLaunch() const {
   return launch;
 }
 
-std::uint32_t HostScene::traverse(RtslState &state, bool anyHit) const {
-  if (!embree || !EmbreeScene::isEasy(state))
-    return traverseCarefully(state, anyHit);
-  float distance = state.HitDistance;
-  EmbreeAnswer answer = embree->traverseEasy(state, anyHit);
-  if (answer == EmbreeAnswer::Refused)
-    return retrace(state, anyHit, distance);
-  return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
-}
-
 std::uint32_t HostScene::traverseCarefully(RtslState &state, bool anyHit) const {
   if (!device::isGoodRay(state)) {
     ++rayCounters().badRays;

@@ -290,6 +290,12 @@ mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const L
   return ir;
 }
 
+/// Tells the device code what it may leave out.
+void defineFacts(LlvmCode &code, const runtime::Program &program) {
+  codegen::defineConstant(*code.module, "rtsl_needs", program.needs);
+  codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
+}
+
 /// What a GPU's program needs of runtime/device, for one or for the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu) {
   static const std::vector<std::string_view> host = {runtime::deviceBitcode(), runtime::megakernelBitcode()};
@@ -314,10 +320,12 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
 
   if (stage == Stage::Ptx) {
     LlvmCode code = translate(*ir, gpuOptions(options));
+    defineFacts(code, program);
     linkDeviceCode(code, megakernelCode(/*forGpu=*/true), {"rtsl_render"});
     return toPtx(std::move(code));
   }
   LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/false));
+  defineFacts(code, program);
   linkDeviceCode(code, megakernelCode(/*forGpu=*/false), {"rtsl_lane_bytes", "rtsl_run_lane"});
   codegen::optimize(*code.module, *code.machine, code.options);
   return codegen::printLlvm(*code.module);
@@ -365,6 +373,7 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   runToSsa(*ir, isMegakernel ? TraceMode::Split : options.trace);
 
   LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/true));
+  defineFacts(code, *program);
   std::vector<codegen::HostSymbol> symbols;
   if (isMegakernel) {
     linkDeviceCode(code, megakernelCode(/*forGpu=*/false), entries(*program, options));

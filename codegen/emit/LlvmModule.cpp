@@ -9,6 +9,7 @@
 #include "llvm/Bitcode/BitcodeReader.h"
 #include "llvm/IR/DiagnosticInfo.h"
 #include "llvm/IR/DiagnosticPrinter.h"
+#include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Linker/Linker.h"
 #include "llvm/MC/TargetRegistry.h"
@@ -66,9 +67,9 @@ createTargetMachine(const llvm::Triple &triple, const std::string &cpu, const st
   llvm::TargetOptions targetOptions;
   targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Strict;
   targetOptions.MCOptions.AsmVerbose = true;
-  std::unique_ptr<llvm::TargetMachine> machine(
-      target->createTargetMachine(triple, cpu, features, targetOptions, llvm::Reloc::PIC_,
-                                  llvm::CodeModel::Small, codeGenLevel(optimization), /*JIT=*/true));
+  std::unique_ptr<llvm::TargetMachine> machine(target->createTargetMachine(
+      triple, cpu, features, targetOptions, llvm::Reloc::PIC_, llvm::CodeModel::Small,
+      codeGenLevel(optimization), /*JIT=*/true));
   if (!machine)
     return llvm::createStringError("no machine for `%s`", triple.str().c_str());
   return machine;
@@ -150,6 +151,15 @@ struct CollectMessages : llvm::DiagnosticHandler {
 };
 
 } // namespace
+
+void defineConstant(llvm::Module &module, const std::string &name, uint32_t value) {
+  llvm::LLVMContext &context = module.getContext();
+  llvm::Type *i32 = llvm::Type::getInt32Ty(context);
+  auto *type = llvm::FunctionType::get(i32, {llvm::PointerType::getUnqual(context)}, false);
+  auto *function = llvm::Function::Create(type, llvm::Function::ExternalLinkage, name, module);
+  llvm::IRBuilder<> builder(llvm::BasicBlock::Create(context, "", function));
+  builder.CreateRet(builder.getInt32(value));
+}
 
 /// Read lazily: a function that nobody calls is never looked at.
 static llvm::Error linkBitcode(llvm::Module &module, std::string_view bitcode,

@@ -53,6 +53,10 @@ llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp mod
                                                               llvm::LLVMContext &context,
                                                               const llvm::TargetMachine &machine);
 
+/// Defines `uint32_t name(const RtslLaunch *)`, which gives `value` whatever the launch is. Before
+/// linkDeviceCode, it takes the place of a weak definition there.
+void defineConstant(llvm::Module &module, const std::string &name, uint32_t value);
+
 /// Links those functions of `bitcodes`, one after the other, that are called by what is there
 /// already. After that everything is internal but `exports`: names of functions that stay visible.
 /// A name that is not defined is no error.

@@ -27,6 +27,9 @@ std::uint32_t needsOf(mlir::func::FuncOp function) {
                    .Cases({"ObjectToWorld", "WorldToObject"}, RTSL_NEEDS_TRANSFORMS)
                    .Case("InverseRayDirection", RTSL_NEEDS_INVERSE_DIRECTION)
                    .Cases({"EmissionColor", "BSDFValue", "BSDFSeed", "PDF", "du", "dv"}, RTSL_NEEDS_SAMPLING)
+                   .Cases({"Time", "TimeSeed"}, RTSL_NEEDS_TIME)
+                   .Cases({"LaunchIndex", "LaunchSize"}, RTSL_NEEDS_LAUNCH)
+                   .Case("LensCoord", RTSL_NEEDS_LENS)
                    .Default(0);
   });
   return needs;

@@ -136,7 +136,10 @@ typedef struct RtslState {
 #define RTSL_NEEDS_TRANSFORMS 4u          // ObjectToWorld WorldToObject
 #define RTSL_NEEDS_INVERSE_DIRECTION 8u   // InverseRayDirection
 #define RTSL_NEEDS_SAMPLING 16u           // EmissionColor BSDFValue BSDFSeed PDF du dv
-#define RTSL_NEEDS_ALL 31u
+#define RTSL_NEEDS_TIME 32u               // Time TimeSeed
+#define RTSL_NEEDS_LAUNCH 64u             // LaunchIndex LaunchSize
+#define RTSL_NEEDS_LENS 128u              // LensCoord
+#define RTSL_NEEDS_ALL 255u
 
 // What rtsl_traverse answers.
 #define RTSL_MISS 0u
@@ -154,6 +157,12 @@ extern "C" {
 //===----------------------------------------------------------------------===//
 #define RTSL_SLOT(base, method) void rtsl_##base##_##method(RtslState *state, RtslRef object);
 #include "runtime/device/Slots.def"
+
+/// What the launches of a program have in common: RtslLaunch::needs and RtslLaunch::colorComponents. runtime/device
+/// defines both weakly, from the launch. A compiled program defines them as constants, so that what it does not need
+/// folds away.
+uint32_t rtsl_needs(const RtslLaunch *launch);
+uint32_t rtsl_color_components(const RtslLaunch *launch);
 
 //===----------------------------------------------------------------------===//
 // Defined by the runtime, called by compiled programs.

@@ -49,7 +49,7 @@ inline bool isBlack(const float *color, uint32_t components) {
 inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon, float distance) {
   store(state.RayOrigin, origin);
   store(state.RayDirection, direction);
-  if (state.launch->needs & RTSL_NEEDS_INVERSE_DIRECTION)
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
     setVector(state.InverseRayDirection, 1.0f / direction.x, 1.0f / direction.y,
               1.0f / direction.z);
   state.Epsilon = epsilon;
@@ -61,12 +61,17 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon,
 /// What a ray has from the one that spawned it.
 inline void inherit(RtslState &state, const RtslState &parent) {
   state.launch = parent.launch;
-  state.TimeSeed = parent.TimeSeed;
-  state.Time = parent.Time;
-  state.LaunchIndex[0] = parent.LaunchIndex[0];
-  state.LaunchIndex[1] = parent.LaunchIndex[1];
-  state.LaunchSize[0] = parent.LaunchSize[0];
-  state.LaunchSize[1] = parent.LaunchSize[1];
+  uint32_t needs = rtsl_needs(parent.launch);
+  if (needs & RTSL_NEEDS_TIME) {
+    state.TimeSeed = parent.TimeSeed;
+    state.Time = parent.Time;
+  }
+  if (needs & RTSL_NEEDS_LAUNCH) {
+    state.LaunchIndex[0] = parent.LaunchIndex[0];
+    state.LaunchIndex[1] = parent.LaunchIndex[1];
+    state.LaunchSize[0] = parent.LaunchSize[0];
+    state.LaunchSize[1] = parent.LaunchSize[1];
+  }
 }
 
 /// State that a method may read although nobody wrote it in this ray.
@@ -75,7 +80,7 @@ inline void setDefaults(RtslState &state, uint32_t components) {
   setColor(state.LightColor, components, 0);
   setVector(state.LightDirection, 0, 0, 0);
   state.LightDistance = infinity;
-  if (state.launch->needs & RTSL_NEEDS_SAMPLING) { // this engine does not sample
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_SAMPLING) { // this engine does not sample
     setColor(state.EmissionColor, components, 0);
     setColor(state.BSDFValue, components, 0);
     state.BSDFSeed[0] = state.BSDFSeed[1] = 0;
@@ -97,7 +102,7 @@ struct Arrival {
 /// Finds what state's ray meets and describes it.
 inline Arrival arrive(RtslState &state) {
   const RtslLaunch &launch = *state.launch;
-  uint32_t components = launch.colorComponents;
+  uint32_t components = rtsl_color_components(&launch);
   setDefaults(state, components);
   uint32_t found = rtsl_traverse(&state, 0);
   if (found == RTSL_HIT) {
@@ -141,7 +146,7 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
 
 /// `trace(origin, direction)`. Deeper than the launch allows nothing is seen: color 0.
 inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) {
-  uint32_t components = parent.launch->colorComponents;
+  uint32_t components = rtsl_color_components(parent.launch);
   uint32_t dimension;
   if (!maySpawn(parent, &dimension)) {
     setColor(color, components, 0);
@@ -195,7 +200,7 @@ inline bool isInCone(Vec3 direction, Vec3 axis, float cosAngle) {
 /// One light of `illuminance (P [, N, angle])`. Returns whether the body runs.
 inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, float cosAngle) {
   const RtslLaunch &launch = *state.launch;
-  uint32_t components = launch.colorComponents;
+  uint32_t components = rtsl_color_components(&launch);
   setVector(state.LightDirection, 0, 0, 0);
   state.LightDistance = infinity;
   setColor(state.LightColor, components, 0);
@@ -224,20 +229,27 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   state.randomKey[1] = key.y;
   state.dimension = 0;
   state.Depth = 0;
-  state.LaunchIndex[0] = x;
-  state.LaunchIndex[1] = y;
-  state.LaunchSize[0] = launch.width;
-  state.LaunchSize[1] = launch.height;
+  uint32_t needs = rtsl_needs(&launch);
+  if (needs & RTSL_NEEDS_LAUNCH) {
+    state.LaunchIndex[0] = x;
+    state.LaunchIndex[1] = y;
+    state.LaunchSize[0] = launch.width;
+    state.LaunchSize[1] = launch.height;
+  }
 
   Words4 shift = hash4(x, y, 0xffffffffu, launch.seed); // the same for all samples of the pixel
   float jitterX, jitterY;
   pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
   state.ScreenCoord[0] = (float(x) + jitterX) / float(launch.width);
   state.ScreenCoord[1] = 1.0f - (float(y) + jitterY) / float(launch.height);
-  state.LensCoord[0] = unitFloat(key.z);
-  state.LensCoord[1] = unitFloat(key.w);
-  state.TimeSeed = unitFloat(key.x * 0x9e3779b9u ^ key.y);
-  state.Time = 0;
+  if (needs & RTSL_NEEDS_LENS) {
+    state.LensCoord[0] = unitFloat(key.z);
+    state.LensCoord[1] = unitFloat(key.w);
+  }
+  if (needs & RTSL_NEEDS_TIME) {
+    state.TimeSeed = unitFloat(key.x * 0x9e3779b9u ^ key.y);
+    state.Time = 0;
+  }
   state.du = state.dv = 0;
   setVector(state.RayOrigin, 0, 0, 0); // what the camera leaves out
   setVector(state.RayDirection, 0, 0, 0);
@@ -250,7 +262,7 @@ inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t in
   RtslState state;
   startSample(state, launch, x, y, index);
   follow(state);
-  copyColor(color, state.SampleColor, launch.colorComponents);
+  copyColor(color, state.SampleColor, rtsl_color_components(&launch));
 }
 
 } // namespace rtsl::device

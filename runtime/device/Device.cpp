@@ -13,6 +13,13 @@ using namespace rtsl;
 
 extern "C" {
 
+__attribute__((weak)) uint32_t rtsl_needs(const RtslLaunch *launch) {
+  return launch->needs;
+}
+__attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
+  return launch->colorComponents;
+}
+
 uint32_t rtsl_hit(RtslState *state, float t) {
   return device::commitCandidate(*state, t);
 }

@@ -23,7 +23,7 @@ void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);
   else
-    device::setColor(color, launch->colorComponents, 0);
+    device::setColor(color, rtsl_color_components(launch), 0);
 }
 
 } // extern "C"

@@ -63,7 +63,7 @@ inline void spawnAbove(Level &parent, Vec3 origin, Vec3 direction) {
     spawn(above(&parent, levelSize(&parent.state))->state, parent.state, dimension, origin,
           direction);
   else
-    setColor(parent.color, parent.state.launch->colorComponents, 0);
+    setColor(parent.color, rtsl_color_components(parent.state.launch), 0);
 }
 
 /// Finds what the level's ray meets. Returns the state in which its method begins; 0 if the ray is
@@ -103,7 +103,7 @@ inline void endRay(Rays &rays) {
     return;
   const RtslState &state = rays.top->state;
   rays.top = below(rays.top, levelSize(&rays.top->state));
-  copyColor(rays.top->color, state.SampleColor, state.launch->colorComponents);
+  copyColor(rays.top->color, state.SampleColor, rtsl_color_components(state.launch));
   rays.next = rays.top->resume;
 }
 
@@ -143,7 +143,7 @@ inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_
     else
       runState(rays, rays.next);
   }
-  copyColor(color, rays.bottom->state.SampleColor, launch.colorComponents);
+  copyColor(color, rays.bottom->state.SampleColor, rtsl_color_components(&launch));
 }
 
 } // namespace rtsl::device

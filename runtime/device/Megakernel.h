@@ -33,7 +33,7 @@ inline uint64_t laneBytes(uint32_t maxDepth) {
 /// Adds the color of a sample that is over to its pixel. A color that is not finite counts as black,
 /// for it would take the whole pixel with it.
 inline void addSample(const RtslJob &job, Lane &lane, const float *color) {
-  uint32_t components = job.launch->colorComponents;
+  uint32_t components = rtsl_color_components(job.launch);
   bool isNotFinite = false;
   for (uint32_t i = 0; i < components; ++i)
     isNotFinite |= !(absolute(color[i]) < infinity);
@@ -46,7 +46,7 @@ inline void addSample(const RtslJob &job, Lane &lane, const float *color) {
 }
 
 inline void writePixel(const RtslJob &job, const Lane &lane) {
-  uint32_t components = job.launch->colorComponents;
+  uint32_t components = rtsl_color_components(job.launch);
   float *pixel = job.pixels + lane.pixel * components;
   for (uint32_t i = 0; i < components; ++i)
     pixel[i] = float(lane.sum[i] / double(job.samplesPerPixel));
@@ -58,7 +58,7 @@ inline bool takePixel(const RtslJob &job, Lane &lane) {
     return false;
   lane.pixel = countUp(&job.status->nextPixel);
   lane.sample = 0;
-  for (uint32_t i = 0; i < job.launch->colorComponents; ++i)
+  for (uint32_t i = 0; i < rtsl_color_components(job.launch); ++i)
     lane.sum[i] = 0;
   return lane.pixel < uint64_t(job.launch->width) * job.launch->height;
 }

@@ -97,7 +97,7 @@ inline void describePrimitive(RtslState &state, RtslRef primitive, uint32_t need
 inline void describeHit(RtslState &state) {
   const RtslLaunch &launch = *state.launch;
   const RtslInstance &instance = launch.instances[state.instance];
-  uint32_t needs = instance.needs;
+  uint32_t needs = instance.needs & rtsl_needs(&launch);
   state.PrimitiveIndex = int32_t(state.primitive);
   state.InstanceIndex = int32_t(state.instance);
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES) {

@@ -10,10 +10,20 @@
     return rtsl::device::name(x, y);                                                               \
   }
 
+/// Whoever asks for the sine and the cosine of one angle calls this twice, which the optimiser makes
+/// one call.
+[[gnu::const, gnu::noinline]] static rtsl::device::SineAndCosine sineAndCosine(float x) {
+  return rtsl::device::sineAndCosine(x);
+}
+
 extern "C" {
 
-RTSL_EXPORT_UNARY(sin)
-RTSL_EXPORT_UNARY(cos)
+float rtsl_sin(float x) {
+  return sineAndCosine(x).sine;
+}
+float rtsl_cos(float x) {
+  return sineAndCosine(x).cosine;
+}
 RTSL_EXPORT_UNARY(tan)
 RTSL_EXPORT_UNARY(asin)
 RTSL_EXPORT_UNARY(acos)

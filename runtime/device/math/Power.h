@@ -1,50 +1,35 @@
 // pow.
 //
-//     x^y = e^(y ln x), with ln x to 2^-65 so that the exponent, which may be as large as 104, is
-//     good to 2^-58.
+//     x^y = e^(y ln x), in plain double: the exponent, which may be as large as 104, is good to
+//     2^-44.6, and so is the power.
 //
-// Error bound of the fast path: see docs/elementary-functions.md. Where the bound does not decide
-// the rounding, x^y is either exactly a midpoint between floats, which exactPower() finds out, or
-// it is computed again in double-double.
+// Error bound of this first path: see docs/elementary-functions.md. Where the bound does not decide
+// the rounding, about one time in 2^18, x^y is either exactly a midpoint between floats, which
+// exactPower() finds out, or it is computed again in double-double.
 #pragma once
 
 #include "runtime/device/math/DoubleDoubleFunctions.h"
+#include "runtime/device/math/ExponentialKernel.h"
+#include "runtime/device/math/LogarithmKernel.h"
 #include "runtime/device/math/Rounding.h"
 
 namespace rtsl::device {
 
 namespace detail {
 
-/// Relative error of e^fastPowerExponent(). roundsSafely() would bear 2^-53.
-inline constexpr double powerBound = 0x1p-57;
-
-/// ln(x) for a positive float x, relative error below 2^-65. Unlike logarithm(), the square term is
-/// a double-double, too.
-inline Double2 logarithmForPower(double x) {
+/// ln(x) for a positive float x, relative error below 2^-51.9.
+inline double plainLogarithm(double x) {
   LogarithmReduction reduced = reduceLogarithm({x, 0.0});
-  double r = reduced.r, exponent = reduced.exponent;
+  double exponent = reduced.exponent;
   double head = fma(exponent, ln2Parts[0], reduced.entry.hi); // exact
-  Double2 linear = fastTwoSum(head, r);
-  Double2 square = twoProduct(r, r);
-  Double2 quadratic = fastTwoSum(linear.hi, -0.5 * square.hi);
-
-  double q = fma(r, -1.0 / 10, 1.0 / 9);
-  q = fma(r, q, -1.0 / 8);
-  q = fma(r, q, 1.0 / 7);
-  q = fma(r, q, -1.0 / 6);
-  q = fma(r, q, 1.0 / 5);
-  q = fma(r, q, -1.0 / 4);
-  q = fma(r, q, 1.0 / 3);
-  double low = fma(r * square.hi, q, fma(exponent, ln2Parts[1], reduced.entry.lo));
-  low = fma(-0.5, square.lo, low) + (linear.lo + quadratic.lo);
-  return fastTwoSum(quadratic.hi, low);
+  double low = fma(exponent, ln2Parts[1], reduced.entry.lo);
+  return head + (reduced.r + (logarithmCurvature(reduced.r) + low));
 }
 
-/// e^(hi + lo) for |hi| < 700, |lo| < 2^-40, relative error below 2^-59.
-inline Double2 exponential(Double2 x) {
-  ExponentialReduction reduced = reduceExponential(x.hi);
-  double r = reduced.remainder;
-  return scaledExponential(reduced.step, r + fma(x.lo, r, x.lo + exponentialCurvature(r)));
+/// e^exponent for -104 <= exponent <= 89; if that is y ln(x), x^y with an error below plainBound.
+inline double fastPower(double exponent) {
+  Double2 power = exponential(exponent);
+  return power.hi + power.lo;
 }
 
 /// Whether x^y has 53 bits or fewer, for finite x > 0 and y != 0; `result` is then x^y. Needs no
@@ -74,32 +59,30 @@ inline bool exactPower(double x, double y, double &result) {
   return true;
 }
 
-/// y ln(x), relative error below 2^-65.
-inline Double2 fastPowerExponent(double x, double y) {
-  Double2 logarithm = logarithmForPower(x);
-  Double2 exponent = twoProduct(y, logarithm.hi);
-  return {exponent.hi, fma(y, logarithm.lo, exponent.lo)};
-}
-
 /// x^y in double-double, relative error below 2^-90, for -104 <= y ln x <= 89.
 inline Double2 accuratePower(double x, double y) {
   return accurateExponential(multiply(accurateLogarithm(x), {y, 0.0}));
 }
 
-/// x^y for finite x > 0, x != 1, and finite y != 0.
-inline float positivePower(double x, double y) {
-  Double2 exponent = fastPowerExponent(x, y);
-  if (exponent.hi > 89.0) // e^89 > 2^128
-    return infinity();
-  if (exponent.hi < -104.0) // e^-104 < 2^-150
+/// x^y where fastPower() does not decide, or the result is subnormal or zero.
+[[gnu::cold, gnu::noinline]] inline float carefulPower(double x, double y, double exponent) {
+  if (exponent < -104.0) // e^-104 < 2^-150
     return 0.0f;
-  float result;
-  if (roundsSafely(exponential(exponent), result))
-    return result;
   double exact;
   if (exactPower(x, y, exact))
     return float(exact);
   return roundToFloat(accuratePower(x, y));
+}
+
+/// x^y for finite x > 0 and finite y.
+inline float positivePower(double x, double y) {
+  double exponent = y * plainLogarithm(x);
+  if (exponent > 89.0) // e^89 > 2^128
+    return infinity();
+  if (exponent < -87.0) // e^-87 > 2^-126
+    return carefulPower(x, y, exponent);
+  double power = fastPower(exponent);
+  return roundsSafely(power) ? float(power) : carefulPower(x, y, exponent);
 }
 
 enum class Parity { fraction, even, odd };
@@ -114,13 +97,8 @@ inline Parity parityOf(float y) {
   return (truncated & 1) != 0 ? Parity::odd : Parity::even;
 }
 
-} // namespace detail
-
-/// x^y, with the special cases of C99 (F.9.4.4): x^0 and 1^y are 1 even for a NaN, a negative x may
-/// have an integer power, and
-/// (-1)^(+-infinity) is 1.
-inline float pow(float x, float y) {
-  using namespace detail;
+/// pow() of what is zero, negative, infinite or not a number.
+[[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
   if (y == 0.0f || x == 1.0f)
     return 1.0f;
   if (isNaN(x) || isNaN(y))
@@ -137,9 +115,18 @@ inline float pow(float x, float y) {
     return a == 1.0f ? 1.0f : (a < 1.0f) == (y < 0.0f) ? infinity() : 0.0f;
   if (x < 0.0f && parity == Parity::fraction)
     return canonicalNaN();
-  if (a == 1.0f)
-    return sign;
   return withSignOf(positivePower(a, y), sign);
+}
+
+} // namespace detail
+
+/// x^y, with the special cases of C99 (F.9.4.4): x^0 and 1^y are 1 even for a NaN, a negative x may
+/// have an integer power, and (-1)^(+-infinity) is 1.
+inline float pow(float x, float y) {
+  using namespace detail;
+  if (x > 0.0f && x < infinity() && absolute(y) < infinity())
+    return positivePower(x, y);
+  return specialPower(x, y);
 }
 
 } // namespace rtsl::device

@@ -37,4 +37,16 @@ inline bool roundsSafely(Double2 y, float &result) {
   return result == float(y.hi + (y.lo - margin));
 }
 
+/// The relative error that roundsSafely(double) bears.
+inline constexpr double plainBound = 0x1p-44;
+
+/// Whether a number within plainBound of y rounds to float(y), for a y that is zero or normal as a
+/// float, or exact. It does unless y is near a midpoint between floats, whose last 29 bits are 1
+/// and 28 zeros, as about one number in 2^18 is. The margin is twice the bound, so that roundings
+/// of y do not count.
+inline bool roundsSafely(double y) {
+  constexpr uint64_t midpoint = uint64_t(1) << 28, margin = uint64_t(1) << 10;
+  return ((bitsOf(y) - (midpoint - margin)) & (2 * midpoint - 1)) > 2 * margin;
+}
+
 } // namespace rtsl::device::detail

@@ -6,7 +6,18 @@
 
 namespace rtsl::device {
 
+struct SineAndCosine {
+  float sine, cosine;
+};
+
 namespace detail {
+
+/// Sine and cosine from their values at the angle's distance from the quadrant's start, which were
+/// exchanged already where the quadrant is odd.
+inline SineAndCosine inQuadrant(int quadrant, bool isNegative, float sine, float cosine) {
+  return {((quadrant & 2) != 0) != isNegative ? -sine : sine,
+          ((quadrant + 1) & 2) != 0 ? -cosine : cosine};
+}
 
 /// sin(r) for |r| <= pi/4, by Taylor's series up to r^17/17!; what is left out is below 2^-62 |r|.
 inline Double2 sineKernel(Double2 r) {
@@ -37,32 +48,69 @@ inline Double2 cosineKernel(Double2 r) {
   return {head.hi, fma(z * z, q, low)};
 }
 
+/// Sine and cosine of x, correctly rounded, in double with a low part.
+[[gnu::cold, gnu::noinline]] inline SineAndCosine carefulSineAndCosine(float x) {
+  QuadrantReduction reduced = reduceToQuadrant(absolute(x));
+  Double2 sine = sineKernel(reduced.rest), cosine = cosineKernel(reduced.rest);
+  bool odd = (reduced.quadrant & 1) != 0;
+  return inQuadrant(reduced.quadrant, bitsOf(x) >= floatSignBit, roundToFloat(odd ? cosine : sine),
+                    roundToFloat(odd ? sine : cosine));
+}
+
+/// Below this the reduction in plain double, and what follows, stays below plainBound.
+inline constexpr float plainTrigonometricLimit = 0x1p10f;
+
+/// sin(r) for |r| <= pi/4, by Taylor's series up to r^15/15!; what is left out is below 2^-53 |r|.
+inline double plainSine(double r) {
+  double z = r * r, z2 = z * z;
+  double q0 = fma(z, 1.0 / 120, -1.0 / 6), q1 = fma(z, 1.0 / 362880, -1.0 / 5040);
+  double q2 = fma(z, 1.0 / 6227020800, -1.0 / 39916800);
+  double q = fma(z2, fma(z2, fma(z2, -1.0 / 1307674368000, q2), q1), q0);
+  return fma(r * z, q, r);
+}
+
+/// cos(r) for |r| <= pi/4, by Taylor's series up to r^14/14!; what is left out is below 2^-49.
+inline double plainCosine(double r) {
+  double z = r * r, z2 = z * z;
+  double q0 = fma(z, 1.0 / 24, -0.5), q1 = fma(z, 1.0 / 40320, -1.0 / 720);
+  double q2 = fma(z, 1.0 / 479001600, -1.0 / 3628800);
+  double q = fma(z2, fma(z2, fma(z2, -1.0 / 87178291200, q2), q1), q0);
+  return fma(z, q, 1.0);
+}
+
 } // namespace detail
+
+/// Both of x radians, for little more than the cost of one. Plain double decides the rounding but
+/// for about one number in 2^17.
+inline SineAndCosine sineAndCosine(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  if (!(a < plainTrigonometricLimit)) {
+    if (!(a < infinity()))
+      return {canonicalNaN(), canonicalNaN()};
+    return carefulSineAndCosine(x);
+  }
+  NearestInteger q = nearestInteger(double(a) * twoOverPi);
+  double first = fma(-q.asDouble, halfPiParts[0], double(a)); // exact
+  double rest = fma(-q.asDouble, halfPiParts[1], first);
+  // Both series are needed anyway, and a choice is cheaper than a branch that nobody can predict.
+  double sine = plainSine(rest), cosine = plainCosine(rest);
+  bool odd = (q.asInt & 1) != 0;
+  double upright = odd ? cosine : sine, level = odd ? sine : cosine;
+
+  if (!roundsSafely(upright) | !roundsSafely(level))
+    return carefulSineAndCosine(x);
+  return inQuadrant(q.asInt, bitsOf(x) >= floatSignBit, float(upright), float(level));
+}
 
 /// Sine of x radians.
 inline float sin(float x) {
-  using namespace detail;
-  float a = absolute(x);
-  if (!(a < infinity()))
-    return canonicalNaN();
-  QuadrantReduction reduced = reduceToQuadrant(a);
-  Double2 y = (reduced.quadrant & 1) != 0 ? cosineKernel(reduced.rest) : sineKernel(reduced.rest);
-  float magnitude = roundToFloat(y);
-  bool negative = ((reduced.quadrant & 2) != 0) != (bitsOf(x) >= floatSignBit);
-  return negative ? -magnitude : magnitude;
+  return sineAndCosine(x).sine;
 }
 
 /// Cosine of x radians.
 inline float cos(float x) {
-  using namespace detail;
-  float a = absolute(x);
-  if (!(a < infinity()))
-    return canonicalNaN();
-  QuadrantReduction reduced = reduceToQuadrant(a);
-  Double2 y = (reduced.quadrant & 1) != 0 ? sineKernel(reduced.rest) : cosineKernel(reduced.rest);
-  float magnitude = roundToFloat(y);
-  bool negative = ((reduced.quadrant + 1) & 2) != 0;
-  return negative ? -magnitude : magnitude;
+  return sineAndCosine(x).cosine;
 }
 
 /// Tangent of x radians.
