@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import resource
 import shutil
 import struct
 import subprocess
@@ -14,6 +15,16 @@ EXAMPLES = pathlib.Path(os.environ["EXAMPLES"])
 
 FINE, DIAGNOSED, USAGE = 0, 1, 2
 SECONDS = 300  # far beyond what any of these takes: only a hang ends there
+
+
+# What a program that is only wrong may take, however large or deep it is; of processor time, for machines may be busy.
+BOUNDED_SECONDS = 30
+BOUNDED_BYTES = 2 << 30
+
+
+def bounded():
+    resource.setrlimit(resource.RLIMIT_CPU, (BOUNDED_SECONDS, BOUNDED_SECONDS))
+    resource.setrlimit(resource.RLIMIT_AS, (BOUNDED_BYTES, BOUNDED_BYTES))
 
 
 def as_nobody():
@@ -37,19 +48,19 @@ class Case(unittest.TestCase):
             path.write_text(content)
         return path
 
-    def run_rtslc(self, *arguments, status=FINE, stdin=None, stdout=subprocess.PIPE, unprivileged=False):
+    def run_rtslc(self, *arguments, status=FINE, stdin=None, stdout=subprocess.PIPE, unprivileged=False, prepare=None):
         """Gives (standard output, standard error); fails unless the exit status is the one asked for (None: any)."""
         done = subprocess.run([RTSLC, *map(str, arguments)], cwd=self.folder, input=stdin, stdout=stdout,
-                              stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=as_nobody if unprivileged else None)
+                              stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=as_nobody if unprivileged else prepare)
         error = done.stderr.decode("utf-8", "replace")
         if status is not None:
             self.assertEqual(done.returncode, status, f"exit status of {arguments}:\n{error[:4000]}")
         return (done.stdout or b"").decode("utf-8", "replace"), error
 
-    def diagnose(self, *arguments, stdin=None, unprivileged=False):
+    def diagnose(self, *arguments, stdin=None, unprivileged=False, prepare=None):
         """The messages of a run that ends with errors, as data."""
         _, error = self.run_rtslc(*arguments, "--diagnostics=json", status=DIAGNOSED, stdin=stdin,
-                                  unprivileged=unprivileged)
+                                  unprivileged=unprivileged, prepare=prepare)
         return json.loads(error)["diagnostics"]
 
     def assert_message(self, diagnostics, code, containing="", line=None, column=None, file=None):

@@ -113,6 +113,43 @@ class BadScenes(Case):
         self.assert_message(diagnostics, "E0701", "vec2", file="Needy.rtsl")
         self.assertTrue(diagnostics[0]["labels"][0]["range"]["file"].endswith("Parallelogram.rtsl"))
 
+    def add_material(self, text, **members):
+        """The glass scene with the floor made of class Odd."""
+        self.write("Odd.rtsl", text)
+        path = self.glass_scene()
+        scene = json.loads(path.read_text())
+        scene["import"].append("Odd.rtsl")
+        scene["materials"]["floor"] = {"class": "Odd", **members}
+        path.write_text(json.dumps(scene, indent=1))
+
+    def test_more_attributes_than_a_ray_carries(self):
+        self.add_material("class Odd : rt_Material;\nscratch mat4 a, b, c;\n"
+                          "void shade() { rt_SampleColor = color(a[0].x + b[0].x + c[0].x); }\n")
+        sphere = (self.folder / "Parallelogram.rtsl").read_text()
+        (self.folder / "Parallelogram.rtsl").write_text(sphere.replace(
+            "scratch vec2 coordinates;", "scratch vec2 coordinates;\nscratch mat4 a, b, c;").replace(
+            "    hit(t);", "  {\n    a = mat4(t); b = a; c = a;\n    hit(t);\n  }"))
+        self.assert_message(self.render(), "E0702", "32")
+
+    def test_reference_that_nobody_sets(self):
+        self.add_material("class Odd : rt_Material;\npublic rt_Texture albedo;\n"
+                          "void shade() { rt_SampleColor = albedo.lookup(); }\n")
+        self.assert_message(self.render(), "E0815", "albedo", file="scene.json")
+
+    def test_material_that_shades_nothing(self):
+        self.add_material("class Odd : rt_Material;\nvoid emission() { rt_EmissionColor = color(1.0); }\n")
+        self.assert_message(self.render(), "E0817", "shade", file="scene.json")
+
+    def test_module_that_is_not_there(self):
+        self.glass_scene()
+        self.assert_message(self.render("--set", "import.0=std.nothing"), "E0126", "std.nothing")
+
+    def test_pictures_that_are_none(self):
+        self.write("text.png", "this is no picture")
+        self.write("cut.exr", b"\x76\x2f\x31\x01\x02\0\0\0")
+        for picture in ("text.png", "cut.exr"):
+            self.assert_message(self.diagnose("compare", picture, picture), "E0905", picture)
+
     def test_unwritable_picture(self):
         self.glass_scene()
         diagnostics = self.diagnose("render", "scene.json", "-o", "nowhere/picture.png", *SMALL)

@@ -3,7 +3,7 @@
 import os
 import unittest
 
-from harness import DIAGNOSED, Case
+from harness import DIAGNOSED, Case, bounded
 
 MATERIAL = "class Grey : rt_Material;\n\nvoid shade() {\n  rt_SampleColor = color(0.5);\n}\n"
 
@@ -88,6 +88,69 @@ class BadSources(Case):
         with open("/dev/full", "w") as full:
             _, error = self.run_rtslc("compile", "grey.rtsl", "--emit=ir", status=DIAGNOSED, stdout=full)
         self.assertIn("No space", error)
+
+
+class BoundedSources(Case):
+    """What is wrong in a large way is refused in little time and memory."""
+
+    def refuse(self, text, code, containing="", **place):
+        self.write("bad.rtsl", text)
+        messages = self.diagnose("check", "bad.rtsl", prepare=bounded)
+        self.assert_message(messages, code, containing, **place)
+        return messages[0]
+
+    def test_functions_that_call_each_other(self):
+        text = "float f0(float x);\n" + "".join(
+            f"float f{i + 1}(float x) {{ return f{i}(x); }}\n" for i in range(3000)) + "float f0(float x) { return f3000(x); }\n"
+        self.write("bad.rtsl", text)
+        messages = self.diagnose("check", "bad.rtsl", prepare=bounded)
+        self.assertEqual([m["code"] for m in messages], ["E0512"], messages)
+        self.assertIn("only `trace` recurses", messages[0]["notes"])
+
+    def test_a_circle_of_classes(self):
+        text = "".join(f"class C{i} : C{(i + 1) % 5000} {{ }};\n" for i in range(5000))
+        self.refuse(text, "E0400", line=1)
+
+    def test_a_circle_of_imports(self):
+        for i in range(300):
+            self.write(f"f{i}.rtsl", f'import "f{(i + 1) % 300}.rtsl";\nconst int c{i} = {i};\n')
+        self.run_rtslc("check", "f0.rtsl", prepare=bounded)
+        self.write("f7.rtsl", 'import "f8.rtsl";\nconst int c7 = nothing;\n')
+        self.assert_message(self.diagnose("check", "f0.rtsl", prepare=bounded), "E0200", "nothing", line=2, file="f7.rtsl")
+
+    def test_labels_that_are_there_already(self):
+        labels = "".join(f"  case {i}: break;\n" for i in range(20_000))
+        text = "void f(int i) {\n  switch (i) {\n" + labels + "  case 77: break;\n  }\n}\n"
+        message = self.refuse(text, "E0506", "case 77", line=20_003)
+        self.assertEqual(message["labels"][0]["range"]["begin"]["line"], 80)
+
+    def test_a_local_array_of_four_gigabytes(self):
+        self.refuse("void f() {\n  float x[1073741824];\n  x[0] = 1.0;\n}\n", "E0605", "4294967296", line=2)
+        self.refuse("void f() {\n  float x[8192][16384];\n  x[0][0] = 1.0;\n}\n", "E0607", "536870912", line=2)
+        self.refuse("void f() {\n  float x[65536][65536][65536];\n  x[0][0][0] = 1.0;\n}\n", "E0605", line=2)
+
+    def test_a_line_of_a_megabyte(self):
+        text = "const int a[] = {" + "1, " * 340_000 + "b};\n"
+        message = self.refuse(text, "E0200", "`b`", line=1, column=len(text) - 3)
+        _, error = self.run_rtslc("check", "bad.rtsl", status=DIAGNOSED)
+        self.assertLess(len(error), 2000)
+        self.refuse("float f() { return " + "x" * 1_000_000 + "; }\n", "E0200", line=1, column=20)
+        self.refuse("float f() { return " + "(" * 500_000 + "1.0" + ")" * 500_000 + "; }\n", "E0109", line=1)
+
+    def test_literals_out_of_range(self):
+        for literal, code in (("2147483648", "E0601"), ("-2147483649", "E0601"), ("4294967296u", "E0601"),
+                              ("0x100000000", "E0601"), ("040000000000", "E0601"), ("1e39", "E0602"), ("1" * 5000, "E0601"),
+                              ("1e999999999999", "E0602"), ("9" * 5000 + ".0", "E0602")):
+            with self.subTest(literal=literal[:20]):
+                kind = "float" if code == "E0602" else "uint" if literal.endswith("u") else "int"
+                self.refuse(f"const {kind} x = {literal};\n", code, line=1)
+
+    def test_inheritance_ten_thousand_deep(self):
+        text = "class C0 : rt_Light { public float power; };\n" + "".join(
+            f"class C{i + 1} : C{i} {{ }};\n" for i in range(10_000)) + (
+            "class Last : C10000 {\n  void illumination() { rt_LightColor = color(powr); }\n};\n")
+        message = self.refuse(text, "E0200", "powr", line=10_003)
+        self.assertEqual(message["fixes"][0]["replacement"], "power")
 
 
 if __name__ == "__main__":
