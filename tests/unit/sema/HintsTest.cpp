@@ -155,8 +155,8 @@ TEST(SureFixes, SpellingsOfHlslAndCuda) {
                "vec4 f(float x) { return vec4(x, 0.0, inversesqrt(x), sin(x)); }");
   expectMended("vec3 f(vec3 c) { return saturate(c * 2.0); }",
                "vec3 f(vec3 c) { return clamp(c * 2.0, 0.0, 1.0); }");
-  expectMended("float f(float x) { return saturate(saturate(x) + rcp(x + 1.0)); }",
-               "float f(float x) { return clamp(clamp(x, 0.0, 1.0) + (1.0 / (x + 1.0)), 0.0, 1.0); }");
+  expectMended("float f(float x) { return saturate(rcp(x + 1.0) + saturate(x)); }",
+               "float f(float x) { return clamp((1.0 / (x + 1.0)) + clamp(x, 0.0, 1.0), 0.0, 1.0); }");
   expectMended("float f(float x) { return sqr(x) + log10(x) + fmaf(x, powf(x, 2.0), fabsf(x)); }",
                "float f(float x) { return pow(x, 2) + (log(x) / log(10.0)) + fma(x, pow(x, 2.0), abs(x)); }");
   expectMended("float f(float y, float x) { return atan2(y, x) + float(asuint(x)) + fmaxf(x, y); }",
