@@ -367,10 +367,6 @@ static bool namesAPlace(const ast::Expr &expr) {
 
 bool FunctionChecker::requireTarget(const ast::Expr &source, const typed::Expr &target,
                                     const char *action) {
-  if (!namesAPlace(source)) {
-    diagnostics.report(Code::notATarget, target.range, action);
-    return false;
-  }
   const typed::Expr *at = &target;
   bool throughBuffer = false;
   for (;;) {
@@ -383,6 +379,13 @@ bool FunctionChecker::requireTarget(const ast::Expr &source, const typed::Expr &
       at = index->base.get();
     } else
       break;
+  }
+  const bool isStored = at->kind == typed::ExprKind::Variable ||
+                        at->kind == typed::ExprKind::Member ||
+                        at->kind == typed::ExprKind::State || at->type->isError();
+  if (!namesAPlace(source) || !isStored) {
+    diagnostics.report(Code::notATarget, target.range, action);
+    return false;
   }
   if (at->type->isError())
     return false;
@@ -406,10 +409,7 @@ bool FunctionChecker::requireTarget(const ast::Expr &source, const typed::Expr &
     }
     return true;
   }
-  if (at->kind == typed::ExprKind::State)
-    return true;
-  diagnostics.report(Code::notATarget, target.range, action);
-  return false;
+  return true;
 }
 
 } // namespace rtsl

@@ -177,6 +177,14 @@ TEST(Limits, AThousandStructsInAChainDoNotOverflow) {
   EXPECT_TRUE(deep->diagnostics.hasErrors());
 }
 
+TEST(Limits, StructsAndConstantsThatNeedEachOtherUpToALimit) {
+  const std::unique_ptr<Checked> checked = checkText(
+      numbered(400, "struct S# { float x[N#]; };\n"
+                    "const int N# = S@(float[1](1.0)) == S@(float[1](1.0)) ? 1 : 2;\n") +
+      "struct S400 { float x[1]; };\n");
+  EXPECT_NE(checked->numbers().find("E0606"), std::string::npos);
+}
+
 TEST(Limits, ArraysNestToALimit) {
   EXPECT_EQ(checkText("void f() { float x" + repeat(maxTypeNesting + 1, "[1]") + "; }")->numbers(),
             "E0606");
