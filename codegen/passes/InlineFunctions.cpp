@@ -53,11 +53,18 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
     unsigned limit = traces(callee) ? smallTracingFunction : smallFunction;
     if (operationCount(callee, limit) <= limit)
       return true;
-    auto uses = callee.getSymbolUses(getOperation());
-    return callee.isPrivate() && uses && llvm::hasSingleElement(*uses);
+    return callee.isPrivate() && useCount.lookup(callee.getSymNameAttr()) == 1;
   }
 
   void runOnOperation() override {
+    // Counted once: callees are treated before their callers, so that what is called once has been
+    // inlined before anything could copy the call. Asking for the uses of each callee would walk the
+    // whole module each time.
+    useCount.clear();
+    if (auto uses = mlir::SymbolTable::getSymbolUses(getOperation()))
+      for (const mlir::SymbolTable::SymbolUse &use : *uses)
+        ++useCount[use.getSymbolRef().getLeafReference()];
+
     mlir::InlinerConfig config;
     config.setMaxInliningIterations(4);
     config.setCanHandleMultipleBlocks();
@@ -70,6 +77,9 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
     if (mlir::failed(inliner.doInlining()))
       signalPassFailure();
   }
+
+private:
+  llvm::DenseMap<mlir::StringAttr, unsigned> useCount; // before anything was inlined
 };
 
 } // namespace

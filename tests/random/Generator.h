@@ -1,0 +1,216 @@
+//===- Generator.h - makes one random program -----------------------------===//
+//
+// Top down, by type: expression(T) chooses a way to make a T from what is in scope. Everything that
+// the language leaves to the machine is left out (nothing reads what was never written, loops are
+// counted, references have no circles); everything else is fair: NaNs, overflow, aliasing.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "Program.h"
+#include "Vocabulary.h"
+
+#include <random>
+#include <set>
+
+namespace rtsl::random {
+
+struct Variable {
+  std::string name;
+  const Type *type = nullptr;
+  bool writable = true;
+  bool isConstant = false; // may stand in a constant expression
+};
+
+struct ClassPlan;
+
+/// A function of the program's.
+struct Function {
+  std::string name;
+  Signature signature;
+  unsigned work = 0;   // about how many operations a call runs
+  unsigned traces = 0; // at most so many rays
+  bool remote = false; // may be called on another object: it reads no state of its ray
+  bool isVirtual = false;
+};
+
+/// A value of class type: `refs[$]` where an index belongs.
+struct Reference {
+  std::string text;
+  const ClassPlan *target = nullptr;
+  unsigned count = 0; // of an array: its length; of a buffer: 0
+  bool isBuffer = false;
+};
+
+struct ClassPlan {
+  std::string name, root;
+  const ClassPlan *base = nullptr;
+  std::vector<Variable> members; // inherited ones first
+  std::vector<Variable> scratch;
+  std::vector<Reference> references;
+  std::vector<Function> functions; // that methods of it may call
+};
+
+/// What may be done where code stands.
+struct Context {
+  bool constantOnly = false;
+  bool rand = false, lookup = false, illuminance = false;
+  unsigned traces = 0;                    // rays that may still be sent
+  const ClassPlan *self = nullptr;        // null: a free function
+  const Type *result = nullptr;           // of `return`; null: void
+  std::string onReturn;                   // what a method does before it returns
+  bool returns = true;                    // may return early
+  unsigned loops = 0, switches = 0;       // around
+  bool canContinue = false;               // breaks and continues have a target
+  unsigned weight = 1;                    // how often the place runs, at most
+};
+
+class Generator {
+public:
+  explicit Generator(std::uint32_t seed);
+  Program run();
+
+private:
+  // Choice
+  unsigned below(unsigned bound) { return static_cast<unsigned>(random() % bound); }
+  bool chance(unsigned percent) { return below(100) < percent; }
+  template <typename T>
+  const T &pick(const std::vector<T> &from) {
+    return from[below(static_cast<unsigned>(from.size()))];
+  }
+  std::string fresh(const char *stem) { return stem + std::to_string(counter++); }
+  std::string global(const char *stem) { return program.prefix + fresh(stem); }
+
+  /// Most programs are small, so that there can be many.
+  unsigned some(unsigned count) { return large ? count : (count + below(2)) / 2; }
+  bool likely(unsigned percent) { return chance(large ? percent : percent / 2); }
+  unsigned nesting() const { return large ? 3 : 2; }
+
+  // Nodes
+  template <typename... Children>
+  NodePtr make(const Type *type, std::string text, Children... children) {
+    NodePtr node = makeNode(Role::Expression, std::move(text), std::move(children)...);
+    node->type = toString(type);
+    node->simplest = simplestValue(type);
+    work += context.weight;
+    return node;
+  }
+
+  // Types (Types.cpp)
+  const Type *numericScalar();
+  const Type *smallType();  // scalar, vector, sometimes a matrix or color
+  const Type *anyType();    // structs and arrays too
+  const Type *withScalar(const Type *shape, const Type *scalar);
+  bool hasColor(const Type *type) const;
+  void makeStruct();
+
+  // Expressions (Expressions.cpp)
+  NodePtr expression(const Type *type, unsigned depth);
+  NodePtr converted(const Type *type, unsigned depth, const Type **made = nullptr);
+  NodePtr atom(const Type *type);
+  NodePtr literal(const Type *type);
+  NodePtr adapted(const Type *type); // made of a variable of some other type
+  std::string number(const Type *scalar);
+  std::string numbers(const Type *scalar, unsigned count); // with commas between
+  NodePtr compound(const Type *type, unsigned depth);
+  NodePtr constructor(const Type *type, unsigned depth);
+  NodePtr partOfExpression(const Type *type, unsigned depth);
+  NodePtr effect(const Type *type, unsigned depth);
+  NodePtr ofObject(const Type *type, unsigned depth);
+  NodePtr condition(unsigned depth) { return expression(types.boolType, depth); }
+
+  // Operators (Operators.cpp)
+  NodePtr operation(const Type *type, unsigned depth);
+  NodePtr comparison(unsigned depth);
+  NodePtr vectorOperation(const Type *type, unsigned depth);
+  NodePtr matrixOperation(const Type *type, unsigned depth);
+  NodePtr colorOperation(unsigned depth);
+  const char *compoundOperator(const Type *type);
+
+  // Places (Places.cpp)
+  bool canReach(const Type *from, const Type *wanted, unsigned steps, bool writing) const;
+  NodePtr part(const Type *wanted, bool writing);
+  NodePtr descend(NodePtr base, const Type *from, const Type *wanted, bool writing);
+  NodePtr index(const std::string &count);
+  NodePtr target(const Type *type); // of exactly this type; declares a variable if there is none
+  NodePtr referenceTo(const ClassPlan **plan, bool texture);
+
+  // Calls (Calls.cpp)
+  NodePtr builtinCall(const Type *result, unsigned depth);
+  NodePtr userCall(const Type *result, unsigned depth);
+  NodePtr methodCall(const Type *result, unsigned depth);
+  NodePtr call(const std::string &callee, const Signature &signature,
+               const std::vector<Signature> &overloads, std::size_t index, unsigned depth,
+               NodePtr receiver = nullptr);
+  bool mayCall(const Function &function) const;
+  void account(const Function &function);
+
+  // Statements (Statements.cpp)
+  void add(Node &list, NodePtr statement);
+  void statements(Node &list, unsigned count, unsigned depth);
+  NodePtr block(unsigned count, unsigned depth);
+  NodePtr statement(unsigned depth);
+  NodePtr declaration(unsigned depth);
+  NodePtr assignment(unsigned depth);
+  NodePtr ifStatement(unsigned depth);
+  NodePtr loop(unsigned depth);
+  NodePtr switchStatement(unsigned depth);
+  NodePtr jump();
+  NodePtr illuminance(unsigned depth);
+  NodePtr hashed(const Variable &variable);
+  void hashAll(Node &list, std::size_t from);
+  NodePtr declare(const std::string &name, const Type *type, NodePtr value,
+                  const char *qualifier = "");
+
+  // Declarations (Declarations.cpp)
+  void makeConstant();
+  void makeFreeFunction();
+  NodePtr function(Function &made, const std::string &head, const std::vector<Variable> &around);
+
+  // Classes (Classes.cpp)
+  void makeClasses();
+  struct Shape {
+    bool simple = false;
+    bool overrides = false;
+  };
+  ClassPlan *startClass(const char *stem, const std::string &root, const ClassPlan *base,
+                        Node *&members);
+  void addMembers(ClassPlan &plan, Node &members, unsigned count);
+  void addReferences(ClassPlan &plan, Node &members, const std::vector<const ClassPlan *> &targets);
+  void addConstructor(ClassPlan &plan, Node &members);
+  void addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces);
+  void overrideFunction(ClassPlan &plan, Node &members);
+  void addMethod(const ClassPlan &plan, Node &members, const std::string &name,
+                 std::vector<Variable> state, const std::string &result, unsigned statementCount,
+                 Context rules);
+  const ClassPlan *makeTexture(const ClassPlan *base, const std::vector<const ClassPlan *> &targets);
+  void makeCamera();
+  void makePrimitive(const ClassPlan *base);
+  void makeLight();
+  void makeMiss(const std::vector<const ClassPlan *> &textures);
+  const ClassPlan *makeMaterial(const ClassPlan *base,
+                                const std::vector<const ClassPlan *> &targets);
+  std::vector<Variable> around(const ClassPlan &plan);
+
+  std::mt19937 random;
+  Vocabulary &vocabulary;
+  TypeContext &types;
+  Program program;
+  bool large = false;
+  unsigned counter = 0;
+  unsigned work = 0, workLimit = 0, indexDepth = 0;
+
+  std::vector<const Type *> structs;
+  std::vector<Variable> constants;
+  std::vector<Function> functions;
+  std::vector<std::unique_ptr<ClassPlan>> plans;
+  std::vector<Variable> attributes; // scratch members of every primitive
+
+  // Of the function in the making
+  Context context;
+  std::vector<Variable> scope;
+  std::vector<Reference> references;
+  std::vector<NodePtr> pending; // declarations that stand before the statement in the making
+};
+
+} // namespace rtsl::random

@@ -1,0 +1,40 @@
+//===- Program.h - a random program ---------------------------------------===//
+#pragma once
+
+#include "Tree.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl::random {
+
+/// A scene in one text: a camera, primitives, materials, lights, what is behind it all, textures.
+/// Every name begins with `prefix`, so that many programs fit into one compilation. Runs end by
+/// construction and have one right result.
+struct Program {
+  std::uint32_t seed = 0;
+  std::string prefix; // "p12_"
+  NodePtr tree;
+  /// No index is ever out of range, so that it may run unchecked.
+  bool inRange = true;
+  bool traces = false;
+  /// The objects of the scene, by class; what refers to others stands behind them.
+  std::vector<std::string> textures, lights, primitives, materials;
+  std::string camera, miss; // miss may be empty
+
+  std::string text() const { return toText(*tree); }
+};
+
+/// The program of a seed; the same on every machine. One in five is not `inRange`, three in five
+/// trace.
+Program generate(std::uint32_t seed);
+bool isInRange(std::uint32_t seed);
+bool hasTraces(std::uint32_t seed);
+
+/// The functions that programs share, as far as `text` uses them: they fold values into a hash and
+/// make numbers of it.
+std::string prelude(const std::string &text);
+
+} // namespace rtsl::random

@@ -1,0 +1,68 @@
+//===- Types.cpp - which type the next thing has --------------------------===//
+#include "Generator.h"
+
+#include "sema/Conversion.h"
+#include "sema/TypeProperties.h"
+
+namespace rtsl::random {
+
+const Type *Generator::numericScalar() { return vocabulary.scalars[below(3)]; }
+
+const Type *Generator::withScalar(const Type *shape, const Type *scalar) {
+  return rtsl::withScalar(shape, scalar, types);
+}
+
+const Type *Generator::smallType() {
+  switch (below(10)) {
+  case 0:
+  case 1:
+    return types.floatType;
+  case 2:
+    return types.intType;
+  case 3:
+    return vocabulary.scalars[below(4)];
+  case 4:
+  case 5:
+    return types.vector(types.floatType, 2 + below(3));
+  case 6:
+  case 7:
+    return pick(vocabulary.vectors);
+  case 8:
+    return pick(vocabulary.matrices);
+  default:
+    return types.color;
+  }
+}
+
+const Type *Generator::anyType() {
+  const Type *type = smallType();
+  if (!structs.empty() && chance(20))
+    type = pick(structs);
+  for (unsigned dimensions = chance(20) ? 1 + below(2) : 0; dimensions-- > 0;)
+    if (scalarCount(type) + (hasColor(type) ? 4 : 0) <= 16)
+      type = types.array(type, 1 + below(4));
+  return type;
+}
+
+bool Generator::hasColor(const Type *type) const { return contains(type, TypeKind::Color); }
+
+void Generator::makeStruct() {
+  std::vector<typed::Field> fields;
+  NodePtr list = makeList();
+  for (unsigned n = 1 + below(4); n-- > 0;) {
+    typed::Field field;
+    field.name = fresh("m");
+    field.type = anyType();
+    list->children.push_back(makeNode(Role::Fixed, toString(field.type) + " " + field.name + ";"));
+    fields.push_back(std::move(field));
+  }
+  const std::string name = global("S");
+  const Type *type = vocabulary.structure(name, std::move(fields));
+  // Constructors give every field, so a field cannot simply be deleted.
+  list->role = Role::List;
+  program.tree->children.push_back(makeNode(Role::Fixed, "struct " + name + " {$};", std::move(list)));
+  if (scalarCount(type) + (hasColor(type) ? 8 : 0) <= 40)
+    structs.push_back(type);
+}
+
+} // namespace rtsl::random

@@ -1,0 +1,192 @@
+//===- Workers.cpp - programs in processes of their own -------------------===//
+#include "Workers.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <stdexcept>
+
+#include <csignal>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace rtsl::random {
+
+namespace {
+
+/// A process that compares programs and writes one finding each to a pipe.
+struct Worker {
+  pid_t process = 0;
+  int pipe = -1;
+  std::vector<std::uint32_t> seeds; // empty: a program that has no seed any more
+  std::string text;                 // what it wrote so far
+};
+
+void write(int pipe, const std::string &text) {
+  for (std::size_t done = 0; done != text.size();) {
+    const ssize_t written = ::write(pipe, text.data() + done, text.size() - done);
+    if (written <= 0)
+      _exit(9);
+    done += static_cast<std::size_t>(written);
+  }
+}
+
+/// A finding is a letter for the failure, the text and a zero.
+void report(int pipe, const std::vector<Finding> &findings) {
+  std::string text;
+  for (const Finding &finding : findings) {
+    text += static_cast<char>('a' + static_cast<int>(finding.failure));
+    text += finding.detail.substr(0, 4000);
+    text += '\0';
+  }
+  write(pipe, text);
+}
+
+Worker start(const std::function<std::vector<Finding>()> &work, unsigned seconds) {
+  int ends[2];
+  if (::pipe(ends) != 0)
+    throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
+  std::fflush(nullptr);
+  Worker worker;
+  worker.process = fork();
+  if (worker.process < 0)
+    throw std::runtime_error(std::string("no process: ") + std::strerror(errno));
+  if (worker.process == 0) {
+    close(ends[0]);
+    alarm(seconds);
+    report(ends[1], work());
+    _exit(0);
+  }
+  close(ends[1]);
+  worker.pipe = ends[0];
+  return worker;
+}
+
+/// Waits for a worker whose pipe is closed. One finding a program, or one for all.
+std::vector<Finding> finish(Worker &worker, unsigned seconds) {
+  close(worker.pipe);
+  int status = 0;
+  waitpid(worker.process, &status, 0);
+  if (WIFSIGNALED(status)) {
+    if (WTERMSIG(status) == SIGALRM)
+      return {{Failure::Hang, "after " + std::to_string(seconds) + " s"}};
+    return {{Failure::Crash, strsignal(WTERMSIG(status))}};
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    return {{Failure::Crash, "exit status " + std::to_string(WEXITSTATUS(status))}};
+  std::vector<Finding> findings;
+  for (std::size_t at = 0; at < worker.text.size();) {
+    const char *text = worker.text.c_str() + at;
+    findings.push_back({static_cast<Failure>(*text - 'a'), text + 1});
+    at += std::strlen(text) + 1;
+  }
+  return findings;
+}
+
+/// Reads what there is; false at the end.
+bool read(Worker &worker) {
+  char buffer[4096];
+  const ssize_t got = ::read(worker.pipe, buffer, sizeof buffer);
+  if (got <= 0)
+    return false;
+  worker.text.append(buffer, static_cast<std::size_t>(got));
+  return true;
+}
+
+std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds,
+                                  const std::vector<std::string> &paths) {
+  std::vector<Program> programs;
+  for (std::uint32_t seed : seeds)
+    programs.push_back(generate(seed));
+  std::vector<const Program *> pointers;
+  for (const Program &program : programs)
+    pointers.push_back(&program);
+  return compare(pointers, paths);
+}
+
+/// Programs of a kind share a compilation: what may run unchecked, what traces.
+std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count,
+                                                   unsigned size) {
+  std::deque<std::vector<std::uint32_t>> batches;
+  for (unsigned kind = 0; kind != 4; ++kind) {
+    std::vector<std::uint32_t> batch;
+    for (std::uint32_t seed = first; seed != first + count; ++seed) {
+      if (isInRange(seed) != ((kind & 1) == 0) || hasTraces(seed) != ((kind & 2) == 0))
+        continue;
+      batch.push_back(seed);
+      if (batch.size() == size)
+        batches.push_back(std::move(batch)), batch.clear();
+    }
+    if (!batch.empty())
+      batches.push_back(std::move(batch));
+  }
+  return batches;
+}
+
+} // namespace
+
+std::vector<FailedSeed> runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &options,
+                                 const std::function<void(std::size_t)> &progress) {
+  std::deque<std::vector<std::uint32_t>> waiting = makeBatches(first, count, options.batch);
+  std::vector<Worker> running;
+  std::vector<FailedSeed> failed;
+  std::size_t done = 0;
+  auto settle = [&](Worker &worker) {
+    const std::vector<std::uint32_t> seeds = worker.seeds;
+    std::vector<Finding> findings = finish(worker, options.secondsLimit);
+    bool isOfAll = findings.size() != seeds.size();
+    if (!isOfAll && seeds.size() > 1)
+      isOfAll = std::all_of(findings.begin(), findings.end(), [](const Finding &finding) {
+        return finding.failure == Failure::Rejected || finding.failure == Failure::Fault;
+      });
+    if (isOfAll && seeds.size() > 1) {
+      const auto half = seeds.begin() + static_cast<std::ptrdiff_t>(seeds.size() / 2);
+      waiting.emplace_front(seeds.begin(), half);
+      waiting.emplace_front(half, seeds.end());
+      return;
+    }
+    for (std::size_t i = 0; i != seeds.size(); ++i)
+      if (i >= findings.size())
+        failed.push_back({seeds[i], {Failure::Crash, "no answer"}});
+      else if (findings[i].failure != Failure::None)
+        failed.push_back({seeds[i], findings[i]});
+    done += seeds.size();
+    progress(done);
+  };
+  while (!waiting.empty() || !running.empty()) {
+    while (!waiting.empty() && running.size() < options.processes) {
+      std::vector<std::uint32_t> seeds = std::move(waiting.front());
+      waiting.pop_front();
+      running.push_back(
+          start([&] { return compareSeeds(seeds, options.paths); }, options.secondsLimit));
+      running.back().seeds = std::move(seeds);
+    }
+    std::vector<pollfd> polled;
+    for (const Worker &worker : running)
+      polled.push_back({worker.pipe, POLLIN, 0});
+    poll(polled.data(), polled.size(), -1);
+    for (std::size_t i = polled.size(); i-- > 0;)
+      if (polled[i].revents != 0 && !read(running[i])) {
+        Worker ended = std::move(running[i]);
+        running.erase(running.begin() + static_cast<std::ptrdiff_t>(i));
+        settle(ended);
+      }
+  }
+  std::sort(failed.begin(), failed.end(),
+            [](const FailedSeed &a, const FailedSeed &b) { return a.seed < b.seed; });
+  return failed;
+}
+
+Finding runAlone(const Program &program, const RunOptions &options) {
+  Worker worker = start([&] { return compare({&program}, options.paths); }, options.secondsLimit);
+  while (read(worker))
+    ;
+  const std::vector<Finding> findings = finish(worker, options.secondsLimit);
+  return findings.empty() ? Finding{Failure::Crash, "no answer"} : findings.front();
+}
+
+} // namespace rtsl::random

@@ -1,0 +1,31 @@
+//===- Workers.h - programs in processes of their own ---------------------===//
+#pragma once
+
+#include "Paths.h"
+
+#include <functional>
+
+namespace rtsl::random {
+
+struct RunOptions {
+  unsigned processes = 1;
+  unsigned batch = 20;       // programs in one compilation
+  unsigned secondsLimit = 60; // for one batch
+  std::vector<std::string> paths;
+};
+
+struct FailedSeed {
+  std::uint32_t seed;
+  Finding finding;
+};
+
+/// Runs the programs of `count` seeds from `first` on. What crashes takes only its process along; a
+/// batch that fails is halved until it is known which programs fail. `progress` hears how many
+/// programs are done.
+std::vector<FailedSeed> runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &options,
+                                 const std::function<void(std::size_t done)> &progress);
+
+/// One program, in a process of its own.
+Finding runAlone(const Program &program, const RunOptions &options);
+
+} // namespace rtsl::random

@@ -1,0 +1,272 @@
+//===- World.cpp - a small scene that a random program runs in ------------===//
+#include "World.h"
+
+#include "runtime/device/Traverse.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+using rtsl::runtime::ClassInfo;
+using rtsl::runtime::MemberInfo;
+using rtsl::runtime::ValueType;
+
+//===----------------------------------------------------------------------===//
+// What compiled programs ask of the host
+//===----------------------------------------------------------------------===//
+
+using Intersect = void(RtslState *, RtslRef);
+
+extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t anyHit) {
+  auto *intersect = reinterpret_cast<Intersect *>(const_cast<void *>(state->launch->host));
+  return rtsl::device::traverseDevice(*state, anyHit != 0, intersect);
+}
+
+static constexpr std::uint64_t guardBytes = 64;
+static std::uint8_t *stackMemory = nullptr;
+static std::uint64_t stackBytes = 0;
+
+/// As large as was asked for; what follows is watched.
+extern "C" void *rtsl_machine_stack(std::uint64_t bytes) {
+  std::free(stackMemory);
+  bytes = (bytes + 15) / 16 * 16;
+  stackMemory = static_cast<std::uint8_t *>(std::aligned_alloc(64, (bytes + guardBytes + 63) / 64 * 64));
+  std::memset(stackMemory, 0xa5, bytes + guardBytes);
+  stackBytes = bytes;
+  return stackMemory;
+}
+
+static void checkGuard() {
+  for (std::uint64_t i = 0; stackMemory && i != guardBytes; ++i)
+    if (stackMemory[stackBytes + i] != 0xa5) {
+      std::fputs("a program wrote behind the machine's stack\n", stderr);
+      std::abort();
+    }
+}
+
+namespace rtsl::random {
+
+//===----------------------------------------------------------------------===//
+// Values
+//===----------------------------------------------------------------------===//
+
+static std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t h = (a ^ b) * 0x9e3779b1u;
+  h = (h ^ h >> 15) * 0x85ebca6bu;
+  return h ^ h >> 13;
+}
+
+static std::uint32_t hashOf(const std::string &text) {
+  std::uint32_t h = 2166136261u;
+  for (char c : text)
+    h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
+  return h;
+}
+
+static std::uint32_t bitsOf(float value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+static std::uint32_t someFloat(std::uint32_t key) {
+  static const std::uint32_t extremes[] = {0x7f800000u, 0xff800000u, 0x7fc00000u, 0x80000000u, 1u,
+                                           0x00800000u, 0x7f7fffffu, 0x4b000001u, 0xcf000000u, 0u};
+  if (key % 16 == 0)
+    return extremes[(key >> 8) % 10];
+  const float small = static_cast<float>(static_cast<std::int32_t>(key) >> 16);
+  return bitsOf(small / static_cast<float>(1 << (key & 15)));
+}
+
+static std::uint32_t someInteger(std::uint32_t key) {
+  static const std::uint32_t extremes[] = {0x80000000u, 0x7fffffffu, 0xffffffffu, 32u, 0u};
+  if (key % 12 == 0)
+    return extremes[(key >> 8) % 5];
+  return (key >> 8) % 9 - (key & 1 ? 4u : 0u);
+}
+
+void World::fillElement(const ValueType &type, std::uint8_t *to, std::uint32_t key) {
+  auto put = [&](unsigned word, std::uint32_t value) { std::memcpy(to + 4 * word, &value, 4); };
+  const unsigned scalars = type.rows * type.columns;
+  switch (type.kind) {
+  case ValueType::Kind::Float:
+    for (unsigned i = 0; i != scalars; ++i)
+      put(i, someFloat(mix(key, i)));
+    break;
+  case ValueType::Kind::Color:
+    for (unsigned i = 0; i != code.colorComponents; ++i)
+      put(i, someFloat(mix(key, i)));
+    break;
+  case ValueType::Kind::Int:
+  case ValueType::Kind::UInt:
+    for (unsigned i = 0; i != scalars; ++i)
+      put(i, someInteger(mix(key, i)));
+    break;
+  case ValueType::Kind::Bool:
+    for (unsigned i = 0; i != scalars; ++i)
+      put(i, mix(key, i) & 1);
+    break;
+  case ValueType::Kind::Reference:
+    put(0, choose(type.className, key));
+    break;
+  case ValueType::Kind::Struct:
+    for (const MemberInfo &field : type.fields)
+      fill(field.type, to + field.offset, mix(key, hashOf(field.name)));
+    break;
+  }
+}
+
+void World::fill(const ValueType &type, std::uint8_t *to, std::uint32_t key) {
+  if (type.bufferRank != 0) {
+    RtslBuffer buffer{};
+    std::size_t count = 1;
+    for (unsigned i = 0; i != type.bufferRank; ++i) {
+      buffer.size[i] = (key >> 4 * i) % 3 + (program.inRange ? 1 : 0);
+      count *= buffer.size[i];
+    }
+    buffers.emplace_back(count * type.elementSize / 4 + 1);
+    auto *elements = reinterpret_cast<std::uint8_t *>(buffers.back().data());
+    for (std::size_t i = 0; i != count; ++i)
+      fillElement(type, elements + i * type.elementSize, mix(key, static_cast<std::uint32_t>(i)));
+    const auto address = reinterpret_cast<std::uint64_t>(elements);
+    buffer.addressLow = static_cast<std::uint32_t>(address);
+    buffer.addressHigh = static_cast<std::uint32_t>(address >> 32);
+    std::memcpy(to, &buffer, sizeof buffer);
+    return;
+  }
+  std::uint32_t count = 1;
+  for (std::uint32_t size : type.arraySizes)
+    count *= size;
+  for (std::uint32_t i = 0; i != count; ++i)
+    fillElement(type, to + i * (type.size / count), mix(key, i));
+}
+
+bool World::derivesFrom(const ClassInfo &info, const std::string &base) const {
+  for (const ClassInfo *at = &info; at; at = code.find(at->base))
+    if (at->name == base || at->root == base)
+      return true;
+  return false;
+}
+
+RtslRef World::choose(const std::string &className, std::uint32_t key) const {
+  std::vector<RtslRef> candidates;
+  for (const Object &object : objects)
+    if (derivesFrom(*object.info, className))
+      candidates.push_back(object.reference);
+  return candidates.empty() ? 0 : candidates[key % candidates.size()];
+}
+
+//===----------------------------------------------------------------------===//
+// The scene
+//===----------------------------------------------------------------------===//
+
+void World::addObjects(const std::vector<std::string> &classes, std::vector<RtslRef> *references) {
+  for (const std::string &name : classes) {
+    const ClassInfo *info = code.find(name);
+    if (!info) // left out on the way to a smaller program
+      continue;
+    const std::uint32_t key = mix(program.seed, hashOf(name) + static_cast<std::uint32_t>(objects.size()));
+    const auto reference = static_cast<RtslRef>(4 * used);
+    used += (info->recordSize + 15) / 16 * 4;
+    auto *record = reinterpret_cast<std::uint8_t *>(records.data()) + reference;
+    std::memcpy(record, &info->id, 4);
+    RtslState state{};
+    state.launch = &launch;
+    if (info->initialize)
+      info->initialize(&state, reference);
+    for (const MemberInfo &member : info->members)
+      if (member.isPublic && (!member.hasDefault || key & 1))
+        fill(member.type, record + member.offset, mix(key, hashOf(member.name)));
+    if (info->construct) {
+      std::vector<std::uint32_t> arguments(info->parameterSize / 4 + 1);
+      for (const MemberInfo &parameter : info->parameters)
+        fill(parameter.type, reinterpret_cast<std::uint8_t *>(arguments.data()) + parameter.offset,
+             mix(key, hashOf(parameter.name)));
+      info->construct(&state, reference, arguments.data());
+    }
+    objects.push_back({reference, info});
+    references->push_back(reference);
+  }
+}
+
+World::World(const runtime::Program &code, const Program &program) : code(code), program(program) {
+  std::size_t words = used;
+  std::vector<std::string> all = {program.camera, program.miss};
+  for (const auto *names : {&program.textures, &program.lights, &program.primitives, &program.materials})
+    all.insert(all.end(), names->begin(), names->end());
+  for (const std::string &name : all)
+    if (const ClassInfo *info = code.find(name))
+      words += (info->recordSize + 15) / 16 * 4;
+  records.resize(words);
+  launch.records = reinterpret_cast<std::uint8_t *>(records.data());
+
+  std::vector<RtslRef> cameras, misses;
+  addObjects(program.textures, &others);
+  addObjects(program.lights, &lights);
+  addObjects(program.primitives, &primitives);
+  addObjects(program.materials, &materials);
+  addObjects({program.camera}, &cameras);
+  addObjects({program.miss}, &misses);
+
+  if (!primitives.empty() && !materials.empty()) {
+    const std::size_t count = std::max(primitives.size(), materials.size()) + 1;
+    for (std::size_t i = 0; i != count; ++i) {
+      RtslInstance instance{};
+      instance.primitive = primitives[i % primitives.size()];
+      instance.material = materials[i % materials.size()];
+      instance.firstPrimitive = static_cast<std::uint32_t>(2 * i);
+      for (const Object &object : objects)
+        if (object.reference == instance.material)
+          instance.needs = code.needs & object.info->needs;
+      instances.push_back(instance);
+      for (std::uint32_t primitive = 0; primitive != 1 + i % 2; ++primitive)
+        items.push_back({static_cast<std::uint32_t>(i), primitive});
+    }
+  }
+  launch.instances = instances.data();
+  launch.instanceCount = static_cast<std::uint32_t>(instances.size());
+  launch.lights = lights.data();
+  launch.lightCount = static_cast<std::uint32_t>(lights.size());
+  launch.camera = cameras.empty() ? 0 : cameras[0];
+  launch.background = misses.empty() ? 0 : misses[0];
+  for (unsigned i = 0; i != RTSL_MAX_COLOR; ++i) {
+    launch.backgroundColor[i] = 0.25f * static_cast<float>(i + 1);
+    launch.ambient[i] = 0.125f * static_cast<float>(i + 3);
+  }
+  launch.colorComponents = code.colorComponents;
+  launch.width = 5;
+  launch.height = 3;
+  launch.seed = program.seed;
+  launch.leafItems = items.data();
+  launch.rootIsLeaf = 1;
+  launch.nodeCount = static_cast<std::uint32_t>(items.size());
+  launch.needs = code.needs;
+  launch.host = reinterpret_cast<const void *>(code.slots.rt_Primitive_intersect);
+}
+
+std::vector<std::pair<std::string, std::string>> World::surfaces(const Program &program) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const std::string &primitive : program.primitives)
+    for (const std::string &material : program.materials)
+      pairs.emplace_back(primitive, material);
+  return pairs;
+}
+
+std::vector<std::uint32_t> World::run() {
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t depth : {0u, 2u}) {
+    launch.maxDepth = depth;
+    for (std::uint32_t pixel = 0; pixel != 6; ++pixel) {
+      float color[RTSL_MAX_COLOR] = {};
+      code.sample(&launch, pixel * 7 % 5, pixel % 3, pixel / 3, color);
+      checkGuard();
+      for (unsigned i = 0; i != code.colorComponents; ++i)
+        words.push_back(std::isnan(color[i]) ? 0x7fc00000u : bitsOf(color[i]));
+    }
+  }
+  return words;
+}
+
+} // namespace rtsl::random

@@ -1,0 +1,50 @@
+//===- World.h - a small scene that a random program runs in --------------===//
+#pragma once
+
+#include "Program.h"
+
+#include "runtime/Program.h"
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+namespace rtsl::random {
+
+/// The objects of a program with values made from its seed, a few instances, and the launch. What a
+/// ray meets is what the program's own primitives say, tested one by one.
+class World {
+public:
+  World(const runtime::Program &code, const Program &program);
+
+  /// The colors of some pixels, each without and with the rays that shaders send, as bits; all NaNs
+  /// are one.
+  std::vector<std::uint32_t> run();
+
+  /// Which primitive may meet which material.
+  static std::vector<std::pair<std::string, std::string>> surfaces(const Program &program);
+
+private:
+  void addObjects(const std::vector<std::string> &classes, std::vector<RtslRef> *references);
+  void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
+  void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
+  RtslRef choose(const std::string &className, std::uint32_t key) const;
+  bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
+
+  const runtime::Program &code;
+  const Program &program;
+  struct Object {
+    RtslRef reference;
+    const runtime::ClassInfo *info;
+  };
+  std::vector<Object> objects;
+  std::vector<std::uint32_t> records;
+  std::size_t used = 4; // words
+  std::deque<std::vector<std::uint32_t>> buffers;
+  std::vector<RtslRef> lights, primitives, materials, others;
+  std::vector<RtslInstance> instances;
+  std::vector<RtslLeafItem> items;
+  RtslLaunch launch{};
+};
+
+} // namespace rtsl::random
