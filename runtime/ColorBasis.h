@@ -65,24 +65,24 @@ inline ColorBasis makeColorBasis(std::size_t components) {
   basis.toRgb.assign(3, std::vector<double>(components, 0.0));
   if (components < 3) {
     for (std::size_t i = 0; i < components; ++i)
-      for (int j = 0; j < 3; ++j) {
+      for (std::size_t j = 0; j < 3; ++j) {
         basis.toColor[i][j] = luminanceWeights[j];
         basis.toRgb[j][i] = 1.0 / static_cast<double>(components);
       }
     return basis;
   }
   if (components == 3) {
-    for (int i = 0; i < 3; ++i)
+    for (std::size_t i = 0; i < 3; ++i)
       basis.toColor[i][i] = basis.toRgb[i][i] = 1.0;
     return basis;
   }
 
   constexpr double shortest = 380, longest = 720;
-  constexpr int samples = 64; // a bin
+  constexpr std::size_t samples = 64; // a bin
   const double step = (longest - shortest) / static_cast<double>(components * samples);
   for (std::size_t i = 0; i < components; ++i) {
     double red = 0, blue = 0;
-    for (int j = 0; j < samples; ++j) {
+    for (std::size_t j = 0; j < samples; ++j) {
       const double wavelength = shortest + (static_cast<double>(i * samples + j) + 0.5) * step;
       blue += 1 - detail::cubicStep(460, 520, wavelength);
       red += detail::cubicStep(550, 610, wavelength);
@@ -92,13 +92,13 @@ inline ColorBasis makeColorBasis(std::size_t components) {
 
   double gram[3][3] = {}, inverse[3][3];
   for (const std::vector<double> &row : basis.toColor)
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
         gram[i][j] += row[i] * row[j];
   detail::invert3(gram, inverse);
-  for (int i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < components; ++k)
-      for (int j = 0; j < 3; ++j)
+      for (std::size_t j = 0; j < 3; ++j)
         basis.toRgb[i][k] += inverse[i][j] * basis.toColor[k][j];
   return basis;
 }

@@ -38,6 +38,9 @@ public:
     return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
   }
 
+  /// The program's own code for each slot.
+  const Program::Slots &programSlots() const { return slots; }
+
 private:
   std::uint32_t traverseCarefully(RtslState &state, bool anyHit) const;
   std::uint32_t retrace(RtslState &state, bool anyHit, float distance) const;

@@ -1,6 +1,7 @@
 //===- Compiler.cpp - the compiler as a library ---------------------------===//
 #include "codegen/driver/Compiler.h"
 
+#include "codegen/cpp/EmitCpp.h"
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
@@ -252,6 +253,15 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
   const LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/false));
   codegen::optimize(*code.module, *code.machine, code.options);
   return codegen::printLlvm(*code.module);
+}
+
+std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
+                                   const CompileOptions &options, Diagnostics &diagnostics) {
+  cpp::Options printing;
+  printing.name = name;
+  printing.colorComponents = options.colorComponents;
+  printing.lineDirectives = lineDirectives;
+  return cpp::print(module, printing, diagnostics);
 }
 
 std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options, bool json,

@@ -19,7 +19,7 @@
 namespace rtsl {
 
 /// What can be looked at on the way, in order.
-enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Split, Llvm, Ptx };
+enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Split, Llvm, Ptx, Cpp };
 
 /// How `trace` runs: as a call, or as the end of one state and the beginning of another, without recursion
 /// (docs/continuations.md). The picture is the same, bit for bit.
@@ -58,6 +58,11 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
 /// of Target::HostMegakernel.
 std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
                                      const CompileOptions &options, Diagnostics &diagnostics);
+
+/// The module as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md). `name` becomes its namespace, and
+/// `<name>_shaders` what it exports. Nothing if there were errors.
+std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
+                                   const CompileOptions &options, Diagnostics &diagnostics);
 
 /// What splitting at `trace` saves and recomputes in each function that traces, and the states that it makes: text, or
 /// one JSON document. Nothing if there were errors.

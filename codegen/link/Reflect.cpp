@@ -78,24 +78,6 @@ runtime::ValueType reflect(const Type *type, mlir::Type irType) {
   return value;
 }
 
-const typed::Function *findConstructor(const typed::Class &info) {
-  for (const auto &function : info.functions)
-    if (function->isConstructor)
-      return function.get();
-  return info.base ? findConstructor(*info.base) : nullptr;
-}
-
-std::vector<const typed::Member *> allMembers(const typed::Class &info) {
-  std::vector<const typed::Class *> chain;
-  for (const typed::Class *at = &info; at; at = at->base)
-    chain.push_back(at);
-  std::vector<const typed::Member *> members;
-  for (auto at = chain.rbegin(); at != chain.rend(); ++at)
-    for (const auto &member : (*at)->members)
-      members.push_back(member.get());
-  return members;
-}
-
 runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters) {
   runtime::ClassInfo result;
   result.name = info.name;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "codegen/ir/Rtsl.h"
+#include "codegen/link/Members.h"
 #include "runtime/Program.h"
 #include "sema/TypedAst.h"
 
@@ -13,11 +14,5 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
 
 /// A type as scenes see it, with the sizes of the type that it was lowered to.
 runtime::ValueType reflect(const Type *type, mlir::Type irType);
-
-/// The constructor of a class, its own or inherited; null if there is none.
-const typed::Function *findConstructor(const typed::Class &info);
-
-/// All members of a class that its record holds or that `intersect` writes, inherited ones first.
-std::vector<const typed::Member *> allMembers(const typed::Class &info);
 
 } // namespace rtsl

@@ -4,6 +4,7 @@
 #include "Output.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
+#include "codegen/cpp/EmitCpp.h"
 #include "codegen/driver/Compiler.h"
 #include "frontend/Parser.h"
 
@@ -21,7 +22,8 @@ const std::map<std::string, Stage> stages = {{"ast", Stage::Ast},
                                              {"ssa", Stage::Ssa},
                                              {"split", Stage::Split},
                                              {"llvm", Stage::Llvm},
-                                             {"ptx", Stage::Ptx}};
+                                             {"ptx", Stage::Ptx},
+                                             {"cpp", Stage::Cpp}};
 
 struct CompileCommandOptions {
   CommonOptions common;
@@ -29,6 +31,7 @@ struct CompileCommandOptions {
   Stage stage = Stage::Ir;
   std::vector<std::string> overrides;
   std::string output = "-";
+  bool lineDirectives = false;
 };
 
 bool isScene(const std::string &file) {
@@ -60,6 +63,11 @@ std::optional<std::string> translate(const CompileCommandOptions &options, Messa
     return std::nullopt;
   if (options.stage == Stage::TypedAst)
     return typed::dump(*module);
+  if (options.stage == Stage::Cpp) {
+    const std::string &named = options.output == "-" ? options.files.front() : options.output;
+    return emitCpp(*module, cpp::identifierOf(named), options.lineDirectives, options.common.compile,
+                   messages.diagnostics);
+  }
   return emit(*module, options.stage, options.common.compile, messages.diagnostics);
 }
 
@@ -70,6 +78,11 @@ void checkInputs(const CompileCommandOptions &options) {
     throw CLI::ValidationError("FILE", "give RTSL files or one scene");
   if (scenes > 0 && (options.stage == Stage::Ast || options.stage == Stage::TypedAst))
     throw CLI::ValidationError("--emit", "a scene has no syntax tree; give one of its RTSL files");
+  if (options.stage == Stage::Cpp && scenes > 0)
+    throw CLI::ValidationError("--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
+                                         "builds one");
+  if (options.stage == Stage::Cpp && options.common.compile.trace == TraceMode::Split)
+    throw CLI::ValidationError("--trace", "C++ keeps `trace` as a call; states are printed by --emit=split");
   if (scenes == 0 && !options.overrides.empty())
     throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
 }
@@ -96,16 +109,19 @@ void addCompileCommand(CLI::App &app, Action &action) {
   command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
   command->add_option("--emit", options->stage, "what to write")
       ->transform(CLI::CheckedTransformer(stages).description(""))
-      ->type_name("ast|typed-ast|ir|ssa|split|llvm|ptx")
+      ->type_name("ast|typed-ast|ir|ssa|split|llvm|ptx|cpp")
       ->required();
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
   command->add_option("--set", options->overrides, "change a value of the scene file, such as camera.fov=30")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
+  command->add_flag("--line-directives", options->lineDirectives,
+                    "with --emit=cpp: #line, so that messages and debuggers show the RTSL files");
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("examples:\n"
                   "  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir\n"
+                  "  rtslc compile Glass.rtsl --emit=cpp -o glass.cpp\n"
                   "  rtslc compile scene.json --emit=ptx --gpu-arch=sm_90 -o scene.ptx");
   command->callback([options, &action] {
     checkInputs(*options);

@@ -1,0 +1,430 @@
+//===- Declarations.cpp - types, signatures, structs, classes, the file ---===//
+#include "codegen/cpp/Printer.h"
+
+#include "codegen/cpp/Format.h"
+#include "codegen/lower/Analysis.h"
+#include "sema/Casting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace rtsl::cpp {
+
+ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics)
+    : module(module), options(options), names(module), effects(module), notes(diagnostics.sources()),
+      diagnostics(diagnostics) {}
+
+void ModulePrinter::unsupported(SourceRange range, const std::string &what) {
+  diagnostics.report(rtsl::Code::notSupportedYet, range, what);
+  failed = true;
+}
+
+std::string ModulePrinter::commentText(const std::string &comment) const {
+  return comment.empty() ? comment : comment + "\n";
+}
+
+std::string ModulePrinter::lineDirective(SourceRange range) const {
+  if (!options.lineDirectives || !range.isValid())
+    return {};
+  std::string file;
+  for (char c : notes.file(range)) {
+    if (c == '\\' || c == '"')
+      file += '\\';
+    file += c;
+  }
+  return fmt::format("#line {} \"{}\"\n", notes.line(range), file);
+}
+
+//===----------------------------------------------------------------------===//
+// Types
+//===----------------------------------------------------------------------===//
+
+std::string ModulePrinter::type(const Type *type, bool inMemory) {
+  switch (type->kind) {
+  case TypeKind::Void:
+    return "void";
+  case TypeKind::Bool:
+    return inMemory ? "rtsl::Bool" : "bool";
+  case TypeKind::Int:
+    return "int";
+  case TypeKind::UInt:
+    return "unsigned";
+  case TypeKind::Float:
+    return "float";
+  case TypeKind::Vector:
+    switch (type->element->kind) {
+    case TypeKind::Float:
+      return fmt::format("glm::vec{}", type->count);
+    case TypeKind::Int:
+      return fmt::format("glm::ivec{}", type->count);
+    case TypeKind::UInt:
+      return fmt::format("glm::uvec{}", type->count);
+    default:
+      return inMemory ? fmt::format("glm::vec<{}, rtsl::Bool>", type->count) : fmt::format("glm::bvec{}", type->count);
+    }
+  case TypeKind::Matrix:
+    return type->columns() == type->rows() ? fmt::format("glm::mat{}", type->columns())
+                                           : fmt::format("glm::mat{}x{}", type->columns(), type->rows());
+  case TypeKind::Color:
+    return "Color";
+  case TypeKind::Struct:
+    return names.of(type->structure);
+  case TypeKind::Class: {
+    const std::string className = type->classType ? type->classType->name : type->builtinClass;
+    referenced[className];
+    return names.reference(className);
+  }
+  case TypeKind::Array:
+    return fmt::format("rtsl::array<{}, {}>", memoryType(type->element), type->count);
+  case TypeKind::Buffer:
+    return type->count == 1 ? fmt::format("rtsl::Buffer<{}>", memoryType(type->element))
+                            : fmt::format("rtsl::Buffer<{}, {}>", memoryType(type->element), type->count);
+  case TypeKind::Error:
+  case TypeKind::String:
+    break;
+  }
+  return "void";
+}
+
+std::string ModulePrinter::zero(const Type *type) {
+  switch (type->kind) {
+  case TypeKind::Bool:
+    return "false";
+  case TypeKind::Int:
+    return "0";
+  case TypeKind::UInt:
+    return "0u";
+  case TypeKind::Float:
+    return "0.0f";
+  default:
+    return "{}";
+  }
+}
+
+std::string declarator(const std::string &type, const std::string &name, const std::string &value) {
+  if (value == "{}")
+    return name + "{}";
+  const bool namesType = value.compare(0, type.size() + 1, type + "{") == 0;
+  return namesType ? name + value.substr(type.size()) : name + " = " + value;
+}
+
+//===----------------------------------------------------------------------===//
+// Signatures
+//===----------------------------------------------------------------------===//
+
+bool ModulePrinter::takesState(const typed::Function &function) {
+  return function.isStateMethod || effects.function(function).usesRay;
+}
+
+bool ModulePrinter::takesScratch(const typed::Function &function) {
+  const Effects &inside = effects.function(function);
+  if (!function.owner)
+    return inside.reportsHit;
+  if (!hasScratch(*function.owner))
+    return false;
+  return inside.usesScratch || inside.reportsHit || (function.isStateMethod && function.name == "intersect");
+}
+
+bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed::Function &function) {
+  const Type *type = parameter.type;
+  const bool isLarge = type->is(TypeKind::Struct) || type->is(TypeKind::Array) || type->isMatrix();
+  return parameter.direction == ast::Direction::In && isLarge &&
+         (!function.body || !lowering::assignedVariables(*function.body).count(&parameter));
+}
+
+std::string ModulePrinter::signature(const typed::Function &function, bool isMethod) {
+  std::set<const typed::Variable *> mentioned, read;
+  std::set<const typed::Expr *> onlyWritten;
+  bool mentionsRay = false, mentionsScratch = false;
+  if (function.body) {
+    const Effects own = effects.statement(*function.body);
+    mentionsRay = own.usesRay;
+    mentionsScratch = own.usesScratch || own.reportsHit;
+    lowering::forEachExpr(*function.body, [&](const typed::Expr &expr) {
+      if (auto *assign = dynCast<typed::AssignExpr>(&expr))
+        onlyWritten.insert(assign->target.get());
+      if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
+        onlyWritten.insert(incDec->target.get());
+      if (auto *variable = dynCast<typed::VariableExpr>(&expr)) {
+        mentioned.insert(variable->variable);
+        if (!onlyWritten.count(&expr))
+          read.insert(variable->variable);
+      }
+      if (auto *call = dynCast<typed::CallExpr>(&expr)) {
+        mentionsRay |= takesState(*call->function);
+        mentionsScratch |= takesScratch(*call->function);
+      }
+    });
+  }
+
+  std::vector<std::string> parameters;
+  if (takesState(function))
+    parameters.push_back(mentionsRay ? "State &rt" : "State &");
+  if (takesScratch(function)) {
+    const Effects &inside = effects.function(function);
+    const bool writes = inside.writesScratch || inside.reportsHit || function.name == "intersect";
+    const std::string scratch = function.owner ? "Scratch" : "rtsl::Scratch";
+    parameters.push_back(std::string(writes ? "" : "const ") + scratch + (mentionsScratch ? " &scratch" : " &"));
+  }
+  for (const auto &parameter : function.parameters) {
+    std::string name = names.of(parameter.get());
+    std::string text = type(parameter->type);
+    if (parameter->direction != ast::Direction::In)
+      text += " &";
+    else if (isByReference(*parameter, function))
+      text = "const " + text + " &";
+    else
+      text = (parameter->isConst ? "const " : "") + text + " ";
+    if (!mentioned.count(parameter.get()))
+      name = name.empty() ? "" : "/*" + name + "*/";
+    else if (!read.count(parameter.get()) && parameter->direction == ast::Direction::In)
+      text = "[[maybe_unused]] " + text;
+    parameters.push_back(text + name);
+  }
+
+  std::string text = type(function.returnType) + " " + names.of(&function) + "(" + join(parameters, ", ") + ")";
+  if (isMethod) {
+    if (!function.isConstructor && !effects.function(function).writesMembers)
+      text += " const";
+    if (overrides(function))
+      text += " override";
+    else if (isOverridden(function))
+      text = "virtual " + text;
+  }
+  return text;
+}
+
+bool ModulePrinter::overrides(const typed::Function &function) const {
+  if (function.isConstructor || !function.owner)
+    return false;
+  for (const typed::Class *base = function.owner->base; base; base = base->base)
+    for (const auto &method : base->functions)
+      if (method->name == function.name && lowering::sameParameters(*method, function))
+        return isOverridden(*method);
+  return false;
+}
+
+// Only what the author's own code calls on the object itself needs C++'s dispatch: the runtime and
+// references know the class.
+bool ModulePrinter::isOverridden(const typed::Function &function) const {
+  if (function.isConstructor || !function.owner || function.isStateMethod)
+    return false;
+  for (const auto &definition : module.classes)
+    if (definition.get() != function.owner && definition->derivesFrom(function.owner))
+      for (const auto &method : definition->functions)
+        if (method->name == function.name && lowering::sameParameters(*method, function))
+          return true;
+  return false;
+}
+
+std::string ModulePrinter::function(const typed::Function &function, bool isMethod) {
+  std::string text = commentText(function.comment) + lineDirective(function.range);
+  if (!isMethod)
+    text += "inline ";
+  text += signature(function, isMethod) + " ";
+  FunctionPrinter printer(*this, &function);
+  return text + printer.body() + "\n";
+}
+
+//===----------------------------------------------------------------------===//
+// Structs and constants
+//===----------------------------------------------------------------------===//
+
+std::string ModulePrinter::structure(const typed::Struct &structure) {
+  std::string text = commentText(structure.comment) + "struct " + names.of(&structure) + " {\n";
+  for (std::size_t i = 0; i < structure.fields.size(); ++i) {
+    const typed::Field &field = structure.fields[i];
+    if (i > 0 && notes.followsEmptyLine(field.range, structure.fields[i - 1].range))
+      text += "\n";
+    const std::string zeroText = field.type->is(TypeKind::Bool) ? "{}" : zero(field.type);
+    text += commentText(field.comment) + memoryType(field.type) + " " + declarator(memoryType(field.type), names.of(&field), zeroText) + ";";
+    const std::string trailing = notes.trailingComment(field.range);
+    text += trailing.empty() ? "\n" : " " + trailing + "\n";
+  }
+  const Type *self = nullptr;
+  for (const Type *compared : comparedStructs)
+    if (compared->structure == &structure)
+      self = compared;
+  if (self) {
+    std::vector<std::string> parts;
+    for (const typed::Field &field : structure.fields)
+      parts.push_back(fmt::format("a.{0} == b.{0}", names.of(&field)));
+    text += fmt::format("\nfriend bool operator==(const {0} &a, const {0} &b) {{ return {1}; }}\n"
+                        "friend bool operator!=(const {0} &a, const {0} &b) {{ return !(a == b); }}\n",
+                        names.of(&structure), join(parts, " && "));
+  }
+  return text + "};\n";
+}
+
+std::string ModulePrinter::constant(const typed::Variable &constant) {
+  FunctionPrinter printer(*this, nullptr);
+  const bool isPlain = constant.type->isScalar() && constant.constant;
+  std::string text = commentText(constant.comment) + "inline " + (isPlain ? "constexpr " : "const ") +
+                     type(constant.type) + " " +
+                     declarator(type(constant.type), names.of(&constant), printer.initialiser(*constant.init)) + ";";
+  const std::string trailing = notes.trailingComment(constant.init->range);
+  return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
+}
+
+std::string ModulePrinter::freeFunctions() {
+  // Prototypes for those that are called above their definition.
+  std::set<const typed::Function *> defined, asked;
+  std::vector<const typed::Function *> prototypes;
+  for (const auto &function : module.functions) {
+    if (!function->body)
+      continue;
+    lowering::forEachExpr(*function->body, [&](const typed::Expr &expr) {
+      auto *call = dynCast<typed::CallExpr>(&expr);
+      if (call && !call->function->owner && !defined.count(call->function) && call->function != function.get() &&
+          asked.insert(call->function).second)
+        prototypes.push_back(call->function);
+    });
+    defined.insert(function.get());
+  }
+  std::string text;
+  for (const typed::Function *function : prototypes)
+    text += signature(*function, false) + ";\n";
+  for (const auto &function : module.functions)
+    if (function->body)
+      text += "\n" + this->function(*function, false);
+  return text;
+}
+
+//===----------------------------------------------------------------------===//
+// Classes
+//===----------------------------------------------------------------------===//
+
+std::string ModulePrinter::member(const typed::Member &member) {
+  FunctionPrinter printer(*this, nullptr, member.owner);
+  std::string text = commentText(member.comment);
+  const std::string &name = names.of(&member);
+  if (member.isConst) {
+    const bool isPlain = member.type->isScalar() && member.constant;
+    text += std::string(isPlain ? "static constexpr " : "inline static const ") + type(member.type) + " " +
+            declarator(type(member.type), name, member.init ? printer.initialiser(*member.init) : zero(member.type)) + ";";
+  } else {
+    std::string value = member.init ? printer.initialiser(*member.init) : zero(member.type);
+    if (member.type->is(TypeKind::Bool))
+      text += memoryType(member.type) + " " + name + "{" + (member.init ? value : "") + "};";
+    else
+      text += memoryType(member.type) + " " + declarator(memoryType(member.type), name, value) + ";";
+  }
+  const std::string trailing = notes.trailingComment(member.init ? member.init->range : member.range);
+  return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
+}
+
+std::string ModulePrinter::classDefinition(const typed::Class &definition) {
+  std::string text = commentText(definition.comment) + lineDirective(definition.range);
+  const std::string base =
+      definition.base ? names.of(definition.base) : "rtsl::" + definition.root.substr(3);
+  text += "struct " + names.of(&definition) + " : " + base + " {\n";
+  bool isFirst = true;
+  SourceRange previous;
+  for (const auto &member : definition.members) {
+    if (member->access == ast::Access::Scratch)
+      continue;
+    if (!isFirst && notes.followsEmptyLine(member->range, previous))
+      text += "\n";
+    previous = member->range;
+    text += this->member(*member);
+    isFirst = false;
+  }
+  if (const std::string scratch = scratchStructure(definition); !scratch.empty()) {
+    text += (isFirst ? "" : "\n") + scratch;
+    isFirst = false;
+  }
+
+  // Overloads of a base's functions do not hide the others.
+  std::set<std::string> shown;
+  for (const auto &function : definition.functions)
+    for (const typed::Class *at = definition.base; at; at = at->base)
+      for (const auto &method : at->functions)
+        if (method->name == function->name && !method->isConstructor &&
+            !lowering::sameParameters(*method, *function) && shown.insert(method->name).second)
+          text += "\nusing " + names.of(at) + "::" + names.of(method.get()) + ";\n";
+  for (const auto &function : definition.functions) {
+    if (!function->body)
+      continue;
+    text += (isFirst ? "" : "\n") + this->function(*function, true);
+    isFirst = false;
+  }
+  return text + "};\n";
+}
+
+//===----------------------------------------------------------------------===//
+// The file
+//===----------------------------------------------------------------------===//
+
+std::string ModulePrinter::run() {
+  placeAttributes();
+  // From the inside out: what functions ask for is known when they have been printed.
+  std::string constants;
+  for (const auto &constant : module.constants)
+    constants += this->constant(*constant);
+  const std::string functions = freeFunctions();
+  std::string classes;
+  for (const auto &definition : module.classes)
+    classes += "\n" + classDefinition(*definition);
+  std::string entries = module.classes.empty() ? std::string() : slots() + description();
+  std::string structs;
+  for (const auto &structure : module.structs)
+    structs += "\n" + this->structure(*structure);
+  const std::string methods = referenceMethods();
+  const std::string references = this->references();
+
+  std::string text = "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math it computes what rtslc's own\n"
+                     "// machine code computes, to the last bit.\n#include <rtsl/shader.h>\n\n";
+  text += "namespace " + options.name + " {\n\n";
+  text += fmt::format("using State = rtsl::State<{0}>;\nusing Color = rtsl::Color<{0}>;\n",
+                      options.colorComponents);
+  auto add = [&](const std::string &part) {
+    if (!part.empty())
+      text += (part.front() == '\n' ? "" : "\n") + part;
+  };
+  add(references);
+  add(structs);
+  add(constants);
+  add(functions);
+  if (!module.classes.empty() && (!methods.empty() || !entries.empty()))
+    add(fmt::format("enum class Id : std::uint32_t {{ {} }};\n", [&] {
+      std::vector<std::string> ids;
+      unsigned next = 1;
+      for (const auto &definition : module.classes)
+        ids.push_back(fmt::format("{} = {}", names.of(definition.get()), next++));
+      return join(ids, ", ");
+    }()));
+  add(classes);
+  add(methods);
+  add(entries);
+  text += "\n} // namespace " + options.name + "\n";
+  if (!module.classes.empty())
+    text += fmt::format("\n/// The program, for rtsl::program in C++ and rtslSceneCreate in C.\n"
+                        "extern \"C\" const RtslShaders *{0}_shaders();\n"
+                        "const RtslShaders *{0}_shaders() {{\n"
+                        "  static const RtslShaders shaders = {0}::describe();\n  return &shaders;\n}}\n",
+                        options.name);
+  return format(text);
+}
+
+std::optional<std::string> print(const typed::Module &module, const Options &options, Diagnostics &diagnostics) {
+  ModulePrinter printer(module, options, diagnostics);
+  std::string text = printer.run();
+  if (printer.failed || diagnostics.hasErrors())
+    return std::nullopt;
+  return text;
+}
+
+std::string identifierOf(const std::string &path) {
+  std::string stem = path.substr(path.find_last_of('/') + 1);
+  stem = stem.substr(0, stem.find('.'));
+  std::string name;
+  for (char c : stem)
+    name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())))
+    name = "shaders" + name;
+  return isReserved(name) ? name + "_shaders" : name;
+}
+
+} // namespace rtsl::cpp

@@ -1,0 +1,274 @@
+#include "codegen/cpp/Effects.h"
+
+#include "codegen/lower/Analysis.h"
+#include "sema/Casting.h"
+
+#include <algorithm>
+
+namespace rtsl::cpp {
+
+using typed::Builtin;
+using typed::ExprKind;
+
+void Effects::add(const Effects &other) {
+  reads.insert(other.reads.begin(), other.reads.end());
+  writes.insert(other.writes.begin(), other.writes.end());
+  random |= other.random;
+  reportsHit |= other.reportsHit;
+  traces |= other.traces;
+  usesRay |= other.usesRay;
+  usesScratch |= other.usesScratch;
+  writesScratch |= other.writesScratch;
+  writesMembers |= other.writesMembers;
+  hasOutput |= other.hasOutput;
+}
+
+static bool intersect(const std::set<const void *> &a, const std::set<const void *> &b) {
+  return std::any_of(a.begin(), a.end(), [&](const void *place) { return b.count(place) != 0; });
+}
+
+bool conflicts(const Effects &first, const Effects &second) {
+  return intersect(first.writes, second.reads) || intersect(first.reads, second.writes) ||
+         intersect(first.writes, second.writes) || (first.random && second.random) ||
+         (first.reportsHit && second.reportsHit) || (first.hasOutput && second.hasOutput);
+}
+
+const void *EffectsOf::place(typed::StateVariable variable) {
+  static const char places[256] = {};
+  return places + static_cast<std::size_t>(variable);
+}
+
+EffectsOf::EffectsOf(const typed::Module &module) : module(module) {
+  // Textures call one another, so what they do is found before any `lookup` is asked about.
+  for (const auto &definition : module.classes)
+    if (definition->root == "rt_Texture")
+      for (const auto &method : definition->functions)
+        if (method->body)
+          lowering::forEachExpr(*method->body, [&](const typed::Expr &expr) {
+            if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
+              texturesDraw |= builtin->builtin == Builtin::Rand;
+            if (auto *call = dynCast<typed::CallExpr>(&expr))
+              texturesDraw |= !call->function->owner && function(*call->function).random;
+          });
+}
+
+const Effects &EffectsOf::function(const typed::Function &function) {
+  if (auto found = known.find(&function); found != known.end())
+    return found->second;
+  known[&function]; // a method through a reference may lead back here
+  Effects effects;
+  auto addBody = [&](const typed::Function &definition) {
+    if (definition.body)
+      effects.add(statement(*definition.body));
+  };
+  addBody(function);
+  if (function.owner && !function.isConstructor)
+    for (const auto &other : module.classes)
+      if (other.get() != function.owner && other->derivesFrom(function.owner))
+        for (const auto &method : other->functions)
+          if (method->name == function.name && lowering::sameParameters(*method, function))
+            addBody(*method);
+  // What is local to the function does not show.
+  std::set<const void *> locals;
+  auto addLocals = [&](const typed::Function &definition) {
+    for (const auto &parameter : definition.parameters)
+      locals.insert(parameter.get());
+    for (const auto &local : definition.locals)
+      locals.insert(local.get());
+  };
+  addLocals(function);
+  for (const auto &other : module.classes)
+    for (const auto &method : other->functions)
+      if (method->name == function.name)
+        addLocals(*method);
+  for (const void *local : locals) {
+    effects.reads.erase(local);
+    effects.writes.erase(local);
+  }
+  return known[&function] = effects;
+}
+
+/// What a place is, or is a part of.
+static const typed::Expr *rootOf(const typed::Expr &place) {
+  const typed::Expr *root = &place;
+  for (;;) {
+    if (auto *field = dynCast<typed::FieldExpr>(root))
+      root = field->base.get();
+    else if (auto *swizzle = dynCast<typed::SwizzleExpr>(root))
+      root = swizzle->base.get();
+    else if (auto *index = dynCast<typed::IndexExpr>(root))
+      root = index->base.get();
+    else
+      return root;
+  }
+}
+
+template <typename Tree>
+void EffectsOf::collectAll(const Tree &tree, Effects &effects) {
+  std::set<const typed::Expr *> onlyWritten; // outer expressions come first
+  lowering::forEachExpr(tree, [&](const typed::Expr &inner) {
+    if (auto *assign = dynCast<typed::AssignExpr>(&inner); assign && !assign->compound)
+      onlyWritten.insert(rootOf(*assign->target));
+    if (!onlyWritten.count(&inner))
+      collect(inner, effects);
+  });
+}
+
+Effects EffectsOf::expression(const typed::Expr &expr) {
+  Effects effects;
+  collectAll(expr, effects);
+  return effects;
+}
+
+Effects EffectsOf::statement(const typed::Stmt &stmt) {
+  Effects effects;
+  collectAll(stmt, effects);
+  std::vector<const typed::Stmt *> pending = {&stmt};
+  while (!pending.empty()) {
+    const typed::Stmt *at = pending.back();
+    pending.pop_back();
+    auto push = [&](const typed::StmtPtr &inner) {
+      if (inner)
+        pending.push_back(inner.get());
+    };
+    if (auto *compound = dynCast<typed::CompoundStmt>(at))
+      for (const auto &inner : compound->body)
+        push(inner);
+    else if (auto *branch = dynCast<typed::IfStmt>(at))
+      push(branch->thenStmt), push(branch->elseStmt);
+    else if (auto *loop = dynCast<typed::ForStmt>(at))
+      push(loop->init), push(loop->body);
+    else if (auto *loop = dynCast<typed::WhileStmt>(at))
+      push(loop->body);
+    else if (auto *loop = dynCast<typed::DoWhileStmt>(at))
+      push(loop->body);
+    else if (auto *choice = dynCast<typed::SwitchStmt>(at))
+      for (const auto &arm : choice->arms)
+        for (const auto &inner : arm.body)
+          push(inner);
+    else if (auto *illuminance = dynCast<typed::IlluminanceStmt>(at)) {
+      effects.usesRay = effects.traces = effects.random = true;
+      for (typed::StateVariable variable : {typed::StateVariable::LightDirection,
+                                            typed::StateVariable::LightDistance,
+                                            typed::StateVariable::LightColor})
+        effects.writes.insert(place(variable));
+      push(illuminance->body);
+    }
+  }
+  return effects;
+}
+
+void EffectsOf::collectWrite(const typed::Expr &target, Effects &effects) {
+  const typed::Expr *root = rootOf(target);
+  if (auto *variable = dynCast<typed::VariableExpr>(root)) {
+    effects.writes.insert(variable->variable);
+  } else if (auto *member = dynCast<typed::MemberExpr>(root)) {
+    effects.writes.insert(member->member);
+    if (member->member->access == ast::Access::Scratch)
+      effects.writesScratch = true;
+    else
+      effects.writesMembers = true;
+    effects.usesScratch |= member->member->access == ast::Access::Scratch;
+  } else if (auto *state = dynCast<typed::StateExpr>(root)) {
+    effects.writes.insert(place(state->variable));
+    effects.usesRay = true;
+  }
+}
+
+void EffectsOf::collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
+                            Effects &effects) {
+  for (std::size_t i = 0; i < args.size(); ++i)
+    if (callee.parameters[i]->direction != ast::Direction::In)
+      collectWrite(*args[i], effects);
+  effects.add(function(callee));
+}
+
+void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
+  switch (expr.kind) {
+  case ExprKind::Variable:
+    effects.reads.insert(cast<typed::VariableExpr>(expr).variable);
+    break;
+  case ExprKind::Member: {
+    const typed::Member &member = *cast<typed::MemberExpr>(expr).member;
+    if (member.isConst)
+      break;
+    effects.reads.insert(&member);
+    effects.usesScratch |= member.access == ast::Access::Scratch;
+    break;
+  }
+  case ExprKind::State:
+    effects.reads.insert(place(cast<typed::StateExpr>(expr).variable));
+    effects.usesRay = true;
+    break;
+  case ExprKind::IncDec:
+    collectWrite(*cast<typed::IncDecExpr>(expr).target, effects);
+    break;
+  case ExprKind::Assign:
+    collectWrite(*cast<typed::AssignExpr>(expr).target, effects);
+    break;
+  case ExprKind::Call: {
+    const auto &call = cast<typed::CallExpr>(expr);
+    collectCall(*call.function, call.args, effects);
+    break;
+  }
+  case ExprKind::MethodCall: {
+    const auto &call = cast<typed::MethodCallExpr>(expr);
+    effects.usesRay = true;
+    if (call.function) {
+      collectCall(*call.function, call.args, effects);
+    } else { // `lookup` sees the state, and leaves what it finds there
+      effects.random |= texturesDraw;
+      effects.writes.insert(place(typed::StateVariable::TextureColor));
+      effects.writes.insert(place(typed::StateVariable::FloatTextureValue));
+    }
+    break;
+  }
+  case ExprKind::Builtin: {
+    const auto &builtin = cast<typed::BuiltinExpr>(expr);
+    switch (builtin.builtin) {
+    case Builtin::Rand:
+      effects.usesRay = effects.random = true;
+      break;
+    case Builtin::Trace:
+    case Builtin::TracePayload:
+      effects.usesRay = effects.random = effects.traces = true;
+      break;
+    case Builtin::Hit:
+      effects.usesRay = effects.reportsHit = true;
+      effects.writes.insert(place(typed::StateVariable::HitDistance));
+      break;
+    case Builtin::Ambient:
+      effects.usesRay = true;
+      break;
+    case Builtin::IgnoreIntersection:
+    case Builtin::TerminateRay:
+    case Builtin::VisitChild:
+      effects.usesRay = effects.hasOutput = true;
+      break;
+    case Builtin::Print:
+      effects.hasOutput = true;
+      break;
+    case Builtin::Modf:
+    case Builtin::Frexp:
+      collectWrite(*builtin.args[1], effects);
+      break;
+    case Builtin::UaddCarry:
+    case Builtin::UsubBorrow:
+      collectWrite(*builtin.args[2], effects);
+      break;
+    case Builtin::UmulExtended:
+    case Builtin::ImulExtended:
+      collectWrite(*builtin.args[2], effects);
+      collectWrite(*builtin.args[3], effects);
+      break;
+    default:
+      break;
+    }
+    break;
+  }
+  default:
+    break;
+  }
+}
+
+} // namespace rtsl::cpp

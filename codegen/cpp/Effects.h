@@ -1,0 +1,63 @@
+//===- Effects.h - what evaluation reads and writes -----------------------===//
+//
+// RTSL evaluates from left to right. C++ leaves the order of most operands open, so the printer
+// asks which operands could notice; the same facts say which functions need the ray's state, which
+// methods are const, and what the reflection tells of a method.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "sema/TypedAst.h"
+
+#include <map>
+#include <set>
+
+namespace rtsl::cpp {
+
+/// Places, each a variable, a member or a state variable; `random` is the sequence of random
+/// numbers, `nearest` the hit so far.
+struct Effects {
+  std::set<const void *> reads, writes;
+  bool random = false;    // draws random numbers
+  bool reportsHit = false;
+  bool traces = false;    // trace or illuminance
+  bool usesRay = false;   // needs the state for anything: state variables, other objects, rays
+  bool usesScratch = false;
+  bool writesScratch = false;
+  bool writesMembers = false;
+  bool hasOutput = false; // does something that cannot be named, such as printing
+
+  void add(const Effects &other);
+  bool isPure() const { return writes.empty() && !random && !reportsHit && !traces && !hasOutput; }
+};
+
+/// Would it show if `second` were evaluated before `first`?
+bool conflicts(const Effects &first, const Effects &second);
+
+class EffectsOf {
+public:
+  explicit EffectsOf(const typed::Module &module);
+
+  /// What a call does beside reading its arguments and writing its results: on members, the state
+  /// and random numbers. Of a method that others override, what any of them does.
+  const Effects &function(const typed::Function &function);
+  Effects expression(const typed::Expr &expr);
+  /// All that the statement does, without the variables that it declares.
+  Effects statement(const typed::Stmt &stmt);
+
+  /// The address that stands for a state variable in `reads` and `writes`.
+  static const void *place(typed::StateVariable variable);
+
+private:
+  template <typename Tree>
+  void collectAll(const Tree &tree, Effects &effects);
+  void collect(const typed::Expr &expr, Effects &effects);
+  void collectWrite(const typed::Expr &place, Effects &effects);
+  void collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args, Effects &effects);
+
+  const typed::Module &module;
+  std::map<const typed::Function *, Effects> known;
+  bool texturesDraw = false; // some texture's `lookup` draws random numbers
+};
+
+} // namespace rtsl::cpp

@@ -1,0 +1,31 @@
+//===- EmitCpp.h - a checked module as C++ --------------------------------===//
+//
+// Prints RTSL as one file of C++17 on GLM and rtsl/shader.h. It is printed from the typed tree,
+// which still has the author's loops, expressions and names; docs/cpp-output.md says why, and how
+// the output keeps the bits of the compiler's own machine code.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "frontend/Diagnostics.h"
+#include "sema/TypedAst.h"
+
+#include <optional>
+#include <string>
+
+namespace rtsl::cpp {
+
+struct Options {
+  std::string name = "shaders";      // of the namespace, and of the exported `<name>_shaders`
+  std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
+  bool lineDirectives = false;       // #line before what stands in the author's files
+};
+
+/// The text, formatted; nothing if something cannot be printed, which is reported.
+std::optional<std::string> print(const typed::Module &module, const Options &options,
+                                 Diagnostics &diagnostics);
+
+/// An identifier made of a file's name: "my-glass.cpp" gives "my_glass".
+std::string identifierOf(const std::string &path);
+
+} // namespace rtsl::cpp

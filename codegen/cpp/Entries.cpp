@@ -1,0 +1,322 @@
+//===- Entries.cpp - how the runtime and references reach the classes -----===//
+#include "codegen/cpp/Printer.h"
+
+#include "codegen/lower/Analysis.h"
+#include "codegen/link/Members.h"
+#include "runtime/device/Abi.h"
+#include "sema/Casting.h"
+
+#include <fmt/format.h>
+
+namespace rtsl::cpp {
+
+void ModulePrinter::useThroughReference(const std::string &className, const std::string &method,
+                                        const typed::Function *function) {
+  std::vector<ThroughReference> &methods = referenced[className];
+  for (const ThroughReference &known : methods)
+    if (known.method == method && known.function == function)
+      return;
+  methods.push_back({method, function});
+}
+
+std::vector<const typed::Class *> ModulePrinter::classesBelow(const std::string &className) const {
+  std::vector<const typed::Class *> classes;
+  for (const auto &definition : module.classes)
+    for (const typed::Class *at = definition.get(); at; at = at->base)
+      if (at->name == className || (!at->base && at->root == className)) {
+        classes.push_back(definition.get());
+        break;
+      }
+  return classes;
+}
+
+const typed::Function *ModulePrinter::findMethod(const typed::Class &definition, const typed::Function &like) const {
+  for (const typed::Class *at = &definition; at; at = at->base)
+    for (const auto &function : at->functions)
+      if (function->name == like.name && lowering::sameParameters(*function, like))
+        return function.get();
+  return nullptr;
+}
+
+// A switch over the classes, or a plain call if there is one. `call` gives "" for a class that has
+// no such method.
+std::string ModulePrinter::dispatch(const std::vector<const typed::Class *> &classes,
+                                    const std::function<std::string(const typed::Class &)> &call) {
+  std::string arms;
+  std::string only;
+  for (const typed::Class *definition : classes) {
+    const std::string text = call(*definition);
+    if (text.empty())
+      continue;
+    only = text;
+    arms += "case Id::" + names.of(definition) + ":\n" + text + ";\n";
+    if (text.compare(0, 6, "return") != 0)
+      arms += "break;\n";
+  }
+  if (arms.empty())
+    return {};
+  if (classes.size() == 1)
+    return only + ";\n";
+  return "switch (static_cast<Id>(rtsl::classOf(rt, object))) {\n" + arms + "default:\nbreak;\n}\n";
+}
+
+//===----------------------------------------------------------------------===//
+// References
+//===----------------------------------------------------------------------===//
+
+static std::string parameterList(ModulePrinter &printer, const typed::Function &function) {
+  std::vector<std::string> parameters = {"State &rt"};
+  for (const auto &parameter : function.parameters) {
+    std::string text = printer.type(parameter->type);
+    text += parameter->direction == ast::Direction::In ? " " : " &";
+    const std::string &name = printer.names.of(parameter.get());
+    parameters.push_back(text + (name.empty() ? fmt::format("unnamed{}", parameters.size()) : name));
+  }
+  return join(parameters, ", ");
+}
+
+std::string ModulePrinter::references() {
+  std::string text;
+  std::set<std::string> declared; // structs that signatures mention
+  for (const auto &structure : module.structs)
+    for (const auto &[className, methods] : referenced)
+      for (const ThroughReference &through : methods)
+        if (through.function && declared.insert(structure->name).second)
+          text += "struct " + names.of(structure.get()) + ";\n";
+  for (const auto &[className, methods] : referenced) {
+    text += "\n/// Any `" + className + "` of the scene.\nstruct " + names.reference(className) +
+            " : rtsl::Reference {\nusing Reference::Reference;\nstatic constexpr const char *className = \"" +
+            className + "\";\n";
+    for (const ThroughReference &through : methods) {
+      if (through.function)
+        text += type(through.function->returnType) + " " + names.of(through.function) + "(" +
+                parameterList(*this, *through.function) + ") const;\n";
+      else
+        text += std::string(through.method == "lookup" ? "Color" : "float") + " " + through.method +
+                "(State &rt) const;\n";
+    }
+    text += "};\n";
+  }
+  return text;
+}
+
+std::string ModulePrinter::referenceMethods() {
+  std::string text;
+  for (const auto &[className, methods] : referenced) {
+    const std::vector<const typed::Class *> classes = classesBelow(className);
+    for (const ThroughReference &through : methods) {
+      if (!through.function) {
+        const bool isColor = through.method == "lookup";
+        const std::string state = isColor ? "rt.TextureColor" : "rt.FloatTextureValue";
+        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n{} = {};\n", isColor ? "Color" : "float",
+                            names.reference(className), through.method, state,
+                            isColor ? "Color(0.0f)" : "0.0f");
+        text += dispatch(classes, [&](const typed::Class &definition) -> std::string {
+          const typed::Function *lookup = definition.findMethod("lookup");
+          if (!lookup)
+            return {};
+          return "rtsl::object<" + names.of(&definition) + ">(rt, object)." + names.of(lookup) + "(rt)";
+        });
+        text += "return " + state + ";\n}\n";
+        continue;
+      }
+      const typed::Function &function = *through.function;
+      const bool isVoid = function.returnType->is(TypeKind::Void);
+      text += fmt::format("\ninline {} {}::{}({}) const {{\n", type(function.returnType), names.reference(className),
+                          names.of(&function), parameterList(*this, function));
+      const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
+        const typed::Function *method = findMethod(definition, function);
+        if (!method)
+          return {};
+        std::vector<std::string> args;
+        if (takesState(*method))
+          args.push_back("rt");
+        if (takesScratch(*method)) // what the hit so far has stored
+          args.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+        std::size_t unnamed = 1;
+        for (const auto &parameter : function.parameters) {
+          const std::string &name = names.of(parameter.get());
+          args.push_back(name.empty() ? fmt::format("unnamed{}", unnamed) : name);
+          ++unnamed;
+        }
+        return std::string(isVoid ? "" : "return ") + "rtsl::object<" + names.of(&definition) + ">(rt, object)." +
+               names.of(method) + "(" + join(args, ", ") + ")";
+      });
+      text += body;
+      if (!isVoid && (body.compare(0, 6, "return") != 0))
+        text += "return {};\n";
+      text += "}\n";
+    }
+  }
+  return text;
+}
+
+//===----------------------------------------------------------------------===//
+// Slots
+//===----------------------------------------------------------------------===//
+
+namespace {
+struct Slot {
+  const char *base;
+  const char *method;
+};
+constexpr Slot allSlots[] = {
+#define RTSL_SLOT(base, method) {#base, #method},
+#include "runtime/device/Slots.def"
+};
+} // namespace
+
+static const typed::Function *slotMethod(const typed::Class &definition, const char *name) {
+  for (const typed::Class *at = &definition; at; at = at->base)
+    for (const auto &function : at->functions)
+      if (function->name == name && function->isStateMethod && function->parameters.empty())
+        return function.get();
+  return nullptr;
+}
+
+std::string ModulePrinter::slots() {
+  std::string text = "\n//===----------------------------------------------------------------------===//\n"
+                     "// What the runtime asks for\n"
+                     "//===----------------------------------------------------------------------===//\n"
+                     "\nnamespace slots {\n";
+  for (const Slot &slot : allSlots) {
+    const std::vector<const typed::Class *> classes = classesBelow(slot.base);
+    const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
+      const typed::Function *method = slotMethod(definition, slot.method);
+      if (!method)
+        return {};
+      const std::string object = "rtsl::object<" + names.of(&definition) + ">(rt, object)";
+      if (!takesScratch(*method))
+        return object + "." + names.of(method) + "(rt)";
+      if (method->name == "intersect")
+        return "rtsl::intersect(rt, " + object + ")";
+      return object + "." + names.of(method) + "(rt, rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt))";
+    });
+    if (!body.empty())
+      text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n"
+                          "State &rt = rtsl::stateOf<{}>(ray);\n{}}}\n",
+                          slot.method, options.colorComponents, body);
+  }
+  return text + "\n} // namespace slots\n";
+}
+
+//===----------------------------------------------------------------------===//
+// Description
+//===----------------------------------------------------------------------===//
+
+std::string ModulePrinter::needs(const Effects &facts) const {
+  using typed::StateVariable;
+  std::vector<std::string> words;
+  auto ask = [&](const char *word, std::initializer_list<StateVariable> variables) {
+    for (StateVariable variable : variables)
+      if (facts.reads.count(EffectsOf::place(variable))) {
+        words.emplace_back(word);
+        return;
+      }
+  };
+  ask("RTSL_NEEDS_TEXTURE_COORDINATES", {StateVariable::TextureUV, StateVariable::TextureUVW});
+  ask("RTSL_NEEDS_DERIVATIVES", {StateVariable::dPdu, StateVariable::dPdv, StateVariable::dsdu, StateVariable::dsdv,
+                                 StateVariable::dtdu, StateVariable::dtdv});
+  ask("RTSL_NEEDS_TRANSFORMS", {StateVariable::ObjectToWorld, StateVariable::WorldToObject});
+  ask("RTSL_NEEDS_INVERSE_DIRECTION", {StateVariable::InverseRayDirection});
+  ask("RTSL_NEEDS_SAMPLING", {StateVariable::EmissionColor, StateVariable::BSDFValue, StateVariable::BSDFSeed,
+                              StateVariable::PDF, StateVariable::du, StateVariable::dv});
+  return words.empty() ? "" : join(words, " | ");
+}
+
+/// All structs below a type.
+static void structsOf(const Type *type, std::vector<const typed::Struct *> &found) {
+  if (type->is(TypeKind::Array) || type->is(TypeKind::Buffer))
+    return structsOf(type->element, found);
+  if (!type->is(TypeKind::Struct))
+    return;
+  for (const typed::Field &field : type->structure->fields)
+    structsOf(field.type, found);
+  if (std::find(found.begin(), found.end(), type->structure) == found.end())
+    found.push_back(type->structure);
+}
+
+std::string ModulePrinter::description() {
+  std::string text;
+  std::vector<const typed::Struct *> described;
+  for (const auto &definition : module.classes) {
+    for (const auto &member : definition->members)
+      if (!member->isConst && member->access != ast::Access::Scratch)
+        structsOf(member->type, described);
+    for (const auto &function : definition->functions)
+      if (function->isConstructor)
+        for (const auto &parameter : function->parameters)
+          structsOf(parameter->type, described);
+  }
+  for (const typed::Struct *structure : described) {
+    text += fmt::format("\ninline void describeFields(rtsl::StructDescription<{0}> &fields) {{\nfields.name = \"{1}\";\n",
+                        names.of(structure), structure->name);
+    for (const typed::Field &field : structure->fields)
+      text += fmt::format("fields.add(\"{}\", &{}::{});\n", field.name, names.of(structure), names.of(&field));
+    text += "}\n";
+  }
+
+  text += fmt::format("\nstatic RtslShaders describe() {{\nrtsl::Program<{}> program;\n", options.colorComponents);
+  Effects everything;
+  Effects lights, textures;
+  for (const auto &definition : module.classes)
+    for (const auto &function : definition->functions) {
+      const Effects &inside = effects.function(*function);
+      everything.add(inside);
+      if (definition->root == "rt_Light" && function->name == "illumination")
+        lights.add(inside);
+      if (definition->root == "rt_Texture" && function->name == "lookup")
+        textures.add(inside);
+    }
+  auto complete = [&](Effects facts) {
+    if (facts.traces)
+      facts.add(lights);
+    if (facts.writes.count(EffectsOf::place(typed::StateVariable::TextureColor)))
+      facts.add(textures);
+    return facts;
+  };
+
+  for (const auto &definition : module.classes) {
+    const std::string &name = names.of(definition.get());
+    text += fmt::format("program.add<{0}>(static_cast<std::uint32_t>(Id::{0}), \"{1}\", \"{2}\", \"{3}\")", name,
+                        definition->name, definition->base ? definition->base->name : definition->root,
+                        definition->root);
+    for (const typed::Member *member : allMembers(*definition)) {
+      if (member->isConst || member->access == ast::Access::Scratch)
+        continue;
+      text += fmt::format(".member(\"{}\", &{}::{}, rtsl::Access::{}{})", member->name, name, names.of(member),
+                          member->access == ast::Access::Public ? "Public" : "Private",
+                          member->init ? ", rtsl::Default::Given" : "");
+    }
+    if (const typed::Function *constructor = findConstructor(*definition)) {
+      std::vector<std::string> parameters;
+      for (std::size_t i = 0; i < constructor->parameters.size(); ++i) {
+        const std::string &parameter = constructor->parameters[i]->name;
+        parameters.push_back("\"" + (parameter.empty() ? "unnamed" + std::to_string(i) : parameter) + "\"");
+      }
+      text += fmt::format(".constructor<&{}::{}>({{{}}})", names.of(constructor->owner), names.of(constructor),
+                          join(parameters, ", "));
+    }
+    std::set<std::string> methods;
+    for (const typed::Class *at = definition.get(); at; at = at->base)
+      for (const auto &function : at->functions)
+        methods.insert("\"" + function->name + "\"");
+    if (!methods.empty())
+      text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
+    if (const typed::Function *shade = slotMethod(*definition, "shade"))
+      if (const std::string words = needs(complete(effects.function(*shade))); !words.empty())
+        text += ".needs(" + words + ")";
+    text += ";\n";
+  }
+  if (const std::string words = needs(everything); !words.empty())
+    text += "program.needs(" + words + ");\n";
+  for (const Slot &slot : allSlots)
+    for (const typed::Class *definition : classesBelow(slot.base))
+      if (slotMethod(*definition, slot.method)) {
+        text += fmt::format("program.slots().{}_{} = &slots::{};\n", slot.base, slot.method, slot.method);
+        break;
+      }
+  return text + "return program.finish();\n}\n";
+}
+
+} // namespace rtsl::cpp

@@ -1,0 +1,49 @@
+//===- Names.h - what the author's names are in C++ -----------------------===//
+//
+// A name stays as it is unless C++ gives it another meaning: a keyword, a macro, what generated
+// code itself uses, or another thing of the author's that C++ would confuse with it. Then it gets
+// an underscore behind it, and a number behind that should the result be taken.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "sema/TypedAst.h"
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace rtsl::cpp {
+
+class Names {
+public:
+  explicit Names(const typed::Module &module);
+
+  const std::string &of(const void *entity) const; // Variable, Member, Function, Struct, Class, Field
+  /// The type of references to a class ("Checker", "rt_Texture"): `CheckerRef`, `TextureRef`.
+  std::string reference(const std::string &className) const;
+
+  /// What was renamed: the author's name, `Class.member` or `function.variable` where it is not at
+  /// file level, and the name in C++. In the order of the source.
+  const std::vector<std::pair<std::string, std::string>> &renamed() const { return changes; }
+
+private:
+  void nameFileLevel(const typed::Module &module);
+  void nameClass(const typed::Class &definition);
+  void nameLocals(const typed::Function &function);
+  void give(const void *entity, const std::string &name, const std::string &shown,
+            const std::set<std::string> &taken, const std::set<std::string> &all);
+
+  std::map<const void *, std::string> names;
+  std::map<std::string, std::string> references;
+  std::vector<std::pair<std::string, std::string>> changes;
+  std::set<std::string> fileLevel; // names in C++ of what stands at file level
+  std::set<std::string> typeNames;
+  std::set<std::string> memberNames; // of all classes, methods too
+};
+
+/// Is the word C++'s own, a macro's, or one that generated code uses?
+bool isReserved(const std::string &word);
+
+} // namespace rtsl::cpp

@@ -1,0 +1,227 @@
+//===- Printer.h - the two workers of the C++ printer ---------------------===//
+//
+// `ModulePrinter` knows types, names, signatures and the order of a file; `FunctionPrinter` prints
+// one function. The latter's member functions are in a file for each concern: Expressions,
+// Operators, Builtins, Places, Calls and Statements.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/cpp/Effects.h"
+#include "codegen/cpp/EmitCpp.h"
+#include "codegen/cpp/Names.h"
+#include "codegen/cpp/SourceNotes.h"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace rtsl::cpp {
+
+/// How tightly an expression's outermost operator binds, in the order of C++.
+enum class Binding : std::uint8_t {
+  Comma,
+  Assignment, // and ?:
+  Or,
+  And,
+  BitOr,
+  BitXor,
+  BitAnd,
+  Equality,
+  Relation,
+  Shift,
+  Sum,
+  Product,
+  Unary,
+  Primary, // names, calls, members, indices
+};
+
+/// An expression in C++.
+struct Code {
+  std::string text;
+  Binding binding = Binding::Primary;
+};
+
+/// Values that an int can have, ends included.
+struct Interval {
+  std::int64_t low = 0, high = 0;
+};
+
+class ModulePrinter {
+public:
+  ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics);
+  std::string run();
+
+  /// `inMemory`: as it lies in a record, a struct or an array, where a bool has 32 bits.
+  std::string type(const Type *type, bool inMemory = false);
+  std::string memoryType(const Type *type) { return this->type(type, true); }
+  /// `{}`, or the zero of a number: what a variable without an initialiser holds.
+  std::string zero(const Type *type);
+
+  /// Does the function ask for the ray's state, or for its class's scratch members?
+  bool takesState(const typed::Function &function);
+  bool takesScratch(const typed::Function &function);
+  /// `in` parameters that C++ takes by reference to const.
+  bool isByReference(const typed::Variable &parameter, const typed::Function &function);
+  /// A method that is called through references of a class; declares it there.
+  void useThroughReference(const std::string &className, const std::string &method,
+                           const typed::Function *function);
+  void unsupported(SourceRange range, const std::string &what);
+
+  std::string commentText(const std::string &comment) const;
+  std::string lineDirective(SourceRange range) const;
+
+  const typed::Module &module;
+  const Options &options;
+  Names names;
+  EffectsOf effects;
+  SourceNotes notes;
+  bool failed = false;
+  std::set<const Type *> comparedStructs; // that need an operator ==
+
+private:
+  // Declarations.cpp
+  std::string structure(const typed::Struct &structure);
+  std::string constant(const typed::Variable &constant);
+  std::string freeFunctions();
+  std::string signature(const typed::Function &function, bool isMethod);
+  std::string function(const typed::Function &function, bool isMethod);
+  std::string classDefinition(const typed::Class &definition);
+  std::string member(const typed::Member &member);
+  std::string scratchStructure(const typed::Class &definition);
+  bool isOverridden(const typed::Function &function) const;
+  bool overrides(const typed::Function &function) const;
+
+  // Attributes.cpp
+  void placeAttributes();
+  const typed::Class &top(const typed::Class &definition) const;
+  std::vector<const typed::Class *> family(const typed::Class &definition) const;
+  bool hasScratch(const typed::Class &definition);
+
+  // Entries.cpp
+  std::string references();
+  std::string referenceMethods();
+  std::string slots();
+  std::string description();
+  std::string needs(const Effects &reads) const;
+  std::vector<const typed::Class *> classesBelow(const std::string &className) const;
+  std::string dispatch(const std::vector<const typed::Class *> &classes,
+                       const std::function<std::string(const typed::Class &)> &call);
+  const typed::Function *findMethod(const typed::Class &definition, const typed::Function &like) const;
+
+  Diagnostics &diagnostics;
+  struct ThroughReference {
+    std::string method;
+    const typed::Function *function; // null: lookup, lookupFloat
+  };
+  std::map<std::string, std::vector<ThroughReference>> referenced; // by class
+  std::map<std::pair<std::string, const Type *>, unsigned> attributeWords;
+  std::map<const typed::Class *, std::optional<bool>> scratchOfFamily;
+};
+
+class FunctionPrinter {
+public:
+  /// `function` is null for an initialiser outside of functions, of a member of `owner` or at file level.
+  FunctionPrinter(ModulePrinter &module, const typed::Function *function, const typed::Class *owner = nullptr);
+
+  /// The body with its braces.
+  std::string body();
+  /// An initialiser outside of functions.
+  std::string initialiser(const typed::Expr &expr);
+
+private:
+  // Statements.cpp
+  std::string statement(const typed::Stmt &stmt);
+  std::string block(const std::vector<typed::StmtPtr> &statements);
+  /// The statement under an `if` or a loop, with braces where it needs some.
+  std::string nested(const typed::StmtPtr &stmt, bool needsBraces = false);
+  std::string declaration(const typed::DeclarationStmt &stmt, bool inHeader);
+  std::string expressionStatement(const typed::Expr &expr);
+  std::string ifStatement(const typed::IfStmt &stmt);
+  std::string forStatement(const typed::ForStmt &stmt);
+  std::string switchStatement(const typed::SwitchStmt &stmt);
+  std::string illuminance(const typed::IlluminanceStmt &stmt);
+  void noteCounter(const typed::ForStmt &stmt);
+
+  // Expressions.cpp
+  Code expr(const typed::Expr &expr);
+  Code lowered(const typed::Expr &expr);
+  std::string operand(const typed::Expr &expr, Binding atLeast);
+  std::string argument(const typed::Expr &expr) { return operand(expr, Binding::Assignment); }
+  /// Operands in an order that C++ does not promise: what could be noticed goes into variables.
+  std::vector<std::string> operands(const std::vector<const typed::Expr *> &exprs, Binding atLeast);
+  std::vector<std::string> arguments(const std::vector<typed::ExprPtr> &exprs);
+  /// In a place where control may not come, or comes more than once: nothing can be put before it.
+  std::string apart(const typed::Expr &expr, Binding atLeast);
+  Code literal(const Type *type, const typed::Constant &constant, const std::string &spelling);
+  /// The constant (Variable or Member) that the author named where the tree has its value; null: none.
+  const void *namedConstant(const typed::LiteralExpr &expr) const;
+  Code scalarLiteral(const Type *type, typed::Constant::Scalar value, const std::string &spelling);
+  Code convert(const typed::ConvertExpr &expr);
+  Code construct(const typed::ConstructExpr &expr);
+  Code swizzle(const typed::SwizzleExpr &expr);
+  Code conditional(const typed::ConditionalExpr &expr);
+  std::string hoist(const Type *type, const std::string &hint, const std::string &value);
+  std::string temporaryName(const std::string &hint);
+  std::string braced(const Type *type, const std::string &text);
+
+  // Operators.cpp
+  Code unary(const typed::UnaryExpr &expr);
+  Code binary(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
+  /// The operator between texts; null: there is none in C++ that means the same.
+  const char *plainOperator(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
+  /// Operands of an operation that takes any number of them.
+  void appendOperands(ast::BinaryOp op, const typed::Expr &expr, std::vector<const typed::Expr *> &into);
+  std::string functionFor(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
+  Code assign(const typed::AssignExpr &expr, bool resultIsUsed);
+  Code incDec(const typed::IncDecExpr &expr, bool resultIsUsed);
+  std::optional<Interval> range(const typed::Expr &expr);
+  std::optional<Interval> range(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
+  void compareStructs(const Type *type);
+
+  // Places.cpp
+  Code place(const typed::Expr &expr, bool storeIndices = false);
+  std::string index(const typed::IndexExpr &expr, bool storeIndices);
+  Code element(const typed::IndexExpr &expr, const std::string &base, bool storeIndices);
+  Code bufferElement(const typed::IndexExpr &expr);
+  Code length(const typed::LengthExpr &expr);
+  /// Can the expression stand in the text more than once, at no cost?
+  bool isSimple(const typed::Expr &expr) const;
+  /// The components of a vector that a place stands for, and the vector; empty: not a part.
+  std::vector<std::uint8_t> components(const typed::Expr &place, const typed::Expr *&vector) const;
+  Effects indexEffects(const typed::Expr &place);
+
+  // Calls.cpp
+  Code call(const typed::CallExpr &expr);
+  Code methodCall(const typed::MethodCallExpr &expr);
+  Code callWith(const std::string &callee, std::vector<std::string> first, const typed::Function &function,
+                const std::vector<typed::ExprPtr> &args, const Type *result);
+  bool canBind(const typed::Expr &place) const;
+
+  // Builtins.cpp
+  Code builtin(const typed::BuiltinExpr &expr);
+  Code withOutputs(const std::string &callee, const typed::BuiltinExpr &expr, std::size_t firstOutput);
+
+  ModulePrinter &module;
+  const typed::Function *function;
+  const typed::Class *owner;
+  std::vector<std::string> *before = nullptr; // statements that go before the one being printed
+  std::set<std::string> usedNames;
+  std::set<const typed::Variable *> readVariables, mentionedVariables, hoistedDeclarations;
+  std::map<const typed::Variable *, Interval> counters;
+
+  friend class ModulePrinter;
+};
+
+/// `text` in parentheses if it binds less tightly than `atLeast`.
+std::string bind(const Code &code, Binding atLeast);
+std::string join(const std::vector<std::string> &parts, const char *between);
+/// `name = value`; `name{...}` where the value begins with the type that stands before the name.
+std::string declarator(const std::string &type, const std::string &name, const std::string &value);
+/// The shortest text of a float that reads back as it, with the suffix of C++.
+std::string floatText(float value);
+
+} // namespace rtsl::cpp

@@ -1,0 +1,37 @@
+//===- SourceNotes.h - what only the author's text knows ------------------===//
+//
+// The typed tree has no parentheses, no empty lines and no comments behind a declaration on the same
+// line. Its nodes know where they stand, so the text can be asked.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "frontend/Source.h"
+
+#include <string>
+
+namespace rtsl::cpp {
+
+class SourceNotes {
+public:
+  explicit SourceNotes(const SourceManager &sources) : sources(sources) {}
+
+  /// Do parentheses stand around the text, inside of the range or directly outside?
+  bool inParentheses(SourceRange range) const;
+  /// The text, if it is one identifier; otherwise empty.
+  std::string identifier(SourceRange range) const;
+  /// The comment that ends the line on which the range ends, with its markers; empty: none. Only
+  /// where nothing but punctuation and initialisers stands between.
+  std::string trailingComment(SourceRange range) const;
+  /// Is there an empty line above the text, or above the comment directly above it? Not if it stands on the line of what
+  /// comes before.
+  bool followsEmptyLine(SourceRange range, SourceRange previous) const;
+  /// File and line, for #line.
+  std::string file(SourceRange range) const;
+  unsigned line(SourceRange range) const;
+
+private:
+  const SourceManager &sources;
+};
+
+} // namespace rtsl::cpp

@@ -1,0 +1,16 @@
+//===- Members.h - what an object of a class has --------------------------===//
+#pragma once
+
+#include "sema/TypedAst.h"
+
+#include <vector>
+
+namespace rtsl {
+
+/// The constructor of a class, its own or inherited; null if there is none.
+const typed::Function *findConstructor(const typed::Class &info);
+
+/// All members of a class that its record holds or that `intersect` writes, inherited ones first.
+std::vector<const typed::Member *> allMembers(const typed::Class &info);
+
+} // namespace rtsl

@@ -1,0 +1,305 @@
+//===- Common.h - min, mix, floor and the like ----------------------------===//
+//
+// The rules are those of docs/language.md, chapters 3 and 4.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "rtsl/shader/Types.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace rtsl {
+
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// The 32 bits of a number as those of another type.
+template <typename To, typename From>
+inline To bitsAs(From from) {
+  static_assert(sizeof(To) == 4 && sizeof(From) == 4);
+  To to;
+  std::memcpy(&to, &from, 4);
+  return to;
+}
+
+//===----------------------------------------------------------------------===//
+// Conversions: float to integer truncates and saturates; NaN gives 0
+//===----------------------------------------------------------------------===//
+
+template <typename T>
+inline auto toInt(const T &value) {
+  return each(
+      [](float x) {
+        if (!(x > -2147483648.0f)) // or NaN
+          return x < 0.0f ? std::numeric_limits<int>::min() : 0;
+        return x < 2147483648.0f ? static_cast<int>(x) : std::numeric_limits<int>::max();
+      },
+      value);
+}
+template <typename T>
+inline auto toUint(const T &value) {
+  return each(
+      [](float x) {
+        if (!(x > 0.0f)) // or NaN
+          return 0u;
+        return x < 4294967296.0f ? static_cast<uint>(x) : std::numeric_limits<uint>::max();
+      },
+      value);
+}
+
+//===----------------------------------------------------------------------===//
+// Choosing
+//===----------------------------------------------------------------------===//
+
+/// y < x ? y : x: a NaN in x stays, in y it is passed over.
+template <typename X, typename Y>
+constexpr auto min(const X &a, const Y &b) {
+  return each([](auto x, auto y) { return y < x ? y : x; }, a, b);
+}
+/// x < y ? y : x
+template <typename X, typename Y>
+constexpr auto max(const X &a, const Y &b) {
+  return each([](auto x, auto y) { return x < y ? y : x; }, a, b);
+}
+template <typename X, typename Low, typename High>
+constexpr auto clamp(const X &x, const Low &low, const High &high) {
+  return min(max(x, low), high);
+}
+
+/// x (1 - a) + y a
+template <typename X, typename Y, typename A>
+constexpr auto mix(const X &x, const Y &y, const A &a) {
+  return each([](float p, float q, float t) { return p * (1.0f - t) + q * t; }, x, y, a);
+}
+/// y where `choice` is true, otherwise x.
+template <typename X, typename B>
+constexpr auto mixSelect(const X &x, const X &y, const B &choice) {
+  return each([](auto p, auto q, auto second) { return second ? q : p; }, x, y, choice);
+}
+template <typename Edge, typename X>
+constexpr auto step(const Edge &edge, const X &x) {
+  return each([](float e, float v) { return v < e ? 0.0f : 1.0f; }, edge, x);
+}
+template <typename Edge, typename X>
+constexpr auto smoothstep(const Edge &low, const Edge &high, const X &x) {
+  return each(
+      [](float e0, float e1, float v) {
+        const float t = clamp((v - e0) / (e1 - e0), 0.0f, 1.0f);
+        return (t * t) * (3.0f - 2.0f * t);
+      },
+      low, high, x);
+}
+
+/// Of zero and NaN it is the number itself.
+template <typename T>
+constexpr auto sign(const T &value) {
+  return each(
+      [](auto x) {
+        using S = decltype(x);
+        return S(0) < x ? S(1) : x < S(0) ? S(-1) : x;
+      },
+      value);
+}
+
+/// The least component.
+template <typename T>
+constexpr auto minComponent(const T &v) {
+  auto result = min(part<0>(v), part<1>(v));
+  if constexpr (width<T> > 2)
+    result = min(result, part<2>(v));
+  if constexpr (width<T> > 3)
+    result = min(result, part<3>(v));
+  return result;
+}
+/// The greatest component.
+template <typename T>
+constexpr auto maxComponent(const T &v) {
+  auto result = max(part<0>(v), part<1>(v));
+  if constexpr (width<T> > 2)
+    result = max(result, part<2>(v));
+  if constexpr (width<T> > 3)
+    result = max(result, part<3>(v));
+  return result;
+}
+
+//===----------------------------------------------------------------------===//
+// Comparing
+//===----------------------------------------------------------------------===//
+
+template <typename A, typename B>
+constexpr auto lessThan(const A &a, const B &b) {
+  return each([](auto x, auto y) { return x < y; }, a, b);
+}
+template <typename A, typename B>
+constexpr auto lessThanEqual(const A &a, const B &b) {
+  return each([](auto x, auto y) { return x <= y; }, a, b);
+}
+template <typename A, typename B>
+constexpr auto greaterThan(const A &a, const B &b) {
+  return each([](auto x, auto y) { return x > y; }, a, b);
+}
+template <typename A, typename B>
+constexpr auto greaterThanEqual(const A &a, const B &b) {
+  return each([](auto x, auto y) { return x >= y; }, a, b);
+}
+template <typename A, typename B>
+constexpr auto equal(const A &a, const B &b) {
+  return each([](auto x, auto y) { return x == y; }, a, b);
+}
+template <typename A, typename B>
+constexpr auto notEqual(const A &a, const B &b) {
+  return each([](auto x, auto y) { return x != y; }, a, b);
+}
+template <typename T>
+constexpr auto logicalNot(const T &a) {
+  return each([](bool x) { return !x; }, a);
+}
+template <typename T>
+constexpr bool all(const T &v) {
+  bool result = part<0>(v);
+  if constexpr (width<T> > 1)
+    result = result && part<1>(v);
+  if constexpr (width<T> > 2)
+    result = result && part<2>(v);
+  if constexpr (width<T> > 3)
+    result = result && part<3>(v);
+  return result;
+}
+template <typename T>
+constexpr bool any(const T &v) {
+  return !all(logicalNot(v));
+}
+/// low <= x && x <= high in every component.
+template <typename T, typename Bound>
+constexpr bool inside(const T &x, const Bound &low, const Bound &high) {
+  return all(lessThanEqual(low, x)) && all(lessThanEqual(x, high));
+}
+
+//===----------------------------------------------------------------------===//
+// Parts of a number
+//===----------------------------------------------------------------------===//
+
+template <typename T>
+inline auto abs(const T &value) {
+  return each(
+      [](auto x) {
+        if constexpr (std::is_same_v<decltype(x), float>)
+          return std::fabs(x);
+        else
+          return x < 0 ? static_cast<int>(0u - static_cast<uint>(x)) : x;
+      },
+      value);
+}
+template <typename T>
+inline auto floor(const T &value) {
+  return each([](float x) { return std::floor(x); }, value);
+}
+template <typename T>
+inline auto ceil(const T &value) {
+  return each([](float x) { return std::ceil(x); }, value);
+}
+template <typename T>
+inline auto trunc(const T &value) {
+  return each([](float x) { return std::trunc(x); }, value);
+}
+/// To the nearest, halves to even: adding and taking away 2^23 leaves no room for a fraction.
+template <typename T>
+inline auto roundEven(const T &value) {
+  return each(
+      [](float x) {
+        const float magnitude = std::fabs(x);
+        const float rounded = (magnitude + 8388608.0f) - 8388608.0f;
+        return magnitude < 8388608.0f ? std::copysign(rounded, x) : x;
+      },
+      value);
+}
+template <typename T>
+inline auto round(const T &value) {
+  return roundEven(value);
+}
+template <typename T>
+inline auto fract(const T &value) {
+  return each([](float x) { return x - std::floor(x); }, value);
+}
+template <typename X, typename Y>
+inline auto mod(const X &value, const Y &divisor) {
+  return each([](float x, float y) { return x - y * std::floor(x / y); }, value, divisor);
+}
+/// Both parts have the sign of x; the fraction of an infinity is 0.
+template <typename T>
+inline T modf(const T &value, T &whole) {
+  whole = trunc(value);
+  return each(
+      [](float x, float w) { return std::copysign(x == w ? 0.0f : x - w, x); }, value, whole);
+}
+template <typename T>
+inline auto isnan(const T &value) {
+  return each([](float x) { return x != x; }, value);
+}
+template <typename T>
+inline auto isinf(const T &value) {
+  return each([](float x) { return std::fabs(x) == infinity; }, value);
+}
+template <typename A, typename B, typename C>
+inline auto fma(const A &a, const B &b, const C &c) {
+  return each([](float x, float y, float z) { return std::fma(x, y, z); }, a, b, c);
+}
+
+/// There is one NaN to see.
+template <typename T>
+inline auto floatBitsToInt(const T &value) {
+  return each([](float x) { return x != x ? 0x7fc00000 : bitsAs<int>(x); }, value);
+}
+template <typename T>
+inline auto floatBitsToUint(const T &value) {
+  return each([](float x) { return x != x ? 0x7fc00000u : bitsAs<uint>(x); }, value);
+}
+template <typename T>
+inline auto intBitsToFloat(const T &value) {
+  return each([](int x) { return bitsAs<float>(x); }, value);
+}
+template <typename T>
+inline auto uintBitsToFloat(const T &value) {
+  return each([](uint x) { return bitsAs<float>(x); }, value);
+}
+
+/// x = significand * 2^exponent with the significand in [0.5, 1). Zero, infinities and NaN have
+/// exponent 0.
+inline float frexp(float x, int &exponent) {
+  exponent = 0;
+  const float magnitude = std::fabs(x);
+  if (!(magnitude > 0.0f && magnitude < infinity))
+    return x;
+  const bool isSmall = magnitude < 0x1p-126f; // a subnormal becomes normal by an exact factor
+  const uint bits = bitsAs<uint>(isSmall ? x * 0x1p24f : x);
+  exponent = static_cast<int>(bits >> 23 & 0xffu) - 126 - (isSmall ? 24 : 0);
+  return bitsAs<float>((bits & 0x807fffffu) | 0x3f000000u);
+}
+template <int L>
+inline glm::vec<L, float> frexp(const glm::vec<L, float> &x, glm::vec<L, int> &exponent) {
+  glm::vec<L, float> significand;
+  for (int i = 0; i < L; ++i)
+    significand[i] = frexp(x[i], exponent[i]);
+  return significand;
+}
+
+/// x * 2^exponent, rounded once: factors above 1 are exact, and where a step below 2^-126 rounds,
+/// what follows makes the result zero.
+template <typename T, typename E>
+inline auto ldexp(const T &value, const E &exponents) {
+  return each(
+      [](float x, int exponent) {
+        int rest = clamp(exponent, -280, 280);
+        for (int i = 0; i < 3; ++i) {
+          const int step = i == 2 ? rest : rest < -126 ? -102 : min(rest, 127);
+          x = x * bitsAs<float>(static_cast<uint>(step + 127) << 23);
+          rest -= step;
+        }
+        return x;
+      },
+      value, exponents);
+}
+
+} // namespace rtsl

@@ -1,0 +1,340 @@
+//===- Describe.h - generated classes as the runtime sees them ------------===//
+//
+// The runtime asks a program for its classes, their members and constructors, and for a function a
+// method slot (runtime/Program.h). Generated code answers with this: it names classes and members,
+// and offsets and sizes are the C++ compiler's own.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "rtsl/shader/State.h"
+#include "runtime/Program.h"
+
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+/// What a generated file exports. C sees a pointer to it (rtsl/rtsl.h), C++ the program.
+struct RtslShaders {
+  std::shared_ptr<const rtsl::runtime::Program> program;
+};
+
+extern "C" void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
+                                  float *color);
+
+namespace rtsl {
+
+inline const std::shared_ptr<const runtime::Program> &program(const RtslShaders *shaders) {
+  return shaders->program;
+}
+
+//===----------------------------------------------------------------------===//
+// Types
+//===----------------------------------------------------------------------===//
+
+/// The name of a struct of the shader's and its fields; generated code overloads `describeFields`
+/// for each struct that a scene can set.
+template <typename T>
+struct StructDescription {
+  std::string name;
+  std::vector<runtime::MemberInfo> fields;
+
+  template <typename F>
+  void add(const char *fieldName, F T::*field);
+};
+
+namespace detail {
+
+/// Bytes from the start of an object to a member.
+template <typename Class, typename Owner, typename T>
+inline std::uint32_t offsetOf(T Owner::*member) {
+  const Class object{};
+  return static_cast<std::uint32_t>(reinterpret_cast<const char *>(&(object.*member)) -
+                                    reinterpret_cast<const char *>(&object));
+}
+
+using Kind = runtime::ValueType::Kind;
+
+inline void describe(runtime::ValueType &type, const float *) { type.kind = Kind::Float, type.name = "float"; }
+inline void describe(runtime::ValueType &type, const int *) { type.kind = Kind::Int, type.name = "int"; }
+inline void describe(runtime::ValueType &type, const uint *) { type.kind = Kind::UInt, type.name = "uint"; }
+inline void describe(runtime::ValueType &type, const Bool *) { type.kind = Kind::Bool, type.name = "bool"; }
+
+template <int L, typename T>
+inline void describe(runtime::ValueType &type, const glm::vec<L, T, glm::defaultp> *) {
+  describe(type, static_cast<const T *>(nullptr));
+  type.rows = L;
+  const char *prefix = type.kind == Kind::Float  ? "vec"
+                       : type.kind == Kind::Int  ? "ivec"
+                       : type.kind == Kind::UInt ? "uvec"
+                                                 : "bvec";
+  type.name = prefix + std::to_string(L);
+}
+template <int C, int R>
+inline void describe(runtime::ValueType &type, const glm::mat<C, R, float, glm::defaultp> *) {
+  type.kind = Kind::Float;
+  type.columns = C;
+  type.rows = R;
+  type.name = "mat" + std::to_string(C) + (C == R ? "" : "x" + std::to_string(R));
+}
+template <int N>
+inline void describe(runtime::ValueType &type, const Color<N> *) {
+  type.kind = Kind::Color;
+  type.name = "color";
+}
+template <typename T, uint N>
+inline void describe(runtime::ValueType &type, const array<T, N> *);
+template <typename T, int Rank>
+inline void describe(runtime::ValueType &type, const Buffer<T, Rank> *);
+
+/// A reference, or a struct of the shader's.
+template <typename T>
+inline auto describe(runtime::ValueType &type, const T *)
+    -> std::enable_if_t<std::is_class_v<T> && std::is_base_of_v<Reference, T>> {
+  type.kind = Kind::Reference;
+  type.className = type.name = T::className;
+}
+template <typename T>
+inline auto describe(runtime::ValueType &type, const T *)
+    -> std::enable_if_t<std::is_class_v<T> && !std::is_base_of_v<Reference, T>> {
+  StructDescription<T> description;
+  describeFields(description);
+  type.kind = Kind::Struct;
+  type.name = description.name;
+  type.fields = std::move(description.fields);
+}
+
+template <typename T, uint N>
+inline void describe(runtime::ValueType &type, const array<T, N> *) {
+  describe(type, static_cast<const T *>(nullptr));
+  type.arraySizes.insert(type.arraySizes.begin(), N);
+  const std::size_t bracket = std::min(type.name.find('['), type.name.size());
+  type.name.insert(bracket, "[" + std::to_string(N) + "]");
+}
+template <typename T, int Rank>
+inline void describe(runtime::ValueType &type, const Buffer<T, Rank> *) {
+  describe(type, static_cast<const T *>(nullptr));
+  type.elementSize = sizeof(T);
+  type.bufferRank = Rank;
+  for (int i = 0; i < Rank; ++i)
+    type.name += "[]";
+}
+
+template <typename T>
+inline runtime::ValueType valueType() {
+  runtime::ValueType type;
+  describe(type, static_cast<const T *>(nullptr));
+  type.size = sizeof(T);
+  return type;
+}
+
+} // namespace detail
+
+template <typename T>
+template <typename F>
+void StructDescription<T>::add(const char *fieldName, F T::*field) {
+  runtime::MemberInfo info;
+  info.name = fieldName;
+  info.type = detail::valueType<F>();
+  info.offset = detail::offsetOf<T>(field);
+  fields.push_back(std::move(info));
+}
+
+//===----------------------------------------------------------------------===//
+// Constructors: the runtime passes arguments packed, as they lie in memory
+//===----------------------------------------------------------------------===//
+
+namespace detail {
+
+/// How a parameter lies in memory.
+template <typename T>
+struct Stored {
+  using type = T;
+};
+template <>
+struct Stored<bool> {
+  using type = Bool;
+};
+template <int L>
+struct Stored<glm::vec<L, bool, glm::defaultp>> {
+  using type = glm::vec<L, Bool, glm::defaultp>;
+};
+template <typename T>
+using StoredAs = typename Stored<std::remove_cv_t<std::remove_reference_t<T>>>::type;
+
+template <typename T>
+inline StoredAs<T> take(const unsigned char *&from) {
+  StoredAs<T> value;
+  std::memcpy(&value, from, sizeof value);
+  from += sizeof value;
+  return value;
+}
+
+template <typename Class>
+inline Class &objectAt(RtslState *state, RtslRef reference) {
+  return *reinterpret_cast<Class *>(state->launch->records + reference + objectOffset<Class>);
+}
+
+template <typename Signature>
+struct Constructor;
+
+template <typename Owner, typename... Argument>
+struct Constructor<void (Owner::*)(Argument...)> {
+  static std::vector<runtime::ValueType> parameters() { return {valueType<StoredAs<Argument>>()...}; }
+
+  template <typename Class, auto Function>
+  static void construct(RtslState *state, RtslRef reference, const void *packed) {
+    auto next = static_cast<const unsigned char *>(packed);
+    const std::tuple<StoredAs<Argument>...> arguments{take<Argument>(next)...};
+    std::apply([&](const auto &...values) { (objectAt<Class>(state, reference).*Function)(values...); },
+               arguments);
+    static_cast<void>(next);
+  }
+};
+
+/// One that asks for the state, to call methods of other objects.
+template <typename Owner, int N, typename... Argument>
+struct Constructor<void (Owner::*)(State<N> &, Argument...)> {
+  static std::vector<runtime::ValueType> parameters() { return {valueType<StoredAs<Argument>>()...}; }
+
+  template <typename Class, auto Function>
+  static void construct(RtslState *state, RtslRef reference, const void *packed) {
+    auto next = static_cast<const unsigned char *>(packed);
+    const std::tuple<StoredAs<Argument>...> arguments{take<Argument>(next)...};
+    std::apply(
+        [&](const auto &...values) {
+          (objectAt<Class>(state, reference).*Function)(stateOf<N>(state), values...);
+        },
+        arguments);
+    static_cast<void>(next);
+  }
+};
+
+/// Member defaults.
+template <typename Class>
+inline void initialize(RtslState *state, RtslRef reference) {
+  new (state->launch->records + reference + objectOffset<Class>) Class();
+}
+
+} // namespace detail
+
+//===----------------------------------------------------------------------===//
+// Classes and programs
+//===----------------------------------------------------------------------===//
+
+enum class Access { Public, Private };
+enum class Default { None, Given };
+
+template <typename Class>
+class ClassDescription {
+public:
+  explicit ClassDescription(runtime::ClassInfo &info) : info(info) {
+    static_assert(alignof(Class) <= 16, "records are aligned to 16 bytes");
+    info.recordSize =
+        static_cast<std::uint32_t>((objectOffset<Class> + sizeof(Class) + 3) / 4 * 4);
+    info.initialize = &detail::initialize<Class>;
+  }
+
+  template <typename Owner, typename T>
+  ClassDescription &member(const char *name, T Owner::*member, Access access,
+                           Default given = Default::None) {
+    runtime::MemberInfo described;
+    described.name = name;
+    described.type = detail::valueType<T>();
+    described.offset = static_cast<std::uint32_t>(objectOffset<Class>) +
+                       detail::offsetOf<Class>(member);
+    described.isPublic = access == Access::Public;
+    described.hasDefault = given == Default::Given;
+    info.members.push_back(std::move(described));
+    return *this;
+  }
+
+  template <auto Function>
+  ClassDescription &constructor(std::initializer_list<const char *> names) {
+    using Shape = detail::Constructor<decltype(Function)>;
+    std::vector<runtime::ValueType> types = Shape::parameters();
+    std::size_t i = 0;
+    for (const char *name : names) {
+      runtime::MemberInfo parameter;
+      parameter.name = name;
+      parameter.type = std::move(types[i++]);
+      parameter.offset = info.parameterSize;
+      info.parameterSize += parameter.type.size;
+      info.parameters.push_back(std::move(parameter));
+    }
+    info.hasConstructor = true;
+    info.construct = &Shape::template construct<Class, Function>;
+    return *this;
+  }
+
+  ClassDescription &methods(std::initializer_list<const char *> names) {
+    info.methods.assign(names.begin(), names.end());
+    return *this;
+  }
+  /// RTSL_NEEDS_*: what of a hit the class's methods read.
+  ClassDescription &needs(std::uint32_t what) {
+    info.needs = what;
+    return *this;
+  }
+
+private:
+  runtime::ClassInfo &info;
+};
+
+/// Do the program's state and the runtime's agree, and does the compiler round each operation?
+template <int N>
+inline void selfTest() {
+  static RtslState raw;
+  [[maybe_unused]] State<N> &rt = stateOf<N>(&raw);
+  auto same = [](const void *a, const void *b) {
+    if (a != b)
+      throw std::logic_error("generated shaders and the runtime lay out the state differently");
+  };
+#define RTSL_STATE_VARIABLE(name, type) same(&raw.name, &rt.name);
+#include "runtime/device/StateVariables.def"
+  same(raw.attributes, rt.attributes);
+
+  volatile float a = 1.0f + 0x1p-12f, b = -1.0f - 0x1p-11f;
+  const float x = a, y = b;
+  if (x * x + y != 0.0f) // 2^-24 if fused
+    throw std::logic_error("generated shaders were compiled with contraction of floating-point operations");
+}
+
+/// Builds what a generated file exports.
+template <int N>
+class Program {
+public:
+  Program() : result(std::make_shared<runtime::Program>()) {
+    selfTest<N>();
+    result->colorComponents = N;
+    result->sample = &rtsl_sample_slots;
+    result->needs = 0;
+  }
+
+  /// A class of shaders; numbers count from 1. The description holds until the next class.
+  template <typename Class>
+  ClassDescription<Class> add(std::uint32_t id, const char *name, const char *base, const char *root) {
+    runtime::ClassInfo &info = result->classes.emplace_back();
+    info.id = id;
+    info.name = name;
+    info.base = base;
+    info.root = root;
+    info.needs = 0;
+    return ClassDescription<Class>(info);
+  }
+
+  runtime::Program::Slots &slots() { return result->slots; }
+  void needs(std::uint32_t what) { result->needs = what; }
+  RtslShaders finish() { return {std::move(result)}; }
+
+private:
+  std::shared_ptr<runtime::Program> result;
+};
+
+} // namespace rtsl

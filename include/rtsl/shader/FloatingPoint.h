@@ -1,0 +1,23 @@
+//===- FloatingPoint.h - each operation rounds once -----------------------===//
+//
+// Both compilers fuse a*b + c by themselves where the target can, which changes results. They are
+// told not to before any other code is seen, GLM's included. `#pragma STDC FP_CONTRACT` would say
+// the same, but g++ does not know it.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#ifdef __FAST_MATH__
+#error "shaders need IEEE arithmetic: compile them without -ffast-math"
+#endif
+#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
+#error "shaders need float arithmetic that rounds to float: compile for SSE2 or better"
+#endif
+
+#if defined(__clang__)
+#pragma clang fp contract(off)
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
+
+#include <glm/glm.hpp>

@@ -1,0 +1,120 @@
+//===- Geometry.h - dot, length, normalize, refract, ... ------------------===//
+//
+// Sums run from the first term to the last. Where a difference could cancel, products are taken as
+// Kahan does it; where squares would leave the range of a float, vectors are scaled first.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "rtsl/shader/Common.h"
+
+#include <limits>
+
+namespace rtsl {
+
+/// a b - c d within 1.5 ulp, and exactly 0 for a b == c d (Jeannerod, Louvet, Muller, "Further
+/// analysis of Kahan's algorithm for the accurate computation of 2 x 2 determinants", 2013).
+inline float differenceOfProducts(float a, float b, float c, float d) {
+  const float product = c * d;
+  const float error = std::fma(-c, d, product); // exact
+  return std::fma(a, b, -product) + error;
+}
+
+inline float dot(float a, float b) { return a * b; }
+inline float dot(const glm::vec2 &a, const glm::vec2 &b) { return a.x * b.x + a.y * b.y; }
+inline float dot(const glm::vec3 &a, const glm::vec3 &b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline float dot(const glm::vec4 &a, const glm::vec4 &b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+}
+
+inline glm::vec3 cross(const glm::vec3 &a, const glm::vec3 &b) {
+  return {differenceOfProducts(a.y, b.z, a.z, b.y), differenceOfProducts(a.z, b.x, a.x, b.z),
+          differenceOfProducts(a.x, b.y, a.y, b.x)};
+}
+
+namespace detail {
+// Below, squares that are subnormal could reach the last digits of the sum; above, the sum has
+// overflowed.
+inline bool isGoodSquare(float square) {
+  return 0x1p-96f <= square && square <= std::numeric_limits<float>::max();
+}
+} // namespace detail
+
+/// Within 2 ulp, for vectors of any length.
+template <typename T>
+inline float length(const T &v) {
+  if constexpr (width<T> == 0) {
+    return std::fabs(v);
+  } else {
+    const float square = dot(v, v);
+    if (detail::isGoodSquare(square))
+      return std::sqrt(square);
+    const bool isLarge = 1.0f < square;
+    const T scaled = v * (isLarge ? 0x1p-70f : 0x1p100f);
+    return std::sqrt(dot(scaled, scaled)) * (isLarge ? 0x1p70f : 0x1p-100f);
+  }
+}
+
+/// v / length(v), each component within 2.5 ulp; of the zero vector the zero vector.
+template <typename T>
+inline T normalize(const T &v) {
+  if constexpr (width<T> == 0) {
+    return v == 0.0f ? v : v / std::fabs(v);
+  } else {
+    const float square = dot(v, v);
+    if (detail::isGoodSquare(square))
+      return v / std::sqrt(square);
+    const T scaled = v * (1.0f < square ? 0x1p-70f : 0x1p100f);
+    const float scaledSquare = dot(scaled, scaled);
+    return scaledSquare == 0.0f ? scaled : scaled / std::sqrt(scaledSquare);
+  }
+}
+
+template <typename T>
+inline float distance(const T &a, const T &b) {
+  return length(a - b);
+}
+template <typename T>
+inline T faceforward(const T &n, const T &i, const T &reference) {
+  return dot(reference, i) < 0.0f ? n : -n;
+}
+template <typename T>
+inline T reflect(const T &i, const T &n) {
+  return i - (2.0f * dot(n, i)) * n;
+}
+/// As GLSL defines it; 1 - d^2 is rounded once, so that it keeps its digits at normal incidence
+/// and at grazing.
+template <typename T>
+inline T refract(const T &i, const T &n, float eta) {
+  const float d = dot(n, i);
+  const float sinSquared = std::fma(-d, d, 1.0f);
+  const float k = std::fma(-(eta * eta), sinSquared, 1.0f);
+  if (k < 0.0f)
+    return T(0.0f);
+  return eta * i - (eta * d + std::sqrt(k)) * n;
+}
+
+/// Of the component of largest magnitude; the lowest on a tie.
+template <typename T>
+inline int dominantAxis(const T &v) {
+  const T magnitude = abs(v);
+  int axis = 0;
+  for (int i = 1; i < width<T>; ++i)
+    if (magnitude[axis] < magnitude[i])
+      axis = i;
+  return axis;
+}
+
+/// Some unit vector at right angles to v, in the plane of its middle axis and the larger of the
+/// others (Hughes and Moeller, "Building an Orthonormal Basis from a Unit Vector", 1999). The zero
+/// vector gives the x axis.
+inline glm::vec3 perpendicularTo(const glm::vec3 &v) {
+  const bool inXY = std::fabs(v.z) < std::fabs(v.x);
+  const glm::vec3 across =
+      normalize(inXY ? glm::vec3(-v.y, v.x, 0.0f) : glm::vec3(0.0f, -v.z, v.y));
+  return across == glm::vec3(0.0f) ? glm::vec3(1.0f, 0.0f, 0.0f) : across;
+}
+
+} // namespace rtsl

@@ -1,0 +1,145 @@
+//===- State.h - the state of a ray, as shaders see it --------------------===//
+#pragma once
+
+#include "rtsl/shader/Types.h"
+
+#include <cstring>
+
+namespace rtsl {
+
+/// A color of the state: room for the largest, of which N components count.
+template <int N>
+struct StateColor : Color<N> {
+  using Color<N>::Color;
+  StateColor &operator=(const Color<N> &other) {
+    Color<N>::operator=(other);
+    return *this;
+  }
+  float unused[RTSL_MAX_COLOR - N];
+};
+template <>
+struct StateColor<RTSL_MAX_COLOR> : Color<RTSL_MAX_COLOR> {
+  using Color<RTSL_MAX_COLOR>::Color;
+  StateColor &operator=(const Color<RTSL_MAX_COLOR> &other) {
+    Color<RTSL_MAX_COLOR>::operator=(other);
+    return *this;
+  }
+};
+
+template <int N>
+inline constexpr int width<StateColor<N>> = N;
+template <int N>
+inline constexpr bool isColor<StateColor<N>> = true;
+
+/// RtslState (runtime/device/Abi.h), with vectors in place of arrays; `rt_RayOrigin` is
+/// `rt.RayOrigin`. The two are the same memory, which compilers are told.
+template <int N>
+struct [[gnu::may_alias]] State {
+  const RtslLaunch *launch;
+
+  std::uint32_t instance, primitive;
+  std::uint32_t candidateInstance, candidatePrimitive;
+  float u, v;
+  float hitPointError;
+
+  std::uint32_t randomKey[2];
+  std::uint32_t dimension;
+
+#define RTSL_SHADER_float float
+#define RTSL_SHADER_int int
+#define RTSL_SHADER_uint2 glm::uvec2
+#define RTSL_SHADER_vec2 glm::vec2
+#define RTSL_SHADER_vec3 glm::vec3
+#define RTSL_SHADER_mat4 glm::mat4
+#define RTSL_SHADER_color StateColor<N>
+#define RTSL_STATE_VARIABLE(name, type) RTSL_SHADER_##type name;
+#include "runtime/device/StateVariables.def"
+
+  std::uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
+};
+
+/// The runtime's state as shaders see it.
+template <int N>
+inline State<N> &stateOf(RtslState *state) {
+  static_assert(sizeof(State<N>) == sizeof(RtslState));
+  return *reinterpret_cast<State<N> *>(state);
+}
+template <int N>
+inline RtslState *rawState(State<N> &rt) {
+  return reinterpret_cast<RtslState *>(&rt);
+}
+
+//===----------------------------------------------------------------------===//
+// Objects of the scene
+//===----------------------------------------------------------------------===//
+
+/// Bytes from the start of a record, which begins with the class's number, to the object.
+template <typename Class>
+inline constexpr std::size_t objectOffset = alignof(Class) < 4 ? 4 : alignof(Class);
+
+template <typename Class, int N>
+inline const Class &object(const State<N> &rt, RtslRef reference) {
+  return *reinterpret_cast<const Class *>(rt.launch->records + reference + objectOffset<Class>);
+}
+
+/// The number of an object's class; 0 for no object.
+template <int N>
+inline std::uint32_t classOf(const State<N> &rt, RtslRef reference) {
+  std::uint32_t id;
+  std::memcpy(&id, rt.launch->records + reference, 4);
+  return id;
+}
+
+//===----------------------------------------------------------------------===//
+// Attributes: what `intersect` computes for a hit, and later methods read
+//===----------------------------------------------------------------------===//
+
+/// Base of a class's `Scratch`.
+struct Scratch {
+  bool accepted = false; // has this `intersect` reported a hit that counts?
+
+  /// Calls `at(word, value)` for each attribute that is kept.
+  template <typename Visit>
+  void visit(Visit) {}
+};
+
+// What a class of shaders is.
+struct Camera {};
+struct Primitive {};
+struct Texture {};
+struct Material {};
+struct Light {};
+struct RayGeneration {};
+struct Miss {};
+struct Selector {};
+struct Exception {};
+
+template <typename T, int N>
+inline void loadAttribute(const State<N> &rt, int word, T &value) {
+  static_assert(sizeof(T) % 4 == 0);
+  std::memcpy(&value, rt.attributes + word, sizeof(T));
+}
+template <typename T, int N>
+inline void storeAttribute(State<N> &rt, int word, const T &value) {
+  static_assert(sizeof(T) % 4 == 0);
+  std::memcpy(rt.attributes + word, &value, sizeof(T));
+}
+
+/// The attributes of the hit that won.
+template <typename Attributes, int N>
+inline Attributes loadScratch(const State<N> &rt) {
+  Attributes scratch;
+  scratch.visit([&](int word, auto &value) { loadAttribute(rt, word, value); });
+  return scratch;
+}
+
+/// Runs `intersect`; what it wrote to its scratch members is kept if it accepted a hit.
+template <typename Primitive, int N>
+inline void intersect(State<N> &rt, const Primitive &primitive) {
+  typename Primitive::Scratch scratch;
+  primitive.intersect(rt, scratch);
+  if (scratch.accepted)
+    scratch.visit([&](int word, const auto &value) { storeAttribute(rt, word, value); });
+}
+
+} // namespace rtsl
