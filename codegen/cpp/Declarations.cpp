@@ -400,7 +400,7 @@ std::string ModulePrinter::run() {
   add(entries);
   text += "\n} // namespace " + options.name + "\n";
   if (!module.classes.empty())
-    text += fmt::format("\n/// The program, for rtsl::program in C++ and rtslSceneCreate in C.\n"
+    text += fmt::format("\n/// For rtsl::program in C++, and rtslSceneCreate in C.\n"
                         "extern \"C\" const RtslShaders *{0}_shaders();\n"
                         "const RtslShaders *{0}_shaders() {{\n"
                         "  static const RtslShaders shaders = {0}::describe();\n  return &shaders;\n}}\n",

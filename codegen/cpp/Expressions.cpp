@@ -154,16 +154,23 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
     const auto &op = cast<typed::BinaryExpr>(expr);
     return binary(op.op, *op.left, *op.right);
   }
-  case ExprKind::Assign:
-    return assign(cast<typed::AssignExpr>(expr), true);
+  case ExprKind::Assign: {
+    const auto &assignment = cast<typed::AssignExpr>(expr);
+    const typed::Expr *vector = nullptr;
+    Code code = assign(assignment, true);
+    if (components(*assignment.target, vector).size() > 1 || !isSimple(*assignment.target))
+      return code;
+    before->push_back(code.text + ";");
+    return place(*assignment.target);
+  }
   case ExprKind::Conditional:
     return conditional(cast<typed::ConditionalExpr>(expr));
   case ExprKind::Comma: {
     const auto &comma = cast<typed::CommaExpr>(expr);
-    std::string left = argument(*comma.left);
-    if (module.effects.expression(*comma.left).isPure())
-      left = "static_cast<void>(" + left + ")";
-    return {left + ", " + apart(*comma.right, Binding::Assignment), Binding::Comma};
+    std::string left = expressionStatement(*comma.left);
+    if (!left.empty())
+      before->push_back(left.substr(0, left.size() - 1));
+    return lowered(*comma.right);
   }
   case ExprKind::Convert:
     return convert(cast<typed::ConvertExpr>(expr));

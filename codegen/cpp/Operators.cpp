@@ -383,7 +383,8 @@ Code FunctionPrinter::incDec(const typed::IncDecExpr &expr, bool resultIsUsed) {
   }
   const std::string target = place(*expr.target).text;
   const Type *scalar = expr.target->type->scalar();
-  bool isSafe = !scalar->is(TypeKind::Int);
+  // Where the value is used a function is plainer to compilers, which warn of `x = x++ + 1`.
+  bool isSafe = !scalar->is(TypeKind::Int) && !resultIsUsed;
   if (auto *variable = dynCast<typed::VariableExpr>(expr.target))
     isSafe |= counters.count(variable->variable) != 0;
   if (!isSafe) {
@@ -402,14 +403,26 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   const typed::Expr *vector = nullptr;
   const std::vector<std::uint8_t> parts = components(*expr.target, vector);
 
-  // The old value, if evaluating the new one changes it.
-  std::string old;
-  if (expr.compound && conflicts(module.effects.expression(*expr.target), value))
-    old = hoist(expr.target->type, "value", argument(*expr.target));
+  // Indices that do something are evaluated once; the old value is kept if evaluating the new one changes it.
+  std::string stored, old;
+  const bool changesOld = expr.compound && conflicts(module.effects.expression(*expr.target), value);
+  if (expr.compound && (changesOld || !indexEffects(*expr.target).isPure())) {
+    stored = place(parts.size() > 1 ? *vector : *expr.target, true).text;
+    std::vector<std::string> texts;
+    for (std::uint8_t part : parts)
+      texts.push_back(stored + "." + "xyzw"[part]);
+    old = hoist(expr.target->type, "value",
+                parts.size() > 1 ? module.type(expr.target->type) + "(" + join(texts, ", ") + ")" : stored);
+  }
 
   auto combined = [&]() -> std::string {
-    if (!expr.compound)
+    if (!expr.compound) {
+      // `a = b = c` stays as it is; an assignment anywhere else becomes a statement of its own.
+      auto *inner = dynCast<typed::AssignExpr>(expr.value);
+      if (inner && !conflicts(module.effects.expression(*expr.target), module.effects.expression(*inner)))
+        return assign(*inner, true).text;
       return argument(*expr.value);
+    }
     const char *plain = plainOperator(expr.op, *expr.target, *expr.value);
     const Binding binding = bindingOf(expr.op);
     const std::string left = !old.empty() ? old : argument(*expr.target);
@@ -420,7 +433,7 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   };
 
   if (parts.size() > 1) { // `v.zx = ...`: component by component
-    const std::string target = place(*vector, storeIndices).text;
+    const std::string target = !stored.empty() ? stored : place(*vector, storeIndices).text;
     const bool isFree = !expr.compound && isSimple(*expr.value) &&
                         !conflicts(module.effects.expression(*vector), value);
     std::string from = combined();
@@ -440,11 +453,7 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
     const std::string target = place(*expr.target, storeIndices).text;
     return {target + " " + plain + "= " + argument(*expr.value), Binding::Assignment};
   }
-  // The target stands twice: its indices are evaluated once.
-  const bool twice = expr.compound && !indexEffects(*expr.target).isPure();
-  const std::string target = place(*expr.target, storeIndices || twice).text;
-  if (twice && old.empty())
-    old = hoist(expr.target->type, "value", target);
+  const std::string target = !stored.empty() ? stored : place(*expr.target, storeIndices).text;
   return {target + " = " + combined(), Binding::Assignment};
 }
 

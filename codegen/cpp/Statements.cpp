@@ -226,7 +226,9 @@ std::string FunctionPrinter::expressionStatement(const typed::Expr &expr) {
     return left + (statements.empty() ? "" : join(statements, "\n") + "\n") + right;
   } else {
     code = this->expr(expr);
-    if (!code.text.empty() && !expr.type->is(TypeKind::Void) && module.effects.expression(expr).isPure())
+    const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall || expr.kind == ExprKind::Builtin;
+    if (!code.text.empty() && !expr.type->is(TypeKind::Void) &&
+        (!isCall || module.effects.expression(expr).isPure()))
       code.text = "static_cast<void>(" + code.text + ")";
   }
   return code.text.empty() ? "" : code.text + ";\n";
@@ -315,6 +317,8 @@ std::string FunctionPrinter::forStatement(const typed::ForStmt &stmt) {
         return print(*comma->left) + ", " + print(*comma->right);
       if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
         return this->incDec(*incDec, false).text;
+      if (auto *assignment = dynCast<typed::AssignExpr>(&expr))
+        return this->assign(*assignment, false).text;
       std::string text = argument(expr);
       return module.effects.expression(expr).isPure() ? "static_cast<void>(" + text + ")" : text;
     };
@@ -355,7 +359,7 @@ static bool mayComplete(const std::vector<typed::StmtPtr> &statements) {
 // A variable that is declared in one arm is in sight in those below, which C++ lets nobody jump to:
 // such variables are declared before the switch. If nobody below looks, the arm gets braces.
 std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
-  std::string text;
+  std::string text, declared;
   std::vector<bool> needsBraces(stmt.arms.size(), false);
   for (std::size_t i = 0; i < stmt.arms.size(); ++i)
     for (const typed::StmtPtr &inner : stmt.arms[i].body)
@@ -368,16 +372,12 @@ std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
                 auto *use = dynCast<typed::VariableExpr>(&expr);
                 isSeenBelow |= use && use->variable == variable;
               });
-          if (!isSeenBelow && i + 1 < stmt.arms.size()) {
-            needsBraces[i] = true;
-            continue;
-          }
           if (!isSeenBelow) {
             needsBraces[i] = true;
             continue;
           }
           hoistedDeclarations.insert(variable);
-          text += module.type(variable->type) + " " + module.names.of(variable) + "{};\n";
+          declared += module.type(variable->type) + " " + module.names.of(variable) + "{};\n";
         }
   text += "switch (" + operand(*stmt.value, Binding::Comma) + ") {\n";
   const bool isUnsigned = stmt.value->type->is(TypeKind::UInt);
@@ -404,7 +404,8 @@ std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
     if (needsBraces[i])
       text += "}\n";
   }
-  return text + "}\n";
+  text += "}\n";
+  return declared.empty() ? text : "{\n" + declared + text + "}\n";
 }
 
 std::string FunctionPrinter::illuminance(const typed::IlluminanceStmt &stmt) {

@@ -36,4 +36,12 @@ const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import,
   return load((folder / import.path).string(), import.range);
 }
 
+std::vector<std::string> SourceLoader::files() const {
+  std::vector<std::string> paths;
+  for (const auto &[path, unit] : units)
+    if (unit && path != "-")
+      paths.push_back(path);
+  return paths;
+}
+
 } // namespace rtsl

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace rtsl {
 
@@ -26,6 +27,9 @@ public:
 
   /// What `import` means in the file `importer`; null if there is no such file, which is reported.
   const ast::TranslationUnit *resolve(const ast::ImportDecl &import, FileId importer);
+
+  /// The files that were read, in the order of their names.
+  std::vector<std::string> files() const;
 
 private:
   SourceManager &sources;

@@ -32,7 +32,25 @@ struct CompileCommandOptions {
   std::vector<std::string> overrides;
   std::string output = "-";
   bool lineDirectives = false;
+  std::string dependencies; // empty: not asked for
 };
+
+/// A rule for make: the output depends on every file that was read.
+std::string dependencyRule(const std::string &output, const std::vector<std::string> &files) {
+  auto escaped = [](const std::string &path) {
+    std::string text;
+    for (char c : path) {
+      if (c == ' ' || c == '#' || c == '\\')
+        text += '\\';
+      text += c == '$' ? "$$" : std::string(1, c);
+    }
+    return text;
+  };
+  std::string rule = escaped(output) + ":";
+  for (const std::string &file : files)
+    rule += " \\\n  " + escaped(file);
+  return rule + "\n";
+}
 
 bool isScene(const std::string &file) {
   const std::string extension = ".json";
@@ -59,6 +77,8 @@ std::optional<std::string> translate(const CompileCommandOptions &options, Messa
   }
 
   const std::unique_ptr<typed::Module> module = shaders.check(options.common.compile);
+  if (!options.dependencies.empty())
+    writeOutput(options.dependencies, dependencyRule(options.output, shaders.files()));
   if (messages.diagnostics.hasErrors())
     return std::nullopt;
   if (options.stage == Stage::TypedAst)
@@ -115,6 +135,9 @@ void addCompileCommand(CLI::App &app, Action &action) {
   command->add_option("--set", options->overrides, "change a value of the scene file, such as camera.fov=30")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
+  command->add_option("--dependencies", options->dependencies,
+                      "also write a rule for make that names every file that was read")
+      ->type_name("FILE");
   command->add_flag("--line-directives", options->lineDirectives,
                     "with --emit=cpp: #line, so that messages and debuggers show the RTSL files");
   addCompileOptions(*command, options->common);

@@ -28,6 +28,9 @@ public:
 
   const std::vector<const ast::TranslationUnit *> &units() const { return parsed; }
 
+  /// The files that were read, imported ones too.
+  std::vector<std::string> files() const { return loader.files(); }
+
   /// Checks everything together, down to what splitting at `trace` would save if that is asked for (-Wlive-state).
   std::unique_ptr<typed::Module> check(const CompileOptions &options) {
     std::unique_ptr<typed::Module> module = rtsl::check(

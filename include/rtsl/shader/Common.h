@@ -65,7 +65,7 @@ constexpr auto max(const X &a, const Y &b) {
 }
 template <typename X, typename Low, typename High>
 constexpr auto clamp(const X &x, const Low &low, const High &high) {
-  return min(max(x, low), high);
+  return rtsl::min(rtsl::max(x, low), high);
 }
 
 /// x (1 - a) + y a
@@ -86,7 +86,7 @@ template <typename Edge, typename X>
 constexpr auto smoothstep(const Edge &low, const Edge &high, const X &x) {
   return each(
       [](float e0, float e1, float v) {
-        const float t = clamp((v - e0) / (e1 - e0), 0.0f, 1.0f);
+        const float t = rtsl::clamp((v - e0) / (e1 - e0), 0.0f, 1.0f);
         return (t * t) * (3.0f - 2.0f * t);
       },
       low, high, x);
@@ -106,21 +106,21 @@ constexpr auto sign(const T &value) {
 /// The least component.
 template <typename T>
 constexpr auto minComponent(const T &v) {
-  auto result = min(part<0>(v), part<1>(v));
+  auto result = rtsl::min(part<0>(v), part<1>(v));
   if constexpr (width<T> > 2)
-    result = min(result, part<2>(v));
+    result = rtsl::min(result, part<2>(v));
   if constexpr (width<T> > 3)
-    result = min(result, part<3>(v));
+    result = rtsl::min(result, part<3>(v));
   return result;
 }
 /// The greatest component.
 template <typename T>
 constexpr auto maxComponent(const T &v) {
-  auto result = max(part<0>(v), part<1>(v));
+  auto result = rtsl::max(part<0>(v), part<1>(v));
   if constexpr (width<T> > 2)
-    result = max(result, part<2>(v));
+    result = rtsl::max(result, part<2>(v));
   if constexpr (width<T> > 3)
-    result = max(result, part<3>(v));
+    result = rtsl::max(result, part<3>(v));
   return result;
 }
 
@@ -169,12 +169,12 @@ constexpr bool all(const T &v) {
 }
 template <typename T>
 constexpr bool any(const T &v) {
-  return !all(logicalNot(v));
+  return !rtsl::all(rtsl::logicalNot(v));
 }
 /// low <= x && x <= high in every component.
 template <typename T, typename Bound>
 constexpr bool inside(const T &x, const Bound &low, const Bound &high) {
-  return all(lessThanEqual(low, x)) && all(lessThanEqual(x, high));
+  return rtsl::all(rtsl::lessThanEqual(low, x)) && rtsl::all(rtsl::lessThanEqual(x, high));
 }
 
 //===----------------------------------------------------------------------===//
@@ -217,7 +217,7 @@ inline auto roundEven(const T &value) {
 }
 template <typename T>
 inline auto round(const T &value) {
-  return roundEven(value);
+  return rtsl::roundEven(value);
 }
 template <typename T>
 inline auto fract(const T &value) {
@@ -230,7 +230,7 @@ inline auto mod(const X &value, const Y &divisor) {
 /// Both parts have the sign of x; the fraction of an infinity is 0.
 template <typename T>
 inline T modf(const T &value, T &whole) {
-  whole = trunc(value);
+  whole = rtsl::trunc(value);
   return each(
       [](float x, float w) { return std::copysign(x == w ? 0.0f : x - w, x); }, value, whole);
 }
@@ -281,7 +281,7 @@ template <int L>
 inline glm::vec<L, float> frexp(const glm::vec<L, float> &x, glm::vec<L, int> &exponent) {
   glm::vec<L, float> significand;
   for (int i = 0; i < L; ++i)
-    significand[i] = frexp(x[i], exponent[i]);
+    significand[i] = rtsl::frexp(x[i], exponent[i]);
   return significand;
 }
 
@@ -291,9 +291,9 @@ template <typename T, typename E>
 inline auto ldexp(const T &value, const E &exponents) {
   return each(
       [](float x, int exponent) {
-        int rest = clamp(exponent, -280, 280);
+        int rest = rtsl::clamp(exponent, -280, 280);
         for (int i = 0; i < 3; ++i) {
-          const int step = i == 2 ? rest : rest < -126 ? -102 : min(rest, 127);
+          const int step = i == 2 ? rest : rest < -126 ? -102 : rtsl::min(rest, 127);
           x = x * bitsAs<float>(static_cast<uint>(step + 127) << 23);
           rest -= step;
         }

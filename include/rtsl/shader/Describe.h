@@ -7,8 +7,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "rtsl/program.h"
 #include "rtsl/shader/State.h"
-#include "runtime/Program.h"
 
 #include <cstddef>
 #include <initializer_list>
@@ -20,19 +20,10 @@
 #include <type_traits>
 #include <vector>
 
-/// What a generated file exports. C sees a pointer to it (rtsl/rtsl.h), C++ the program.
-struct RtslShaders {
-  std::shared_ptr<const rtsl::runtime::Program> program;
-};
-
 extern "C" void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                                   float *color);
 
 namespace rtsl {
-
-inline const std::shared_ptr<const runtime::Program> &program(const RtslShaders *shaders) {
-  return shaders->program;
-}
 
 //===----------------------------------------------------------------------===//
 // Types

@@ -48,12 +48,12 @@ inline float length(const T &v) {
   if constexpr (width<T> == 0) {
     return std::fabs(v);
   } else {
-    const float square = dot(v, v);
+    const float square = rtsl::dot(v, v);
     if (detail::isGoodSquare(square))
       return std::sqrt(square);
     const bool isLarge = 1.0f < square;
     const T scaled = v * (isLarge ? 0x1p-70f : 0x1p100f);
-    return std::sqrt(dot(scaled, scaled)) * (isLarge ? 0x1p70f : 0x1p-100f);
+    return std::sqrt(rtsl::dot(scaled, scaled)) * (isLarge ? 0x1p70f : 0x1p-100f);
   }
 }
 
@@ -63,32 +63,32 @@ inline T normalize(const T &v) {
   if constexpr (width<T> == 0) {
     return v == 0.0f ? v : v / std::fabs(v);
   } else {
-    const float square = dot(v, v);
+    const float square = rtsl::dot(v, v);
     if (detail::isGoodSquare(square))
       return v / std::sqrt(square);
     const T scaled = v * (1.0f < square ? 0x1p-70f : 0x1p100f);
-    const float scaledSquare = dot(scaled, scaled);
+    const float scaledSquare = rtsl::dot(scaled, scaled);
     return scaledSquare == 0.0f ? scaled : scaled / std::sqrt(scaledSquare);
   }
 }
 
 template <typename T>
 inline float distance(const T &a, const T &b) {
-  return length(a - b);
+  return rtsl::length(a - b);
 }
 template <typename T>
 inline T faceforward(const T &n, const T &i, const T &reference) {
-  return dot(reference, i) < 0.0f ? n : -n;
+  return rtsl::dot(reference, i) < 0.0f ? n : -n;
 }
 template <typename T>
 inline T reflect(const T &i, const T &n) {
-  return i - (2.0f * dot(n, i)) * n;
+  return i - (2.0f * rtsl::dot(n, i)) * n;
 }
 /// As GLSL defines it; 1 - d^2 is rounded once, so that it keeps its digits at normal incidence
 /// and at grazing.
 template <typename T>
 inline T refract(const T &i, const T &n, float eta) {
-  const float d = dot(n, i);
+  const float d = rtsl::dot(n, i);
   const float sinSquared = std::fma(-d, d, 1.0f);
   const float k = std::fma(-(eta * eta), sinSquared, 1.0f);
   if (k < 0.0f)
@@ -99,7 +99,7 @@ inline T refract(const T &i, const T &n, float eta) {
 /// Of the component of largest magnitude; the lowest on a tie.
 template <typename T>
 inline int dominantAxis(const T &v) {
-  const T magnitude = abs(v);
+  const T magnitude = rtsl::abs(v);
   int axis = 0;
   for (int i = 1; i < width<T>; ++i)
     if (magnitude[axis] < magnitude[i])
@@ -113,7 +113,7 @@ inline int dominantAxis(const T &v) {
 inline glm::vec3 perpendicularTo(const glm::vec3 &v) {
   const bool inXY = std::fabs(v.z) < std::fabs(v.x);
   const glm::vec3 across =
-      normalize(inXY ? glm::vec3(-v.y, v.x, 0.0f) : glm::vec3(0.0f, -v.z, v.y));
+      rtsl::normalize(inXY ? glm::vec3(-v.y, v.x, 0.0f) : glm::vec3(0.0f, -v.z, v.y));
   return across == glm::vec3(0.0f) ? glm::vec3(1.0f, 0.0f, 0.0f) : across;
 }
 

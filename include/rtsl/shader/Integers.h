@@ -30,11 +30,11 @@ constexpr auto multiply(const A &a, const B &b) {
 /// From the first to the last.
 template <typename A, typename B, typename... C>
 constexpr auto add(const A &a, const B &b, const C &...more) {
-  return add(add(a, b), more...);
+  return rtsl::add(rtsl::add(a, b), more...);
 }
 template <typename A, typename B, typename... C>
 constexpr auto multiply(const A &a, const B &b, const C &...more) {
-  return multiply(multiply(a, b), more...);
+  return rtsl::multiply(rtsl::multiply(a, b), more...);
 }
 template <typename T>
 constexpr auto negate(const T &a) {
@@ -87,11 +87,17 @@ constexpr auto shiftRight(const A &a, const B &count) {
 /// ++x and --x, x++ and x--.
 template <typename T>
 constexpr T &increment(T &x) {
-  return x = add(x, 1);
+  if constexpr (std::is_same_v<Scalar<T>, int>)
+    return x = rtsl::add(x, 1);
+  else
+    return ++x;
 }
 template <typename T>
 constexpr T &decrement(T &x) {
-  return x = subtract(x, 1);
+  if constexpr (std::is_same_v<Scalar<T>, int>)
+    return x = rtsl::subtract(x, 1);
+  else
+    return --x;
 }
 template <typename T>
 constexpr T postIncrement(T &x) {
@@ -134,7 +140,7 @@ template <typename T>
 inline void imulExtended(const T &a, const T &b, T &high, T &low) {
   const T top =
       each([](int x, int y) { return static_cast<int>(std::int64_t(x) * y >> 32); }, a, b);
-  const T bottom = multiply(a, b);
+  const T bottom = rtsl::multiply(a, b);
   high = top;
   low = bottom;
 }

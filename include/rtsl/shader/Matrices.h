@@ -25,7 +25,7 @@ template <int C, int R>
 inline glm::vec<C, float> mul(const glm::vec<R, float> &v, const Matrix<C, R> &m) {
   glm::vec<C, float> result;
   for (int i = 0; i < C; ++i)
-    result[i] = dot(v, m[i]);
+    result[i] = rtsl::dot(v, m[i]);
   return result;
 }
 template <int K, int R, int C>
@@ -171,7 +171,7 @@ namespace detail {
 template <typename Column>
 inline float scaleOf(const Column &column) {
   const int exponent =
-      clamp(static_cast<int>(bitsAs<uint>(maxComponent(abs(column))) >> 23), 1, 253);
+      rtsl::clamp(static_cast<int>(bitsAs<uint>(rtsl::maxComponent(rtsl::abs(column))) >> 23), 1, 253);
   return bitsAs<float>(static_cast<uint>(254 - exponent) << 23);
 }
 
@@ -181,10 +181,10 @@ inline glm::mat2 inverseOfScaled(const glm::mat2 &m) {
 }
 
 inline glm::mat3 inverseOfScaled(const glm::mat3 &m) {
-  const glm::vec3 first = cross(m[1], m[2]);
-  const float determinant = dot(m[0], first);
-  return transpose(glm::mat3(first / determinant, cross(m[2], m[0]) / determinant,
-                             cross(m[0], m[1]) / determinant));
+  const glm::vec3 first = rtsl::cross(m[1], m[2]);
+  const float determinant = rtsl::dot(m[0], first);
+  return rtsl::transpose(glm::mat3(first / determinant, rtsl::cross(m[2], m[0]) / determinant,
+                             rtsl::cross(m[0], m[1]) / determinant));
 }
 
 /// Works on the transpose, whose rows are the columns at hand: the rows of its inverse are the
@@ -204,8 +204,8 @@ inline glm::mat4 inverseOfScaled(glm::mat4 rows) {
       if (i == pivot)
         continue;
       const float factor = -rows[i][pivot];
-      rows[i] = fma(factor, rows[pivot], rows[i]);
-      result[i] = fma(factor, result[pivot], result[i]);
+      rows[i] = rtsl::fma(factor, rows[pivot], rows[i]);
+      result[i] = rtsl::fma(factor, result[pivot], result[i]);
     }
   }
   return result;

@@ -33,7 +33,7 @@ inline glm::vec<L, int> separate(uint word, int bits, bool isSigned) {
 /// NaN becomes the lower bound.
 template <typename T>
 inline auto quantise(const T &x, float low, float scale) {
-  return toInt(roundEven(min(max(T(low), x), T(1.0f)) * scale));
+  return rtsl::toInt(rtsl::roundEven(rtsl::min(rtsl::max(T(low), x), T(1.0f)) * scale));
 }
 
 inline int halfFromFloat(float x) {
@@ -81,13 +81,13 @@ inline glm::vec2 unpackUnorm2x16(uint word) {
   return glm::vec2(detail::separate<2>(word, 16, false)) / 65535.0f;
 }
 inline glm::vec2 unpackSnorm2x16(uint word) {
-  return clamp(glm::vec2(detail::separate<2>(word, 16, true)) / 32767.0f, -1.0f, 1.0f);
+  return rtsl::clamp(glm::vec2(detail::separate<2>(word, 16, true)) / 32767.0f, -1.0f, 1.0f);
 }
 inline glm::vec4 unpackUnorm4x8(uint word) {
   return glm::vec4(detail::separate<4>(word, 8, false)) / 255.0f;
 }
 inline glm::vec4 unpackSnorm4x8(uint word) {
-  return clamp(glm::vec4(detail::separate<4>(word, 8, true)) / 127.0f, -1.0f, 1.0f);
+  return rtsl::clamp(glm::vec4(detail::separate<4>(word, 8, true)) / 127.0f, -1.0f, 1.0f);
 }
 inline glm::vec2 unpackHalf2x16(uint word) {
   const glm::ivec2 halves = detail::separate<2>(word, 16, false);

@@ -25,7 +25,7 @@ inline bool hit(State<N> &rt, float t) {
 /// The same in a primitive with scratch members.
 template <int N>
 inline bool hit(State<N> &rt, Scratch &scratch, float t) {
-  const bool isNearest = hit(rt, t);
+  const bool isNearest = rtsl::hit(rt, t);
   scratch.accepted = scratch.accepted || isNearest;
   return isNearest;
 }
@@ -53,7 +53,7 @@ public:
   /// Those within `angle` (radians) of the normal.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float angle)
       : rt(rt), point(point), normal(normal),
-        cosAngle(cos(clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)))) {}
+        cosAngle(rtsl::cos(rtsl::clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)))) {}
 
   /// Sets LightDirection, LightDistance and LightColor to those of the next light that reaches the
   /// point; false if there is none.

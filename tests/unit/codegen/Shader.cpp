@@ -24,6 +24,9 @@
 
 #include <cfloat>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -201,6 +204,36 @@ void *Shader::find(const std::string &name) {
 // Outcome and FloatFunction
 //===----------------------------------------------------------------------===//
 
+/// With RTSL_RECORD=FILE every program that these run is written to the file with what went in and
+/// what came out, so that tests/cpp can ask the same of printed C++.
+class Recorder {
+public:
+  static void source(const std::string &text) {
+    if (std::FILE *file = output())
+      std::fprintf(file, "source %zu\n%s\n", text.size(), text.c_str());
+  }
+  template <typename T>
+  static void values(const char *when, const char *type, const std::array<T, 16> &all) {
+    std::FILE *file = output();
+    if (!file)
+      return;
+    std::fprintf(file, "%s %s", when, type);
+    for (T value : all) {
+      std::uint32_t bits;
+      std::memcpy(&bits, &value, 4);
+      std::fprintf(file, " %08x", bits);
+    }
+    std::fprintf(file, "\n");
+  }
+
+private:
+  static std::FILE *output() {
+    static const char *path = std::getenv("RTSL_RECORD");
+    static std::FILE *file = path ? std::fopen(path, "a") : nullptr;
+    return file;
+  }
+};
+
 Outcome::Outcome(const std::string &body, std::initializer_list<float> floats,
                  std::initializer_list<std::int64_t> integers, Options options)
     : Outcome(with("", body, floats, integers, std::move(options))) {}
@@ -215,16 +248,26 @@ Outcome Outcome::with(const std::string &declarations, const std::string &body,
     run.n[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(integer));
     run.u[i++] = static_cast<std::uint32_t>(integer);
   }
-  Shader shader(declarations +
-                    "\nvoid run(inout float x[16], inout int n[16], inout uint u[16]) {\n" + body +
-                    "\n}\n",
-                std::move(options));
+  const std::string source =
+      declarations + "\nvoid run(inout float x[16], inout int n[16], inout uint u[16]) {\n" + body + "\n}\n";
+  if (options.checkIndices && options.colorComponents == 3)
+    Recorder::source(source);
+  auto record = [&](const char *when) {
+    if (!options.checkIndices || options.colorComponents != 3)
+      return;
+    Recorder::values(when, "float", run.x);
+    Recorder::values(when, "int", run.n);
+    Recorder::values(when, "uint", run.u);
+  };
+  record("before");
+  Shader shader(source, options);
   shader.call("run", run.x.data(), run.n.data(), run.u.data());
+  record("after");
   return run;
 }
 
 FloatFunction::FloatFunction(const std::string &body, Options options)
-    : shader("void run(inout float x[16]) {\n" + body + "\n}\n", std::move(options)) {}
+    : source("void run(inout float x[16]) {\n" + body + "\n}\n"), shader(source, std::move(options)) {}
 
 std::array<float, 16> FloatFunction::operator()(std::initializer_list<float> inputs) {
   return (*this)(std::vector<float>(inputs));
@@ -233,7 +276,14 @@ std::array<float, 16> FloatFunction::operator()(std::initializer_list<float> inp
 std::array<float, 16> FloatFunction::operator()(const std::vector<float> &inputs) {
   std::array<float, 16> x{};
   std::copy(inputs.begin(), inputs.end(), x.begin());
+  const bool isRecorded = ++calls <= 40; // enough of each
+  if (isRecorded) {
+    Recorder::source(source);
+    Recorder::values("before", "float", x);
+  }
   shader.call("run", x.data());
+  if (isRecorded)
+    Recorder::values("after", "float", x);
   return x;
 }
 

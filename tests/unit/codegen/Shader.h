@@ -99,6 +99,8 @@ public:
   std::array<float, 16> operator()(const std::vector<float> &inputs);
 
 private:
+  std::string source;
+  unsigned calls = 0;
   Shader shader;
 };
 

@@ -1,0 +1,27 @@
+# rtsl_add_shaders(target NAME name SHADERS files...): compiles RTSL files to C++ when the target is built, again when one of
+# them or what they import changes, and adds it to the target. The target then has `const RtslShaders *name_shaders()`
+# (declare it with RTSL_DECLARE_SHADERS(name)) and links rtsl::runtime.
+function(rtsl_add_shaders target)
+  cmake_parse_arguments(ARG "" "NAME" "SHADERS" ${ARGN})
+  if(NOT ARG_NAME OR NOT ARG_SHADERS)
+    message(FATAL_ERROR "rtsl_add_shaders: give a NAME and SHADERS")
+  endif()
+  set(files)
+  foreach(file IN LISTS ARG_SHADERS)
+    get_filename_component(file "${file}" ABSOLUTE)
+    list(APPEND files "${file}")
+  endforeach()
+  set(generated "${CMAKE_CURRENT_BINARY_DIR}/${ARG_NAME}.cpp")
+  add_custom_command(OUTPUT "${generated}"
+    COMMAND rtsl::rtslc compile ${files} --emit=cpp -o "${generated}" --dependencies "${generated}.d"
+    DEPENDS ${files} rtsl::rtslc DEPFILE "${generated}.d"
+    COMMENT "Compiling the shaders of ${ARG_NAME} to C++" VERBATIM)
+  target_sources(${target} PRIVATE "${generated}")
+  # Square roots and fused operations as instructions: the results are the same, and quicker.
+  set_source_files_properties("${generated}" PROPERTIES COMPILE_OPTIONS "-fno-math-errno;$<$<BOOL:${RTSL_SHADER_FLAGS}>:${RTSL_SHADER_FLAGS}>")
+  target_link_libraries(${target} PRIVATE rtsl::runtime)
+endfunction()
+
+if(NOT DEFINED RTSL_SHADER_FLAGS AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(RTSL_SHADER_FLAGS -march=x86-64-v3) # what the runtime is compiled for
+endif()

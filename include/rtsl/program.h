@@ -1,0 +1,22 @@
+//===- program.h - what a generated file exports --------------------------===//
+#pragma once
+
+#include "runtime/Program.h"
+
+#include <memory>
+
+/// C sees a pointer to it (rtsl/rtsl.h), C++ the program in it.
+struct RtslShaders {
+  std::shared_ptr<const rtsl::runtime::Program> program;
+};
+
+/// Declares what the shaders of a generated file `name.cpp` export: `name_shaders()`.
+#define RTSL_DECLARE_SHADERS(name) extern "C" const RtslShaders *name##_shaders()
+
+namespace rtsl {
+
+inline const std::shared_ptr<const runtime::Program> &program(const RtslShaders *shaders) {
+  return shaders->program;
+}
+
+} // namespace rtsl

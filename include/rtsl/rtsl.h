@@ -1,0 +1,79 @@
+/*===- rtsl.h - the runtime for C -------------------------------------------===*\
+ *
+ * Builds a scene of compiled shaders, renders it, and writes the picture: the C++ interface
+ * (rtsl/runtime.h) with handles in place of classes. Shaders come from `rtslc compile --emit=cpp`,
+ * which exports `const RtslShaders *name_shaders(void)`.
+ *
+ * A function that fails returns 0 (or a null pointer), and rtslError says why. Handles may be used
+ * by one thread at a time.
+ *
+\*===------------------------------------------------------------------------===*/
+#ifndef RTSL_RTSL_H
+#define RTSL_RTSL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct RtslShaders RtslShaders;
+typedef struct RtslScene RtslScene;
+
+/* An object of the scene; 0 is none. */
+typedef uint32_t RtslObject;
+
+/* Why the last function of this thread failed; "" if none did. Valid until the next call. */
+const char *rtslError(void);
+
+RtslScene *rtslSceneCreate(const RtslShaders *shaders);
+void rtslSceneDestroy(RtslScene *scene);
+
+/* What the next rtslSceneAddObject is given, by name: constructor arguments and public members. A
+ * value is `count` numbers (a vector, a color, a matrix by columns, an array), or an object. */
+int rtslArgument(RtslScene *scene, const char *parameter, const double *numbers, size_t count);
+int rtslArgumentObject(RtslScene *scene, const char *parameter, RtslObject object);
+int rtslMember(RtslScene *scene, const char *member, const double *numbers, size_t count);
+int rtslMemberObject(RtslScene *scene, const char *member, RtslObject object);
+
+/* Makes an object of the class with what was given, which is then forgotten. */
+RtslObject rtslSceneAddObject(RtslScene *scene, const char *className);
+
+/* What rays can hit. */
+int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material);
+/* A mesh file (OBJ, PLY, glTF), moved by `transform`: 12 numbers, four columns of three, or null. */
+int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform, RtslObject material);
+/* Triangles: 3 floats a vertex, 3 indices a triangle. */
+int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t vertexCount,
+                          const uint32_t *indices, size_t triangleCount, RtslObject material);
+
+int rtslSceneAddLight(RtslScene *scene, RtslObject light);
+int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
+int rtslSceneSetBackground(RtslScene *scene, RtslObject miss);
+int rtslSceneSetBackgroundColor(RtslScene *scene, const float *color, size_t count);
+int rtslSceneSetAmbient(RtslScene *scene, const float *color, size_t count);
+
+typedef struct RtslRenderSettings {
+  uint32_t width, height;
+  uint32_t samplesPerPixel;
+  uint32_t maxDepth; /* 0: camera rays only */
+  uint32_t seed;
+  uint32_t threads; /* 0: all cores */
+} RtslRenderSettings;
+
+/* 960 x 540, 16 samples, depth 8, seed 1, all cores. */
+RtslRenderSettings rtslRenderDefaults(void);
+
+/* Renders into `pixels`: width * height * channels floats of linear light, rows from the top, with as
+ * many channels as the shaders' colors have (rtslSceneChannels). */
+int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels);
+uint32_t rtslSceneChannels(const RtslScene *scene);
+/* Renders and writes an .exr or .png. */
+int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,203 @@
+//===- Rtsl.cpp - the runtime for C ---------------------------------------===//
+#include "rtsl/rtsl.h"
+
+#include "rtsl/runtime.h"
+
+#include <algorithm>
+#include <exception>
+#include <string>
+
+namespace runtime = rtsl::runtime;
+
+struct RtslScene {
+  runtime::Scene scene;
+  std::vector<runtime::NamedValue> arguments, members; // of the next object
+};
+
+namespace {
+
+std::string &lastError() {
+  static thread_local std::string message;
+  return message;
+}
+
+/// Runs `work`; what it throws becomes the error, and `failed` the result.
+template <typename Result, typename Work>
+Result guarded(Result failed, Work work) {
+  lastError().clear();
+  try {
+    return work();
+  } catch (const std::exception &error) {
+    lastError() = error.what();
+  } catch (...) {
+    lastError() = "unknown error";
+  }
+  return failed;
+}
+
+/// One number, or a list of them.
+runtime::Value valueOf(const double *numbers, std::size_t count) {
+  if (count == 1)
+    return runtime::Value(numbers[0]);
+  return runtime::Value(std::vector<runtime::Value>(numbers, numbers + count));
+}
+
+runtime::RenderOptions optionsOf(const RtslRenderSettings *settings) {
+  const RtslRenderSettings asked = settings ? *settings : rtslRenderDefaults();
+  runtime::RenderOptions options;
+  options.width = asked.width;
+  options.height = asked.height;
+  options.samplesPerPixel = asked.samplesPerPixel;
+  options.maxDepth = asked.maxDepth;
+  options.seed = asked.seed;
+  options.threads = asked.threads;
+  return options;
+}
+
+} // namespace
+
+extern "C" {
+
+const char *rtslError(void) { return lastError().c_str(); }
+
+RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
+  return guarded<RtslScene *>(nullptr, [&] {
+    if (!shaders)
+      throw runtime::Error(runtime::ErrorCode::IncompleteScene, "there are no shaders");
+    return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}};
+  });
+}
+
+void rtslSceneDestroy(RtslScene *scene) { delete scene; }
+
+int rtslArgument(RtslScene *scene, const char *parameter, const double *numbers, size_t count) {
+  return guarded(0, [&] {
+    scene->arguments.push_back({parameter, valueOf(numbers, count)});
+    return 1;
+  });
+}
+
+int rtslArgumentObject(RtslScene *scene, const char *parameter, RtslObject object) {
+  return guarded(0, [&] {
+    scene->arguments.push_back({parameter, runtime::Value::reference(object)});
+    return 1;
+  });
+}
+
+int rtslMember(RtslScene *scene, const char *member, const double *numbers, size_t count) {
+  return guarded(0, [&] {
+    scene->members.push_back({member, valueOf(numbers, count)});
+    return 1;
+  });
+}
+
+int rtslMemberObject(RtslScene *scene, const char *member, RtslObject object) {
+  return guarded(0, [&] {
+    scene->members.push_back({member, runtime::Value::reference(object)});
+    return 1;
+  });
+}
+
+RtslObject rtslSceneAddObject(RtslScene *scene, const char *className) {
+  return guarded<RtslObject>(0, [&] {
+    runtime::ObjectValues values;
+    if (!scene->arguments.empty())
+      values.constructor = std::move(scene->arguments);
+    values.members = std::move(scene->members);
+    scene->arguments.clear();
+    scene->members.clear();
+    return scene->scene.addObject(className, values);
+  });
+}
+
+int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material) {
+  return guarded(0, [&] {
+    scene->scene.addPrimitive(primitive, material);
+    return 1;
+  });
+}
+
+int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform, RtslObject material) {
+  return guarded(0, [&] {
+    runtime::Mesh mesh = runtime::loadMesh(path);
+    if (transform) {
+      runtime::Transform map;
+      for (std::size_t column = 0; column < 4; ++column)
+        std::copy_n(transform + 3 * column, 3, map.columns[column].begin());
+      mesh.apply(map);
+    }
+    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh), path), material);
+    return 1;
+  });
+}
+
+int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t vertexCount,
+                          const uint32_t *indices, size_t triangleCount, RtslObject material) {
+  return guarded(0, [&] {
+    runtime::Mesh mesh;
+    mesh.positions.assign(positions, positions + 3 * vertexCount);
+    mesh.indices.assign(indices, indices + 3 * triangleCount);
+    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh)), material);
+    return 1;
+  });
+}
+
+int rtslSceneAddLight(RtslScene *scene, RtslObject light) {
+  return guarded(0, [&] {
+    scene->scene.addLight(light);
+    return 1;
+  });
+}
+
+int rtslSceneSetCamera(RtslScene *scene, RtslObject camera) {
+  return guarded(0, [&] {
+    scene->scene.setCamera(camera);
+    return 1;
+  });
+}
+
+int rtslSceneSetBackground(RtslScene *scene, RtslObject miss) {
+  return guarded(0, [&] {
+    scene->scene.setBackground(miss);
+    return 1;
+  });
+}
+
+int rtslSceneSetBackgroundColor(RtslScene *scene, const float *color, size_t count) {
+  return guarded(0, [&] {
+    scene->scene.setBackgroundColor({color, color + count});
+    return 1;
+  });
+}
+
+int rtslSceneSetAmbient(RtslScene *scene, const float *color, size_t count) {
+  return guarded(0, [&] {
+    scene->scene.setAmbient({color, color + count});
+    return 1;
+  });
+}
+
+RtslRenderSettings rtslRenderDefaults(void) {
+  const runtime::RenderOptions defaults;
+  return {defaults.width, defaults.height, defaults.samplesPerPixel, defaults.maxDepth, defaults.seed, defaults.threads};
+}
+
+uint32_t rtslSceneChannels(const RtslScene *scene) { return scene->scene.program().colorComponents; }
+
+int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels) {
+  return guarded(0, [&] {
+    const runtime::Image image = runtime::render(scene->scene, optionsOf(settings));
+    std::copy(image.pixels.begin(), image.pixels.end(), pixels);
+    return 1;
+  });
+}
+
+int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path) {
+  return guarded(0, [&] {
+    runtime::checkWritable(path);
+    runtime::writeImage(path, runtime::render(scene->scene, optionsOf(settings)));
+    return 1;
+  });
+}
+
+} // extern "C"

@@ -1,0 +1,28 @@
+# Completion of rtslc for bash: asks the program itself, so that it knows every option.
+_rtslc() {
+  local current="${COMP_WORDS[COMP_CWORD]}" previous="${COMP_WORDS[COMP_CWORD-1]}"
+  [[ $previous == "=" ]] && previous="${COMP_WORDS[COMP_CWORD-2]}"
+  [[ $current == "=" ]] && current=""
+  local program="${COMP_WORDS[0]}" command="${COMP_WORDS[1]}"
+  if (( COMP_CWORD == 1 )); then
+    local commands
+    commands=$("$program" --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p')
+    mapfile -t COMPREPLY < <(compgen -W "$commands --help --version" -- "$current")
+    return
+  fi
+  local help
+  help=$("$program" "$command" --help 2>/dev/null)
+  if [[ $previous == --* ]]; then
+    # The choices of an option stand behind it, with bars between them.
+    local choices
+    choices=$(sed -n "s/^ *\(-[a-zA-Z],\)\{0,1\}$previous \([^ :]*|[^ :]*\).*/\2/p" <<< "$help" | tr '|' ' ')
+    if [[ -n $choices ]]; then
+      mapfile -t COMPREPLY < <(compgen -W "$choices" -- "$current")
+      return
+    fi
+  fi
+  if [[ $current == -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '^ +(-[a-zA-Z],)?--[a-z-]+' <<< "$help" | grep -oE -- '--[a-z-]+')" -- "$current")
+  fi
+}
+complete -o default -F _rtslc rtslc
