@@ -64,7 +64,7 @@ bool ModulePrinter::hasScratch(const typed::Class &definition) {
     // A free function that reports hits says so there.
     for (const auto &function : at->functions)
       if (function->body)
-        lowering::forEachExpr(*function->body, [&](const typed::Expr &expr) {
+        forEachExpr(*function->body, [&](const typed::Expr &expr) {
           auto *call = dynCast<typed::CallExpr>(&expr);
           found |= call && !call->function->owner && effects.function(*call->function).reportsHit;
         });

@@ -131,7 +131,7 @@ bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed:
   const Type *type = parameter.type;
   const bool isLarge = type->is(TypeKind::Struct) || type->is(TypeKind::Array) || type->isMatrix();
   return parameter.direction == ast::Direction::In && isLarge &&
-         (!function.body || !lowering::assignedVariables(*function.body).count(&parameter));
+         (!function.body || !assignedVariables(*function.body).count(&parameter));
 }
 
 std::string ModulePrinter::signature(const typed::Function &function, bool isMethod) {
@@ -142,7 +142,7 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
     const Effects own = effects.statement(*function.body);
     mentionsRay = own.usesRay;
     mentionsScratch = own.usesScratch || own.reportsHit;
-    lowering::forEachExpr(*function.body, [&](const typed::Expr &expr) {
+    forEachExpr(*function.body, [&](const typed::Expr &expr) {
       if (auto *assign = dynCast<typed::AssignExpr>(&expr))
         onlyWritten.insert(assign->target.get());
       if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
@@ -275,7 +275,7 @@ std::string ModulePrinter::freeFunctions() {
   for (const auto &function : module.functions) {
     if (!function->body)
       continue;
-    lowering::forEachExpr(*function->body, [&](const typed::Expr &expr) {
+    forEachExpr(*function->body, [&](const typed::Expr &expr) {
       auto *call = dynCast<typed::CallExpr>(&expr);
       if (call && !call->function->owner && !defined.count(call->function) && call->function != function.get() &&
           asked.insert(call->function).second)

@@ -44,7 +44,7 @@ EffectsOf::EffectsOf(const typed::Module &module) : module(module) {
     if (definition->root == "rt_Texture")
       for (const auto &method : definition->functions)
         if (method->body)
-          lowering::forEachExpr(*method->body, [&](const typed::Expr &expr) {
+          forEachExpr(*method->body, [&](const typed::Expr &expr) {
             if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
               texturesDraw |= builtin->builtin == Builtin::Rand;
             if (auto *call = dynCast<typed::CallExpr>(&expr))
@@ -106,7 +106,7 @@ static const typed::Expr *rootOf(const typed::Expr &place) {
 template <typename Tree>
 void EffectsOf::collectAll(const Tree &tree, Effects &effects) {
   std::set<const typed::Expr *> onlyWritten; // outer expressions come first
-  lowering::forEachExpr(tree, [&](const typed::Expr &inner) {
+  forEachExpr(tree, [&](const typed::Expr &inner) {
     if (auto *assign = dynCast<typed::AssignExpr>(&inner); assign && !assign->compound)
       onlyWritten.insert(rootOf(*assign->target));
     if (!onlyWritten.count(&inner))

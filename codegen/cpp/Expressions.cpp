@@ -55,7 +55,7 @@ std::string FunctionPrinter::hoist(const Type *type, const std::string &hint, co
 /// What a variable that holds the expression's value is called: after the first call in it.
 static std::string hintFor(const typed::Expr &expr) {
   std::string hint;
-  lowering::forEachExpr(expr, [&](const typed::Expr &inner) {
+  forEachExpr(expr, [&](const typed::Expr &inner) {
     if (!hint.empty() || !lowering::hasSideEffects(inner))
       return;
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))

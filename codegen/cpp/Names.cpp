@@ -178,7 +178,7 @@ void Names::nameLocals(const typed::Function &function) {
   for (const auto &local : function.locals) {
     std::set<std::string> forbidden = avoid;
     if (local->init)
-      lowering::forEachExpr(*local->init, [&](const typed::Expr &expr) {
+      forEachExpr(*local->init, [&](const typed::Expr &expr) {
         if (auto *variable = dynCast<typed::VariableExpr>(&expr))
           if (auto known = names.find(variable->variable); known != names.end())
             forbidden.insert(known->second);

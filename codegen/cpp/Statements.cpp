@@ -22,7 +22,7 @@ std::string FunctionPrinter::body() {
   const auto &statements = cast<typed::CompoundStmt>(*function->body).body;
   // Which variables does anybody read? Compilers complain of the others.
   std::set<const typed::Expr *> onlyWritten;
-  lowering::forEachExpr(*function->body, [&](const typed::Expr &expr) {
+  forEachExpr(*function->body, [&](const typed::Expr &expr) {
     auto skip = [&](const typed::Expr *place) {
       while (auto *swizzle = dynCast<typed::SwizzleExpr>(place))
         place = swizzle->base.get();
@@ -276,7 +276,7 @@ void FunctionPrinter::noteCounter(const typed::ForStmt &stmt) {
   const auto &declared = declaration->variables;
   if (std::find(declared.begin(), declared.end(), counter->variable) == declared.end() || !counter->variable->init)
     return;
-  if (stmt.body && lowering::assignedVariables(*stmt.body).count(counter->variable))
+  if (stmt.body && assignedVariables(*stmt.body).count(counter->variable))
     return;
   const std::optional<Interval> first = range(*counter->variable->init);
   const std::optional<Interval> last = range(*condition->right);
@@ -368,7 +368,7 @@ std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
           bool isSeenBelow = false;
           for (std::size_t j = i + 1; j < stmt.arms.size(); ++j)
             for (const typed::StmtPtr &other : stmt.arms[j].body)
-              lowering::forEachExpr(*other, [&](const typed::Expr &expr) {
+              forEachExpr(*other, [&](const typed::Expr &expr) {
                 auto *use = dynCast<typed::VariableExpr>(&expr);
                 isSeenBelow |= use && use->variable == variable;
               });

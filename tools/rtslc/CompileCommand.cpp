@@ -6,6 +6,7 @@
 #include "Shaders.h"
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/driver/Compiler.h"
+#include "codegen/driver/Reflection.h"
 #include "frontend/Parser.h"
 
 #include <algorithm>
@@ -23,7 +24,8 @@ const std::map<std::string, Stage> stages = {{"ast", Stage::Ast},
                                              {"split", Stage::Split},
                                              {"llvm", Stage::Llvm},
                                              {"ptx", Stage::Ptx},
-                                             {"cpp", Stage::Cpp}};
+                                             {"cpp", Stage::Cpp},
+                                             {"reflection", Stage::Reflection}};
 
 struct CompileCommandOptions {
   CommonOptions common;
@@ -83,6 +85,8 @@ std::optional<std::string> translate(const CompileCommandOptions &options, Messa
     return std::nullopt;
   if (options.stage == Stage::TypedAst)
     return typed::dump(*module);
+  if (options.stage == Stage::Reflection)
+    return emitReflection(*module, options.common.compile, messages.diagnostics);
   if (options.stage == Stage::Cpp) {
     const std::string &named = options.output == "-" ? options.files.front() : options.output;
     return emitCpp(*module, cpp::identifierOf(named), options.lineDirectives, options.common.compile,
@@ -98,6 +102,8 @@ void checkInputs(const CompileCommandOptions &options) {
     throw CLI::ValidationError("FILE", "give RTSL files or one scene");
   if (scenes > 0 && (options.stage == Stage::Ast || options.stage == Stage::TypedAst))
     throw CLI::ValidationError("--emit", "a scene has no syntax tree; give one of its RTSL files");
+  if (options.stage == Stage::Reflection && scenes > 0)
+    throw CLI::ValidationError("--emit", "reflection describes RTSL files; give those of the scene");
   if (options.stage == Stage::Cpp && scenes > 0)
     throw CLI::ValidationError("--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
                                          "builds one");
@@ -129,7 +135,7 @@ void addCompileCommand(CLI::App &app, Action &action) {
   command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
   command->add_option("--emit", options->stage, "what to write")
       ->transform(CLI::CheckedTransformer(stages).description(""))
-      ->type_name("ast|typed-ast|ir|ssa|split|llvm|ptx|cpp")
+      ->type_name("ast|typed-ast|ir|ssa|split|llvm|ptx|cpp|reflection")
       ->required();
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
   command->add_option("--set", options->overrides, "change a value of the scene file, such as camera.fov=30")

@@ -1,0 +1,17 @@
+//===- Reflection.h - what a module says of itself ------------------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+
+#include <optional>
+#include <string>
+
+namespace rtsl {
+
+/// The classes, structs and functions of a module as JSON: types, defaults, comments, what methods read and write, the
+/// layouts of records, payloads and frames, and what printed C++ calls differently. docs/reflection-schema.json is its
+/// schema. Nothing if there were errors.
+std::optional<std::string> emitReflection(const typed::Module &module, const CompileOptions &options,
+                                          Diagnostics &diagnostics);
+
+} // namespace rtsl
