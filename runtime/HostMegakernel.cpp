@@ -89,6 +89,7 @@ void readStatus(const RtslStatus &status, const RenderOptions &options,
   statistics.samples = std::uint64_t(options.width) * options.height * options.samplesPerPixel;
   statistics.badRays = status.badRays;
   statistics.samplesNotFinite = status.samplesNotFinite;
+  std::copy_n(status.exceptions, RTSL_EXCEPTIONS, statistics.exceptions);
 }
 
 Image renderOnHost(const MegakernelCode &code, FlatScene scene, const RenderOptions &options,

@@ -28,7 +28,10 @@ public:
   const RtslLaunch &deviceLaunch() const;
 
   /// rtsl_traverse. Here, so that it is not a call of its own there.
-  std::uint32_t traverse(RtslState &state, bool anyHit) const {
+  std::uint32_t traverse(RtslState &state, std::uint32_t how) const {
+    if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0)
+      return traverseOurselves(state, how);
+    bool anyHit = how & RTSL_FIRST_HIT;
     if (!embree || !EmbreeScene::isEasy(state))
       return traverseCarefully(state, anyHit);
     float distance = state.HitDistance;
@@ -43,6 +46,9 @@ public:
 
 private:
   std::uint32_t traverseCarefully(RtslState &state, bool anyHit) const;
+  std::uint32_t traverseOurselves(RtslState &state, std::uint32_t how) const;
+  template <typename Work>
+  std::uint32_t withNodes(RtslState &state, Work work) const;
   std::uint32_t retrace(RtslState &state, bool anyHit, float distance) const;
 
   const Scene &scene;

@@ -1,7 +1,7 @@
 //===- HostTraversal.cpp - rtsl_traverse on the host ----------------------===//
 #include "runtime/HostScene.h"
 
-#include "runtime/device/Traverse.h"
+#include "runtime/device/AnyHit.h"
 
 namespace rtsl::runtime {
 
@@ -44,22 +44,41 @@ std::uint32_t HostScene::traverseCarefully(RtslState &state, bool anyHit) const 
 
 std::uint32_t HostScene::retrace(RtslState &state, bool anyHit, float distance) const {
   ++rayCounters().retracedRays;
-  // The nodes are in a launch of our own: the ray's may not have any.
+  state.HitDistance = distance;
+  state.instance = state.primitive = RTSL_NO_HIT;
+  return withNodes(
+      state, [&] { return device::traverseDevice(state, anyHit, slots.rt_Primitive_intersect); });
+}
+
+/// Runs `work` on a launch that has our tree: the ray's may not have any.
+template <typename Work>
+std::uint32_t HostScene::withNodes(RtslState &state, Work work) const {
   const RtslLaunch *given = state.launch;
+  if (given->nodeCount != 0)
+    return work();
   deviceLaunch();
   RtslLaunch withNodes = *given;
   bvh.install(withNodes);
   state.launch = &withNodes;
-  state.HitDistance = distance;
-  state.instance = state.primitive = RTSL_NO_HIT;
-  std::uint32_t answer = device::traverseDevice(state, anyHit, slots.rt_Primitive_intersect);
+  std::uint32_t answer = work();
   state.launch = given;
+  return answer;
+}
+
+/// Rays whose hits may be refused, and those for which some instances are not there: for Embree
+/// they would be strangers too, for it gives hits in its own order.
+std::uint32_t HostScene::traverseOurselves(RtslState &state, std::uint32_t how) const {
+  std::uint32_t answer = withNodes(state, [&] {
+    return how & RTSL_ASK_ANY_HIT
+               ? device::traverseAsking(state, how, slots)
+               : device::traverseDevice(state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect);
+  });
+  rayCounters().badRays += answer == RTSL_BAD_RAY;
   return answer;
 }
 
 } // namespace rtsl::runtime
 
-extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t anyHit) {
-  return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)
-      ->traverse(*state, anyHit != 0);
+extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
+  return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)->traverse(*state, how);
 }

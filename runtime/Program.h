@@ -50,13 +50,25 @@ struct ClassInfo {
   bool hasConstructor = false;
   std::vector<MemberInfo> parameters; // of the constructor
   std::uint32_t parameterSize = 0;    // bytes of the packed arguments
-  std::vector<std::string> methods;   // defined or inherited
-  std::uint32_t needs = RTSL_NEEDS_ALL; // of a material: what `shade` reads, itself or through what it calls
+  std::vector<std::string> methods;   // defined or inherited; with a payload: `closestHit(Radiance)`
+  std::uint32_t needs = RTSL_NEEDS_ALL; // of a material: what its methods read of a hit
+  std::uint32_t anyHit = 0; // of a material: rtslRayTypeBit of the payloads for which it has `anyHit`
   /// Writes member defaults into the record at `object`. Null: there are none.
   void (*initialize)(RtslState *state, RtslRef object) = nullptr;
   /// Runs the constructor on the record at `object`. Null: there is none.
   void (*construct)(RtslState *state, RtslRef object, const void *arguments) = nullptr;
 };
+
+/// A part of what a `print` prints: a text, or a value by the name of its type.
+struct PrintItem {
+  std::string text;
+  ValueType::Kind kind = ValueType::Kind::Float; // of the words of a value
+  std::uint32_t words = 0;                       // 0: a text
+};
+using PrintFormat = std::vector<PrintItem>;
+
+/// Where a sample begins: with the camera's ray, or with `generate`.
+enum class Engine : std::uint8_t { Classic, Programs };
 
 /// Code that renders a flat scene and needs nobody else (device/Megakernel.h); null if there is none.
 struct MegakernelCode {
@@ -65,6 +77,7 @@ struct MegakernelCode {
 };
 
 struct Program {
+  Engine engine = Engine::Classic;
   std::vector<ClassInfo> classes;
   std::uint32_t colorComponents = 3;
 
@@ -72,14 +85,18 @@ struct Program {
   struct Slots {
 #define RTSL_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
 #include "runtime/device/Slots.def"
+#define RTSL_PAYLOAD_SLOT(base, method) void (*base##_##method##_payload)(RtslState *, RtslRef) = nullptr;
+#include "runtime/device/PayloadSlots.def"
   } slots;
 
   /// RTSL_NEEDS_*: what the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
-  /// The program's rtsl_sample.
+  /// The program's rtsl_sample, or rtsl_generate.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                  float *color) = nullptr;
   MegakernelCode megakernel;
+
+  std::vector<PrintFormat> prints; // by number
 
   std::shared_ptr<void> code; // keeps the code alive
 

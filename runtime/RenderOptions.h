@@ -1,6 +1,8 @@
 //===- RenderOptions.h - what a rendering is asked for, and what it says --===//
 #pragma once
 
+#include "runtime/device/Abi.h"
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -34,6 +36,7 @@ struct RenderStatistics {
   std::uint64_t retracedRays = 0;     // Embree's answer was refused, and our own traversal asked
   std::uint64_t rescaledRays = 0;     // directions too long or short for Embree
   std::uint64_t samplesNotFinite = 0; // counted as 0
+  std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
 };
 
 /// Throws OutOfRange if the size, the samples or the depth make no picture.

@@ -40,6 +40,7 @@ struct Renderer::Implementation {
   std::mutex mutex; // for what follows
   std::uint64_t tilesDone = 0;
   RenderStatistics totals;
+  RtslStatus status{}; // of the samples: lanes count in it
   std::exception_ptr failure;
 
   Implementation(const Scene &scene, const RenderOptions &options)
@@ -73,6 +74,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
   self->launch.height = options.height;
   self->launch.maxDepth = options.maxDepth;
   self->launch.seed = options.seed;
+  self->launch.status = &self->status;
   self->buildSeconds = secondsSince(start);
 }
 
@@ -157,6 +159,7 @@ Image Renderer::render(RenderStatistics *statistics) {
   s.tilesDone = 0;
   s.stop = false;
   s.totals = RenderStatistics();
+  s.status = RtslStatus();
   s.failure = nullptr;
 
   std::vector<std::thread> helpers;
@@ -177,6 +180,7 @@ Image Renderer::render(RenderStatistics *statistics) {
     throw Error(ErrorCode::Cancelled, "rendering was cancelled");
   s.totals.samples = std::uint64_t(s.options.width) * s.options.height * s.options.samplesPerPixel;
   s.totals.buildSeconds = s.buildSeconds;
+  std::copy_n(s.status.exceptions, RTSL_EXCEPTIONS, s.totals.exceptions);
   s.totals.renderSeconds = secondsSince(start);
   if (statistics)
     *statistics = s.totals;

@@ -66,7 +66,7 @@ struct Scene::Implementation {
   std::vector<Bounds> instanceBounds; // of RTSL primitives
   std::uint64_t primitiveTotal = 0;
   std::vector<RtslRef> lights;
-  RtslRef camera = 0, background = 0;
+  RtslRef camera = 0, rayGeneration = 0, background = 0, exception = 0;
   float backgroundColor[RTSL_MAX_COLOR] = {}, ambient[RTSL_MAX_COLOR] = {};
   std::vector<Warning> warnings;
 
@@ -94,7 +94,9 @@ struct Scene::Implementation {
     launch.meshes = meshTable.data();
     launch.lights = lights.data();
     launch.camera = camera;
+    launch.rayGeneration = rayGeneration;
     launch.background = background;
+    launch.exception = exception;
     std::memcpy(launch.backgroundColor, backgroundColor, sizeof backgroundColor);
     std::memcpy(launch.ambient, ambient, sizeof ambient);
     launch.instanceCount = std::uint32_t(instances.size());
@@ -156,7 +158,12 @@ struct Scene::Implementation {
   void checkUnset(const ClassInfo &classInfo, const ObjectInfo &object, const ObjectValues &values);
   void setColor(const std::vector<float> &color, float *to, const char *what) const;
   std::uint32_t addInstance(RtslRef primitive, std::uint32_t mesh, RtslRef material,
-                            std::string name, std::uint32_t primitives);
+                            std::string name, std::uint32_t primitives, std::uint32_t mask);
+  bool isClassic() const { return program->engine == Engine::Classic; }
+  /// What an object needs that only the classic engine counts on.
+  std::vector<std::string> ifClassic(const char *method) const {
+    return isClassic() ? std::vector<std::string>{method} : std::vector<std::string>{};
+  }
 };
 
 Scene::Scene(std::shared_ptr<const Program> program) : self(std::make_unique<Implementation>()) {
@@ -362,19 +369,20 @@ const std::string &Scene::nameOf(RtslRef object) const {
 
 std::uint32_t Scene::Implementation::addInstance(RtslRef primitive, std::uint32_t mesh,
                                                  RtslRef material, std::string name,
-                                                 std::uint32_t primitives) {
-  requireRole(material, "rt_Material", {"shade"});
+                                                 std::uint32_t primitives, std::uint32_t mask) {
+  requireRole(material, "rt_Material", ifClassic("shade"));
   if (primitiveTotal + primitives > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
+  const ClassInfo &materialClass = *info(material).classInfo;
   instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal),
-                       program->needs & info(material).classInfo->needs});
+                       program->needs & materialClass.needs, mask, materialClass.anyHit});
   primitiveTotal += primitives;
   instanceNames.push_back(std::move(name));
   instanceBounds.push_back({});
   return std::uint32_t(instances.size() - 1);
 }
 
-std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material) {
+std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, std::uint32_t mask) {
   self->requireRole(primitive, "rt_Primitive", {"intersect", "computeBounds"});
   const ObjectInfo &info = self->info(primitive);
   Bounds given;
@@ -408,7 +416,7 @@ std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material) {
         {fmt::format("primitive `{}` is {}: no ray can hit it", info.name,
                      flatSides == 3 ? "a single point" : "a line without width"),
          info.place});
-  std::uint32_t instance = self->addInstance(primitive, 0, material, info.name, 1);
+  std::uint32_t instance = self->addInstance(primitive, 0, material, info.name, 1, mask);
   Bounds &bounds = self->instanceBounds.back();
   for (int i = 0; i < 3; ++i) {
     bounds.lower[i] = outwards(given.lower[i], -1);
@@ -436,11 +444,11 @@ std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name) {
   return std::uint32_t(self->meshes.size() - 1);
 }
 
-std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material) {
+std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material, std::uint32_t mask) {
   if (mesh >= self->meshes.size())
     throw Error(ErrorCode::UnknownName, fmt::format("the scene has no mesh number {}", mesh));
   return self->addInstance(0, mesh, material, self->meshes[mesh]->name,
-                           self->meshTable[mesh].triangleCount);
+                           self->meshTable[mesh].triangleCount, mask);
 }
 
 std::size_t Scene::recordBytes() const {
@@ -491,9 +499,19 @@ void Scene::setCamera(RtslRef camera) {
   self->camera = camera;
 }
 
+void Scene::setRayGeneration(RtslRef rayGeneration) {
+  self->requireRole(rayGeneration, "rt_RayGeneration", {"generate"});
+  self->rayGeneration = rayGeneration;
+}
+
 void Scene::setBackground(RtslRef miss) {
-  self->requireRole(miss, "rt_Miss", {"miss"});
+  self->requireRole(miss, "rt_Miss", self->ifClassic("miss"));
   self->background = miss;
+}
+
+void Scene::setException(RtslRef exception) {
+  self->requireRole(exception, "rt_Exception", {"exception"});
+  self->exception = exception;
 }
 
 void Scene::Implementation::setColor(const std::vector<float> &color, float *to,
@@ -520,8 +538,10 @@ const std::vector<Warning> &Scene::warnings() const {
 }
 
 RtslLaunch Scene::launch() const {
-  if (self->camera == 0)
+  if (self->isClassic() && self->camera == 0)
     throw Error(ErrorCode::IncompleteScene, "the scene has no camera");
+  if (!self->isClassic() && self->rayGeneration == 0)
+    throw Error(ErrorCode::IncompleteScene, "the scene has no ray generation");
   return self->tables();
 }
 

@@ -54,17 +54,22 @@ public:
   /// Adds an RTSL primitive to what rays can hit. Its bounds are asked for at once: not a number or
   /// inverted ones throw DegenerateGeometry; a box without any extent gives a warning, for no ray
   /// will hit it. Returns the instance's index.
-  std::uint32_t addPrimitive(RtslRef primitive, RtslRef material);
+  /// Rays see it whose mask has a bit of its own.
+  std::uint32_t addPrimitive(RtslRef primitive, RtslRef material, std::uint32_t mask = ~0u);
 
   /// Adds a mesh; returns its index for addMeshInstance. Throws BadMesh.
   std::uint32_t addMesh(Mesh mesh, const std::string &name = {});
 
   /// Adds a mesh to what rays can hit. Returns the instance's index.
-  std::uint32_t addMeshInstance(std::uint32_t mesh, RtslRef material);
+  std::uint32_t addMeshInstance(std::uint32_t mesh, RtslRef material, std::uint32_t mask = ~0u);
 
   void addLight(RtslRef light);
   void setCamera(RtslRef camera);
+  /// Of the programs engine, in place of a camera.
+  void setRayGeneration(RtslRef rayGeneration);
   void setBackground(RtslRef miss);
+  /// What samples are that meet an exception, in programs with RTSL_FEATURE_EXCEPTIONS.
+  void setException(RtslRef exception);
   /// As many numbers as the program's color has components, red, green and blue, or one for all.
   /// Throws WrongType.
   void setBackgroundColor(const std::vector<float> &color);
@@ -78,7 +83,7 @@ public:
   const std::vector<Warning> &warnings() const;
 
   /// The launch that describes this scene, with width, height, seed, depth and the traversal left
-  /// at 0. It stays valid until the scene changes. Throws IncompleteScene if there is no camera.
+  /// at 0. It stays valid until the scene changes. Throws IncompleteScene if there is no camera, or ray generation.
   RtslLaunch launch() const;
 
   /// Bytes of all records, from RtslLaunch::records.

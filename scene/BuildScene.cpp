@@ -29,7 +29,10 @@ public:
       : description(description), program(*program), scene(std::move(program)) {}
 
   Scene build() {
-    scene.setCamera(add(description.camera, "camera"));
+    if (program.engine == runtime::Engine::Classic)
+      scene.setCamera(add(description.camera.value(), "camera"));
+    else
+      scene.setRayGeneration(add(description.rayGeneration.value(), "rayGeneration"));
     // Named objects come into being in the order of their names, those that they refer to before
     // them.
     for (const auto &texture : description.textures)
@@ -43,6 +46,8 @@ public:
                          fmt::format("{} (lights.{})", description.lights[i].className.text, i)));
     if (description.background)
       scene.setBackground(add(*description.background, "background"));
+    if (description.exception)
+      scene.setException(add(*description.exception, "exception"));
     if (description.backgroundColor)
       setColor(*description.backgroundColor,
                [&](const auto &color) { scene.setBackgroundColor(color); });
@@ -198,10 +203,10 @@ private:
           geometry.name.text.empty()
               ? fmt::format("{} (objects.{})", geometry.primitive->className.text, index)
               : geometry.name.text;
-      scene.addPrimitive(add(*geometry.primitive, name), material);
+      scene.addPrimitive(add(*geometry.primitive, name), material, geometry.mask);
       return;
     }
-    scene.addMeshInstance(mesh(geometry), material);
+    scene.addMeshInstance(mesh(geometry), material, geometry.mask);
   }
 
   /// With the place of the reference, which is where the mistake is.

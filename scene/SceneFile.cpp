@@ -28,13 +28,16 @@ public:
     expect(root, Kind::Object, "a scene");
     refuseWhatComesLater();
     checkKeys(root,
-              {"$schema", "rtsl", "import", "camera", "textures", "materials", "objects", "lights",
-               "background", "ambient", "render"},
+              {"$schema", "rtsl", "import", "camera", "rayGeneration", "textures", "materials",
+               "objects", "lights", "background", "ambient", "exception", "render"},
               "a scene");
     readVersion();
     if (const JsonValue *imports = root.find("import"))
       readImports(*imports);
-    scene.camera = readObject(require(root, "camera", "a scene"), "`camera`");
+    if (const JsonValue *camera = root.find("camera"))
+      scene.camera = readObject(*camera, "`camera`");
+    if (const JsonValue *generation = root.find("rayGeneration"))
+      scene.rayGeneration = readObject(*generation, "`rayGeneration`");
     if (const JsonValue *textures = root.find("textures"))
       readNamed(*textures, "textures", scene.textures);
     if (const JsonValue *materials = root.find("materials"))
@@ -55,10 +58,15 @@ public:
       else
         scene.backgroundColor = &readColor(*background, "`background`");
     }
+    if (const JsonValue *exception = root.find("exception"))
+      scene.exception = readObject(*exception, "`exception`");
     if (const JsonValue *ambient = root.find("ambient"))
       scene.ambient = &readColor(*ambient, "`ambient`");
     if (const JsonValue *render = root.find("render"))
       readRender(*render);
+    bool isClassic = scene.render.engine == runtime::Engine::Classic;
+    require(root, isClassic ? "camera" : "rayGeneration",
+            isClassic ? "a scene" : "a scene for the engine `programs`");
   }
 
 private:
@@ -176,7 +184,7 @@ private:
 
   GeometryDescription readGeometry(const JsonValue &value) const {
     expect(value, Kind::Object, "an element of `objects`");
-    checkKeys(value, {"name", "primitive", "mesh", "material", "transform"}, "an object");
+    checkKeys(value, {"name", "primitive", "mesh", "material", "transform", "mask"}, "an object");
     GeometryDescription geometry;
     geometry.place = value.place();
     if (const JsonValue *name = value.find("name")) {
@@ -196,6 +204,8 @@ private:
       geometry.mesh = {mesh->string, mesh->place()};
       geometry.meshPath = resolve(*mesh);
     }
+    if (const JsonValue *mask = value.find("mask"))
+      geometry.mask = readInteger(*mask, 0, 0xffffffff, "`mask`");
     geometry.material = readReference(require(value, "material", "an object"), "`material`");
     if (const JsonValue *transform = value.find("transform")) {
       if (primitive)
@@ -227,11 +237,13 @@ private:
     RenderSettings &render = scene.render;
     if (const JsonValue *engine = value.find("engine")) {
       expect(*engine, Kind::String, "`engine`");
-      if (engine->string != "classic")
-        throw Error(ErrorCode::NotSupported,
-                    fmt::format("there is no engine `{}`, only `classic`", engine->string),
-                    engine->place());
-      render.engine = engine->string;
+      if (engine->string != "classic" && engine->string != "programs")
+        throw Error(
+            ErrorCode::NotSupported,
+            fmt::format("there is no engine `{}`, only `classic` and `programs`", engine->string),
+            engine->place());
+      if (engine->string == "programs")
+        render.engine = runtime::Engine::Programs;
     }
     if (const JsonValue *size = value.find("size")) {
       readNumbers(*size, 2, "`size`");
@@ -291,7 +303,12 @@ SceneDescription readSceneFile(const std::string &path, const std::vector<std::s
 
 std::vector<LocatedName> classMentions(const SceneDescription &description) {
   std::vector<LocatedName> mentions;
-  collect(description.camera, mentions);
+  // Of what begins a sample only one takes part.
+  const auto &start = description.render.engine == runtime::Engine::Classic
+                          ? description.camera
+                          : description.rayGeneration;
+  if (start)
+    collect(*start, mentions);
   for (const auto &texture : description.textures)
     collect(texture.second, mentions);
   for (const auto &material : description.materials)
@@ -304,8 +321,9 @@ std::vector<LocatedName> classMentions(const SceneDescription &description) {
   }
   for (const ObjectDescription &light : description.lights)
     collect(light, mentions);
-  if (description.background)
-    collect(*description.background, mentions);
+  for (const auto &object : {description.background, description.exception})
+    if (object)
+      collect(*object, mentions);
   return mentions;
 }
 

@@ -55,12 +55,13 @@ struct GeometryDescription {
   std::string meshPath;                       // resolved
   ReferenceDescription material;
   runtime::Transform transform;
+  std::uint32_t mask = ~0u; // rays see it whose mask has a bit of it
   Place place;
 };
 
 /// "render", with the defaults where the file is silent.
 struct RenderSettings {
-  std::string engine = "classic";
+  runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t width = 960, height = 540;
   std::uint32_t samplesPerPixel = 16;
   std::uint32_t depth = 8;
@@ -75,11 +76,13 @@ struct ImportDescription {
 struct SceneDescription {
   std::string file; // as given
   std::vector<ImportDescription> imports;
-  ObjectDescription camera;
+  std::optional<ObjectDescription> camera;        // the classic engine needs it
+  std::optional<ObjectDescription> rayGeneration; // the programs engine needs it
   std::map<std::string, ObjectDescription> textures, materials;
   std::vector<GeometryDescription> objects;
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class
+  std::optional<ObjectDescription> exception;  // an rt_Exception class
   const JsonValue *backgroundColor = nullptr;  // or a color
   const JsonValue *ambient = nullptr;
   RenderSettings render;

@@ -135,7 +135,7 @@ static RootModel selectorModel() {
 }
 
 static RootModel exceptionModel() {
-  const StateSet sees = {S::LaunchIndex, S::LaunchSize, S::Depth, S::SampleColor};
+  const StateSet sees = {S::LaunchIndex, S::LaunchSize, S::Depth, S::SampleColor, S::ExceptionCode};
   return {"rt_Exception", sees, {{"exception", sees, {S::SampleColor}, {}}}, false};
 }
 

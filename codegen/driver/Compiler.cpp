@@ -49,13 +49,15 @@ std::unique_ptr<mlir::MLIRContext> makeContext() {
 }
 
 mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
-                                              std::set<std::string> classes, Diagnostics &diagnostics,
+                                              const LinkRequest &request, Diagnostics &diagnostics,
                                               mlir::MLIRContext &context) {
   LowerOptions lowering;
   lowering.diagnostics = &diagnostics;
   lowering.colorComponents = options.colorComponents;
   lowering.checkIndices = options.checkIndices;
-  lowering.classes = std::move(classes);
+  lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
+  lowering.prints = request.features & RTSL_FEATURE_PRINT;
+  lowering.classes = {request.classes.begin(), request.classes.end()};
   return lower(module, lowering, context);
 }
 
@@ -160,15 +162,18 @@ std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
 }
 
 /// What samples of a linked program come from.
-std::vector<std::string> sampleSymbols(const CompileOptions &options) {
+std::vector<std::string> sampleSymbols(const runtime::Program &program, const CompileOptions &options) {
   if (options.target == Target::HostMegakernel)
     return {"rtsl_lane_bytes", "rtsl_run_lane"};
-  return {options.trace == TraceMode::Split ? "rtsl_sample_split" : "rtsl_sample"};
+  if (options.trace == TraceMode::Split)
+    return {"rtsl_sample_split"};
+  return {program.engine == runtime::Engine::Classic ? "rtsl_sample" : "rtsl_generate"};
 }
 
 /// The functions of a linked program that the runtime asks for.
 std::vector<std::string> entries(const runtime::Program &program, const CompileOptions &options) {
-  std::vector<std::string> names = sampleSymbols(options);
+  std::vector<std::string> names = sampleSymbols(program, options);
+  names.push_back("rtsl_rt_Material_anyHit_payload");
 #define RTSL_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
 #include "runtime/device/Slots.def"
   for (const runtime::ClassInfo &info : program.classes) {
@@ -189,8 +194,9 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
     find(jit, "rtsl_lane_bytes", program.megakernel.laneBytes);
     find(jit, "rtsl_run_lane", program.megakernel.runLane);
   } else {
-    find(jit, sampleSymbols(options).front(), program.sample);
+    find(jit, sampleSymbols(program, options).front(), program.sample);
   }
+  find(jit, "rtsl_rt_Material_anyHit_payload", program.slots.rt_Material_anyHit_payload);
 #define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "runtime/device/Slots.def"
   for (runtime::ClassInfo &info : program.classes) {
@@ -289,13 +295,14 @@ void checkLiveState(const typed::Module &module, const CompileOptions &options, 
 
 namespace {
 
-/// A linked scene on level 1; null if there were errors.
+/// A linked scene on level 1; null if there were errors. `isSplit`: it is to be split at `trace`.
 mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const LinkRequest &request,
-                                            const CompileOptions &options, Diagnostics &diagnostics,
+                                            const CompileOptions &options, bool isSplit, Diagnostics &diagnostics,
                                             mlir::MLIRContext &context, runtime::Program &program) {
-  mlir::OwningOpRef<mlir::ModuleOp> ir =
-      lowerModule(module, options, {request.classes.begin(), request.classes.end()}, diagnostics, context);
+  mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, request, diagnostics, context);
   if (!ir || !link(*ir, module, request, options.colorComponents, diagnostics, program))
+    return nullptr;
+  if (isSplit && !refuseTracingCircles(*ir, module, diagnostics))
     return nullptr;
   return ir;
 }
@@ -319,12 +326,13 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
                                      const CompileOptions &options, Diagnostics &diagnostics) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
-  const auto ir = linkScene(module, request, options, diagnostics, *context, program);
+  const bool isSplit = stage != Stage::Ir && stage != Stage::Ssa;
+  const auto ir = linkScene(module, request, options, isSplit, diagnostics, *context, program);
   if (!ir)
     return std::nullopt;
   if (stage == Stage::Ir)
     return print(*ir);
-  runToSsa(*ir, stage == Stage::Ssa ? TraceMode::Recurse : TraceMode::Split, /*dispatch=*/stage != Stage::Split);
+  runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/stage != Stage::Split);
   if (stage == Stage::Ssa || stage == Stage::Split)
     return print(*ir);
 
@@ -345,7 +353,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
                     Diagnostics &diagnostics, runtime::Package &package) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
-  auto ir = linkScene(module, request, options, diagnostics, *context, program);
+  auto ir = linkScene(module, request, options, /*isSplit=*/true, diagnostics, *context, program);
   if (!ir)
     return false;
   const SplitReport report = runToSsa(*ir, TraceMode::Split);
@@ -377,20 +385,21 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   const bool isMegakernel = options.target == Target::HostMegakernel;
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   auto program = std::make_shared<runtime::Program>();
-  const auto ir = linkScene(module, request, options, diagnostics, *context, *program);
+  const TraceMode trace = isMegakernel ? TraceMode::Split : options.trace;
+  const auto ir = linkScene(module, request, options, trace == TraceMode::Split, diagnostics, *context, *program);
   if (!ir)
     return nullptr;
-  runToSsa(*ir, isMegakernel ? TraceMode::Split : options.trace);
+  runToSsa(*ir, trace);
 
   LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/true));
   defineFacts(code, *program);
-  std::vector<codegen::HostSymbol> symbols;
+  std::vector<codegen::HostSymbol> symbols = {{"rtsl_print", reinterpret_cast<void *>(&rtsl_print)}};
   if (isMegakernel) {
     linkDeviceCode(code, megakernelCode(/*forGpu=*/false), entries(*program, options));
   } else {
     linkDeviceCode(code, runtime::deviceBitcode(), entries(*program, options));
-    symbols = {{"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)},
-               {"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)}};
+    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
+    symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
   }
   codegen::optimize(*code.module, *code.machine, code.options);
   std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),

@@ -46,6 +46,8 @@ struct LinkRequest {
   /// Which material meets which primitive, as (primitive class, material class); the primitive class is empty for a
   /// triangle mesh. Attributes are matched along these.
   std::vector<std::pair<std::string, std::string>> surfaces;
+  runtime::Engine engine = runtime::Engine::Classic;
+  std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints
 };
 
 /// The text of `stage` (Ir and what follows) for a module without a scene: what is called through references stays a

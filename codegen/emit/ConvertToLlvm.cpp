@@ -47,6 +47,10 @@ LogicalResult checkLinked(mlir::ModuleOp module) {
       attribute.emitError() << "attribute `" << attribute.getName()
                             << "` has no `offset`: linking has not given it a place";
       isComplete = false;
+    } else if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op);
+               trace && (!trace.getRayType() || !trace.getHow())) {
+      trace.emitError() << "the ray has no `ray_type` or `how`: linking has not numbered it";
+      isComplete = false;
     } else if (llvm::isa<ir::IfOp, ir::LoopOp, ir::SwitchOp, ir::IlluminanceOp, ir::ReturnOp>(op)) {
       op->emitError() << "is of level 1; run `rtsl-to-cf` first";
       isComplete = false;
@@ -101,16 +105,24 @@ void renameFunctions(mlir::ModuleOp module) {
 // 4. The state as a parameter
 //===----------------------------------------------------------------------===//
 
-/// Says that a pointer parameter is valid for `size` bytes and that nothing else points there.
+/// What else may point to where a parameter does.
+enum class Sharing : uint8_t {
+  None,     // nothing does, while the function runs and afterwards
+  Captured, // nothing does while the function runs
+  Shared,   // something may
+};
+
+/// Says that a pointer parameter is valid for `size` bytes.
 void describePointer(FuncOp function, unsigned index, uint64_t size, unsigned alignment,
-                     bool isCaptured) {
+                     Sharing sharing) {
   mlir::Builder builder(function.getContext());
   auto set = [&](llvm::StringRef name, mlir::Attribute value) {
     function.setArgAttr(index, name, value);
   };
   set(LLVM::LLVMDialect::getNonNullAttrName(), builder.getUnitAttr());
-  set(LLVM::LLVMDialect::getNoAliasAttrName(), builder.getUnitAttr());
-  if (!isCaptured)
+  if (sharing != Sharing::Shared)
+    set(LLVM::LLVMDialect::getNoAliasAttrName(), builder.getUnitAttr());
+  if (sharing == Sharing::None)
     set(LLVM::LLVMDialect::getNoCaptureAttrName(), builder.getUnitAttr());
   set(LLVM::LLVMDialect::getAlignAttrName(), builder.getI64IntegerAttr(alignment));
   set(LLVM::LLVMDialect::getDereferenceableAttrName(), builder.getI64IntegerAttr(size));
@@ -118,15 +130,20 @@ void describePointer(FuncOp function, unsigned index, uint64_t size, unsigned al
 
 void addStateParameter(mlir::ModuleOp module) {
   mlir::Type pointer = LLVM::LLVMPointerType::get(module.getContext());
+  // A ray that was sent points to its payload, which lies in the frame of the state that sent it.
+  bool holdsPayloads = module.walk([](ir::SpawnPayloadOp) { return mlir::WalkResult::interrupt(); })
+                           .wasInterrupted();
   for (FuncOp function : module.getOps<FuncOp>()) {
+    bool isState = function->hasAttr("rtsl.state") || function.getSymName() == "rtsl_run_state";
     for (auto [index, type] : llvm::enumerate(function.getArgumentTypes()))
       if (auto address = llvm::dyn_cast<ir::PtrType>(type))
-        // Arguments in memory are copies of the caller's (in) or temporaries (out, inout, results).
+        // Arguments in memory are copies of the caller's (in) or temporaries (out, inout, results),
+        // or a frame.
         describePointer(function, index, ir::sizeInBytes(address.getPointee()), ir::memoryAlignment,
-                        /*isCaptured=*/false);
+                        isState && holdsPayloads ? Sharing::Shared : Sharing::None);
     // The runtime may keep the state: a child ray could know its parent.
     (void)function.insertArgument(0, pointer, {}, function.getLoc());
-    describePointer(function, 0, sizeof(RtslState), alignof(RtslState), /*isCaptured=*/true);
+    describePointer(function, 0, sizeof(RtslState), alignof(RtslState), Sharing::Captured);
   }
   for (FuncOp function : module.getOps<FuncOp>())
     function.walk([&](CallOp call) { call->insertOperands(0, {function.getArgument(0)}); });

@@ -99,6 +99,137 @@ struct ConvertIlluminate : ConvertOpToLLVMPattern<ir::IlluminateOp> {
   }
 };
 
+//===----------------------------------------------------------------------===//
+// Rays with a payload
+//===----------------------------------------------------------------------===//
+
+/// The address of a field of RtslState at this offset.
+Value stateField(mlir::OpBuilder &builder, mlir::Location location, uint32_t bytes) {
+  return offsetAddress(builder, location, rayState(builder), bytes);
+}
+
+Value loadStateField(mlir::OpBuilder &builder, mlir::Location location, mlir::Type type,
+                     uint32_t bytes) {
+  return loadFrom(builder, location, type, stateField(builder, location, bytes), false);
+}
+
+/// `rtsl.trace_payload`, or its first half.
+template <typename Op>
+struct ConvertPayloadRay : ConvertOpToLLVMPattern<Op> {
+  using ConvertOpToLLVMPattern<Op>::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(Op op, typename Op::Adaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    mlir::Location location = op.getLoc();
+    mlir::Type i32 = rewriter.getI32Type(), f32 = rewriter.getF32Type();
+    auto orOwn = [&](Value given, mlir::Type type, uint32_t field) {
+      return given ? given : loadStateField(rewriter, location, type, field);
+    };
+    llvm::SmallVector<Value> arguments = {rayState(rewriter)};
+    llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getOrigin()));
+    llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getDirection()));
+    arguments.push_back(adaptor.getTmin());
+    arguments.push_back(adaptor.getTmax());
+    arguments.push_back(adaptor.getPayload());
+    arguments.push_back(orOwn(adaptor.getRoot(), i32, offsetof(RtslState, rayRoot)));
+    arguments.push_back(orOwn(adaptor.getMask(), i32, offsetof(RtslState, rayMask)));
+    arguments.push_back(orOwn(adaptor.getTime(), f32, offsetof(RtslState, Time)));
+    arguments.push_back(constantLike(rewriter, location, i32, *op.getRayType()));
+    arguments.push_back(constantLike(rewriter, location, i32, *op.getHow()));
+    callRuntime(rewriter, location, runtimeFunction(op), arguments);
+    rewriter.eraseOp(op);
+    return mlir::success();
+  }
+};
+
+struct ConvertPayload : ConvertOpToLLVMPattern<ir::PayloadOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::PayloadOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    mlir::Type pointer = LLVM::LLVMPointerType::get(op.getContext());
+    Value field = stateField(rewriter, op.getLoc(), offsetof(RtslState, payload));
+    rewriter.replaceOpWithNewOp<LLVM::LoadOp>(op, pointer, field, alignof(void *));
+    return mlir::success();
+  }
+};
+
+struct ConvertRayType : ConvertOpToLLVMPattern<ir::RayTypeOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::RayTypeOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOp(
+        op, loadStateField(rewriter, op.getLoc(), op.getType(), offsetof(RtslState, rayType)));
+    return mlir::success();
+  }
+};
+
+struct ConvertAnswerHit : ConvertOpToLLVMPattern<ir::AnswerHitOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::AnswerHitOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    Value answer = constantLike(rewriter, op.getLoc(), rewriter.getI32Type(),
+                                static_cast<int64_t>(op.getAnswer()));
+    Value field = stateField(rewriter, op.getLoc(), offsetof(RtslState, hitAnswer));
+    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, answer, field, alignof(uint32_t));
+    return mlir::success();
+  }
+};
+
+struct ConvertHitAnswered : ConvertOpToLLVMPattern<ir::HitAnsweredOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::HitAnsweredOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    Value answer = loadStateField(rewriter, op.getLoc(), rewriter.getI32Type(),
+                                  offsetof(RtslState, hitAnswer));
+    rewriter.replaceOpWithNewOp<LLVM::ICmpOp>(
+        op, LLVM::ICmpPredicate::ne, answer,
+        constantLike(rewriter, op.getLoc(), answer.getType(), RTSL_ACCEPT));
+    return mlir::success();
+  }
+};
+
+//===----------------------------------------------------------------------===//
+// Events
+//===----------------------------------------------------------------------===//
+
+struct ConvertRaise : ConvertOpToLLVMPattern<ir::RaiseOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::RaiseOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    Value exception = constantLike(rewriter, op.getLoc(), rewriter.getI32Type(), op.getException());
+    callRuntime(rewriter, op.getLoc(), runtimeFunction(op), {rayState(rewriter), exception});
+    rewriter.eraseOp(op);
+    return mlir::success();
+  }
+};
+
+/// The words of the values go to memory.
+struct ConvertPrint : ConvertOpToLLVMPattern<ir::PrintOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::PrintOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    mlir::Location location = op.getLoc();
+    mlir::Type i32 = rewriter.getI32Type();
+    auto count = static_cast<uint32_t>(adaptor.getValues().size());
+    Value words = stackSlot(rewriter, location, 4 * std::max(count, 1u));
+    for (auto [index, value] : llvm::enumerate(adaptor.getValues())) {
+      if (value.getType().isInteger(1))
+        value = LLVM::ZExtOp::create(rewriter, location, i32, value);
+      Value place = offsetAddress(rewriter, location, words, 4 * static_cast<uint32_t>(index));
+      LLVM::StoreOp::create(rewriter, location, value, place, 4);
+    }
+    callRuntime(rewriter, location, runtimeFunction(op),
+                {rayState(rewriter),
+                 constantLike(rewriter, location, i32, op.getFormat().value_or(0)), words,
+                 constantLike(rewriter, location, i32, count)});
+    rewriter.eraseOp(op);
+    return mlir::success();
+  }
+};
+
+//===----------------------------------------------------------------------===//
+// Rays that were cut
+//===----------------------------------------------------------------------===//
+
 /// The two halves of a trace in a function that was split there.
 struct ConvertSpawn : ConvertOpToLLVMPattern<ir::SpawnOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
@@ -127,7 +258,10 @@ struct ConvertTraceResult : ConvertOpToLLVMPattern<ir::TraceResultOp> {
 
 void addRayPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
   patterns.add<ConvertTrace, ConvertHit, ConvertRand, ConvertAmbient, ConvertLightCount,
-               ConvertIlluminate, ConvertSpawn, ConvertTraceResult>(converter);
+               ConvertIlluminate, ConvertSpawn, ConvertTraceResult,
+               ConvertPayloadRay<ir::TracePayloadOp>, ConvertPayloadRay<ir::SpawnPayloadOp>,
+               ConvertRaise, ConvertPrint, ConvertPayload, ConvertRayType, ConvertAnswerHit,
+               ConvertHitAnswered>(converter);
 }
 
 } // namespace rtsl::codegen

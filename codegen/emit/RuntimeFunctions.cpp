@@ -15,6 +15,10 @@ std::string runtimeFunction(mlir::Operation *op) {
         return "rtsl_" + ir::stringifyElementary(elementary.getFunction()).str();
       })
       .Case([](ir::TraceOp) { return "rtsl_trace"; })
+      .Case([](ir::TracePayloadOp) { return "rtsl_trace_payload"; })
+      .Case([](ir::SpawnPayloadOp) { return "rtsl_spawn_payload"; })
+      .Case([](ir::RaiseOp) { return "rtsl_raise"; })
+      .Case([](ir::PrintOp) { return "rtsl_print"; })
       .Case([](ir::HitOp) { return "rtsl_hit"; })
       .Case([](ir::RandOp) { return "rtsl_rand"; })
       .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
@@ -40,7 +44,19 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
       .Case([&](ir::TraceOp) {
         return function(nothing, {pointer, f32, f32, f32, f32, f32, f32, pointer});
       })
-      .Case([&](ir::HitOp) { return function(i32, {pointer, f32}); })
+      .Case<ir::TracePayloadOp, ir::SpawnPayloadOp>([&](auto) {
+        return function(nothing, {pointer, f32, f32, f32, f32, f32, f32, f32, f32, pointer, i32,
+                                  i32, f32, i32, i32});
+      })
+      .Case([&](ir::RaiseOp) {
+        return function(nothing, {pointer, i32});
+      })
+      .Case([&](ir::PrintOp) {
+        return function(nothing, {pointer, i32, pointer, i32});
+      })
+      .Case([&](ir::HitOp) {
+        return function(i32, {pointer, f32});
+      })
       .Case([&](ir::RandOp) { return function(f32, {pointer}); })
       .Case([&](ir::IlluminateOp) {
         return function(i32, {pointer, i32, f32, f32, f32, f32, f32, f32, f32});

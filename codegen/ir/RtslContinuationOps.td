@@ -12,22 +12,23 @@ include "mlir/Interfaces/ControlFlowInterfaces.td"
 // What is read or written is the frame, memory of the ray's that nothing else touches.
 def Rtsl_FrameResource : Resource<"::rtsl::ir::FrameResource">;
 
-def Rtsl_SuspendOp : Rtsl_Op<"suspend", [Terminator,
+def Rtsl_SuspendOp : Rtsl_Op<"suspend", [Terminator, AttrSizedOperandSegments,
     DeclareOpInterfaceMethods<BranchOpInterface>]> {
   let summary = "traces a ray and goes on at a block when it comes back";
   let description = [{
     Everything that is live in the `resume` block has to survive the trace. What is passed to its arguments is saved and
     restored; `names` says what each is called in the source, one unique name for one value in the whole function, so that it
     keeps its slot from trace to trace. The `resume` block begins with `rtsl.trace_result` and has this op as its only
-    predecessor.
+    predecessor. A ray with a payload was prepared before, by `rtsl.spawn_payload`: then no ray is named here, and the
+    `resume` block begins with `rtsl.trace_returned`.
 
     Example: `rtsl.suspend %origin, %direction, ^resume(%i : i32) names ["i"]`
   }];
-  let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, Variadic<Rtsl_Value>:$saved,
+  let arguments = (ins Optional<Rtsl_Vec3>:$origin, Optional<Rtsl_Vec3>:$direction, Variadic<Rtsl_Value>:$saved,
                        DefaultValuedAttr<StrArrayAttr, "{}">:$names);
   let successors = (successor AnySuccessor:$resume);
   let assemblyFormat = [{
-    $origin `,` $direction `,` $resume (`(` $saved^ `:` type($saved) `)`)? (`names` $names^)? attr-dict
+    ($origin^ `,` $direction `,`)? $resume (`(` $saved^ `:` type($saved) `)`)? (`names` $names^)? attr-dict
   }];
   let hasVerifier = 1;
 }
@@ -41,6 +42,16 @@ def Rtsl_TraceResultOp : Rtsl_Op<"trace_result", []> {
   }];
   let results = (outs Rtsl_Color:$color);
   let assemblyFormat = "attr-dict `:` type($color)";
+}
+
+def Rtsl_TraceReturnedOp : Rtsl_Op<"trace_returned", []> {
+  let summary = "a ray with a payload has come back";
+  let description = [{
+    Stands where `rtsl.trace_result` would; what came back lies in the payload. It becomes nothing.
+
+    Example: `rtsl.trace_returned`
+  }];
+  let assemblyFormat = "attr-dict";
 }
 
 def Rtsl_FrameLoadOp : Rtsl_Op<"frame_load", [Rtsl_Named]> {
@@ -88,6 +99,23 @@ def Rtsl_SpawnOp : Rtsl_Op<"spawn", []> {
   }];
   let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction);
   let assemblyFormat = "$origin `,` $direction attr-dict";
+}
+
+def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
+  let summary = "prepares a ray with a payload, which is traced when this state ends";
+  let description = [{
+    Takes what `rtsl.trace_payload` does. The payload lies in the frame.
+
+    Example: `rtsl.spawn_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
+  }];
+  let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, F32:$tmin, F32:$tmax,
+                       Rtsl_PtrToStruct:$payload, Optional<I32>:$root,
+                       Optional<I32>:$mask, Optional<F32>:$time, OptionalAttr<I32Attr>:$ray_type,
+                       OptionalAttr<I32Attr>:$how);
+  let assemblyFormat = [{
+    $origin `,` $direction `from` $tmin `to` $tmax `carries` $payload (`root` $root^)? (`mask` $mask^)? (`time` $time^)?
+    attr-dict `:` type($payload)
+  }];
 }
 
 def Rtsl_Transition : I32Enum<"Transition", "what happens when a state ends", [

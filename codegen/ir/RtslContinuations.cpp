@@ -15,8 +15,12 @@ LogicalResult SuspendOp::verify() {
   mlir::Block *resume = getResume();
   if (resume->getSinglePredecessor() != getOperation()->getBlock())
     return emitOpError() << "resumes at a block that has other predecessors";
-  if (resume->empty() || !llvm::isa<TraceResultOp>(resume->front()))
+  if (!getOrigin() != !getDirection())
+    return emitOpError() << "names half a ray";
+  if (getOrigin() && (resume->empty() || !llvm::isa<TraceResultOp>(resume->front())))
     return emitOpError() << "resumes at a block that does not begin with `rtsl.trace_result`";
+  if (!getOrigin() && (resume->empty() || !llvm::isa<TraceReturnedOp>(resume->front())))
+    return emitOpError() << "resumes at a block that does not begin with `rtsl.trace_returned`";
   if (getNames().size() != getSaved().size())
     return emitOpError() << "saves " << getSaved().size() << " values and names "
                          << getNames().size();

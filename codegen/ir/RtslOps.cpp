@@ -237,6 +237,20 @@ void StateOp::build(mlir::OpBuilder &builder, mlir::OperationState &state, llvm:
   build(builder, state, PtrType::get(type), name);
 }
 
+LogicalResult PrintOp::verify() {
+  std::size_t words = 0;
+  for (std::int32_t count : getWords())
+    words += static_cast<std::size_t>(count);
+  if (getItems().size() != getWords().size() || words != getValues().size())
+    return emitOpError() << "prints " << getItems().size() << " items of " << words
+                         << " words, but has " << getValues().size();
+  return mlir::success();
+}
+
+void PayloadOp::getAsmResultNames(NameSetter setName) {
+  setName(getResult(), "payload");
+}
+
 void StateOp::getAsmResultNames(NameSetter setName) {
   setName(getResult(), getName());
 }

@@ -313,6 +313,98 @@ def Rtsl_TraceOp : Rtsl_Op<"trace"> {
   let assemblyFormat = "$origin `,` $direction attr-dict `:` type($color)";
 }
 
+def Rtsl_TracePayloadOp : Rtsl_Op<"trace_payload", [AttrSizedOperandSegments]> {
+  let summary = "traces a ray that carries a payload";
+  let description = [{
+    Hits count from `tmin` to `tmax`. The programs that the ray meets read and write what lies at `payload`, whose type
+    says which programs these are. What is left out of `root`, `mask` and `time` is as it is for this ray. Linking
+    numbers the ray types of a scene and finds out how hits have to be searched for (RTSL_FIRST_HIT ... of
+    runtime/device/Abi.h): `ray_type` and `how`; without them there is no code for the op.
+
+    Example: `rtsl.trace_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
+  }];
+  let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, F32:$tmin, F32:$tmax,
+                       Rtsl_PtrToStruct:$payload, Optional<I32>:$root,
+                       Optional<I32>:$mask, Optional<F32>:$time, OptionalAttr<I32Attr>:$ray_type,
+                       OptionalAttr<I32Attr>:$how);
+  let assemblyFormat = [{
+    $origin `,` $direction `from` $tmin `to` $tmax `carries` $payload (`root` $root^)? (`mask` $mask^)? (`time` $time^)?
+    attr-dict `:` type($payload)
+  }];
+}
+
+def Rtsl_PayloadOp : Rtsl_Op<"payload", [Pure, Rtsl_Named]> {
+  let summary = "address of what this ray carries";
+  let description = [{
+    In methods that answer rays of that type. Nothing else points there while the method runs.
+
+    Example: `%p = rtsl.payload : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
+  }];
+  let results = (outs Rtsl_PtrToStruct:$result);
+  let assemblyFormat = "attr-dict `:` type($result)";
+}
+
+def Rtsl_RayTypeOp : Rtsl_Op<"ray_type", [Pure]> {
+  let summary = "number of the type of this ray's payload, from 1";
+  let description = [{
+    Example: `%n = rtsl.ray_type`
+  }];
+  let results = (outs I32:$result);
+  let assemblyFormat = "attr-dict";
+}
+
+def Rtsl_HitAnswer : I32Enum<"HitAnswer", "what `anyHit` makes of a hit", [
+    I32EnumCase<"Accept", 0, "accept">, I32EnumCase<"Ignore", 1, "ignore">, I32EnumCase<"Terminate", 2, "terminate">]> {
+  let cppNamespace = "::rtsl::ir";
+}
+
+def Rtsl_AnswerHitOp : Rtsl_Op<"answer_hit"> {
+  let summary = "refuses a hit, or accepts it and ends the search";
+  let description = [{
+    In `anyHit`, which ends there: lowering puts a return behind it.
+
+    Example: `rtsl.answer_hit ignore`
+  }];
+  let arguments = (ins EnumAttr<Rtsl_Dialect, Rtsl_HitAnswer, "hit_answer">:$answer);
+  let assemblyFormat = "`` $answer attr-dict"; // the attribute prints a space before itself
+}
+
+def Rtsl_HitAnsweredOp : Rtsl_Op<"hit_answered"> {
+  let summary = "whether `rtsl.answer_hit` has run for this hit";
+  let description = [{
+    Behind calls of functions that may answer.
+
+    Example: `%ended = rtsl.hit_answered`
+  }];
+  let results = (outs I1:$result);
+  let assemblyFormat = "attr-dict";
+}
+
+def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
+  let summary = "notes that the sample has met an exception";
+  let description = [{
+    The number is one of RTSL_EXCEPTION_* (runtime/device/Abi.h). The shader goes on; what it computes is thrown away.
+
+    Example: `rtsl.raise 3`
+  }];
+  let arguments = (ins I32Attr:$exception);
+  let assemblyFormat = "$exception attr-dict";
+}
+
+def Rtsl_PrintOp : Rtsl_Op<"print"> {
+  let summary = "tells the author something";
+  let description = [{
+    One item after the other: a text, which takes no words, or the name of a type and as many of `values`, all of its
+    scalars in order, as it has words. Linking numbers the prints of a program in `format`.
+
+    Example: `rtsl.print ["at", "vec2"] words [0, 2](%x, %y) : f32, f32`
+  }];
+  let arguments = (ins StrArrayAttr:$items, DenseI32ArrayAttr:$words, Variadic<AnyType>:$values,
+                       OptionalAttr<I32Attr>:$format);
+  let assemblyFormat = "$items `words` $words `(` $values `)` attr-dict (`:` type($values)^)?";
+  let hasVerifier = 1;
+}
+
 def Rtsl_HitOp : Rtsl_Op<"hit"> {
   let summary = "reports an intersection at parameter t; true if it is the nearest so far";
   let description = [{

@@ -1,8 +1,8 @@
 //===- DeclareSlots.cpp - a unit without a scene --------------------------===//
 //
 // A file that is compiled alone calls through references what it does not know: each slot becomes the declaration of a
-// function, `@dispatch.rt_Texture.lookup`, that a linker fills. Attributes get places of their own in the order in which
-// they are mentioned.
+// function, `@dispatch.rt_Texture.lookup`, that a linker fills. Attributes get places of their own, and ray types
+// numbers, in the order in which they are mentioned.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
@@ -22,6 +22,7 @@ void declareSlots(mlir::ModuleOp ir) {
       words += ir::sizeInBytes(type) / 4;
     op.setOffset(place->second);
   });
+  linking::numberRayTypes(ir);
   linking::replaceSlots(ir, [](const linking::SlotCall &, mlir::func::FuncOp declaration) { declaration.setPrivate(); });
 }
 

@@ -1,7 +1,7 @@
 //===- FindNeeds.cpp - what of a hit is read ------------------------------===//
 //
 // Texture coordinates, derivatives and transforms cost time at every hit. What no function of the program reads is not
-// computed at all; what `shade` of a material cannot reach is not computed where that material was hit.
+// computed at all; what the methods of a material cannot reach is not computed where that material was hit.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -63,10 +63,15 @@ std::uint32_t findNeeds(mlir::ModuleOp ir) {
 }
 
 std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &material) {
+  std::uint32_t needs = 0;
+  for (const RayType &type : context.rayTypes)
+    for (const char *method : {"closestHit.", "anyHit."})
+      if (mlir::func::FuncOp program = findMethod(context, material, method + type.name()))
+        needs |= needsReachedFrom(program, context.ir);
   mlir::func::FuncOp shade = findMethod(context, material, "shade");
   if (!shade)
-    return 0;
-  std::uint32_t needs = needsReachedFrom(shade, context.ir);
+    return needs;
+  needs |= needsReachedFrom(shade, context.ir);
   // `illuminance` runs the lights on the material's own state.
   for (const LinkedClass &light : context.classes)
     if (light.info->root == "rt_Light")

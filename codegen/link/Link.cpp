@@ -13,10 +13,11 @@ std::string constructSymbol(const std::string &className) { return className + "
 
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program) {
-  linking::LinkContext context{ir, module, request, diagnostics, {}};
+  linking::LinkContext context{ir, module, request, diagnostics, {}, {}};
   linking::dropUnusedClasses(context);
   linking::placeAttributes(context);
   linking::resolveSlots(context);
+  linking::resolveRayTypes(context);
   if (diagnostics.hasErrors())
     return false;
   linking::makeEntries(context);
@@ -25,10 +26,14 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   for (const linking::LinkedClass &linked : context.classes) {
     runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
     info.id = linked.id;
-    if (info.root == "rt_Material")
+    if (info.root == "rt_Material") {
       info.needs = linking::findNeeds(context, linked);
+      info.anyHit = linking::anyHitTypes(context, linked);
+    }
     program.classes.push_back(std::move(info));
   }
+  program.engine = request.engine;
+  program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
   program.needs = linking::findNeeds(ir);
   return true;

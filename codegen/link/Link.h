@@ -6,8 +6,9 @@
 //   2. gives each attribute its place, matched by name and type between primitives and materials (PlaceAttributes.cpp),
 //   3. resolves each slot to a switch over the classes that are there, or a direct call if there is one
 //      (ResolveSlots.cpp),
-//   4. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp),
-//   5. finds out what of a hit anybody reads (FindNeeds.cpp).
+//   4. numbers the types of rays that carry a payload, and finds out how their hits are searched for (RayTypes.cpp),
+//   5. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp),
+//   6. finds out what of a hit anybody reads (FindNeeds.cpp).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -24,6 +25,10 @@ namespace rtsl {
 /// `program` (without code addresses). `colorComponents` is what the module was lowered with.
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program);
+
+/// Reports functions of a linked module that trace and call themselves through references; false if there are any.
+/// Splitting cannot cut them.
+bool refuseTracingCircles(mlir::ModuleOp ir, const typed::Module &module, Diagnostics &diagnostics);
 
 /// For a unit without a scene: slots become declared functions, attributes get provisional places.
 void declareSlots(mlir::ModuleOp ir);

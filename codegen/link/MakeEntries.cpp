@@ -88,6 +88,8 @@ void makeEntries(LinkContext &context) {
     function.setPrivate();
   for (const Slot &slot : slots)
     makeSlot(context, slot);
+  makePayloadSlots(context);
+  makeFeatures(context);
   for (LinkedClass &linked : context.classes) {
     makeConstruct(context, linked);
     if (auto initialize = context.ir.lookupSymbol<mlir::func::FuncOp>(initializeSymbol(linked.info->name)))

@@ -107,7 +107,9 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
   std::set<std::string> methods;
   for (const typed::Class *at = &info; at; at = at->base)
     for (const auto &function : at->functions)
-      methods.insert(function->name);
+      methods.insert(function->isStateMethod && !function->parameters.empty()
+                         ? function->name + "(" + toString(function->parameters[0]->type) + ")"
+                         : function->name);
   result.methods.assign(methods.begin(), methods.end());
   return result;
 }

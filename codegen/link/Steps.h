@@ -20,12 +20,21 @@ struct LinkedClass {
   ir::StructType parameters; // packed arguments of the constructor; null: it has none
 };
 
+/// A type of payload that some function of the program traces.
+struct RayType {
+  ir::StructType payload;
+  std::uint32_t number = 0; // from 1, in the order in which they are mentioned
+
+  std::string name() const { return payload.getName().str(); }
+};
+
 struct LinkContext {
   mlir::ModuleOp ir;
   const typed::Module &module;
   const LinkRequest &request;
   Diagnostics &diagnostics;
   std::vector<LinkedClass> classes;
+  std::vector<RayType> rayTypes;
 };
 
 /// Keeps the classes that are asked for: fills `context.classes` and erases the functions of the others.
@@ -47,12 +56,30 @@ void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, m
 /// Gives every slot its dispatch function.
 void resolveSlots(LinkContext &context);
 
+/// Numbers the types of payloads that the module traces.
+std::vector<RayType> numberRayTypes(mlir::ModuleOp ir);
+
+/// The same for a program, and finds out how hits are to be searched for. Warns where nobody answers.
+void resolveRayTypes(LinkContext &context);
+
+/// Adds the entries of runtime/device/PayloadSlots.def.
+void makePayloadSlots(LinkContext &context);
+
+/// RtslInstance::anyHit of a material.
+std::uint32_t anyHitTypes(const LinkContext &context, const LinkedClass &material);
+
+/// Adds @rtsl_features.
+void makeFeatures(LinkContext &context);
+
+/// Numbers the prints of the module and says what stands in them.
+std::vector<runtime::PrintFormat> numberPrints(mlir::ModuleOp ir);
+
 /// Adds the entries of runtime/device/Slots.def and those that make objects; everything else becomes private.
 void makeEntries(LinkContext &context);
 
 /// RTSL_NEEDS_*: what some function of the program reads, so that the runtime computes nothing else.
 std::uint32_t findNeeds(mlir::ModuleOp ir);
-/// The same for what `shade` of a material reads, itself or through what it calls.
+/// The same for what the methods of a material read that run at a hit, themselves or through what they call.
 std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &material);
 
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.

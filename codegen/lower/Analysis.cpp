@@ -191,4 +191,30 @@ bool takesPartInIntersection(const typed::Function &function, const typed::Class
   return takesPart(function, concrete, visited);
 }
 
+bool takesPayload(const typed::Function &function) {
+  return function.isStateMethod && !function.parameters.empty();
+}
+
+static bool mayAnswer(const typed::Function &function, const typed::Class *concrete,
+                      std::set<const typed::Function *> &visited) {
+  if (!function.body || !visited.insert(&function).second)
+    return false;
+  bool found = false;
+  forEachExpr(*function.body, [&](const typed::Expr &expr) {
+    if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
+      found = found || builtin->builtin == typed::Builtin::IgnoreIntersection ||
+              builtin->builtin == typed::Builtin::TerminateRay;
+    else if (auto *call = dynCast<typed::CallExpr>(&expr))
+      found = found || mayAnswer(resolve(*call->function, concrete), concrete, visited);
+    else if (auto *method = dynCast<typed::MethodCallExpr>(&expr)) // which one runs is not known
+      found = found || (method->function && method->function->owner->root == "rt_Material");
+  });
+  return found;
+}
+
+bool mayAnswerHit(const typed::Function &function, const typed::Class *concrete) {
+  std::set<const typed::Function *> visited;
+  return mayAnswer(function, concrete, visited);
+}
+
 } // namespace rtsl::lowering

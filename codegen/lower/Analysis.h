@@ -16,6 +16,14 @@ bool isCheap(const typed::Expr &expr);
 /// of the object; null for a free function.
 bool takesPartInIntersection(const typed::Function &function, const typed::Class *concrete);
 
+/// A method of the engine's that answers rays with a payload, its one parameter: it comes with the
+/// ray.
+bool takesPayload(const typed::Function &function);
+
+/// Does `function`, or what it calls, use ignoreIntersection or terminateRay? Then `anyHit` may end
+/// in it.
+bool mayAnswerHit(const typed::Function &function, const typed::Class *concrete);
+
 /// The definition that a call on the object itself runs: that of the most derived class with the
 /// callee's parameters.
 const typed::Function &resolve(const typed::Function &callee, const typed::Class *concrete);

@@ -28,6 +28,9 @@ struct LowerOptions {
   /// Clamp indices that are not constant into the array, vector or buffer; an element of an empty
   /// buffer reads as zero. Without, such an index is undefined behaviour.
   bool checkIndices = true;
+  /// An index out of range is an exception too; `print` prints. Without, `print` does nothing, and
+  /// its arguments are not evaluated.
+  bool raisesExceptions = false, prints = false;
   /// Lower these classes only, with the functions that they call. Empty: everything.
   std::set<std::string> classes;
 };

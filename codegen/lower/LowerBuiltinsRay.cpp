@@ -1,6 +1,8 @@
 //===- LowerBuiltinsRay.cpp - trace, hit, rand and ambient ----------------===//
 #include "codegen/lower/Lowering.h"
 
+#include "sema/Casting.h"
+
 namespace rtsl::lowering {
 
 using typed::Builtin;
@@ -29,11 +31,77 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
     emitter.setLoc(location);
     return Parts{emitter.make<ir::AmbientOp>(module.type(expr.type))};
   case Builtin::TracePayload:
-    unsupported(expr.range, "`trace` with a payload");
-    return zeroOf(expr.type);
+    lowerTracePayload(expr);
+    return Parts();
+  case Builtin::Print:
+    if (module.options.prints)
+      lowerPrint(expr);
+    return Parts();
+  case Builtin::IgnoreIntersection:
+  case Builtin::TerminateRay:
+    emitter.setLoc(location);
+    // In the middle of an expression code may follow, which nothing reaches.
+    emitter.ifThen(emitter.boolConstant(true), [&] { answerHit(expr.builtin); });
+    return Parts();
   default:
     return std::nullopt;
   }
+}
+
+// The payload is an `inout` argument: a temporary goes with the ray, and is copied back.
+void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
+  constexpr unsigned payload = 4, first = 5; // the optional arguments come last
+  llvm::SmallVector<Value, 8> arguments;
+  Place target;
+  for (unsigned i = 0; i < expr.args.size(); ++i) {
+    if (i != payload) {
+      arguments.push_back(value(*expr.args[i]));
+      continue;
+    }
+    target = place(*expr.args[i]);
+    arguments.push_back(temporary("payload", target.type));
+    storeTo(load(target), arguments.back(), target.type);
+  }
+  arguments.resize(first + 3);
+  emitter.setLoc(module.location(expr.range));
+  emitter.make<ir::TracePayloadOp>(arguments[0], arguments[1], arguments[2], arguments[3],
+                                   arguments[payload], arguments[first], arguments[first + 1],
+                                   arguments[first + 2], mlir::IntegerAttr(), mlir::IntegerAttr());
+  copyOut({{target, arguments[payload]}});
+}
+
+void FunctionLowering::lowerPrint(const typed::BuiltinExpr &expr) {
+  llvm::SmallVector<llvm::StringRef> items;
+  std::vector<std::string> names; // of types; the references stay where they are
+  names.reserve(expr.args.size());
+  llvm::SmallVector<std::int32_t> words;
+  llvm::SmallVector<Value> values;
+  for (const typed::ExprPtr &arg : expr.args) {
+    std::size_t before = values.size();
+    if (auto *text = dynCast<typed::StringExpr>(arg.get())) {
+      items.push_back(text->value);
+    } else {
+      appendScalars(lower(*arg), arg->type, values);
+      names.push_back(toString(arg->type));
+      items.push_back(names.back());
+    }
+    words.push_back(static_cast<std::int32_t>(values.size() - before));
+  }
+  emitter.setLoc(module.location(expr.range));
+  emitter.make<ir::PrintOp>(emitter.getStrArrayAttr(items), emitter.getDenseI32ArrayAttr(words),
+                            values, mlir::IntegerAttr());
+}
+
+void FunctionLowering::answerHit(Builtin builtin) {
+  emitter.make<ir::AnswerHitOp>(builtin == Builtin::IgnoreIntersection ? ir::HitAnswer::Ignore
+                                                                       : ir::HitAnswer::Terminate);
+  emitReturnOfZero();
+}
+
+/// Behind a call of a function that may end `anyHit`.
+void FunctionLowering::returnIfHitAnswered() {
+  Value ended = emitter.make<ir::HitAnsweredOp>(emitter.getI1Type());
+  emitter.ifThen(ended, [&] { emitReturnOfZero(); });
 }
 
 } // namespace rtsl::lowering

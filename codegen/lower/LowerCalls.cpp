@@ -98,6 +98,8 @@ Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
   emitter.setLoc(module.location(expr.range));
   auto call = emitter.make<mlir::func::CallOp>(target, values);
   copyOut(outputs);
+  if (mayEndAnyHit && mayAnswerHit(callee, concrete))
+    returnIfHitAnswered();
   if (livesInMemory(type))
     return loadFrom(result, type);
   return Parts(call.getResults().begin(), call.getResults().end());
@@ -137,6 +139,8 @@ Parts FunctionLowering::lowerMethodCall(const typed::MethodCallExpr &expr) {
   emitter.setLoc(module.location(expr.range));
   auto call = emitter.make<ir::CallMethodOp>(results, module.slotName(callee), object, values);
   copyOut(outputs);
+  if (mayEndAnyHit && callee.owner->root == "rt_Material")
+    returnIfHitAnswered();
   if (livesInMemory(type))
     return loadFrom(result, type);
   return Parts(call.getResults().begin(), call.getResults().end());

@@ -54,6 +54,8 @@ static std::string parameterWords(const typed::Function &function) {
 }
 
 std::string ModuleLowering::slotName(const typed::Function &method) const {
+  if (takesPayload(method)) // beside others for other payloads, in this class or the next
+    return method.name + parameterWords(method);
   for (const auto &definition : source.classes)
     for (const auto &other : definition->functions)
       if (other->name == method.name && !sameParameters(*other, method) && !method.isConstructor)
@@ -107,6 +109,8 @@ mlir::FunctionType ModuleLowering::functionType(const FunctionKey &key) {
   else if (!function.returnType->is(TypeKind::Void))
     results.push_back(type(function.returnType));
   for (const auto &parameter : function.parameters) {
+    if (takesPayload(function))
+      break;
     bool byAddress = livesInMemory(parameter->type) || parameter->direction != ast::Direction::In;
     inputs.push_back(byAddress ? pointer(parameter->type) : type(parameter->type));
   }
@@ -132,6 +136,8 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
       function->setAttr("rtsl.constructor", emitter.getUnitAttr());
     else if (!key.inIntersect || source.name == "intersect")
       function->setAttr("rtsl.method", emitter.getStringAttr(slotName(source)));
+    if (takesPayload(source))
+      function->setAttr("rtsl.payload", mlir::TypeAttr::get(type(source.parameters[0]->type)));
   }
   functions[key] = function;
   pending.push_back(key);

@@ -36,6 +36,8 @@ Value FunctionLowering::self() {
 
 void FunctionLowering::run() {
   bindParameters();
+  mayEndAnyHit = (!key.function->isStateMethod || key.function->name == "anyHit") &&
+                 mayAnswerHit(*key.function, key.concrete);
   if (key.function->name == "intersect" && key.inIntersect)
     enterIntersect();
   lower(*key.function->body);
@@ -73,6 +75,11 @@ void FunctionLowering::bindParameters() {
 
   std::set<const typed::Variable *> assigned = assignedVariables(*source.body);
   for (const auto &parameter : source.parameters) {
+    if (takesPayload(source)) {
+      variables[parameter.get()].address =
+          emitter.make<ir::PayloadOp>(module.pointer(parameter->type));
+      continue;
+    }
     Value value = argument(parameter->name);
     Binding &binding = variables[parameter.get()];
     if (livesInMemory(parameter->type) || parameter->direction != ast::Direction::In) {

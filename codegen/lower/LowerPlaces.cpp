@@ -2,6 +2,7 @@
 #include "codegen/lower/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
+#include "runtime/device/Abi.h"
 #include "sema/Casting.h"
 #include "sema/ConstantFold.h"
 
@@ -155,8 +156,10 @@ Place FunctionLowering::bufferPlace(const typed::IndexExpr &expr) {
   result.type = expr.type;
   result.guard = buffer.guard;
   if (indices.size() != base->type->count) {
-    unsupported(expr.range, "a part of a buffer that is not an element");
-    result.address = temporary("element", expr.type);
+    // Rows have no values that anything could be done with: `rows[i];` does what `i` does.
+    for (const typed::Expr *index : indices)
+      (void)value(*index);
+    result.address = temporary("row", expr.type);
     return result;
   }
   llvm::SmallVector<Value, 3> values;
@@ -183,6 +186,10 @@ Value FunctionLowering::clampedIndex(const typed::Expr &index, Value count) {
   Num result = number(index);
   if (!module.options.checkIndices)
     return result;
+  if (module.options.raisesExceptions)
+    emitter.ifThen(num(emitter.fold<mlir::arith::CmpIOp>(mlir::arith::CmpIPredicate::uge,
+                                                         Value(result), count)),
+                   [&] { emitter.make<ir::RaiseOp>(RTSL_EXCEPTION_INDEX); });
   Num last = num(count) - 1.0;
   if (index.type->is(TypeKind::UInt))
     return minimumUnsigned(result, last);

@@ -25,6 +25,12 @@ void FunctionLowering::lower(const typed::Stmt &stmt) {
       lowerDeclaration(*variable);
     return;
   case StmtKind::Expression:
+    if (auto *builtin = dynCast<typed::BuiltinExpr>(cast<typed::ExpressionStmt>(stmt).expr.get());
+        builtin && (builtin->builtin == typed::Builtin::IgnoreIntersection ||
+                    builtin->builtin == typed::Builtin::TerminateRay)) {
+      emitter.setLoc(module.location(builtin->range));
+      return answerHit(builtin->builtin);
+    }
     lower(*cast<typed::ExpressionStmt>(stmt).expr);
     return;
   case StmtKind::If:

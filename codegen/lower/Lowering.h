@@ -194,6 +194,10 @@ private:
   std::optional<Parts> lowerIntegerBuiltin(const typed::BuiltinExpr &expr);
   std::optional<Parts> lowerPackingBuiltin(const typed::BuiltinExpr &expr);
   std::optional<Parts> lowerRayBuiltin(const typed::BuiltinExpr &expr);
+  void lowerTracePayload(const typed::BuiltinExpr &expr);
+  void lowerPrint(const typed::BuiltinExpr &expr);
+  void answerHit(typed::Builtin builtin);
+  void returnIfHitAnswered();
   Num elementary(ir::Elementary function, llvm::ArrayRef<Num> operands);
 
   // Small helpers
@@ -223,6 +227,7 @@ private:
   llvm::DenseMap<const typed::Member *, Value> scratch;
   Value accepted; // address of a bool: has this intersection reported a hit that counts?
   bool commitsScratch = false;
+  bool mayEndAnyHit = false; // it is `anyHit`, or a function that may run on its behalf
 
   // Constant arrays and structs, made once at the start of the function.
   std::map<std::pair<const Type *, std::vector<std::uint32_t>>, Value> constantAggregates;

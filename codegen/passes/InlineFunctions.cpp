@@ -32,8 +32,9 @@ unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {
 bool traces(mlir::func::FuncOp function) {
   return function
       .walk([](mlir::Operation *op) {
-        return llvm::isa<ir::TraceOp, ir::IlluminateOp>(op) ? mlir::WalkResult::interrupt()
-                                                            : mlir::WalkResult::advance();
+        return llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminateOp>(op)
+                   ? mlir::WalkResult::interrupt()
+                   : mlir::WalkResult::advance();
       })
       .wasInterrupted();
 }

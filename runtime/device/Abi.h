@@ -30,6 +30,8 @@ typedef struct RtslInstance {
   uint32_t mesh; // index into RtslLaunch::meshes when primitive is 0
   uint32_t firstPrimitive; // global id of its first primitive, for stable ordering
   uint32_t needs;          // RTSL_NEEDS_* of its material
+  uint32_t mask;           // seen by rays that have a bit of it in theirs
+  uint32_t anyHit;         // rtslRayTypeBit of the payloads for which its material has `anyHit`
 } RtslInstance;
 
 /// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
@@ -60,8 +62,10 @@ typedef struct RtslLaunch {
   const RtslInstance *instances;
   const RtslMesh *meshes;
   const RtslRef *lights;
-  RtslRef camera;
+  RtslRef camera;               // of the classic engine
+  RtslRef rayGeneration;        // of the programs engine
   RtslRef background;           // an rt_Miss object; 0: backgroundColor
+  RtslRef exception;            // an rt_Exception object; 0: what exceptionColor (Events.h) says
   float backgroundColor[RTSL_MAX_COLOR];
   float ambient[RTSL_MAX_COLOR];
   uint32_t instanceCount, meshCount, lightCount;
@@ -74,14 +78,22 @@ typedef struct RtslLaunch {
   uint32_t rootIsLeaf, nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items to be tested one by one
   uint32_t needs;               // RTSL_NEEDS_*: what the classes of the scene read
   const void *host;             // the host's own (for example its Embree scene); never read by device code
-  struct RtslStatus *status;    // of the job that runs the launch; null outside of the megakernel
+  struct RtslStatus *status;    // of the job or the rendering that runs the launch; null while a scene is built
 } RtslLaunch;
+
+// What may go wrong in a sample. The first that does ends it (docs/language.md, "Exceptions").
+#define RTSL_EXCEPTION_NONE 0u
+#define RTSL_EXCEPTION_STACK_OVERFLOW 1u // a ray deeper than the launch allows
+#define RTSL_EXCEPTION_BAD_RAY 2u        // not finite, or without a direction
+#define RTSL_EXCEPTION_INDEX 3u          // an index out of range
+#define RTSL_EXCEPTIONS 4u
 
 /// What all lanes of a job write, one after the other. The host clears it before.
 typedef struct RtslStatus {
   uint64_t nextPixel; // the first that nobody has taken; row by row from the top left
   uint64_t badRays;   // not finite, or without a direction: they saw color 0
   uint64_t samplesNotFinite;
+  uint64_t exceptions[RTSL_EXCEPTIONS]; // samples that ended so
   uint32_t stop;    // set by anybody: no lane begins another pixel
   uint32_t problem; // RTSL_PROBLEM_*
 } RtslStatus;
@@ -99,15 +111,30 @@ typedef struct RtslJob {
   uint32_t samplesPerPixel;
 } RtslJob;
 
+/// What happens in a sample beside its color.
+typedef struct RtslEvents {
+  uint32_t x, y, sample; // whose
+  uint32_t exception;    // RTSL_EXCEPTION_*: the first
+  uint32_t printed;      // how often `print` has run
+} RtslEvents;
+
 /// The state of one ray. Parent and child ray have one each.
 typedef struct RtslState {
   const RtslLaunch *launch;
+  RtslEvents *events; // of its sample; only programs with rtsl_features have them. Null while a scene is built
 
   // The hit so far (committed), and what is being tested (candidate).
   uint32_t instance, primitive;           // of the hit so far; RTSL_NO_HIT: none
   uint32_t candidateInstance, candidatePrimitive;
   float u, v;                             // barycentrics of vertices 1 and 2 of a triangle hit
   float hitPointError;                    // bound of the distance of HitPoint from the surface that was hit
+
+  // What the ray carries (docs/language.md, "Tracing and light").
+  void *payload;      // the struct of the ray's type; means nothing where rayType is 0
+  uint32_t rayType;   // 0: the built-in payload of `shade`; others are numbered when a program is linked
+  uint32_t rayMask;   // instances that have no bit of it are not there
+  int32_t rayRoot;    // where it enters the scene; so far there is one root, number 0
+  uint32_t hitAnswer; // RTSL_ACCEPT...: what `anyHit` makes of the candidate
 
   // Counter-based random numbers: (pixel, sample) make the key, `dimension` counts what was drawn.
   uint32_t randomKey[2];
@@ -128,6 +155,19 @@ typedef struct RtslState {
 } RtslState;
 
 #define RTSL_NO_HIT 0xffffffffu
+
+/// The bit of a ray type in RtslInstance::anyHit. Some share one; then `anyHit` is asked in vain.
+static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType & 31u); }
+
+// RtslState::hitAnswer.
+#define RTSL_ACCEPT 0u
+#define RTSL_IGNORE 1u    // ignoreIntersection()
+#define RTSL_TERMINATE 2u // terminateRay()
+
+// How rtsl_traverse searches. Without any: the nearest hit, and `anyHit` programs are not asked.
+#define RTSL_FIRST_HIT 1u  // whether there is a hit at all; what is committed means nothing
+#define RTSL_ASK_ANY_HIT 2u // `anyHit` of the material may refuse a hit, in whatever order hits are found
+#define RTSL_IN_ORDER 4u   // ... asked in the order of (t, instance, primitive), until one accepts
 
 // RtslLaunch::needs: state that some method of the scene reads. RtslInstance::needs: what its material's `shade` reads,
 // itself or through what it calls. The rest is not computed.
@@ -157,6 +197,16 @@ extern "C" {
 //===----------------------------------------------------------------------===//
 #define RTSL_SLOT(base, method) void rtsl_##base##_##method(RtslState *state, RtslRef object);
 #include "runtime/device/Slots.def"
+/// The same for methods that take the payload of state's ray type.
+#define RTSL_PAYLOAD_SLOT(base, method) void rtsl_##base##_##method##_payload(RtslState *state, RtslRef object);
+#include "runtime/device/PayloadSlots.def"
+
+// What programs can do if they were compiled so. The rest costs nothing.
+#define RTSL_FEATURE_EXCEPTIONS 1u
+#define RTSL_FEATURE_PRINT 2u
+
+/// A set of RTSL_FEATURE_*; a constant.
+uint32_t rtsl_features(RtslState *state);
 
 /// What the launches of a program have in common: RtslLaunch::needs and RtslLaunch::colorComponents. runtime/device
 /// defines both weakly, from the launch. A compiled program defines them as constants, so that what it does not need
@@ -169,15 +219,20 @@ uint32_t rtsl_color_components(const RtslLaunch *launch);
 //===----------------------------------------------------------------------===//
 
 /// Finds the nearest hit with Epsilon < t < HitDistance along state's ray and commits it (HitDistance, instance,
-/// primitive, u, v, attributes); instance must be RTSL_NO_HIT before. With anyHit it only tells whether there is one,
-/// and what it commits means nothing. Returns RTSL_MISS, RTSL_HIT or RTSL_BAD_RAY.
-uint32_t rtsl_traverse(RtslState *state, uint32_t anyHit);
+/// primitive, u, v, attributes); instance must be RTSL_NO_HIT before. `how` is a set of RTSL_FIRST_HIT,
+/// RTSL_ASK_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT or RTSL_BAD_RAY.
+uint32_t rtsl_traverse(RtslState *state, uint32_t how);
 
 /// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 and commits t if the candidate wins.
 uint32_t rtsl_hit(RtslState *state, float t);
 
 /// `trace(origin, direction)`: the color that arrives at `origin` against `direction`. Writes colorComponents floats.
 void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float *color);
+
+/// `trace(origin, direction, tmin, tmax, payload, root, mask, time)`. `how` is what rtsl_traverse takes.
+void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float tmin,
+                        float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
+                        uint32_t how);
 
 /// One step of `illuminance (P [, N, angle])`: light number `index`. Writes LightDirection, LightDistance and LightColor
 /// of `state`; returns 1 if light arrives (in the cone, not black, not in shadow) so that the body is to run.
@@ -188,8 +243,17 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
 /// `rand()`: uniform in [0, 1).
 float rtsl_rand(RtslState *state);
 
+/// Notes that the sample has met an exception.
+void rtsl_raise(RtslState *state, uint32_t exception);
+
+/// Defined by the host: `print` number `format` of the program, with the words of its values.
+void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32_t count);
+
 /// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents floats.
 void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
+
+/// The same of the programs engine: runs `generate` of the launch's rayGeneration.
+void rtsl_generate(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 //===----------------------------------------------------------------------===//
 // Programs whose shaders were split at their traces (runtime/device/Machine.h). A state is a piece of a method between two
@@ -207,9 +271,17 @@ int32_t rtsl_frame_size(RtslState *state);
 /// is no such method.
 int32_t rtsl_rt_Material_shade_first(RtslState *state);
 int32_t rtsl_rt_Miss_miss_first(RtslState *state);
+int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *state);
+int32_t rtsl_rt_Miss_miss_payload_first(RtslState *state);
+int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state);
 
 /// First half of `trace(origin, direction)`: prepares the ray, which is traced when the state returns.
 void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz);
+
+/// The same for a ray with a payload, which stays where it is until the ray is back.
+void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float tmin,
+                        float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
+                        uint32_t how);
 
 /// Second half: the color that came back, colorComponents floats.
 const float *rtsl_trace_result(RtslState *parent);
@@ -218,7 +290,7 @@ const float *rtsl_trace_result(RtslState *parent);
 /// again. Null if there is not so much.
 void *rtsl_machine_stack(uint64_t bytes);
 
-/// rtsl_sample by the machine: the same color, bit for bit. Black if there is no memory for the stack.
+/// rtsl_sample, or rtsl_generate, by the machine: the same color, bit for bit. Black if there is no memory for the stack.
 void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 //===----------------------------------------------------------------------===//

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "runtime/device/Abi.h"
+#include "runtime/device/Events.h"
 #include "runtime/device/Random.h"
 #include "runtime/device/Spawn.h"
 #include "runtime/device/Surface.h"
@@ -72,6 +73,10 @@ inline void inherit(RtslState &state, const RtslState &parent) {
     state.LaunchSize[0] = parent.LaunchSize[0];
     state.LaunchSize[1] = parent.LaunchSize[1];
   }
+  state.rayMask = parent.rayMask;
+  state.rayRoot = parent.rayRoot;
+  if (hasEvents(parent))
+    state.events = parent.events;
 }
 
 /// State that a method may read although nobody wrote it in this ray.
@@ -114,6 +119,8 @@ inline Arrival arrive(RtslState &state) {
       return {Arrival::Background, launch.background};
     copyColor(state.SampleColor, launch.backgroundColor, components);
   }
+  if (found == RTSL_BAD_RAY)
+    raise(state, RTSL_EXCEPTION_BAD_RAY);
   return {Arrival::Nothing, 0};
 }
 
@@ -131,16 +138,25 @@ inline void follow(RtslState &state) {
 inline bool maySpawn(RtslState &parent, uint32_t *dimension) {
   *dimension = parent.dimension++; // even if nothing is traced, so that depth does not change what
                                    // is drawn later
-  return uint32_t(parent.Depth) < parent.launch->maxDepth;
+  bool isShallow = parent.Depth < int32_t(parent.launch->maxDepth); // `generate` is at -1
+  if (!isShallow)
+    raise(parent, RTSL_EXCEPTION_STACK_OVERFLOW);
+  return isShallow && !isAbandoned(parent);
+}
+
+/// Makes `child` a ray that `parent` sends, but for the ray itself.
+inline void descend(RtslState &child, const RtslState &parent, uint32_t dimension) {
+  inherit(child, parent);
+  child.Depth = parent.Depth + 1;
+  childKey(parent.randomKey, dimension, child.randomKey);
+  child.dimension = 0;
 }
 
 /// Makes `child` the ray that `parent` sends.
 inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension, Vec3 origin,
                   Vec3 direction) {
-  inherit(child, parent);
-  child.Depth = parent.Depth + 1;
-  childKey(parent.randomKey, dimension, child.randomKey);
-  child.dimension = 0;
+  descend(child, parent, dimension);
+  child.rayType = 0;
   setRay(child, origin, direction, spawnEpsilon(parent, origin, direction), infinity);
 }
 
@@ -177,7 +193,10 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   setRay(state, point, direction, epsilon, distance);
   if (!(epsilon < distance))
     return false;
-  return rtsl_traverse(&state, 1) != RTSL_MISS; // along a bad ray no light comes
+  uint32_t found = rtsl_traverse(&state, RTSL_FIRST_HIT);
+  if (found == RTSL_BAD_RAY)
+    raise(state, RTSL_EXCEPTION_BAD_RAY);
+  return found != RTSL_MISS; // along a bad ray no light comes
 }
 
 /// isInCone for vectors whose squares would leave the range of a float.
@@ -219,11 +238,12 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   return !inShadow(state, point);
 }
 
-/// Makes `state` the ray of one sample of one pixel. Row 0 is the top of the picture, where
-/// ScreenCoord.y is near 1.
-inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
-                        uint32_t index) {
+/// What a sample of a pixel starts from. Row 0 is the top of the picture, where ScreenCoord.y is
+/// near 1.
+inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
+                        uint32_t index, RtslEvents &events) {
   state.launch = &launch;
+  startEvents(state, events, x, y, index);
   Words4 key = hash4(x, y, index, launch.seed);
   state.randomKey[0] = key.x;
   state.randomKey[1] = key.y;
@@ -250,6 +270,15 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
     state.TimeSeed = unitFloat(key.x * 0x9e3779b9u ^ key.y);
     state.Time = 0;
   }
+  state.rayType = 0;
+  state.rayMask = 0xffffffffu;
+  state.rayRoot = 0;
+}
+
+/// Makes `state` the camera ray of one sample of one pixel.
+inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
+                        uint32_t index, RtslEvents &events) {
+  placeSample(state, launch, x, y, index, events);
   state.du = state.dv = 0;
   setVector(state.RayOrigin, 0, 0, 0); // what the camera leaves out
   setVector(state.RayDirection, 0, 0, 0);
@@ -260,8 +289,10 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
 /// One sample of one pixel: the color that comes along its ray.
 inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index, float *color) {
   RtslState state;
-  startSample(state, launch, x, y, index);
+  RtslEvents events;
+  startSample(state, launch, x, y, index, events);
   follow(state);
+  endEvents(state);
   copyColor(color, state.SampleColor, rtsl_color_components(&launch));
 }
 

@@ -34,6 +34,15 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
   return device::illuminate(*state, index, {px, py, pz}, {nx, ny, nz}, cosAngle);
 }
 
+/// What programs say otherwise that have more.
+__attribute__((weak)) uint32_t rtsl_features(RtslState *) {
+  return 0;
+}
+
+void rtsl_raise(RtslState *state, uint32_t exception) {
+  device::raise(*state, exception);
+}
+
 float rtsl_rand(RtslState *state) {
   return device::randomNumber(state->randomKey, state->dimension++);
 }

@@ -13,6 +13,14 @@ void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float
   device::spawnAbove(*reinterpret_cast<device::Level *>(parent), {ox, oy, oz}, {dx, dy, dz});
 }
 
+void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy,
+                        float dz, float tmin, float tmax, void *payload, int32_t root,
+                        uint32_t mask, float time, uint32_t rayType, uint32_t how) {
+  device::spawnAbove(
+      *reinterpret_cast<device::Level *>(parent),
+      {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
+}
+
 const float *rtsl_trace_result(RtslState *parent) {
   return reinterpret_cast<device::Level *>(parent)->color;
 }

@@ -8,17 +8,19 @@
 //   ...
 //
 // A ray of depth d lies at level d and none is deeper than the launch allows, so maxDepth + 1
-// levels are enough, whatever shaders do. All levels are equally large, so a shader finds the ray
-// that it sends one level up.
+// levels are enough, whatever shaders do. In the programs engine `generate` has level 0 and rays
+// lie one level higher. A payload lies in the frame of who sent the ray. All levels are equally
+// large, so a shader finds the ray that it sends one level up.
 //
-// Rays start, meet surfaces and end by the functions of Classic.h, in the order of the recursive
-// engine. Therefore the colors are the same, bit for bit.
+// Rays start, meet surfaces and end by the functions of Classic.h and Programs.h, in the order of
+// the recursive engines. Therefore the colors are the same, bit for bit.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/device/Abi.h"
 #include "runtime/device/Classic.h"
+#include "runtime/device/Programs.h"
 
 namespace rtsl::device {
 
@@ -29,6 +31,7 @@ struct Level {
   int32_t resume;              // the state that runs then
   RtslRef object;              // whose method runs
   uint32_t isSpawned;          // the ray one level up is to be traced
+  uint32_t how;                // rtsl_traverse searches for a ray with a payload
 };
 
 /// Bytes of a level with its frame. Any state will do: each function of a program takes one.
@@ -50,10 +53,11 @@ inline void *frameOf(Level *level) {
   return level + 1;
 }
 
-/// Bytes for the rays of a launch.
+/// Bytes for the rays of a launch, and for `generate` below them.
 inline uint64_t stackSize(const RtslLaunch &launch) {
   RtslState none;
-  return (uint64_t(launch.maxDepth) + 1) * levelSize(&none);
+  bool hasGenerate = rtsl_rt_RayGeneration_generate_first(&none) != 0;
+  return (uint64_t(launch.maxDepth) + (hasGenerate ? 2 : 1)) * levelSize(&none);
 }
 
 inline void spawnAbove(Level &parent, Vec3 origin, Vec3 direction) {
@@ -66,9 +70,33 @@ inline void spawnAbove(Level &parent, Vec3 origin, Vec3 direction) {
     setColor(parent.color, rtsl_color_components(parent.state.launch), 0);
 }
 
+/// The same for a ray with a payload.
+inline void spawnAbove(Level &parent, const PayloadRay &ray, uint32_t how) {
+  uint32_t dimension;
+  parent.isSpawned = maySpawn(parent.state, &dimension);
+  if (!parent.isSpawned)
+    return;
+  Level &child = *above(&parent, levelSize(&parent.state));
+  spawn(child.state, parent.state, dimension, ray);
+  child.how = how;
+}
+
+/// `begin` for a ray with a payload.
+inline int32_t beginWithPayload(Level &level) {
+  Arrival arrival = arriveWithPayload(level.state, level.how);
+  level.object = arrival.object;
+  if (arrival.kind == Arrival::Surface)
+    return rtsl_rt_Material_closestHit_payload_first(&level.state);
+  if (arrival.kind == Arrival::Background)
+    return rtsl_rt_Miss_miss_payload_first(&level.state);
+  return 0;
+}
+
 /// Finds what the level's ray meets. Returns the state in which its method begins; 0 if the ray is
 /// over.
 inline int32_t begin(Level &level) {
+  if (level.state.rayType != 0)
+    return beginWithPayload(level);
   Arrival arrival = arrive(level.state);
   level.object = arrival.object;
   if (arrival.kind == Arrival::Surface)
@@ -80,19 +108,27 @@ inline int32_t begin(Level &level) {
 
 /// The rays of one sample between two steps of the machine.
 struct Rays {
-  Level *bottom; // the camera ray
+  Level *bottom; // the camera ray, or `generate`
   Level *top;    // the ray whose turn it is
+  RtslEvents events;
   int32_t next;  // n > 0: its state n is to be run; or one of these:
 
   static constexpr int32_t none = 0;   // the sample is over
   static constexpr int32_t trace = -1; // what it meets is to be found
 };
 
-/// Makes the camera ray of a sample, on a stack of stackSize(launch) bytes.
+/// Starts a sample, on a stack of stackSize(launch) bytes: with `generate` if the program has it,
+/// or else with the camera's ray.
 inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
                       uint32_t index) {
-  startSample(rays.bottom->state, launch, x, y, index);
   rays.top = rays.bottom;
+  rays.next = rtsl_rt_RayGeneration_generate_first(&rays.bottom->state);
+  if (rays.next != 0) {
+    startGenerate(rays.bottom->state, launch, x, y, index, rays.events);
+    rays.bottom->object = launch.rayGeneration;
+    return;
+  }
+  startSample(rays.bottom->state, launch, x, y, index, rays.events);
   rays.next = Rays::trace;
 }
 
@@ -103,7 +139,8 @@ inline void endRay(Rays &rays) {
     return;
   const RtslState &state = rays.top->state;
   rays.top = below(rays.top, levelSize(&rays.top->state));
-  copyColor(rays.top->color, state.SampleColor, rtsl_color_components(state.launch));
+  if (state.rayType == 0) // a payload is where it was all the time
+    copyColor(rays.top->color, state.SampleColor, rtsl_color_components(state.launch));
   rays.next = rays.top->resume;
 }
 
@@ -143,6 +180,7 @@ inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_
     else
       runState(rays, rays.next);
   }
+  endEvents(rays.bottom->state);
   copyColor(color, rays.bottom->state.SampleColor, rtsl_color_components(&launch));
 }
 

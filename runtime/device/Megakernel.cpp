@@ -6,14 +6,17 @@
 //===----------------------------------------------------------------------===//
 #include "runtime/device/Megakernel.h"
 
-#include "runtime/device/Traverse.h"
+#include "runtime/device/AnyHit.h"
 
 using namespace rtsl;
 
 extern "C" {
 
-uint32_t rtsl_traverse(RtslState *state, uint32_t anyHit) {
-  uint32_t answer = device::traverseDevice(*state, anyHit, rtsl_rt_Primitive_intersect);
+uint32_t rtsl_traverse(RtslState *state, uint32_t how) {
+  uint32_t answer =
+      how & RTSL_ASK_ANY_HIT
+          ? device::traverseAsking(*state, how, device::LinkedPayloadSlots())
+          : device::traverseDevice(*state, how & RTSL_FIRST_HIT, rtsl_rt_Primitive_intersect);
   if (answer == RTSL_BAD_RAY)
     device::countUp(&state->launch->status->badRays);
   return answer;

@@ -75,6 +75,7 @@ inline void nextSample(const RtslJob &job, Lane &lane, Rays &rays) {
 }
 
 inline void endSample(const RtslJob &job, Lane &lane, const Rays &rays) {
+  endEvents(rays.bottom->state);
   addSample(job, lane, rays.bottom->state.SampleColor);
   if (++lane.sample == job.samplesPerPixel)
     writePixel(job, lane);

@@ -8,6 +8,15 @@
 
 namespace rtsl::device {
 
+/// The methods of the program that this code is linked into.
+struct LinkedSlots {
+#define RTSL_SLOT(base, method)                                                                    \
+  static void base##_##method(RtslState *state, RtslRef object) {                                  \
+    rtsl_##base##_##method(state, object);                                                         \
+  }
+#include "runtime/device/Slots.def"
+};
+
 inline void setVector(float *p, float x, float y, float z) {
   store(p, {x, y, z});
 }
@@ -73,7 +82,8 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t ne
 }
 
 /// The same for an RTSL primitive, by its methods.
-inline void describePrimitive(RtslState &state, RtslRef primitive, uint32_t needs) {
+template <typename Slots>
+void describePrimitive(RtslState &state, RtslRef primitive, uint32_t needs, const Slots &slots) {
   Vec3 origin = load(state.RayOrigin), direction = load(state.RayDirection);
   float t = state.HitDistance;
   store(state.HitPoint, {fused(t, direction.x, origin.x), fused(t, direction.y, origin.y),
@@ -81,20 +91,22 @@ inline void describePrimitive(RtslState &state, RtslRef primitive, uint32_t need
   state.hitPointError = primitivePointError(origin, direction, t);
   setVector(state.GeometricNormal, 0, 0, 0);
   setVector(state.ShadingNormal, 0, 0, 0);
-  rtsl_rt_Primitive_computeNormal(&state, primitive);
+  slots.rt_Primitive_computeNormal(&state, primitive);
   // A normal that the author leaves out equals the other one.
   if (isZero(load(state.ShadingNormal)))
     store(state.ShadingNormal, load(state.GeometricNormal));
   else if (isZero(load(state.GeometricNormal)))
     store(state.GeometricNormal, load(state.ShadingNormal));
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
-    rtsl_rt_Primitive_computeTextureCoordinates(&state, primitive);
+    slots.rt_Primitive_computeTextureCoordinates(&state, primitive);
   if (needs & RTSL_NEEDS_DERIVATIVES)
-    rtsl_rt_Primitive_computeDerivatives(&state, primitive);
+    slots.rt_Primitive_computeDerivatives(&state, primitive);
 }
 
-/// Everything that a material may read of the hit, once traversal has found it.
-inline void describeHit(RtslState &state) {
+/// Everything that a material may read of the hit, once traversal has found it. `slots` has the
+/// methods of rt_Primitive, as members with the names of Slots.def.
+template <typename Slots>
+void describeHit(RtslState &state, const Slots &slots) {
   const RtslLaunch &launch = *state.launch;
   const RtslInstance &instance = launch.instances[state.instance];
   uint32_t needs = instance.needs & rtsl_needs(&launch);
@@ -116,7 +128,11 @@ inline void describeHit(RtslState &state) {
   if (instance.primitive == 0)
     describeTriangle(state, launch.meshes[instance.mesh], needs);
   else
-    describePrimitive(state, instance.primitive, needs);
+    describePrimitive(state, instance.primitive, needs, slots);
+}
+
+inline void describeHit(RtslState &state) {
+  describeHit(state, LinkedSlots());
 }
 
 } // namespace rtsl::device

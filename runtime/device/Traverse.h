@@ -16,6 +16,11 @@ inline bool isGoodRay(const RtslState &state) {
          state.Epsilon == state.Epsilon && state.HitDistance == state.HitDistance;
 }
 
+/// Is the instance there for the ray at all?
+inline bool isSeen(const RtslState &state, const RtslInstance &instance) {
+  return state.rayRoot == 0 && (instance.mask & state.rayMask);
+}
+
 struct TriangleVertices {
   Vec3 v0, v1, v2;
 };
@@ -57,6 +62,8 @@ uint32_t traverseDevice(RtslState &state, bool anyHit, Intersect intersect) {
       [&] { return state.HitDistance; },
       [&](const RtslLeafItem &item) {
         const RtslInstance &instance = launch.instances[item.instance];
+        if (!isSeen(state, instance))
+          return false;
         if (instance.primitive == 0) {
           bool found =
               testTriangle(state, ray, launch.meshes[instance.mesh], item.instance, item.primitive);

@@ -8,6 +8,7 @@
 #include "runtime/FlatScene.h"
 #include "runtime/HostMegakernel.h"
 #include "runtime/MachineStack.h"
+#include "runtime/PrintLog.h"
 #include "runtime/Renderer.h"
 #include "scene/SceneFile.h"
 
@@ -39,6 +40,7 @@ struct RenderCommandOptions {
   runtime::Traversal traversal = runtime::Traversal::Embree;
   bool json = false;
   bool quiet = false;
+  bool prints = false, exceptions = false;
 };
 
 std::atomic<bool> interrupted{false};
@@ -64,10 +66,26 @@ struct Times {
   double compile = 0, scene = 0, image = 0;
 };
 
+/// What samples met, by RTSL_EXCEPTION_*.
+constexpr const char *exceptionNames[RTSL_EXCEPTIONS] = {"", "stackOverflow", "badRay", "index"};
+
+void printExceptions(const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics) {
+  const std::uint64_t *counts = statistics.exceptions;
+  if (counts[RTSL_EXCEPTION_STACK_OVERFLOW])
+    fmt::print(stderr, "{} samples sent rays deeper than {}: give a larger `--depth`, or end the recursion in the shader\n",
+               counts[RTSL_EXCEPTION_STACK_OVERFLOW], render.maxDepth);
+  if (counts[RTSL_EXCEPTION_BAD_RAY])
+    fmt::print(stderr, "{} samples sent a ray without a direction, or one that was not finite\n",
+               counts[RTSL_EXCEPTION_BAD_RAY]);
+  if (counts[RTSL_EXCEPTION_INDEX])
+    fmt::print(stderr, "{} samples used an index that was out of range\n", counts[RTSL_EXCEPTION_INDEX]);
+}
+
 void printSummary(const RenderCommandOptions &options, const runtime::RenderOptions &render,
-                  const runtime::RenderStatistics &statistics, const Times &times) {
+                  const runtime::RenderStatistics &statistics, const std::vector<std::string> &printed,
+                  const Times &times) {
   if (options.json) {
-    const nlohmann::ordered_json document = {
+    nlohmann::ordered_json document = {
         {"version", 1},
         {"output", options.output},
         {"size", {render.width, render.height}},
@@ -84,11 +102,17 @@ void printSummary(const RenderCommandOptions &options, const runtime::RenderOpti
         {"retracedRays", statistics.retracedRays},
         {"rescaledRays", statistics.rescaledRays},
         {"samplesNotFinite", statistics.samplesNotFinite}};
+    if (options.prints)
+      document["printed"] = printed;
+    for (std::uint32_t i = 1; i < RTSL_EXCEPTIONS; ++i)
+      if (statistics.exceptions[i])
+        document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
     fmt::print("{}\n", document.dump(2));
   } else if (!options.quiet && !options.common.jsonDiagnostics) { // there standard error is one JSON document
     fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
                options.output, render.width, render.height, render.samplesPerPixel, times.compile * 1e3,
                statistics.renderSeconds, double(statistics.samples) / statistics.renderSeconds * 1e-6);
+    printExceptions(render, statistics);
     if (statistics.samplesNotFinite)
       fmt::print(stderr, "{} samples were infinite or not a number, and count as black\n", statistics.samplesNotFinite);
     if (statistics.badRays)
@@ -116,8 +140,10 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common.compile, messages);
   if (!module)
     return;
+  LinkRequest request = linkRequest(description);
+  request.features |= (options.prints ? RTSL_FEATURE_PRINT : 0) | (options.exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
   const std::shared_ptr<const runtime::Program> program =
-      compileProgram(*module, linkRequest(description), options.common.compile, messages.diagnostics);
+      compileProgram(*module, request, options.common.compile, messages.diagnostics);
   if (!program)
     return;
   times.compile = secondsSince(start);
@@ -137,6 +163,10 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
                                    ? renderFlat(scene, render, statistics)
                                    : runtime::render(scene, render, &statistics);
   progress.finish();
+  const std::vector<std::string> printed = runtime::takePrintLog().texts(program->prints);
+  if (!options.json) // there the lines are part of the document
+    for (const std::string &line : printed)
+      fmt::print("{}\n", line);
   std::uint64_t stackBytes = 0;
   if (runtime::failedMachineStacks(&stackBytes))
     throw runtime::Error(runtime::ErrorCode::OutOfMemory,
@@ -146,7 +176,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   start = Clock::now();
   runtime::writeImage(options.output, image);
   times.image = secondsSince(start);
-  printSummary(options, render, statistics, times);
+  printSummary(options, render, statistics, printed, times);
 }
 
 int render(const RenderCommandOptions &options) {
@@ -191,6 +221,10 @@ void addRenderCommand(CLI::App &app, Action &action) {
                                                                         {"host-megakernel", Target::HostMegakernel}})
                       .description(""))
       ->type_name("host|host-megakernel");
+  command->add_flag("--print", options->prints,
+                    "show what shaders print, in the order of pixels, on standard output");
+  command->add_flag("--exceptions", options->exceptions,
+                    "end samples that send a bad ray, one too deep, or use an index out of range, and say how many");
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
   addCompileOptions(*command, options->common);

@@ -22,6 +22,9 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
 LinkRequest linkRequest(const scene::SceneDescription &description) {
   LinkRequest request;
   request.classes = scene::classesUsed(description);
+  request.engine = description.render.engine;
+  if (description.exception)
+    request.features |= RTSL_FEATURE_EXCEPTIONS;
   for (const scene::GeometryDescription &geometry : description.objects) {
     const scene::ObjectDescription *material = geometry.material.object.get();
     if (!material)

@@ -105,6 +105,8 @@ void Dispatcher::passFrame(FuncOp state) {
       mlir::Type type = llvm::cast<ir::PtrType>(object.getType()).getPointee();
       object.replaceAllUsesWith(address(object.getLoc(), frame, object.getOffset(), type));
       object.erase();
+    } else if (llvm::isa<ir::TraceReturnedOp>(op)) {
+      op->erase();
     } else if (auto end = llvm::dyn_cast<ir::EndOp>(op)) {
       builder.setInsertionPoint(end);
       mlir::func::ReturnOp::create(builder, end.getLoc(), end.getNext());
@@ -213,7 +215,9 @@ mlir::LogicalResult Dispatcher::run() {
 } // namespace
 
 llvm::ArrayRef<llvm::StringLiteral> machineEntries() {
-  static constexpr llvm::StringLiteral entries[] = {"rtsl_rt_Material_shade", "rtsl_rt_Miss_miss"};
+  static constexpr llvm::StringLiteral entries[] = {
+      "rtsl_rt_Material_shade", "rtsl_rt_Miss_miss", "rtsl_rt_Material_closestHit_payload",
+      "rtsl_rt_Miss_miss_payload", "rtsl_rt_RayGeneration_generate"};
   return entries;
 }
 

@@ -5,8 +5,8 @@
 //   a trace                               ...
 //   use %table[%i]                        a trace, use %table[%i]
 //
-// What mem2reg left in memory is indexed at run time. Its address is that of a place in the frame,
-// on both sides of a trace.
+// What mem2reg left in memory is indexed at run time, or is the payload of a ray. Its address is
+// that of a place in the frame, on both sides of a trace.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/Liveness.h"
@@ -38,7 +38,8 @@ void moveVariablesToFrame(FuncOp function) {
   for (ir::VarOp variable : variables) {
     llvm::SmallVector<mlir::Value> derived;
     addDerived(variable.getResult(), derived);
-    if (llvm::none_of(derived, [&](mlir::Value value) {
+    bool isPayload = llvm::any_of(variable->getUsers(), llvm::IsaPred<ir::SpawnPayloadOp>);
+    if (!isPayload && llvm::none_of(derived, [&](mlir::Value value) {
           return acrossTraces.test(liveness.numberOf(value));
         }))
       continue;

@@ -30,8 +30,9 @@ llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
       bool traces = function
                         .walk([&](mlir::Operation *op) {
                           auto call = llvm::dyn_cast<CallOp>(op);
-                          bool here = llvm::isa<ir::TraceOp, ir::SuspendOp>(op) ||
-                                      (call && tracing.contains(symbols.lookup(call.getCallee())));
+                          bool here =
+                              llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp>(op) ||
+                              (call && tracing.contains(symbols.lookup(call.getCallee())));
                           return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
                         })
                         .wasInterrupted();

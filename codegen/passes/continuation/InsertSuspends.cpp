@@ -7,6 +7,14 @@
 //                                             %c = rtsl.trace_result
 //                                             after
 //
+// A ray with a payload is prepared in front of the suspend, which then names none:
+//
+//     rtsl.trace_payload %o, %d ...           rtsl.spawn_payload %o, %d ...
+//     after                           ==>     rtsl.suspend ^resume
+//                                           ^resume:
+//                                             rtsl.trace_returned
+//                                             after
+//
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/Steps.h"
 
@@ -31,23 +39,46 @@ mlir::Value objectOf(FuncOp function) {
   return llvm::isa<ir::RefType>(first.getType()) ? first : mlir::Value();
 }
 
+/// ^a: x; trace; y      ==>      ^a: x; suspend ^b   ^b: y. Returns a builder at the beginning of
+/// ^b.
+static mlir::OpBuilder suspendAt(mlir::Operation *trace, mlir::Value origin,
+                                 mlir::Value direction) {
+  mlir::Block *block = trace->getBlock();
+  mlir::Block *resume = block->splitBlock(trace->getNextNode());
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(block);
+  ir::SuspendOp::create(builder, trace->getLoc(), origin, direction, mlir::ValueRange{},
+                        builder.getArrayAttr({}), resume);
+  builder.setInsertionPointToStart(resume);
+  return builder;
+}
+
 void insertSuspends(FuncOp function) {
   if (function.isExternal())
     return;
   mlir::IRRewriter rewriter(function.getContext());
   (void)mlir::eraseUnreachableBlocks(rewriter, function->getRegions());
 
-  llvm::SmallVector<ir::TraceOp> traces;
-  function.walk([&](ir::TraceOp trace) { traces.push_back(trace); });
-  for (ir::TraceOp trace : traces) {
-    mlir::Block *block = trace->getBlock();
-    mlir::Block *resume = block->splitBlock(trace->getNextNode());
-    mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(block);
-    ir::SuspendOp::create(builder, trace.getLoc(), trace.getOrigin(), trace.getDirection(),
-                          mlir::ValueRange{}, builder.getArrayAttr({}), resume);
-    builder.setInsertionPointToStart(resume);
-    auto result = ir::TraceResultOp::create(builder, trace.getLoc(), trace.getType());
-    trace.replaceAllUsesWith(result.getResult());
+  llvm::SmallVector<mlir::Operation *> traces;
+  function.walk([&](mlir::Operation *op) {
+    if (llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op))
+      traces.push_back(op);
+  });
+  for (mlir::Operation *op : traces) {
+    if (auto trace = llvm::dyn_cast<ir::TraceOp>(op)) {
+      mlir::OpBuilder builder = suspendAt(trace, trace.getOrigin(), trace.getDirection());
+      auto result = ir::TraceResultOp::create(builder, trace.getLoc(), trace.getType());
+      trace.replaceAllUsesWith(result.getResult());
+      trace.erase();
+      continue;
+    }
+    auto trace = llvm::cast<ir::TracePayloadOp>(op);
+    mlir::OpBuilder builder = suspendAt(trace, {}, {});
+    ir::TraceReturnedOp::create(builder, trace.getLoc());
+    builder.setInsertionPoint(trace);
+    ir::SpawnPayloadOp::create(builder, trace.getLoc(), trace.getOrigin(), trace.getDirection(),
+                               trace.getTmin(), trace.getTmax(), trace.getPayload(),
+                               trace.getRoot(), trace.getMask(), trace.getTime(),
+                               trace.getRayTypeAttr(), trace.getHowAttr());
     trace.erase();
   }
 }

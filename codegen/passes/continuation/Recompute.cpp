@@ -8,15 +8,18 @@ namespace rtsl::continuation {
 
 /// State that only the runtime writes, before a shader runs: not even an unknown method changes it.
 static constexpr llvm::StringLiteral fixedState[] = {
-    "Epsilon",       "HitDistance",    "ScreenCoord",  "LensCoord", "TimeSeed",
-    "LaunchIndex",   "LaunchSize",     "Time",         "Depth",     "ObjectToWorld",
-    "WorldToObject", "PrimitiveIndex", "InstanceIndex"};
+    "Epsilon",       "HitDistance",    "ScreenCoord",   "LensCoord",    "TimeSeed",
+    "LaunchIndex",   "LaunchSize",     "Time",          "Depth",        "ObjectToWorld",
+    "WorldToObject", "PrimitiveIndex", "InstanceIndex", "ExceptionCode"};
 
 void StateWrites::add(const StateWrites &other) {
   any |= other.any;
   for (const auto &entry : other.names)
     names.insert(entry.getKey());
 }
+
+/// Under this name, which no state variable has, goes what the ray carries.
+static constexpr llvm::StringLiteral payloadName = "payload";
 
 /// The operation that an address comes from, without its path through fields and elements.
 static mlir::Value baseOf(mlir::Value address) {
@@ -36,6 +39,8 @@ static StateWrites writesThrough(mlir::Value address) {
   mlir::Operation *base = baseOf(address).getDefiningOp();
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
     writes.names.insert(state.getName());
+  else if (llvm::isa_and_nonnull<ir::PayloadOp>(base))
+    writes.names.insert(payloadName);
   else if (!llvm::isa_and_nonnull<ir::VarOp, ir::FrameObjectOp, ir::MemberOp, ir::AttributeOp,
                                   ir::BufferElementOp>(base))
     writes.any = true; // an argument: whatever the caller passed
@@ -150,6 +155,8 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
     mlir::Operation *base = baseOf(load.getAddress()).getDefiningOp();
     if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
       return isUnchanged(load, state.getName(), suspend);
+    if (llvm::isa_and_nonnull<ir::PayloadOp>(base)) // rays that this one sends have others
+      return isUnchanged(load, payloadName, suspend);
     return isConstantForLaunch(load.getAddress()) || llvm::isa_and_nonnull<ir::AttributeOp>(base);
   }
   if (auto element = llvm::dyn_cast<ir::BufferElementOp>(op))

@@ -176,10 +176,12 @@ void keepTracingMethods(mlir::ModuleOp module) {
   static constexpr llvm::StringLiteral startedByRuntime[] = {
 #define RTSL_SLOT(base, method) #method,
 #include "runtime/device/Slots.def"
+#define RTSL_PAYLOAD_SLOT(base, method) #method,
+#include "runtime/device/PayloadSlots.def"
   };
   for (FuncOp function : tracingFunctions(module)) {
     auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
-    if (method && llvm::is_contained(startedByRuntime, method.getValue()))
+    if (method && llvm::is_contained(startedByRuntime, method.getValue().split('.').first))
       function->setAttr("rtsl.noinline", mlir::UnitAttr::get(module.getContext()));
   }
 }

@@ -117,8 +117,9 @@ void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
       return;
     }
     if (auto suspend = llvm::dyn_cast<ir::SuspendOp>(op)) {
-      ir::SpawnOp::create(builder, op.getLoc(), mapping.lookup(suspend.getOrigin()),
-                          mapping.lookup(suspend.getDirection()));
+      if (suspend.getOrigin())
+        ir::SpawnOp::create(builder, op.getLoc(), mapping.lookup(suspend.getOrigin()),
+                            mapping.lookup(suspend.getDirection()));
       unsigned index = llvm::find(suspends, suspend) - suspends.begin();
       endState(builder, op.getLoc(), ir::Transition::Trace, stateName(index + 1));
     } else if (llvm::isa<mlir::func::ReturnOp>(op)) {

@@ -127,7 +127,7 @@ void trimVectors(FuncOp function) {
   // A result of a trace comes first in its block; it may have been pushed down.
   for (ir::SuspendOp suspend : suspendsOf(function))
     for (mlir::Operation &op : *suspend.getResume())
-      if (llvm::isa<ir::TraceResultOp>(op)) {
+      if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp>(op)) {
         op.moveBefore(&suspend.getResume()->front());
         break;
       }

@@ -79,6 +79,19 @@ func.func @references(%self: !rtsl.ref<"Glass">, %x: f32) -> f32 {
 func.func @rays(%p: vector<3xf32>, %t: f32, %i: i32) {
   // CHECK: rtsl.trace %{{.*}}, %{{.*}} : vector<4xf32>
   %c = rtsl.trace %p, %p : vector<4xf32>
+  // CHECK: %[[PAYLOAD:.*]] = rtsl.payload : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  // CHECK-NEXT: %[[TYPE:.*]] = rtsl.ray_type
+  // CHECK: rtsl.trace_payload %{{.*}}, %{{.*}} from %{{.*}} to %{{.*}} carries %[[PAYLOAD]] root %[[TYPE]] mask %[[TYPE]] time %{{.*}} {how = 2 : i32, ray_type = 1 : i32} :
+  // CHECK: rtsl.trace_payload %{{.*}}, %{{.*}} from %{{.*}} to %{{.*}} carries %[[PAYLOAD]] : !rtsl.ptr
+  // CHECK-NEXT: rtsl.answer_hit ignore
+  // CHECK-NEXT: %{{.*}} = rtsl.hit_answered
+  %payload = rtsl.payload : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  %type = rtsl.ray_type
+  %tmax = arith.constant 2.0 : f32
+  rtsl.trace_payload %p, %p from %tmax to %tmax carries %payload root %type mask %type time %tmax {ray_type = 1 : i32, how = 2 : i32} : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  rtsl.trace_payload %p, %p from %tmax to %tmax carries %payload : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  rtsl.answer_hit ignore
+  %answered = rtsl.hit_answered
   // CHECK: rtsl.hit %{{.*}}
   %h = rtsl.hit %t
   // CHECK: rtsl.ambient : vector<4xf32>

@@ -387,21 +387,8 @@ TEST(Unsupported, IsReportedWhereItStands) {
   struct {
     const char *source, *message, *place;
   } const cases[] = {
-      {"struct Payload { float x; };\n"
-       "class C : rt_RayGeneration { void generate() { Payload p; p.x = 1.0; trace(vec3(0), "
-       "vec3(1), 0.0, 1.0, p); } };",
-       "`trace` with a payload is not supported yet", "trace(vec3(0), vec3(1), 0.0, 1.0, p)"},
-      {"struct Payload { float x; };\n"
-       "class C : rt_Material { void anyHit(inout Payload p) { p.x = 1.0; ignoreIntersection(); } "
-       "};",
-       "`ignoreIntersection` is not supported yet", "ignoreIntersection()"},
-      {"struct Payload { float x; };\n"
-       "class C : rt_Material { void anyHit(inout Payload p) { p.x = 1.0; terminateRay(); } };",
-       "`terminateRay` is not supported yet", "terminateRay()"},
       {"class C : rt_Selector { void visit() { visitChild(0); } };",
        "`visitChild` is not supported yet", "visitChild(0)"},
-      {"float f(float x) { print(\"x is\", x); return x; }", "`print` is not supported yet",
-       "print(\"x is\", x)"},
   };
   for (const auto &expected : cases) {
     std::string place;

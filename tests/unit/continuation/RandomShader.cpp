@@ -42,15 +42,59 @@ private:
   void block(unsigned size);
   void loop(unsigned size);
   void choice(unsigned size);
-  void method(const std::string &className, const std::string &name);
+  void method(const std::string &className, const std::string &name, bool hasPayload = false);
+  std::string payloadField(const std::string &base, unsigned field);
+  void tracePayload();
 
   std::mt19937 random;
   std::string text, className;
+  bool hasPayload = false; // the method answers rays that carry one
   unsigned counter = 0, depth = 0, loops = 0, breakable = 0, traces = 0;
 };
 
 const std::string vec3 = "vector<3xf32>";
 const std::string array = "!rtsl.array<4 x f32>";
+
+const std::string payload =
+    "!rtsl.struct<\"P\", {x: f32, v: vector<3xf32>, b: i1, a: " + array + "}>";
+
+/// The address of x, v, b or an element of a.
+std::string Generator::payloadField(const std::string &base, unsigned field) {
+  static const std::string names[] = {"x", "v", "b", "a"}, types[] = {"f32", vec3, "i1", array};
+  std::string address = emit("rtsl.field " + base + "[\"" + names[field] + "\"] : !rtsl.ptr<" +
+                             payload + "> -> !rtsl.ptr<" + types[field] + ">");
+  if (field < 3)
+    return address;
+  std::string three = emit("arith.constant 3 : i32");
+  std::string inRange = emit("arith.andi " + intValue(1) + ", " + three + " : i32");
+  return emit("rtsl.element " + address + "[" + inRange + "] : !rtsl.ptr<" + array +
+              "> -> !rtsl.ptr<f32>");
+}
+
+/// A ray with a payload of its own, as lowering makes it: filled before, read behind.
+void Generator::tracePayload() {
+  std::string origin = vectorValue(1), direction = vectorValue(2), from = floatValue(1),
+              to = floatValue(1);
+  std::string mask = below(2) ? " mask " + intValue(1) : "",
+              time = below(2) ? " time " + floatValue(1) : "";
+  std::string variable = "%p" + std::to_string(counter++);
+  line(variable + " = rtsl.var \"payload\" : !rtsl.ptr<" + payload + ">");
+  store(floatValue(1), payloadField(variable, 0), "f32");
+  store(vectorValue(1), payloadField(variable, 1), vec3);
+  store(boolValue(1), payloadField(variable, 2), "i1");
+  if (below(2))
+    store(floatValue(1), payloadField(variable, 3), "f32");
+  line("rtsl.trace_payload " + origin + ", " + direction + " from " + from + " to " + to +
+       " carries " + variable + mask + time + " {ray_type = 1 : i32, how = 0 : i32} : !rtsl.ptr<" +
+       payload + ">");
+  store(load(payloadField(variable, 0), "f32"), "%f" + std::to_string(below(3)), "f32");
+  if (below(4)) // sometimes nobody reads a field
+    store(load(payloadField(variable, 1), vec3), "%v" + std::to_string(below(3)), vec3);
+  if (below(2))
+    store(load(payloadField(variable, 2), "i1"), "%b" + std::to_string(below(3)), "i1");
+  if (below(2))
+    store(load(payloadField(variable, 3), "f32"), "%f" + std::to_string(below(3)), "f32");
+}
 
 std::string Generator::element() {
   std::string index = intValue(1);
@@ -86,6 +130,8 @@ std::string Generator::floatValue(unsigned size) {
     return emit("arith.select " + c + ", " + a + ", " + b + " : f32");
   }
   case 9:
+    if (hasPayload && below(2))
+      return load(payloadField("%own", below(2) ? 0 : 3), "f32");
     return load(state(isMiss() ? "Epsilon" : "HitDistance", "f32"), "f32");
   default: {
     static const char *ops[] = {"arith.addf", "arith.mulf", "arith.subf", "arith.divf"};
@@ -132,6 +178,8 @@ std::string Generator::vectorValue(unsigned size) {
   case 1:
     return load("%v" + std::to_string(below(3)), vec3);
   case 2: {
+    if (hasPayload && below(2))
+      return load(payloadField("%own", 1), vec3);
     // A ray that hit nothing has no hit point.
     static const char *names[] = {"RayDirection", "SampleColor", "RayOrigin", "HitPoint",
                                   "GeometricNormal"};
@@ -229,12 +277,19 @@ void Generator::statement(unsigned size) {
   } else if (kind == 4) {
     std::string value = floatValue(1);
     store(value, element(), "f32");
+  } else if (kind == 5 && hasPayload) {
+    if (below(2))
+      store(vectorValue(2), payloadField("%own", 1), vec3);
+    else
+      store(floatValue(2), payloadField("%own", below(2) ? 0 : 3), "f32");
   } else if (kind == 5) {
     store(vectorValue(2), state("SampleColor", vec3), vec3);
   } else if (kind < 10) {
     if (traces == 0)
       return store(floatValue(1), "%f0", "f32");
     --traces;
+    if (below(2))
+      return tracePayload();
     std::string origin = vectorValue(1), direction = vectorValue(2);
     std::string color = emit("rtsl.trace " + origin + ", " + direction + " : " + vec3);
     std::string weight = vectorValue(1);
@@ -263,8 +318,9 @@ void Generator::statement(unsigned size) {
   }
 }
 
-void Generator::method(const std::string &name, const std::string &methodName) {
+void Generator::method(const std::string &name, const std::string &methodName, bool withPayload) {
   className = name;
+  hasPayload = withPayload;
   traces = 3;
   text += "func.func private @" + name + "." + methodName + "(%self: !rtsl.ref<\"" + name +
           "\">) attributes {rtsl.class = \"" + name + "\", rtsl.method = \"" + methodName +
@@ -279,6 +335,8 @@ void Generator::method(const std::string &name, const std::string &methodName) {
   for (int i = 0; i < 3; ++i)
     line("%v" + std::to_string(i) + " = rtsl.var \"v" + std::to_string(i) + "\" : !rtsl.ptr<" +
          vec3 + ">");
+  if (hasPayload)
+    line("%own = rtsl.payload : !rtsl.ptr<" + payload + ">");
   line("%a = rtsl.var \"a\" : !rtsl.ptr<" + array + ">");
   for (int i = 0; i < 3; ++i)
     store(emit("rtsl.rand"), "%f" + std::to_string(i), "f32");
@@ -303,7 +361,7 @@ void Generator::method(const std::string &name, const std::string &methodName) {
         emit("arith.addf " + scalar + ", " +
              emit(std::string("arith.uitofp ") + load(name, "i1") + " : i1 to f32") + " : f32");
   std::string splat = emit("vector.broadcast " + scalar + " : f32 to " + vec3);
-  std::string color = state("SampleColor", vec3);
+  std::string color = hasPayload ? payloadField("%own", 1) : state("SampleColor", vec3);
   std::string before = load(color, vec3);
   std::string after = emit("arith.addf " + before + ", " +
                            emit("arith.addf " + sum + ", " + splat + " : " + vec3) + " : " + vec3);
@@ -321,6 +379,9 @@ std::string Generator::module() {
   method("A", "shade");
   method("B", "shade");
   method("Sky", "miss");
+  method("A", "closestHit.P", true);
+  method("B", "closestHit.P", true);
+  method("Sky", "miss.P", true);
   text += R"(
 func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
   %id = rtsl.class_id %o : !rtsl.ref<"rt_Material">
@@ -338,9 +399,39 @@ func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl
   }
   rtsl.return
 }
+func.func @rtsl_rt_Exception_exception(%o: !rtsl.ref<"rt_Exception">) attributes {rtsl.export} {
+  rtsl.return
+}
 func.func @rtsl_rt_Miss_miss(%o: !rtsl.ref<"rt_Miss">) attributes {rtsl.export} {
   %s = rtsl.cast_ref %o : !rtsl.ref<"rt_Miss"> -> !rtsl.ref<"Sky">
   func.call @Sky.miss(%s) : (!rtsl.ref<"Sky">) -> ()
+  rtsl.return
+}
+func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
+  %id = rtsl.class_id %o : !rtsl.ref<"rt_Material">
+  %type = rtsl.ray_type
+  %one = arith.constant 1 : i32
+  %known = arith.cmpi eq, %type, %one : i32
+  rtsl.if %known {
+    rtsl.switch %id : i32 {
+      arm [1] {
+        %a = rtsl.cast_ref %o : !rtsl.ref<"rt_Material"> -> !rtsl.ref<"A">
+        func.call @A.closestHit.P(%a) : (!rtsl.ref<"A">) -> ()
+        rtsl.return
+      }
+      arm [2] {
+        %b = rtsl.cast_ref %o : !rtsl.ref<"rt_Material"> -> !rtsl.ref<"B">
+        func.call @B.closestHit.P(%b) : (!rtsl.ref<"B">) -> ()
+        rtsl.return
+      }
+    }
+    rtsl.yield
+  }
+  rtsl.return
+}
+func.func @rtsl_rt_Miss_miss_payload(%o: !rtsl.ref<"rt_Miss">) attributes {rtsl.export} {
+  %s = rtsl.cast_ref %o : !rtsl.ref<"rt_Miss"> -> !rtsl.ref<"Sky">
+  func.call @Sky.miss.P(%s) : (!rtsl.ref<"Sky">) -> ()
   rtsl.return
 }
 func.func @rtsl_rt_Camera_generateRay(%o: !rtsl.ref<"rt_Camera">) attributes {rtsl.export} {

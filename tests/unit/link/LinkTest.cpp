@@ -1,71 +1,10 @@
 //===- LinkTest.cpp - linking classes into a program ----------------------===//
-#include "codegen/ir/Rtsl.h"
-#include "codegen/link/Link.h"
-#include "codegen/lower/Lower.h"
-#include "frontend/Parser.h"
-#include "sema/Sema.h"
-
-#include "mlir/Dialect/Func/IR/FuncOps.h"
-#include "mlir/IR/MLIRContext.h"
-
-#include <gtest/gtest.h>
+#include "Linked.h"
 
 #include <algorithm>
 
 namespace rtsl {
 namespace {
-
-/// RTSL text, lowered and linked for a scene.
-class Linked {
-public:
-  Linked(std::string source, LinkRequest request) : request(std::move(request)) {
-    const FileId file = sources.add("test.rtsl", std::move(source));
-    unit = parse(file, diagnostics);
-    module = check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
-    EXPECT_FALSE(diagnostics.hasErrors()) << renderText(diagnostics, false);
-    if (diagnostics.hasErrors())
-      return;
-    LowerOptions options;
-    options.diagnostics = &diagnostics;
-    ir = lower(*module, options, context);
-    EXPECT_TRUE(ir) << renderText(diagnostics, false);
-    if (ir)
-      succeeded = link(*ir, *module, this->request, 3, diagnostics, program);
-  }
-
-  mlir::func::FuncOp function(const std::string &name) { return ir->lookupSymbol<mlir::func::FuncOp>(name); }
-
-  template <typename Op>
-  std::size_t count(const std::string &name) {
-    std::size_t number = 0;
-    function(name).walk([&](Op) { ++number; });
-    return number;
-  }
-
-  /// The functions that one calls, in order.
-  std::vector<std::string> callees(const std::string &name) {
-    std::vector<std::string> names;
-    function(name).walk([&](mlir::func::CallOp call) { names.push_back(call.getCallee().str()); });
-    return names;
-  }
-
-  const runtime::ClassInfo &classInfo(const std::string &name) {
-    const runtime::ClassInfo *info = program.find(name);
-    EXPECT_NE(info, nullptr) << name;
-    static const runtime::ClassInfo none;
-    return info ? *info : none;
-  }
-
-  SourceManager sources;
-  Diagnostics diagnostics{sources};
-  std::unique_ptr<ast::TranslationUnit> unit;
-  std::unique_ptr<typed::Module> module;
-  LinkRequest request;
-  mlir::MLIRContext context;
-  mlir::OwningOpRef<mlir::ModuleOp> ir;
-  runtime::Program program;
-  bool succeeded = false;
-};
 
 const std::string textures = R"(
 class Solid : rt_Texture {
@@ -269,6 +208,38 @@ class Matte : rt_Material {
   EXPECT_FALSE(linked.succeeded);
   ASSERT_EQ(linked.diagnostics.all().size(), 1u);
   EXPECT_EQ(linked.diagnostics.all().front().code, Code::slotNotFilled);
+}
+
+TEST(Link, FunctionsThatTraceAndCallThemselvesThroughReferencesAreToldFromOthers) {
+  const std::string coats = R"(
+class Layer : rt_Material {
+  color look(int depth) { return color(0.5); }
+  void shade() { rt_SampleColor = look(0); }
+};
+class Coat : Layer {
+  public Layer below;
+  color look(int depth) { return below.look(depth + 1) * TRACE; }
+};
+class Paint : Layer {
+  color look(int depth) { return trace(rt_HitPoint, rt_ShadingNormal); }
+};)";
+  auto coatsWith = [&](const std::string &factor) {
+    std::string text = coats;
+    return text.replace(text.find("TRACE"), 5, factor);
+  };
+  const LinkRequest both = {{"Coat", "Layer"}, {}}, three = {{"Coat", "Layer", "Paint"}, {}};
+  Linked harmless(coatsWith("0.5"), both);
+  ASSERT_TRUE(harmless.succeeded);
+  EXPECT_TRUE(refuseTracingCircles(*harmless.ir, *harmless.module, harmless.diagnostics));
+  const std::string traced = "trace(rt_HitPoint, rt_ShadingNormal)";
+  Linked itself(coatsWith(traced), both), another(coatsWith("0.5"), three);
+  for (Linked *linked : {&itself, &another}) {
+    ASSERT_TRUE(linked->succeeded);
+    EXPECT_FALSE(refuseTracingCircles(*linked->ir, *linked->module, linked->diagnostics));
+    ASSERT_EQ(linked->diagnostics.all().size(), 1u);
+    EXPECT_EQ(linked->diagnostics.all()[0].code, Code::tracingCircle);
+    EXPECT_EQ(linked->diagnostics.sources().text(linked->diagnostics.all()[0].range), "look");
+  }
 }
 
 } // namespace

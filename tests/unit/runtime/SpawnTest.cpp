@@ -17,6 +17,7 @@ namespace {
 
 RtslState makeRay(const RtslLaunch &launch, Vec3 o, Vec3 d, float epsilon) {
   RtslState state{};
+  state.rayMask = ~0u;
   state.launch = &launch;
   store(state.RayOrigin, o);
   store(state.RayDirection, d);

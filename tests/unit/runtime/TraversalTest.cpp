@@ -54,6 +54,8 @@ RtslState makeState(const RtslLaunch &launch, Vec3 o, Vec3 d, float epsilon = 0,
   RtslState state;
   std::memset(&state, 0x7f, sizeof state); // nothing may rely on cleared memory
   state.launch = &launch;
+  state.rayMask = ~0u;
+  state.rayRoot = 0;
   rtsl::device::store(state.RayOrigin, o);
   rtsl::device::store(state.RayDirection, d);
   state.Epsilon = epsilon;

@@ -44,7 +44,7 @@ TEST(SceneFile, ReadsEverySection) {
   EXPECT_EQ(scene.imports[0].path, "");
   EXPECT_EQ(scene.imports[1].path, "dir/glass.rtsl");
   EXPECT_EQ(scene.imports[2].path, "/abs/other.rtsl");
-  EXPECT_EQ(scene.camera.className.text, "PinholeCamera");
+  EXPECT_EQ(scene.camera.value().className.text, "PinholeCamera");
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.objects[0].name.text, "ball");
   EXPECT_EQ(scene.objects[0].material.name.text, "glass");
@@ -65,7 +65,7 @@ TEST(SceneFile, DefaultsWhereTheFileIsSilent) {
   SceneDescription scene = parseScene(std::string("{") + camera + "}", "s.json");
   EXPECT_EQ(scene.render.width, 960u);
   EXPECT_EQ(scene.render.samplesPerPixel, 16u);
-  EXPECT_EQ(scene.render.engine, "classic");
+  EXPECT_EQ(scene.render.engine, rtsl::runtime::Engine::Classic);
 }
 
 TEST(SceneFile, MissingAndUnknownKeys) {
@@ -99,7 +99,8 @@ TEST(SceneFile, WrongTypesAndRanges) {
   EXPECT_EQ(parseError(withCamera("\"render\": {\"size\": [4]}")),
             "dir/s.json:2:20+1: wrongType: `size` takes 2 numbers, not 1");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"engine\": \"path\"}")),
-            "dir/s.json:2:23+4: notSupported: there is no engine `path`, only `classic`");
+            "dir/s.json:2:23+4: notSupported: there is no engine `path`, only `classic` "
+            "and `programs`");
   EXPECT_EQ(parseError(withCamera("\"ambient\": \"red\"")),
             "dir/s.json:2:13+3: wrongType: `ambient` is a color, not a string");
   EXPECT_EQ(

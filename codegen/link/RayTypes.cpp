@@ -1,0 +1,294 @@
+//===- RayTypes.cpp - payloads, and who answers them ----------------------===//
+//
+// The type of a payload is the type of its ray. Here the types that a scene traces get numbers, which a ray carries, and
+// it is found out how their hits have to be searched for:
+//
+// - no material has `closestHit` for the type: any hit is as good as the nearest, and the first ends the search;
+// - some material has `anyHit`: hits may be refused. In which order materials are asked must not show. It does not if
+//   they write nothing of the payload, draw no random numbers, and do not end the search before the nearest hit where
+//   somebody wants to know it. Nor does it where each of them either refuses, or writes the same constants and ends the
+//   search, and no `closestHit` follows. Everywhere else they are asked in the order of hits.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/link/Steps.h"
+
+#include "runtime/device/Abi.h"
+
+#include "mlir/IR/Matchers.h"
+#include "llvm/ADT/SetVector.h"
+
+#include <algorithm>
+
+namespace rtsl::linking {
+
+namespace {
+
+using mlir::func::FuncOp;
+
+/// The methods of this name that the classes of the program have for a payload.
+std::vector<FuncOp> programsFor(const LinkContext &context, const RayType &type, const std::string &method) {
+  std::vector<FuncOp> programs;
+  for (const LinkedClass &linked : context.classes)
+    if (FuncOp program = findMethod(context, linked, method + "." + type.name()))
+      programs.push_back(program);
+  return programs;
+}
+
+/// Functions and all that they call.
+std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, mlir::ModuleOp ir) {
+  llvm::SetVector<mlir::Operation *> reached;
+  for (FuncOp root : roots)
+    reached.insert(root);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    reached[i]->walk([&](mlir::func::CallOp call) {
+      if (auto callee = ir.lookupSymbol<FuncOp>(call.getCallee()))
+        reached.insert(callee);
+    });
+  std::vector<FuncOp> functions;
+  for (mlir::Operation *function : reached)
+    functions.push_back(llvm::cast<FuncOp>(function));
+  return functions;
+}
+
+//===----------------------------------------------------------------------===//
+// Does the order show?
+//===----------------------------------------------------------------------===//
+
+/// What `anyHit` methods for one type of ray do.
+struct Asking {
+  bool writes = false, reads = false; // the payload
+  bool draws = false;                 // random numbers, or does what is not known
+  bool terminates = false;
+};
+
+void look(mlir::Value address, Asking &asking) {
+  for (mlir::Operation *user : address.getUsers()) {
+    if (llvm::isa<ir::FieldOp, ir::ElementOp>(user))
+      look(user->getResult(0), asking);
+    else if (llvm::isa<ir::LoadOp>(user))
+      asking.reads = true;
+    else if (auto copy = llvm::dyn_cast<ir::CopyOp>(user); copy && copy.getTarget() != address)
+      asking.reads = true;
+    else
+      asking.writes = true;
+  }
+}
+
+Asking askingOf(const std::vector<FuncOp> &functions) {
+  Asking asking;
+  for (FuncOp function : functions) {
+    asking.draws |= function.isExternal();
+    function.walk([&](mlir::Operation *op) {
+      if (auto payload = llvm::dyn_cast<ir::PayloadOp>(op))
+        look(payload, asking);
+      else if (auto answer = llvm::dyn_cast<ir::AnswerHitOp>(op))
+        asking.terminates |= answer.getAnswer() == ir::HitAnswer::Terminate;
+      else if (llvm::isa<ir::RandOp, ir::PrintOp, ir::CallMethodOp>(op))
+        asking.draws = true;
+    });
+  }
+  return asking;
+}
+
+/// "field.element..." of an address in the payload, through constant indices; empty if it is none.
+std::string pathInPayload(mlir::Value address) {
+  if (auto field = address.getDefiningOp<ir::FieldOp>()) {
+    if (field.getBase().getDefiningOp<ir::PayloadOp>())
+      return field.getField().str();
+    const std::string base = pathInPayload(field.getBase());
+    return base.empty() ? base : base + "." + field.getField().str();
+  }
+  if (auto element = address.getDefiningOp<ir::ElementOp>(); element && element.constantIndex()) {
+    const std::string base = pathInPayload(element.getBase());
+    return base.empty() ? base : base + "." + std::to_string(*element.constantIndex());
+  }
+  return {};
+}
+
+using ConstantStores = std::map<std::string, mlir::Attribute>;
+
+/// Whether each way through the method ends in a refusal without stores, or in the end of the search with these stores
+/// of constants (all of them in front of the answer, in its block). `stores` is filled by the first that is seen.
+bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
+  bool isAlike = true;
+  anyHit.walk([&](ir::ReturnOp end) {
+    auto answer = llvm::dyn_cast_or_null<ir::AnswerHitOp>(end->getPrevNode());
+    isAlike &= static_cast<bool>(answer);
+  });
+  anyHit.walk([&](ir::StoreOp store) {
+    if (pathInPayload(store.getAddress()).empty())
+      return;
+    auto end = llvm::dyn_cast<ir::ReturnOp>(store->getBlock()->back());
+    auto answer = end ? llvm::dyn_cast_or_null<ir::AnswerHitOp>(end->getPrevNode()) : ir::AnswerHitOp();
+    isAlike &= answer && answer.getAnswer() == ir::HitAnswer::Terminate;
+  });
+  anyHit.walk([&](ir::AnswerHitOp answer) {
+    if (answer.getAnswer() != ir::HitAnswer::Terminate)
+      return;
+    ConstantStores here;
+    for (ir::StoreOp store : answer->getBlock()->getOps<ir::StoreOp>()) {
+      const std::string path = pathInPayload(store.getAddress());
+      mlir::Attribute value;
+      if (path.empty())
+        continue;
+      isAlike &= mlir::matchPattern(store.getValue(), mlir::m_Constant(&value));
+      here[path] = value;
+    }
+    if (!stores)
+      stores = here;
+    isAlike &= here == *stores;
+  });
+  return isAlike;
+}
+
+/// Whether all writes of the payload are such stores, and every material asks.
+bool writesShowNoOrder(const LinkContext &context, const std::vector<FuncOp> &anyHits) {
+  const auto materials = std::count_if(context.classes.begin(), context.classes.end(), [](const LinkedClass &linked) {
+    return linked.info->root == "rt_Material";
+  });
+  if (static_cast<std::size_t>(materials) != anyHits.size())
+    return false; // some material accepts without writing
+  std::optional<ConstantStores> stores;
+  for (FuncOp anyHit : anyHits) {
+    bool isSimple = true; // nothing but stores of whole parts writes
+    anyHit.walk([&](mlir::Operation *op) {
+      if (llvm::isa<ir::CopyOp, ir::ClearOp, mlir::func::CallOp>(op))
+        for (mlir::Value operand : op->getOperands())
+          isSimple &= !operand.getDefiningOp<ir::PayloadOp>() && pathInPayload(operand).empty();
+      if (auto element = llvm::dyn_cast<ir::ElementOp>(op))
+        isSimple &= element.constantIndex().has_value() || pathInPayload(element.getBase()).empty();
+    });
+    if (!isSimple || !endsAlike(anyHit, stores))
+      return false;
+  }
+  return true;
+}
+
+bool orderShows(const LinkContext &context, const std::vector<FuncOp> &anyHits, bool hasClosestHit) {
+  const Asking asking = askingOf(reachedFrom(anyHits, context.ir));
+  if (asking.draws || (asking.terminates && hasClosestHit))
+    return true;
+  if (!asking.writes)
+    return false;
+  return hasClosestHit || asking.reads || !writesShowNoOrder(context, anyHits);
+}
+
+//===----------------------------------------------------------------------===//
+// The types
+//===----------------------------------------------------------------------===//
+
+const typed::Struct *structOf(const LinkContext &context, const RayType &type) {
+  for (const auto &candidate : context.module.structs)
+    if (candidate->name == type.name())
+      return candidate.get();
+  return nullptr;
+}
+
+/// How rtsl_traverse is to search for hits of rays of this type.
+std::uint32_t searchFor(LinkContext &context, const RayType &type) {
+  const bool hasClosestHit = !programsFor(context, type, "closestHit").empty();
+  const std::vector<FuncOp> anyHits = programsFor(context, type, "anyHit");
+  if (!hasClosestHit && anyHits.empty() && programsFor(context, type, "miss").empty())
+    if (const typed::Struct *payload = structOf(context, type))
+      context.diagnostics.report(Code::rayTypeUnanswered, payload->range, payload->name);
+  std::uint32_t how = hasClosestHit ? 0 : RTSL_FIRST_HIT;
+  if (!anyHits.empty())
+    how |= RTSL_ASK_ANY_HIT | (orderShows(context, anyHits, hasClosestHit) ? RTSL_IN_ORDER : 0);
+  return how;
+}
+
+/// @rtsl_rt_Material_closestHit_payload(%object): the method for the ray's type, of the object's class.
+void makePayloadSlot(LinkContext &context, const std::string &base, const std::string &method) {
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
+  const mlir::Location location = builder.getUnknownLoc();
+  const mlir::Type object = ir::RefType::get(builder.getContext(), base);
+  auto create = [&](const std::string &name) {
+    builder.setInsertionPointToEnd(context.ir.getBody());
+    return FuncOp::create(builder, location, name, builder.getFunctionType({object}, {}));
+  };
+  std::vector<const LinkedClass *> classes;
+  for (const LinkedClass &linked : context.classes)
+    if (linked.info->root == base)
+      classes.push_back(&linked);
+
+  std::vector<FuncOp> targets;
+  llvm::SmallVector<llvm::SmallVector<std::int32_t>> numbers;
+  for (const RayType &type : context.rayTypes) {
+    if (programsFor(context, type, method).empty())
+      continue;
+    FuncOp target = create("dispatch." + base + "." + method + "." + type.name());
+    target.setPrivate();
+    buildDispatch(context, target, classes, method + "." + type.name());
+    targets.push_back(target);
+    numbers.push_back({static_cast<std::int32_t>(type.number)});
+  }
+
+  FuncOp slot = create("rtsl_" + base + "_" + method + "_payload");
+  mlir::Block *entry = slot.addEntryBlock();
+  builder.setInsertionPointToEnd(entry);
+  auto call = [&](mlir::OpBuilder &at, FuncOp target) {
+    mlir::func::CallOp::create(at, location, target, mlir::ValueRange(entry->getArguments()));
+    ir::ReturnOp::create(at, location, mlir::ValueRange());
+  };
+  if (targets.size() == 1 && context.rayTypes.size() == 1) {
+    call(builder, targets.front());
+  } else {
+    if (!targets.empty()) {
+      const mlir::Value number = ir::RayTypeOp::create(builder, location, builder.getI32Type());
+      auto choice = ir::SwitchOp::create(builder, location, number, numbers, std::nullopt);
+      for (auto [target, arm] : llvm::zip(targets, choice.getArms())) {
+        mlir::OpBuilder inArm = mlir::OpBuilder::atBlockEnd(&arm.front());
+        call(inArm, target);
+      }
+    }
+    ir::ReturnOp::create(builder, location, mlir::ValueRange());
+  }
+  slot->setAttr("rtsl.export", builder.getUnitAttr());
+}
+
+} // namespace
+
+std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
+  std::vector<RayType> types;
+  auto number = [&](auto ray) {
+    const auto payload =
+        llvm::cast<ir::StructType>(llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee());
+    auto known = std::find_if(types.begin(), types.end(), [&](const RayType &type) { return type.payload == payload; });
+    if (known == types.end()) {
+      types.push_back({payload, static_cast<std::uint32_t>(types.size()) + 1});
+      known = types.end() - 1;
+    }
+    ray.setRayType(known->number);
+    ray.setHow(RTSL_ASK_ANY_HIT | RTSL_IN_ORDER); // what is right for any scene
+  };
+  ir.walk([&](mlir::Operation *op) {
+    if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op))
+      number(trace);
+    else if (auto spawn = llvm::dyn_cast<ir::SpawnPayloadOp>(op))
+      number(spawn);
+  });
+  return types;
+}
+
+void resolveRayTypes(LinkContext &context) {
+  context.rayTypes = numberRayTypes(context.ir);
+  std::map<std::uint32_t, std::uint32_t> search;
+  for (const RayType &type : context.rayTypes)
+    search[type.number] = searchFor(context, type);
+  context.ir.walk([&](ir::TracePayloadOp trace) { trace.setHow(search[*trace.getRayType()]); });
+}
+
+void makePayloadSlots(LinkContext &context) {
+#define RTSL_PAYLOAD_SLOT(base, method) makePayloadSlot(context, #base, #method);
+#include "runtime/device/PayloadSlots.def"
+}
+
+std::uint32_t anyHitTypes(const LinkContext &context, const LinkedClass &material) {
+  std::uint32_t types = 0;
+  for (const RayType &type : context.rayTypes)
+    if (findMethod(context, material, "anyHit." + type.name()))
+      types |= rtslRayTypeBit(type.number);
+  return types;
+}
+
+} // namespace rtsl::linking

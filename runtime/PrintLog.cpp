@@ -1,0 +1,130 @@
+#include "runtime/PrintLog.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <tuple>
+#include <utility>
+
+namespace rtsl::runtime {
+
+namespace {
+
+auto key(const PrintedLine &line) {
+  // What no sample printed comes first.
+  std::uint64_t row = line.sample == PrintedLine::noSample ? 0 : std::uint64_t(line.y) + 1;
+  return std::make_tuple(row, line.x, line.sample, line.order);
+}
+
+bool comesFirst(const PrintedLine &a, const PrintedLine &b) {
+  return key(a) < key(b);
+}
+
+std::string scalarText(ValueType::Kind kind, std::uint32_t word) {
+  switch (kind) {
+  case ValueType::Kind::Bool:
+    return word ? "true" : "false";
+  case ValueType::Kind::Int:
+    return fmt::format("{}", std::int32_t(word));
+  case ValueType::Kind::UInt:
+    return fmt::format("{}", word);
+  default: {
+    float value;
+    std::memcpy(&value, &word, sizeof value);
+    return value != value ? "nan" : fmt::format("{}", value);
+  }
+  }
+}
+
+/// "3", "vec3(1, 2, 3)", "mat2(1, 0, 0, 1)".
+std::string valueText(const PrintItem &item, const std::uint32_t *words) {
+  if (item.text == "float" || item.text == "int" || item.text == "uint" || item.text == "bool")
+    return scalarText(item.kind, words[0]);
+  std::string text = item.text + "(";
+  for (std::uint32_t i = 0; i < item.words; ++i)
+    text += (i ? ", " : "") + scalarText(item.kind, words[i]);
+  return text + ")";
+}
+
+std::string lineText(const PrintedLine &line, const PrintFormat &format) {
+  std::string text = line.sample == PrintedLine::noSample
+                         ? "scene:"
+                         : fmt::format("pixel {},{} sample {}:", line.x, line.y, line.sample);
+  const std::uint32_t *words = line.words.data();
+  for (const PrintItem &item : format) {
+    text += " " + (item.words == 0 ? item.text : valueText(item, words));
+    words += item.words;
+  }
+  return text;
+}
+
+} // namespace
+
+void PrintLog::keepFirst(std::size_t count) {
+  if (lines.size() <= count)
+    return;
+  std::nth_element(lines.begin(), lines.begin() + std::ptrdiff_t(count), lines.end(), comesFirst);
+  lines.resize(count);
+}
+
+void PrintLog::add(PrintedLine line) {
+  ++total;
+  lines.push_back(std::move(line));
+  if (lines.size() >= 2 * mostLines) // seldom enough to cost little
+    keepFirst(mostLines);
+}
+
+std::vector<std::string> PrintLog::texts(const std::vector<PrintFormat> &formats) {
+  keepFirst(mostLines);
+  std::sort(lines.begin(), lines.end(), comesFirst);
+  std::vector<std::string> texts;
+  for (const PrintedLine &line : lines)
+    texts.push_back(lineText(line, formats.at(line.format)));
+  if (total > lines.size())
+    texts.push_back(fmt::format("... and {} more lines", total - lines.size()));
+  return texts;
+}
+
+namespace {
+
+struct SharedLog {
+  std::mutex mutex;
+  PrintLog log;
+};
+
+SharedLog &sharedLog() {
+  static SharedLog shared;
+  return shared;
+}
+
+} // namespace
+
+PrintLog takePrintLog() {
+  SharedLog &shared = sharedLog();
+  std::lock_guard<std::mutex> lock(shared.mutex);
+  return std::exchange(shared.log, PrintLog());
+}
+
+/// Whoever prints waits for the others; nobody prints for speed.
+static void print(PrintedLine line) {
+  SharedLog &shared = sharedLog();
+  std::lock_guard<std::mutex> lock(shared.mutex);
+  shared.log.add(std::move(line));
+}
+
+} // namespace rtsl::runtime
+
+extern "C" void rtsl_print(RtslState *state, std::uint32_t format, const std::uint32_t *words,
+                           std::uint32_t count) {
+  using rtsl::runtime::PrintedLine;
+  PrintedLine line{0, 0, PrintedLine::noSample, 0, format, {words, words + count}};
+  if (RtslEvents *events = state->events) {
+    line.x = events->x;
+    line.y = events->y;
+    line.sample = events->sample;
+    line.order = events->printed++;
+  }
+  rtsl::runtime::print(std::move(line));
+}

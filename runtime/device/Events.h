@@ -1,0 +1,70 @@
+//===- Events.h - what happens in a sample beside its color ---------------===//
+//
+// Exceptions. The first that a sample meets ends it: its rays send no more rays, and when the
+// shaders that are under way are over, their color is thrown away and the `exception` of the scene
+// says what the sample is. Programs that were compiled without exceptions have none of this code,
+// for rtsl_features is a constant.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+#include "runtime/device/Warp.h"
+
+namespace rtsl::device {
+
+inline bool hasEvents(const RtslState &state) {
+  return rtsl_features(const_cast<RtslState *>(&state)) != 0;
+}
+
+inline bool hasExceptions(const RtslState &state) {
+  return rtsl_features(const_cast<RtslState *>(&state)) & RTSL_FEATURE_EXCEPTIONS;
+}
+
+inline void startEvents(RtslState &state, RtslEvents &events, uint32_t x, uint32_t y,
+                        uint32_t sample) {
+  if (!hasEvents(state))
+    return;
+  events = {x, y, sample, RTSL_EXCEPTION_NONE, 0};
+  state.events = &events;
+}
+
+inline void raise(RtslState &state, uint32_t exception) {
+  if (hasExceptions(state) && state.events && state.events->exception == RTSL_EXCEPTION_NONE)
+    state.events->exception = exception;
+}
+
+/// Has the sample met an exception?
+inline bool isAbandoned(const RtslState &state) {
+  return hasExceptions(state) && state.events->exception != RTSL_EXCEPTION_NONE;
+}
+
+/// The color of a sample that met an exception which no program answers: red, yellow or magenta;
+/// white where colors are not RGB.
+inline void exceptionColor(uint32_t exception, float *color, uint32_t components) {
+  for (uint32_t i = 0; i < components; ++i)
+    color[i] = 1;
+  if (components != 3)
+    return;
+  color[1] = exception == RTSL_EXCEPTION_BAD_RAY ? 1.0f : 0.0f;
+  color[2] = exception == RTSL_EXCEPTION_INDEX ? 1.0f : 0.0f;
+}
+
+/// At the end of a sample whose color is in SampleColor.
+inline void endEvents(RtslState &state) {
+  if (!hasExceptions(state) || !isAbandoned(state))
+    return;
+  const RtslLaunch &launch = *state.launch;
+  uint32_t exception = state.events->exception;
+  if (launch.status)
+    countUp(&launch.status->exceptions[exception]);
+  exceptionColor(exception, state.SampleColor, launch.colorComponents);
+  if (launch.exception) {
+    for (uint32_t i = 0; i < launch.colorComponents; ++i)
+      state.SampleColor[i] = 0;
+    state.ExceptionCode = int32_t(exception);
+    rtsl_rt_Exception_exception(&state, launch.exception);
+  }
+}
+
+} // namespace rtsl::device

@@ -1,0 +1,94 @@
+//===- Programs.h - the programs engine: rays with a payload --------------===//
+//
+// A sample is what `generate` of the scene's ray generation leaves in SampleColor. The rays that it
+// sends carry a struct of the author's, the payload, whose type says which programs answer: the
+// `closestHit` of the material that is hit, the `miss` of the background, and on the way `anyHit`
+// of every material that could be hit (AnyHit.h). A ray without a payload is one of the classic
+// engine, at any depth, and the other way round.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+#include "runtime/device/Classic.h"
+
+namespace rtsl::device {
+
+/// The arguments of `trace` with a payload.
+struct PayloadRay {
+  Vec3 origin, direction;
+  float tmin, tmax;
+  void *payload;
+  int32_t root;
+  uint32_t mask;
+  float time;
+  uint32_t rayType;
+};
+
+/// Makes `child` the ray that `parent` sends. Nearer than the rounding error of its origin it sees
+/// nothing, whatever tmin is.
+inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
+                  const PayloadRay &ray) {
+  descend(child, parent, dimension);
+  child.Time = ray.time;
+  child.payload = ray.payload;
+  child.rayType = ray.rayType;
+  child.rayMask = ray.mask;
+  child.rayRoot = ray.root;
+  float error = spawnEpsilon(parent, ray.origin, ray.direction);
+  setRay(child, ray.origin, ray.direction, ray.tmin < error ? error : ray.tmin, ray.tmax);
+}
+
+/// Finds what state's ray meets and describes it, for its payload's programs.
+inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
+  const RtslLaunch &launch = *state.launch;
+  setDefaults(state, rtsl_color_components(&launch));
+  uint32_t found = rtsl_traverse(&state, how);
+  if (found == RTSL_HIT) {
+    RtslRef material = launch.instances[state.instance].material;
+    if (!(how & RTSL_FIRST_HIT)) // otherwise no program reads of it
+      describeHit(state);
+    return {Arrival::Surface, material};
+  }
+  if (found == RTSL_BAD_RAY)
+    raise(state, RTSL_EXCEPTION_BAD_RAY);
+  if (found == RTSL_MISS && launch.background)
+    return {Arrival::Background, launch.background};
+  return {Arrival::Nothing, 0};
+}
+
+/// `trace` with a payload. Deeper than the launch allows the payload stays as it is.
+inline void trace(RtslState &parent, const PayloadRay &ray, uint32_t how) {
+  uint32_t dimension;
+  if (!maySpawn(parent, &dimension))
+    return;
+  RtslState state;
+  spawn(state, parent, dimension, ray);
+  Arrival arrival = arriveWithPayload(state, how);
+  if (arrival.kind == Arrival::Surface)
+    rtsl_rt_Material_closestHit_payload(&state, arrival.object);
+  else if (arrival.kind == Arrival::Background)
+    rtsl_rt_Miss_miss_payload(&state, arrival.object);
+}
+
+/// Makes `state` that of `generate`, which is above all rays: the rays that it sends have depth 0.
+inline void startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
+                          uint32_t index, RtslEvents &events) {
+  placeSample(state, launch, x, y, index, events);
+  state.Depth = -1;
+  state.instance = RTSL_NO_HIT;
+  setColor(state.SampleColor, rtsl_color_components(&launch), 0);
+}
+
+/// One sample of one pixel: what `generate` makes of it.
+inline void generate(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index,
+                     float *color) {
+  RtslState state;
+  RtslEvents events;
+  startGenerate(state, launch, x, y, index, events);
+  rtsl_rt_RayGeneration_generate(&state, launch.rayGeneration);
+  endEvents(state);
+  copyColor(color, state.SampleColor, rtsl_color_components(&launch));
+}
+
+} // namespace rtsl::device
