@@ -17,6 +17,8 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/rtslConfigVersion.cmake"
 install(FILES "${PROJECT_BINARY_DIR}/rtslConfig.cmake" "${PROJECT_BINARY_DIR}/rtslConfigVersion.cmake"
   cmake/RtslAddShaders.cmake DESTINATION "${rtslPackage}")
 
+# An installed tree may be moved.
+file(RELATIVE_PATH rtslPrefixFromPackage "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 configure_file(cmake/rtsl.pc.in "${PROJECT_BINARY_DIR}/rtsl.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/rtsl.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
