@@ -3,6 +3,7 @@
 
 #include "rtsl/shader/Types.h"
 
+#include <cstddef>
 #include <cstring>
 
 namespace rtsl {
@@ -36,14 +37,7 @@ inline constexpr bool isColor<StateColor<N>> = true;
 template <int N>
 struct [[gnu::may_alias]] State {
   const RtslLaunch *launch;
-
-  std::uint32_t instance, primitive;
-  std::uint32_t candidateInstance, candidatePrimitive;
-  float u, v;
-  float hitPointError;
-
-  std::uint32_t randomKey[2];
-  std::uint32_t dimension;
+  unsigned char ofTheRuntime[offsetof(RtslState, RayOrigin) - sizeof(const RtslLaunch *)];
 
 #define RTSL_SHADER_float float
 #define RTSL_SHADER_int int
