@@ -295,14 +295,12 @@ void checkLiveState(const typed::Module &module, const CompileOptions &options, 
 
 namespace {
 
-/// A linked scene on level 1; null if there were errors. `isSplit`: it is to be split at `trace`.
+/// A linked scene on level 1; null if there were errors.
 mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const LinkRequest &request,
-                                            const CompileOptions &options, bool isSplit, Diagnostics &diagnostics,
+                                            const CompileOptions &options, Diagnostics &diagnostics,
                                             mlir::MLIRContext &context, runtime::Program &program) {
   mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, request, diagnostics, context);
   if (!ir || !link(*ir, module, request, options.colorComponents, diagnostics, program))
-    return nullptr;
-  if (isSplit && !refuseTracingCircles(*ir, module, diagnostics))
     return nullptr;
   return ir;
 }
@@ -327,7 +325,7 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
   const bool isSplit = stage != Stage::Ir && stage != Stage::Ssa;
-  const auto ir = linkScene(module, request, options, isSplit, diagnostics, *context, program);
+  const auto ir = linkScene(module, request, options, diagnostics, *context, program);
   if (!ir)
     return std::nullopt;
   if (stage == Stage::Ir)
@@ -353,7 +351,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
                     Diagnostics &diagnostics, runtime::Package &package) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
-  auto ir = linkScene(module, request, options, /*isSplit=*/true, diagnostics, *context, program);
+  auto ir = linkScene(module, request, options, diagnostics, *context, program);
   if (!ir)
     return false;
   const SplitReport report = runToSsa(*ir, TraceMode::Split);
@@ -386,7 +384,7 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   auto program = std::make_shared<runtime::Program>();
   const TraceMode trace = isMegakernel ? TraceMode::Split : options.trace;
-  const auto ir = linkScene(module, request, options, trace == TraceMode::Split, diagnostics, *context, *program);
+  const auto ir = linkScene(module, request, options, diagnostics, *context, *program);
   if (!ir)
     return nullptr;
   runToSsa(*ir, trace);

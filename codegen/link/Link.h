@@ -26,10 +26,6 @@ namespace rtsl {
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program);
 
-/// Reports functions of a linked module that trace and call themselves through references; false if there are any.
-/// Splitting cannot cut them.
-bool refuseTracingCircles(mlir::ModuleOp ir, const typed::Module &module, Diagnostics &diagnostics);
-
 /// For a unit without a scene: slots become declared functions, attributes get provisional places.
 void declareSlots(mlir::ModuleOp ir);
 

@@ -116,9 +116,10 @@ public:
   /// Describes the hit that state has and runs `anyHit`. Returns RTSL_ACCEPT, RTSL_IGNORE or
   /// RTSL_TERMINATE.
   uint32_t ask() const {
-    describeHit(state, slots);
+    const RtslInstance &instance = state.launch->instances[state.instance];
+    describeHit(state, instance.needs, slots);
     state.hitAnswer = RTSL_ACCEPT;
-    slots.rt_Material_anyHit_payload(&state, state.launch->instances[state.instance].material);
+    slots.rt_Material_anyHit_payload(&state, instance.material);
     return state.hitAnswer;
   }
 

@@ -103,13 +103,12 @@ void describePrimitive(RtslState &state, RtslRef primitive, uint32_t needs, cons
     slots.rt_Primitive_computeDerivatives(&state, primitive);
 }
 
-/// Everything that a material may read of the hit, once traversal has found it. `slots` has the
-/// methods of rt_Primitive, as members with the names of Slots.def.
+/// Everything that a material may read of the hit, once traversal has found it. `needs` says
+/// what is read, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
 template <typename Slots>
-void describeHit(RtslState &state, const Slots &slots) {
+void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   const RtslLaunch &launch = *state.launch;
   const RtslInstance &instance = launch.instances[state.instance];
-  uint32_t needs = instance.needs & rtsl_needs(&launch);
   state.PrimitiveIndex = int32_t(state.primitive);
   state.InstanceIndex = int32_t(state.instance);
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES) {
@@ -132,7 +131,9 @@ void describeHit(RtslState &state, const Slots &slots) {
 }
 
 inline void describeHit(RtslState &state) {
-  describeHit(state, LinkedSlots());
+  const RtslLaunch &launch = *state.launch;
+  uint32_t needs = launch.instances[state.instance].needs & rtsl_needs(&launch);
+  describeHit(state, needs, LinkedSlots());
 }
 
 } // namespace rtsl::device

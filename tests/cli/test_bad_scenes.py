@@ -41,26 +41,6 @@ class BadScenes(Case):
         self.assert_message(self.render(), "E0803", "a scene for the engine `programs` needs a `rayGeneration`")
         self.assert_message(self.render("--set", "render.engine=wavefront"), "E0808", "no engine `wavefront`")
 
-    def test_functions_that_trace_in_circles_cannot_be_split(self):
-        self.write("layers.rtsl", """
-class Layer : rt_Material {
-  color look() { return color(0.5); }
-  void shade() { rt_SampleColor = look(); }
-};
-class Coat : Layer {
-  public Layer below;
-  color look() { return below.look() + 0.25 * trace(rt_HitPoint, rt_ShadingNormal); }
-};
-""")
-        scene = json.loads(self.glass_scene().read_text())
-        scene["import"].append("layers.rtsl")
-        scene["materials"]["plaster"] = {"class": "Coat", "below": {"class": "Coat", "below": {"class": "Layer"}}}
-        self.write("scene.json", json.dumps(scene, indent=1))
-        self.run_rtslc("render", "scene.json", "-o", "recursive.png", *SMALL)
-        for way in (["--trace", "split"], ["--target", "host-megakernel"]):
-            with self.subTest(way=way):
-                self.assert_message(self.render(*way), "E0704", "`look` of class `Coat`", line=8, file="layers.rtsl")
-
     def test_unknown_member(self):
         self.glass_scene(background={"class": "Sky", "horizont": [1, 1, 1]})
         self.assert_message(self.render(), "E0812", "horizont", line=self.line_of('"horizont"'))
