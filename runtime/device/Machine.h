@@ -122,8 +122,8 @@ struct Rays {
 inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
                       uint32_t index) {
   rays.top = rays.bottom;
-  rays.next = rtsl_rt_RayGeneration_generate_first(&rays.bottom->state);
-  if (rays.next != 0) {
+  if (launch.rayGeneration) {
+    rays.next = rtsl_rt_RayGeneration_generate_first(&rays.bottom->state);
     startGenerate(rays.bottom->state, launch, x, y, index, rays.events);
     rays.bottom->object = launch.rayGeneration;
     return;
