@@ -19,6 +19,9 @@ using rtsl::runtime::ValueType;
 
 using Intersect = void(RtslState *, RtslRef);
 
+/// Nothing here prints.
+extern "C" void rtsl_print(RtslState *, std::uint32_t, const std::uint32_t *, std::uint32_t) {}
+
 extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t anyHit) {
   auto *intersect = reinterpret_cast<Intersect *>(const_cast<void *>(state->launch->host));
   return rtsl::device::traverseDevice(*state, anyHit != 0, intersect);
