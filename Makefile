@@ -4,12 +4,13 @@
 #   make check    install what is missing, build, run every test
 #   make golden   renew the expected output of the golden tests (then read the difference)
 #   make bench    build and run the benchmarks
+#   make numerics run the stiff and extreme cases in full, and renew their table in docs/numerics.md
 
 PRESET ?= release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 
-.PHONY: demo check build configure dependencies golden bench format install clean
+.PHONY: demo check build configure dependencies golden bench numerics format install clean
 
 demo: build
 	$(BUILD)/bin/rtslc render examples/glass/scene.json -o $(BUILD)/glass.png
@@ -34,6 +35,9 @@ golden: build
 
 bench: build
 	cmake --build --preset $(PRESET) --target bench
+
+numerics: build
+	tests/numerics/robustness/table $$(find $(BUILD) -type f -name numerics-robustness)
 
 format:
 	git ls-files '*.cpp' '*.h' | xargs clang-format-22 -i

@@ -39,14 +39,20 @@ inline void triangleDerivatives(RtslState &state, const TriangleVertices &p, con
   store(state.dPdv, (e2 * u1 - e1 * u2) * reciprocal);
 }
 
+/// One coordinate of a triangle's point. In double, for rounding here moves rays off their surface;
+/// the three weights sum to 1 exactly, or nearly so.
+inline float interpolated(float a, float b, float c, double u, double v) {
+  return float(__builtin_fma(double(c), v, __builtin_fma(double(b), u, double(a) * ((1 - u) - v))));
+}
+
 /// Point, normals and texture coordinates of a mesh at state's hit.
 inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t needs) {
   const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
   TriangleVertices p = triangleVertices(mesh, state.primitive);
   float u = state.u, v = state.v, w = (1.0f - u) - v;
-  store(state.HitPoint, {fused(p.v0.x, w, fused(p.v1.x, u, p.v2.x * v)),
-                         fused(p.v0.y, w, fused(p.v1.y, u, p.v2.y * v)),
-                         fused(p.v0.z, w, fused(p.v1.z, u, p.v2.z * v))});
+  store(state.HitPoint,
+        {interpolated(p.v0.x, p.v1.x, p.v2.x, u, v), interpolated(p.v0.y, p.v1.y, p.v2.y, u, v),
+         interpolated(p.v0.z, p.v1.z, p.v2.z, u, v)});
   state.hitPointError = trianglePointError(p.v0, p.v1, p.v2);
 
   Vec3 geometric = normalized(cross(p.v1 - p.v0, p.v2 - p.v0));

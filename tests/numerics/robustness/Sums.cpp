@@ -1,0 +1,80 @@
+//===- Sums.cpp - pixels of many samples ----------------------------------===//
+#include "Generators.h"
+#include "Row.h"
+#include "Timing.h"
+#include "Worst.h"
+
+#include "runtime/device/Megakernel.h"
+
+#include <cmath>
+
+namespace rtsl::numerics {
+
+namespace {
+
+/// Adds samples to a pixel as the renderer does, and gives its value.
+class Pixel {
+public:
+  explicit Pixel(std::uint32_t samples) {
+    launch.colorComponents = 1;
+    launch.width = launch.height = 1;
+    job.launch = &launch;
+    job.status = &status;
+    job.pixels = &value;
+    job.samplesPerPixel = samples;
+  }
+  void add(float sample) { device::addSample(job, lane, &sample); }
+  float finish() {
+    device::writePixel(job, lane);
+    return value;
+  }
+
+private:
+  RtslLaunch launch{};
+  RtslStatus status{};
+  RtslJob job{};
+  device::Lane lane{};
+  float value = 0;
+};
+
+/// A million samples a pixel, each 1e-4 or 1e8, in random order and in the worst ones, against the exact mean: both kinds
+/// are added up as integers.
+Outcome runBrightAndDark(std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  constexpr std::uint32_t samples = 1'000'000;
+  for (std::uint64_t i = 0; i < cases / samples; ++i) {
+    const std::uint64_t oneIn = std::uint64_t(1) << random.integer(1, 19);
+    Pixel pixel(samples);
+    std::uint64_t bright = 0;
+    for (std::uint32_t sample = 0; sample < samples; ++sample) {
+      const bool isBright = i % 3 == 0   ? random.index(oneIn) == 0
+                            : i % 3 == 1 ? sample < samples / oneIn  // all the bright ones first
+                                         : sample >= samples - samples / oneIn; // or last
+      bright += isBright;
+      pixel.add(isBright ? 1e8f : 1e-4f);
+    }
+    const long double truth = ((long double)bright * 1e8f + (long double)(samples - bright) * 1e-4f) / samples;
+    worst.add(double(std::fabs(((long double)pixel.finish() - truth) / truth)), [&] { return "one bright sample in " + std::to_string(oneIn); });
+  }
+  return worst.outcome();
+}
+
+double nanosecondsASample() {
+  constexpr int count = 1'000'000;
+  return timeOf(count, [&] {
+    Pixel pixel(count);
+    for (int i = 0; i < count; ++i)
+      pixel.add(float(i));
+    return pixel.finish();
+  });
+}
+
+} // namespace
+
+std::vector<Row> sumRows() {
+  return {{"sums.brightAndDark", "pixels of a million samples of 1e-4 and 1e8: the mean against exact arithmetic", "relative error", 200'000'000, runBrightAndDark,
+           nanosecondsASample}};
+}
+
+} // namespace rtsl::numerics
