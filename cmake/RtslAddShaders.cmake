@@ -13,7 +13,7 @@ function(rtsl_add_shaders target)
   endforeach()
   set(generated "${CMAKE_CURRENT_BINARY_DIR}/${ARG_NAME}.cpp")
   add_custom_command(OUTPUT "${generated}"
-    COMMAND rtsl::rtslc compile ${files} --emit=cpp -o "${generated}" --dependencies "${generated}.d"
+    COMMAND rtsl::rtslc compile ${files} --emit=cpp -o "${generated}" -MD -MF "${generated}.d"
     DEPENDS ${files} rtsl::rtslc DEPFILE "${generated}.d"
     COMMENT "Compiling the shaders of ${ARG_NAME} to C++" VERBATIM)
   target_sources(${target} PRIVATE "${generated}")

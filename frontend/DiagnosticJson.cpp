@@ -9,17 +9,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json positionJson(const SourceManager &sources, FileId file, std::uint32_t offset) {
-  const LineColumn at = sources.lineColumn(file, offset);
+Json positionJson(LineColumn at, std::uint32_t offset) {
   return {{"offset", offset}, {"line", at.line}, {"column", at.column}};
 }
 
 Json rangeJson(const SourceManager &sources, SourceRange range) {
   if (!range.isValid())
     return nullptr;
-  return {{"file", std::string(sources.name(range.file))},
-          {"begin", positionJson(sources, range.file, range.begin)},
-          {"end", positionJson(sources, range.file, range.end)}};
+  const auto shown = [&](std::uint32_t offset) { return positionJson(sources.shown(range.file, offset).at, offset); };
+  const auto real = [&](std::uint32_t offset) {
+    return positionJson(sources.lineColumn(range.file, offset), offset);
+  };
+  const std::string_view file = sources.shown(range.file, range.begin).file;
+  Json result = {{"file", std::string(file)}, {"begin", shown(range.begin)}, {"end", shown(range.end)}};
+  // `#line` changed what is reported; an editor wants to know the file that the text lies in.
+  if (const Json begin = real(range.begin); file != sources.name(range.file) || begin != result["begin"])
+    result["written"] = {
+        {"file", std::string(sources.name(range.file))}, {"begin", begin}, {"end", real(range.end)}};
+  return result;
 }
 
 } // namespace
@@ -27,7 +34,8 @@ Json rangeJson(const SourceManager &sources, SourceRange range) {
 std::string renderJson(const Diagnostics &diagnostics) {
   const SourceManager &sources = diagnostics.sources();
   Json messages = Json::array();
-  for (const Diagnostic &diagnostic : diagnostics.all()) {
+  for (const Diagnostic &each : diagnostics.all()) {
+    const Diagnostic diagnostic = asWritten(each, sources);
     Json labels = Json::array();
     for (const Label &label : diagnostic.labels)
       labels.push_back({{"range", rangeJson(sources, label.range)}, {"message", label.text}});

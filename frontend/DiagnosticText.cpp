@@ -134,11 +134,15 @@ private:
 
   void addMarks(Lines &lines, SourceRange range, bool isPrimary, const std::string &text);
   void renderLines(FileId file, const Lines &lines);
-  void renderLine(std::string_view line, std::uint32_t number, std::vector<Mark> marks);
+  void renderLine(FileId file, std::uint32_t number, std::vector<Mark> marks);
   void renderMarks(const Cells &cells, std::size_t windowBegin, const std::vector<Mark> &marks);
   void renderFix(const Fix &fix);
 
-  void gutter(std::uint32_t number);
+  /// The number under which a line is shown.
+  std::uint32_t shownLine(FileId file, std::uint32_t line) const {
+    return sources.shown(file, sources.offset(file, {line, 1})).at.line;
+  }
+  void gutter(FileId file, std::uint32_t line);
   void gutter(char separator = '|');
   void endLine();
   std::string paint(std::string_view style, std::string_view text) const {
@@ -153,8 +157,8 @@ private:
   std::size_t gutterWidth = 1;
 };
 
-void TextRenderer::gutter(std::uint32_t number) {
-  out += paint(palette.gutter, fmt::format("{:>{}} |", number, gutterWidth));
+void TextRenderer::gutter(FileId file, std::uint32_t line) {
+  out += paint(palette.gutter, fmt::format("{:>{}} |", shownLine(file, line), gutterWidth));
   out += ' ';
 }
 
@@ -275,8 +279,8 @@ void TextRenderer::renderMarks(const Cells &cells, std::size_t windowBegin,
 
 /// Shows a line and its marks. A mark of a long line that does not fit into the window around the
 /// first one gets a window of its own.
-void TextRenderer::renderLine(std::string_view line, std::uint32_t number,
-                              std::vector<Mark> marks) {
+void TextRenderer::renderLine(FileId file, std::uint32_t number, std::vector<Mark> marks) {
+  const std::string_view line = sources.line(file, number);
   std::stable_sort(marks.begin(), marks.end(),
                    [](const Mark &a, const Mark &b) { return a.isPrimary > b.isPrimary; });
   while (!marks.empty()) {
@@ -291,7 +295,7 @@ void TextRenderer::renderLine(std::string_view line, std::uint32_t number,
     const bool isCutBefore = window.begin > 0;
     Cells cells = toCells(line.substr(window.begin, window.end - window.begin),
                           isCutBefore ? dots.size() : 0);
-    gutter(number);
+    gutter(file, number);
     out += isCutBefore ? paint(palette.gutter, dots) : std::string();
     out += cells.text;
     out += window.end < line.size() ? paint(palette.gutter, dots) : std::string();
@@ -307,7 +311,7 @@ void TextRenderer::renderLines(FileId file, const Lines &lines) {
     if (previous != 0 && number == previous + 2) { // a single line between is shown
       const std::string_view between = sources.line(file, previous + 1);
       const Window window = windowAround(between, 0);
-      gutter(previous + 1);
+      gutter(file, previous + 1);
       out += toCells(between.substr(window.begin, window.end - window.begin)).text;
       out += window.end < between.size() ? paint(palette.gutter, "...") : std::string();
       endLine();
@@ -315,7 +319,7 @@ void TextRenderer::renderLines(FileId file, const Lines &lines) {
       out += paint(palette.gutter, "...");
       endLine();
     }
-    renderLine(sources.line(file, number), number, marks);
+    renderLine(file, number, marks);
     previous = number;
   }
 }
@@ -369,7 +373,7 @@ void TextRenderer::renderFix(const Fix &fix) {
 
   const std::string_view dots = window.begin > 0 ? "..." : "";
   const Cells cells = toCells(edited, dots.size());
-  gutter(begin.line);
+  gutter(fix.range.file, begin.line);
   out += paint(palette.gutter, dots) + cells.text;
   out += window.end < line.size() ? paint(palette.gutter, "...") : std::string();
   endLine();
@@ -393,10 +397,8 @@ void TextRenderer::render(const Diagnostic &diagnostic) {
                "\033[0m"};
 
   if (diagnostic.range.isValid()) {
-    const LineColumn at = sources.lineColumn(diagnostic.range.file, diagnostic.range.begin);
-    out += paint(palette.bold,
-                 fmt::format("{}:{}:{}: ", printable(sources.name(diagnostic.range.file)), at.line,
-                             at.column));
+    const auto [name, at] = sources.shown(diagnostic.range.file, diagnostic.range.begin);
+    out += paint(palette.bold, fmt::format("{}:{}:{}: ", printable(name), at.line, at.column));
   }
   out += paint(palette.severity,
                fmt::format("{}[{}]", isError ? "error" : "warning", info(diagnostic.code).number));
@@ -427,9 +429,10 @@ void TextRenderer::render(const Diagnostic &diagnostic) {
 
   std::uint32_t largest = 1;
   for (const auto &[file, lines] : files)
-    largest = std::max(largest, lines.rbegin()->first);
+    for (const auto &[line, marks] : lines)
+      largest = std::max(largest, shownLine(file, line));
   for (const Fix &fix : diagnostic.fixes)
-    largest = std::max(largest, sources.lineColumn(fix.range.file, fix.range.begin).line);
+    largest = std::max(largest, sources.shown(fix.range.file, fix.range.begin).at.line);
   gutterWidth = fmt::formatted_size("{}", largest);
 
   for (const auto &[file, lines] : files) {
@@ -438,7 +441,8 @@ void TextRenderer::render(const Diagnostic &diagnostic) {
                           static_cast<std::uint32_t>(lines.begin()->second.front().begin) + 1};
       out.append(gutterWidth, ' ');
       out += paint(palette.gutter, "--> ");
-      out += fmt::format("{}:{}:{}", printable(sources.name(file)), at.line, at.column);
+      const ShownPlace place = sources.shown(file, sources.offset(file, at));
+      out += fmt::format("{}:{}:{}", printable(place.file), place.at.line, at.column);
       endLine();
     }
     gutter();
@@ -461,7 +465,7 @@ void TextRenderer::render(const Diagnostic &diagnostic) {
 std::string renderText(const Diagnostics &diagnostics, bool colour) {
   TextRenderer renderer(diagnostics.sources(), colour);
   for (const Diagnostic &diagnostic : diagnostics.all())
-    renderer.render(diagnostic);
+    renderer.render(asWritten(diagnostic, diagnostics.sources()));
   std::string text = renderer.take();
   if (const std::size_t hidden = diagnostics.hiddenErrors())
     text += fmt::format("{} more error{} not shown (limit {})\n", hidden,

@@ -1,7 +1,9 @@
 //===- Diagnostics.cpp - recording messages and applying their fixes ------===//
 #include "frontend/Diagnostics.h"
+#include "frontend/Expansion.h"
 
 #include <algorithm>
+#include <deque>
 #include <iterator>
 
 namespace rtsl {
@@ -29,12 +31,15 @@ Diagnostic &Diagnostics::add(Diagnostic diagnostic) {
   }
   const bool isError = !isWarning || warnings.isError(diagnostic.code);
   diagnostic.severity = isError ? Severity::Error : Severity::Warning;
-  const SourceRange range = diagnostic.range;
   const auto code = static_cast<int>(diagnostic.code);
-  const bool isNew = seen.insert(range.isValid() ? fmt::format("{} {} {} {}", code, range.file,
-                                                               range.begin, range.end)
-                                                 : fmt::format("{} {}", code, diagnostic.message))
-                         .second;
+  // What a macro makes twice of one argument, and what is included twice, is one mistake.
+  const WrittenRange place = sourceManager.written(diagnostic.range);
+  std::string key = diagnostic.range.isValid()
+                        ? fmt::format("{} {} {} {}", code, place.range.file, place.range.begin, place.range.end)
+                        : fmt::format("{} {}", code, diagnostic.message);
+  if (!place.macros.empty())
+    key += diagnostic.message;
+  const bool isNew = seen.insert(std::move(key)).second;
   const bool isHidden = isError && limitReached();
   if (isNew && isError) {
     ++numErrors;
@@ -72,13 +77,79 @@ bool overlap(const Fix &a, const Fix &b) {
 
 } // namespace
 
+void explainOrigin(Diagnostic &diagnostic, const WrittenRange &place, const SourceManager &sources) {
+  if (!place.macros.empty())
+    diagnostic.label(place.range, fmt::format("in this use of macro `{}`", place.macros.front().macro));
+  // Of a long way its beginning and its end.
+  constexpr std::size_t shown = 4;
+  const std::size_t size = place.macros.size();
+  for (std::size_t i = 0; i < size; ++i)
+    if (i < shown || i + shown >= size)
+      diagnostic.label(place.macros[i].range, fmt::format("expanded from macro `{}`", place.macros[i].macro));
+  if (size > 2 * shown)
+    diagnostic.note(fmt::format("{} macros in between are not shown", size - 2 * shown));
+  for (const SourceRange &include : place.includes) {
+    const ShownPlace from = sources.shown(include.file, include.begin);
+    diagnostic.note(fmt::format("included from {}:{}", from.file, from.at.line));
+  }
+}
+
+Diagnostic asWritten(const Diagnostic &diagnostic, const SourceManager &sources) {
+  Diagnostic result = diagnostic;
+  const WrittenRange place = sources.written(diagnostic.range);
+  result.range = place.range;
+  for (Label &label : result.labels) {
+    const WrittenRange labelled = sources.written(label.range);
+    // Two words of one macro: where they differ, in its body.
+    const auto differs = [&](std::size_t i) {
+      return i >= place.macros.size() || !(place.macros[i].range == labelled.macros[i].range);
+    };
+    const bool isSamePlace = labelled.range == place.range && !(label.range == diagnostic.range);
+    label.range = labelled.range;
+    for (std::size_t i = 0; isSamePlace && i < labelled.macros.size(); ++i)
+      if (differs(i)) {
+        label.range = labelled.macros[i].range;
+        break;
+      }
+  }
+  explainOrigin(result, place, sources);
+
+  std::vector<Fix> fixes;
+  for (Fix &fix : result.fixes) {
+    const WrittenRange fixed = sources.written(fix.range);
+    if (!fixed.isVerbatim)
+      continue; // there is no one text to change
+    fix.range = fixed.range;
+    fix.sure &= fixed.macros.empty() && fixed.includes.empty();
+    fixes.push_back(std::move(fix));
+  }
+  // The fixes of one message belong together.
+  const bool isComplete = fixes.size() == diagnostic.fixes.size();
+  for (Fix &fix : fixes)
+    fix.sure &= isComplete;
+  result.fixes = std::move(fixes);
+  return result;
+}
+
+std::vector<FileId> filesToFix(const Diagnostics &diagnostics) {
+  std::vector<FileId> files;
+  for (const Diagnostic &diagnostic : diagnostics.all())
+    for (const Fix &fix : asWritten(diagnostic, diagnostics.sources()).fixes)
+      if (fix.sure && std::find(files.begin(), files.end(), fix.range.file) == files.end())
+        files.push_back(fix.range.file);
+  return files;
+}
+
 FixedText applyFixes(const Diagnostics &diagnostics, FileId file) {
   FixedText result;
+  std::deque<Diagnostic> messages; // as written
+
   std::vector<const Fix *> accepted; // sorted by begin, disjoint
   const auto begin = [](const Fix *fix) { return fix->range.begin; };
   const auto before = [&](const Fix *a, const Fix *b) { return begin(a) < begin(b); };
 
-  for (const Diagnostic &diagnostic : diagnostics.all()) {
+  for (const Diagnostic &each : diagnostics.all()) {
+    const Diagnostic &diagnostic = messages.emplace_back(asWritten(each, diagnostics.sources()));
     std::vector<const Fix *> edits;
     bool fits = true;
     for (const Fix &fix : diagnostic.fixes)

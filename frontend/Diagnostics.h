@@ -107,7 +107,7 @@ public:
 
   /// Formats the message of `code` with `args` and records it at `range`. The returned message may
   /// be extended until the next report. The same code at the same range is recorded once (without a
-  /// place: the same message).
+  /// place, and in the same use of a macro: the same message).
   template <typename... Args>
   Diagnostic &report(Code code, SourceRange range, const Args &...args) {
     return add(code, range, fmt::format(fmt::runtime(info(code).message), args...));
@@ -142,6 +142,14 @@ private:
   std::size_t numHidden = 0;
 };
 
+/// The message as its author can follow it: all ranges lie in files. What came from a macro is shown where the macro is
+/// used, with labels in the definitions that it went through; what came from an included file names the files that led to
+/// it. A fix stays sure only if it changes a text that means the same wherever it is used: outside of macros and includes.
+Diagnostic asWritten(const Diagnostic &diagnostic, const SourceManager &sources);
+
+/// Adds to a message at `place.range` the labels and notes that say how the text came from there.
+void explainOrigin(Diagnostic &diagnostic, const WrittenRange &place, const SourceManager &sources);
+
 /// Text for people: file:line:column, the source line, a caret, labels, notes and fixes. ANSI
 /// colour if asked.
 std::string renderText(const Diagnostics &diagnostics, bool colour);
@@ -158,6 +166,9 @@ struct FixedText {
   std::size_t skipped =
       0; // messages whose fixes overlap with one that was applied: run again after it
 };
+
+/// The files that some sure fix changes, in the order of their messages.
+std::vector<FileId> filesToFix(const Diagnostics &diagnostics);
 
 /// Applies the sure fixes for one text, in the order of the messages. All fixes of a message are
 /// applied, or none.

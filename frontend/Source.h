@@ -4,11 +4,15 @@
 // `SourceManager`. A position is a file and a byte offset; lines and columns are computed only when
 // a message is shown.
 //
+// What the preprocessor made of a file is a text as well (Expansion.h): all later stages read that one, and their positions
+// lie in it. Where the author wrote something is asked for when a message is shown: `written`.
+//
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,6 +44,15 @@ struct LineColumn {
   std::uint32_t column = 1;
 };
 
+/// A place as messages name it: `#line` may have changed the file's name and the line.
+struct ShownPlace {
+  std::string_view file;
+  LineColumn at;
+};
+
+struct ExpandedText;
+struct WrittenRange;
+
 /// Owns the texts. Texts stay where they are: a `string_view` into one lives as long as the
 /// manager.
 class SourceManager {
@@ -54,25 +67,43 @@ public:
   /// Ids are 1 to this.
   FileId count() const { return static_cast<FileId>(files.size()); }
 
+  /// Adds what the preprocessor made of a file.
+  FileId addExpanded(ExpandedText text);
+  /// The text as it came from the preprocessor; null for a file.
+  const ExpandedText *expanded(FileId file) const { return get(file).expanded.get(); }
+  /// Where a range of any text was written.
+  WrittenRange written(SourceRange range) const;
+
+  /// From `offset`, where a line begins, the lines of a file are shown with the numbers from `line` on and as those of the
+  /// file `name`: `#line`.
+  void setLine(FileId file, std::uint32_t offset, std::uint32_t line, std::string name);
+
   std::string_view name(FileId file) const;
   std::string_view text(FileId file) const;
   std::string_view text(SourceRange range) const;
   LineColumn lineColumn(FileId file, std::uint32_t offset) const;
+  ShownPlace shown(FileId file, std::uint32_t offset) const;
   /// The other way round; a place behind the end of its line or of the text gives that end.
   std::uint32_t offset(FileId file, LineColumn place) const;
-  /// The text of that name, if there is one; otherwise 0.
+  /// The file of that name, if there is one; otherwise 0.
   FileId find(std::string_view name) const;
   /// The text of a line (counted from 1), without its line ending.
   std::string_view line(FileId file, std::uint32_t line) const;
 
 private:
+  struct LineMark { // of `#line`
+    std::uint32_t offset, line;
+    std::string name;
+  };
   struct File {
     std::string name;
     std::string text;
+    std::shared_ptr<const ExpandedText> expanded; // `text` is empty then
+    std::vector<LineMark> lineMarks;              // by offset
     mutable std::vector<std::uint32_t> lineStarts; // filled at the first question
   };
   const File &get(FileId file) const;
-  static const std::vector<std::uint32_t> &lineStarts(const File &file);
+  const std::vector<std::uint32_t> &lineStarts(FileId file) const;
 
   std::deque<File> files;
 };

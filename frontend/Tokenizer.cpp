@@ -5,8 +5,6 @@
 
 #include "grammar/RtslLexer.h"
 
-#include <cstring>
-
 namespace rtsl {
 
 namespace {
@@ -31,7 +29,6 @@ private:
   SourceRange range(std::size_t begin, std::size_t end) const {
     return {file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
   }
-  bool checkEncoding();
   void add(std::size_t type, std::uint32_t begin, std::uint32_t end);
   void addString(std::uint32_t begin, std::uint32_t end);
   void addNumber(std::uint32_t begin, std::uint32_t end);
@@ -48,34 +45,6 @@ private:
   bool isStartCarried = false; // by a comment, to the word behind it
   bool followsMistake = false;
 };
-
-/// Reports a text that cannot be RTSL: NUL bytes, or bytes that are not UTF-8.
-bool Tokenizer::checkEncoding() {
-  const auto startsWith = [&](std::string_view prefix) {
-    return text.substr(0, prefix.size()) == prefix;
-  };
-  if (startsWith("\xFF\xFE") || startsWith("\xFE\xFF")) {
-    diagnostics.report(Code::notText, range(0, 2), "it is encoded in UTF-16")
-        .note("save it as UTF-8");
-    return false;
-  }
-  const void *nul = std::memchr(text.data(), 0, text.size());
-  const std::size_t invalid = findInvalidUtf8(text);
-  if (nul) {
-    const auto at = static_cast<std::size_t>(static_cast<const char *>(nul) - text.data());
-    if (at < invalid) {
-      diagnostics.report(Code::notText, range(at, at + 1), "it holds a NUL byte");
-      return false;
-    }
-  }
-  if (invalid != std::string_view::npos) {
-    diagnostics.report(
-        Code::notText, range(invalid, invalid + 1),
-        fmt::format("the byte \\x{:02X} is not UTF-8", static_cast<unsigned char>(text[invalid])));
-    return false;
-  }
-  return true;
-}
 
 void Tokenizer::add(std::size_t type, std::uint32_t begin, std::uint32_t end) {
   Token token;
@@ -172,7 +141,7 @@ void Tokenizer::refuseCharacters(std::uint32_t begin, std::uint32_t end) {
 
 TokenList Tokenizer::run() {
   lexer.removeErrorListeners(); // there are no errors: the grammar has a rule for everything
-  if (!checkEncoding()) {
+  if (reportIfNotText(file, diagnostics)) {
     list.isUsable = false;
   } else {
     list.tokens.reserve(text.size() / 4);
@@ -211,11 +180,9 @@ TokenList Tokenizer::run() {
         addNumber(begin, end);
         break;
       case RtslLexer::DIRECTIVE: {
-        const std::string_view directive = text.substr(begin, end - begin);
-        const std::size_t name = std::min(directive.find_first_not_of(" \t", 1), directive.size());
-        const std::size_t nameEnd =
-            std::min(directive.find_first_of(" \t\r\n\\(<\"", name), directive.size());
-        diagnostics.report(Code::preprocessorUnsupported, range(begin, begin + nameEnd));
+        // Directives are gone by now: this one stands behind something else, or a macro made it.
+        diagnostics.report(Code::misplacedDirective, range(begin, begin + 1));
+        followsMistake = true;
         break;
       }
       case RtslLexer::UNKNOWN_CHARACTERS:
@@ -235,6 +202,24 @@ TokenList Tokenizer::run() {
 }
 
 } // namespace
+
+Diagnostic *reportIfNotText(FileId file, Diagnostics &diagnostics) {
+  const std::string_view text = diagnostics.sources().text(file);
+  const auto report = [&](std::size_t begin, std::size_t size, const std::string &why) {
+    const auto at = static_cast<std::uint32_t>(begin);
+    return &diagnostics.report(Code::notText, SourceRange{file, at, at + static_cast<std::uint32_t>(size)}, why);
+  };
+  if (text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF")
+    return &report(0, 2, "it is encoded in UTF-16")->note("save it as UTF-8");
+  const std::size_t nul = text.find('\0');
+  const std::size_t invalid = findInvalidUtf8(text);
+  if (nul < invalid)
+    return report(nul, 1, "it holds a NUL byte");
+  if (invalid != std::string_view::npos)
+    return report(invalid, 1,
+                  fmt::format("the byte \\x{:02X} is not UTF-8", static_cast<unsigned char>(text[invalid])));
+  return nullptr;
+}
 
 TokenList tokenize(FileId file, Diagnostics &diagnostics) {
   return Tokenizer(file, diagnostics).run();

@@ -161,7 +161,7 @@ MALFORMED_NUMBER
     : '.'? DIGIT ( [a-zA-Z_0-9.] | [eE] [+-] )*
     ;
 
-// #include, #define: a directive, to the end of its line (a backslash joins lines)
+// A directive that the preprocessor did not take, to the end of its line (a backslash joins lines)
 DIRECTIVE
     : '#' ( ~[\\\n] | '\\' '\r'? '\n' | '\\' )*
     ;

@@ -19,7 +19,7 @@
 namespace rtsl {
 
 /// What can be looked at on the way, in order.
-enum class Stage : std::uint8_t { Ast, TypedAst, Ir, Ssa, Split, Llvm, Ptx, Cpp, Reflection };
+enum class Stage : std::uint8_t { Preprocessed, Ast, TypedAst, Ir, Ssa, Split, Llvm, Ptx, Cpp, Reflection };
 
 /// How `trace` runs: as a call, or as the end of one state and the beginning of another, without recursion
 /// (docs/continuations.md). The picture is the same, bit for bit.

@@ -1,8 +1,11 @@
 //===- SourceLoader.cpp - files and their imports -------------------------===//
 #include "codegen/driver/SourceLoader.h"
 
+#include "frontend/Expansion.h"
+#include "frontend/FileSearch.h"
 #include "frontend/Parser.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -17,12 +20,29 @@ const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRa
 
   // Remembered even when it fails, so that a missing file is reported once.
   std::unique_ptr<ast::TranslationUnit> &unit = units[key];
-  std::string whyNot;
-  if (const std::optional<FileId> file = sources.addFile(path, whyNot))
-    unit = parse(*file, diagnostics);
-  else
-    diagnostics.report(Code::cannotReadSource, importer, path, whyNot);
+  if (const std::optional<PreprocessedFile> preprocessed = preprocessFile(path, importer)) {
+    if (preprocessed->isUsable) {
+      unit = parse(preprocessed->text, diagnostics);
+    } else {
+      unit = std::make_unique<ast::TranslationUnit>();
+      unit->file = preprocessed->text;
+    }
+  }
   return unit.get();
+}
+
+std::optional<PreprocessedFile> SourceLoader::preprocessFile(const std::string &path, SourceRange importer) {
+  std::string whyNot;
+  const std::optional<FileId> file = sources.addFile(path, whyNot);
+  if (!file) {
+    diagnostics.report(Code::cannotReadSource, importer, path, whyNot);
+    return std::nullopt;
+  }
+  addFile(path);
+  PreprocessedFile result = preprocess(*file, sources, options, diagnostics);
+  for (const std::string &include : result.includes)
+    addFile(include);
+  return result;
 }
 
 const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import, FileId importer) {
@@ -31,17 +51,36 @@ const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import,
         .note("this version has no installed modules; a file is imported as `import \"name.rtsl\";`");
     return nullptr;
   }
-  const std::filesystem::path folder =
-      std::filesystem::path(std::string(sources.name(importer))).parent_path();
-  return load((folder / import.path).string(), import.range);
+  // An import in an included file means what lies beside that file.
+  const FileId file = import.range.isValid() ? sources.written(import.range).range.file : importer;
+  std::vector<std::string> folders{folderOf(sources.name(file))};
+  folders.insert(folders.end(), options.includeFolders.begin(), options.includeFolders.end());
+  if (const std::optional<std::string> found = findFile(import.path, folders))
+    return load(*found, import.range);
+  explainSearch(diagnostics.report(Code::includeNotFound, import.range, import.path), import.path, folders, {});
+  return nullptr;
 }
 
-std::vector<std::string> SourceLoader::files() const {
-  std::vector<std::string> paths;
+void SourceLoader::loadImports() {
+  std::vector<const ast::TranslationUnit *> pending, done;
   for (const auto &[path, unit] : units)
-    if (unit && path != "-")
-      paths.push_back(path);
-  return paths;
+    pending.push_back(unit.get());
+  while (!pending.empty()) {
+    const ast::TranslationUnit *unit = pending.back();
+    pending.pop_back();
+    if (!unit || std::find(done.begin(), done.end(), unit) != done.end())
+      continue;
+    done.push_back(unit);
+    for (const ast::ImportDecl &import : unit->imports)
+      if (import.isFile)
+        pending.push_back(resolve(import, unit->file));
+  }
+}
+
+void SourceLoader::addFile(const std::string &path) {
+  const std::string name = std::filesystem::path(path).lexically_normal().string();
+  if (path != "-" && std::find(read.begin(), read.end(), name) == read.end())
+    read.push_back(name);
 }
 
 } // namespace rtsl

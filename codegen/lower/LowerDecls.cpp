@@ -9,6 +9,7 @@
 #include "codegen/lower/Lowering.h"
 
 #include "codegen/lower/Analysis.h"
+#include "frontend/Expansion.h"
 
 #include <algorithm>
 
@@ -25,10 +26,9 @@ mlir::Location ModuleLowering::location(SourceRange range) {
   if (!range.isValid())
     return mlir::UnknownLoc::get(context());
   const SourceManager &sources = options.diagnostics->sources();
-  LineColumn at = sources.lineColumn(range.file, range.begin);
-  return mlir::FileLineColLoc::get(
-      context(), llvm::StringRef(sources.name(range.file).data(), sources.name(range.file).size()),
-      at.line, at.column);
+  const SourceRange written = sources.written(range).range;
+  const auto [file, at] = sources.shown(written.file, written.begin);
+  return mlir::FileLineColLoc::get(context(), llvm::StringRef(file.data(), file.size()), at.line, at.column);
 }
 
 void ModuleLowering::reportUnsupported(SourceRange range, const std::string &what) {

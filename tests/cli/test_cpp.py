@@ -47,7 +47,7 @@ class Cpp(Case):
     def test_line_directives_and_dependencies(self):
         self.write("b.rtsl", "float half(float x) { return 0.5 * x; }\n")
         shader = self.write("a.rtsl", 'import "b.rtsl";\nfloat f(float x) {\n  return half(x);\n}\n')
-        self.run_rtslc("compile", shader, "--emit=cpp", "-o", "a.cpp", "--line-directives", "--dependencies", "a.d")
+        self.run_rtslc("compile", shader, "--emit=cpp", "-o", "a.cpp", "--line-directives", "-MD", "-MF", "a.d")
         self.assertIn(f'#line 3 "{shader}"\n  return half(x);', (self.folder / "a.cpp").read_text())
         rule = (self.folder / "a.d").read_text()
         self.assertTrue(rule.startswith("a.cpp:"), rule)

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <set>
 
 namespace rtsl::tool {
 
@@ -18,16 +17,6 @@ struct CheckOptions {
   std::vector<std::string> files;
   bool fix = false;
 };
-
-/// The files that some sure fix changes.
-std::set<FileId> filesToFix(const Diagnostics &diagnostics) {
-  std::set<FileId> files;
-  for (const Diagnostic &diagnostic : diagnostics.all())
-    for (const Fix &fix : diagnostic.fixes)
-      if (fix.sure)
-        files.insert(fix.range.file);
-  return files;
-}
 
 std::string count(std::size_t number, const char *noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
@@ -56,12 +45,15 @@ int check(const CheckOptions &options) {
   Messages messages(options.common);
   if (options.fix)
     messages.diagnostics.errorLimit = 0; // what is not recorded cannot be fixed
-  Shaders shaders(messages, options.files);
+  Shaders shaders(messages, options.common.preprocessor, options.files);
   shaders.check(options.common.compile);
   messages.print();
-  if (options.fix)
+  if (options.fix || options.common.dependencies.isAsked)
     try {
-      writeFixes(messages);
+      if (options.fix)
+        writeFixes(messages);
+      if (!messages.diagnostics.hasErrors())
+        writeDependencies(options.common.dependencies, "", options.files, shaders.filesRead());
     } catch (const runtime::Error &error) {
       fmt::print(stderr, "rtslc: {}\n", error.what());
       return Diagnosed;
@@ -76,6 +68,8 @@ void addCheckCommand(CLI::App &app, Action &action) {
   CLI::App *command = app.add_subcommand("check", "look for mistakes in RTSL files");
   command->add_option("FILE", options->files, "RTSL files; - is standard input")->required();
   command->add_flag("--fix", options->fix, "apply the fixes that are sure, and write the files back");
+  addPreprocessorOptions(*command, options->common.preprocessor);
+  addDependencyOptions(*command, options->common.dependencies);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc check --diagnostics=json Glass.rtsl Sphere.rtsl");
   command->callback([options, &action] { action = [options] { return check(*options); }; });

@@ -117,7 +117,9 @@ int run(CLI::App &app, Action &action, int argc, char **argv, const std::functio
       fmt::print(stderr, "rtslc: unknown command `{}`; `rtslc --help` lists them\n", argv[1]);
       return Usage;
     }
-    app.parse(argc, argv);
+    std::vector<std::string> arguments = withLongDashes(argc, argv);
+    std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
+    app.parse(std::move(arguments));
     return action();
   } catch (const CLI::ParseError &error) {
     return app.exit(error) == 0 ? Fine : Usage;

@@ -1,6 +1,7 @@
 //===- CommandLine.h - what the commands of rtslc share -------------------===//
 #pragma once
 
+#include "PreprocessorCommandLine.h"
 #include "codegen/driver/Compiler.h"
 #include "frontend/Diagnostics.h"
 
@@ -26,6 +27,8 @@ struct CommonOptions {
   std::size_t errorLimit = 20;
   WarningOptions warnings;
   CompileOptions compile;
+  PreprocessorOptions preprocessor;
+  DependencyOptions dependencies;
 };
 
 /// Adds --diagnostics, --ansi, --error-limit and -W.

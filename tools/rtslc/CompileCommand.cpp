@@ -17,7 +17,8 @@ namespace rtsl::tool {
 
 namespace {
 
-const std::map<std::string, Stage> stages = {{"ast", Stage::Ast},
+const std::map<std::string, Stage> stages = {{"preprocessed", Stage::Preprocessed},
+                                             {"ast", Stage::Ast},
                                              {"typed-ast", Stage::TypedAst},
                                              {"ir", Stage::Ir},
                                              {"ssa", Stage::Ssa},
@@ -30,29 +31,11 @@ const std::map<std::string, Stage> stages = {{"ast", Stage::Ast},
 struct CompileCommandOptions {
   CommonOptions common;
   std::vector<std::string> files;
-  Stage stage = Stage::Ir;
+  std::optional<Stage> stage;
   std::vector<std::string> overrides;
   std::string output = "-";
   bool lineDirectives = false;
-  std::string dependencies; // empty: not asked for
 };
-
-/// A rule for make: the output depends on every file that was read.
-std::string dependencyRule(const std::string &output, const std::vector<std::string> &files) {
-  auto escaped = [](const std::string &path) {
-    std::string text;
-    for (char c : path) {
-      if (c == ' ' || c == '#' || c == '\\')
-        text += '\\';
-      text += c == '$' ? "$$" : std::string(1, c);
-    }
-    return text;
-  };
-  std::string rule = escaped(output) + ":";
-  for (const std::string &file : files)
-    rule += " \\\n  " + escaped(file);
-  return rule + "\n";
-}
 
 bool isScene(const std::string &file) {
   const std::string extension = ".json";
@@ -60,48 +43,66 @@ bool isScene(const std::string &file) {
 }
 
 /// The text of the asked stage of a whole scene; nothing if there were errors.
-std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages) {
+std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages,
+                                          std::vector<std::string> &filesRead) {
   const scene::SceneDescription description = scene::readSceneFile(options.files.front(), options.overrides);
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common.compile, messages);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return std::nullopt;
-  return emitScene(*module, linkRequest(description), options.stage, options.common.compile, messages.diagnostics);
+  return emitScene(*module, linkRequest(description), *options.stage, options.common.compile, messages.diagnostics);
+}
+
+/// The text of a stage that a checked module has.
+std::optional<std::string> translate(const CompileCommandOptions &options, const typed::Module &module,
+                                     Messages &messages) {
+  if (messages.diagnostics.hasErrors())
+    return std::nullopt;
+  if (*options.stage == Stage::TypedAst)
+    return typed::dump(module);
+  if (*options.stage == Stage::Reflection)
+    return emitReflection(module, options.common.compile, messages.diagnostics);
+  if (*options.stage == Stage::Cpp) {
+    const std::string &named = options.output == "-" ? options.files.front() : options.output;
+    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.common.compile, messages.diagnostics);
+  }
+  return emit(module, *options.stage, options.common.compile, messages.diagnostics);
 }
 
 /// The text of the asked stage; nothing if there were errors.
-std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages) {
-  Shaders shaders(messages, options.files);
-  if (options.stage == Stage::Ast) {
-    std::string text;
+std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages,
+                                     std::vector<std::string> &filesRead) {
+  std::optional<std::string> text;
+  if (*options.stage == Stage::Preprocessed) {
+    SourceLoader loader(messages.sources, messages.diagnostics, options.common.preprocessor);
+    text = "";
+    for (const std::string &file : options.files)
+      if (const std::optional<PreprocessedFile> preprocessed = loader.preprocessFile(file))
+        *text += printPreprocessed(preprocessed->text, messages.sources);
+    filesRead = loader.files();
+    return text;
+  }
+  Shaders shaders(messages, options.common.preprocessor, options.files);
+  if (*options.stage == Stage::Ast) {
+    text = "";
     for (const ast::TranslationUnit *unit : shaders.units())
-      text += dump(*unit);
-    return messages.diagnostics.hasErrors() ? std::nullopt : std::optional(text);
+      *text += dump(*unit);
+  } else {
+    text = translate(options, *shaders.check(options.common.compile), messages);
   }
-
-  const std::unique_ptr<typed::Module> module = shaders.check(options.common.compile);
-  if (!options.dependencies.empty())
-    writeOutput(options.dependencies, dependencyRule(options.output, shaders.files()));
-  if (messages.diagnostics.hasErrors())
-    return std::nullopt;
-  if (options.stage == Stage::TypedAst)
-    return typed::dump(*module);
-  if (options.stage == Stage::Reflection)
-    return emitReflection(*module, options.common.compile, messages.diagnostics);
-  if (options.stage == Stage::Cpp) {
-    const std::string &named = options.output == "-" ? options.files.front() : options.output;
-    return emitCpp(*module, cpp::identifierOf(named), options.lineDirectives, options.common.compile,
-                   messages.diagnostics);
-  }
-  return emit(*module, options.stage, options.common.compile, messages.diagnostics);
+  if (options.common.dependencies.isAsked && !messages.diagnostics.hasErrors())
+    filesRead = shaders.filesRead();
+  return text;
 }
 
 /// A scene names its shaders itself, and has stages from the IR on.
 void checkInputs(const CompileCommandOptions &options) {
+  if (!options.stage)
+    throw CLI::RequiredError("--emit");
   const auto scenes = std::count_if(options.files.begin(), options.files.end(), isScene);
   if (scenes > 0 && options.files.size() > 1)
     throw CLI::ValidationError("FILE", "give RTSL files or one scene");
-  if (scenes > 0 && (options.stage == Stage::Ast || options.stage == Stage::TypedAst))
-    throw CLI::ValidationError("--emit", "a scene has no syntax tree; give one of its RTSL files");
+  if (scenes > 0 && (options.stage <= Stage::Ast || options.stage == Stage::TypedAst))
+    throw CLI::ValidationError("--emit", "a scene has no text and no syntax tree; give one of its RTSL files");
   if (options.stage == Stage::Reflection && scenes > 0)
     throw CLI::ValidationError("--emit", "reflection describes RTSL files; give those of the scene");
   if (options.stage == Stage::Cpp && scenes > 0)
@@ -117,10 +118,14 @@ int compile(const CompileCommandOptions &options) {
   Messages messages(options.common);
   try {
     checkOutput(options.output);
-    const std::optional<std::string> text =
-        isScene(options.files.front()) ? translateScene(options, messages) : translate(options, messages);
-    if (text && !messages.diagnostics.hasErrors())
+    std::vector<std::string> filesRead;
+    const std::optional<std::string> text = isScene(options.files.front())
+                                                ? translateScene(options, messages, filesRead)
+                                                : translate(options, messages, filesRead);
+    if (text && !messages.diagnostics.hasErrors()) {
       writeOutput(options.output, *text);
+      writeDependencies(options.common.dependencies, options.output, options.files, filesRead);
+    }
   } catch (const runtime::Error &error) {
     messages.report(error);
   }
@@ -135,17 +140,16 @@ void addCompileCommand(CLI::App &app, Action &action) {
   command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
   command->add_option("--emit", options->stage, "what to write")
       ->transform(CLI::CheckedTransformer(stages).description(""))
-      ->type_name("ast|typed-ast|ir|ssa|split|llvm|ptx|cpp|reflection")
-      ->required();
+      ->type_name("preprocessed|ast|typed-ast|ir|ssa|split|llvm|ptx|cpp|reflection");
+  command->add_flag_callback("-E", [options] { options->stage = Stage::Preprocessed; }, "the same as --emit=preprocessed");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
   command->add_option("--set", options->overrides, "change a value of the scene file, such as camera.fov=30")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--dependencies", options->dependencies,
-                      "also write a rule for make that names every file that was read")
-      ->type_name("FILE");
   command->add_flag("--line-directives", options->lineDirectives,
                     "with --emit=cpp: #line, so that messages and debuggers show the RTSL files");
+  addPreprocessorOptions(*command, options->common.preprocessor);
+  addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("examples:\n"

@@ -22,11 +22,13 @@ int explain(const ExplainOptions &options) {
   Messages messages(options.common);
   try {
     checkOutput(options.output);
-    Shaders shaders(messages, options.files);
+    Shaders shaders(messages, options.common.preprocessor, options.files);
     const std::unique_ptr<typed::Module> module = shaders.check(options.common.compile);
     if (!messages.diagnostics.hasErrors())
       if (const auto text = explainStates(*module, options.common.compile, options.json, messages.diagnostics))
         writeOutput(options.output, *text);
+    if (!messages.diagnostics.hasErrors())
+      writeDependencies(options.common.dependencies, options.output, options.files, shaders.filesRead());
   } catch (const runtime::Error &error) {
     messages.report(error);
   }
@@ -44,6 +46,8 @@ void addExplainCommand(CLI::App &app, Action &action) {
       ->required();
   command->add_flag("--json", options->json, "as JSON");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
+  addPreprocessorOptions(*command, options->common.preprocessor);
+  addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc explain --states Glass.rtsl");

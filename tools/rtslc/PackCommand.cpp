@@ -36,7 +36,7 @@ runtime::RenderOptions renderOptions(const scene::RenderSettings &settings) {
 void packScene(const PackOptions &options, Messages &messages) {
   runtime::checkFileWritable(options.output);
   const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common.compile, messages);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages);
   if (!module)
     return;
   const LinkRequest request = linkRequest(description);
@@ -89,6 +89,7 @@ void addPackCommand(CLI::App &app, Action &action) {
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
   command->add_flag("-q,--quiet", options->quiet, "no summary");
+  addPreprocessorOptions(*command, options->common.preprocessor);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run glass.rtslpkg -o glass.png --target=gpu");

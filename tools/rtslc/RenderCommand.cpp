@@ -137,7 +137,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
 
   Times times;
   Clock::time_point start = Clock::now();
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common.compile, messages);
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages);
   if (!module)
     return;
   LinkRequest request = linkRequest(description);
@@ -227,6 +227,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
                     "end samples that send a bad ray, one too deep, or use an index out of range, and say how many");
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
+  addPreprocessorOptions(*command, options->common.preprocessor);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");

@@ -243,7 +243,7 @@ void printSummary(const ReportOptions &options, const report::Summary &summary, 
 std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages) {
   LoadedScene loaded;
   loaded.description = scene::readSceneFile(options.scene, options.overrides);
-  loaded.module = loadShaders(loaded.description, options.common.compile, messages);
+  loaded.module = loadShaders(loaded.description, options.common, messages);
   if (!loaded.module)
     return std::nullopt;
   const scene::RenderSettings &settings = loaded.description.render;
@@ -345,6 +345,7 @@ void addReportCommand(CLI::App &app, Action &action) {
   command->add_flag("--fresh", options->fresh, "throw away what is in the folder");
   command->add_flag("--json", options->json, "write the report's JSON to standard output as well");
   command->add_flag("-q,--quiet", options->quiet, "no progress");
+  addPreprocessorOptions(*command, options->common.preprocessor);
   addCompileOptions(*command, options->common);
   command->remove_option(command->get_option("--trace")); // both are measured
   addMessageOptions(*command, options->common);

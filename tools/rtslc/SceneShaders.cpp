@@ -2,12 +2,15 @@
 #include "SceneShaders.h"
 
 #include "Shaders.h"
+#include "frontend/FileSearch.h"
 
 namespace rtsl::tool {
 
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CompileOptions &options,
-                                           Messages &messages) {
-  Shaders shaders(messages);
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
+                                           Messages &messages, std::vector<std::string> *filesRead) {
+  PreprocessorOptions preprocessor = options.preprocessor;
+  preprocessor.includeFolders.push_back(folderOf(description.file));
+  Shaders shaders(messages, preprocessor);
   for (const scene::ImportDescription &import : description.imports) {
     const SourceRange range = messages.rangeOf(import.name.place);
     if (import.path.empty())
@@ -15,8 +18,15 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
     else
       shaders.add(import.path, range);
   }
-  std::unique_ptr<typed::Module> module = shaders.check(options);
-  return messages.diagnostics.hasErrors() ? nullptr : std::move(module);
+  std::unique_ptr<typed::Module> module = shaders.check(options.compile);
+  if (messages.diagnostics.hasErrors())
+    return nullptr;
+  if (filesRead) {
+    *filesRead = {description.file};
+    const std::vector<std::string> &files = shaders.filesRead();
+    filesRead->insert(filesRead->end(), files.begin(), files.end());
+  }
+  return module;
 }
 
 LinkRequest linkRequest(const scene::SceneDescription &description) {

@@ -10,9 +10,10 @@
 
 namespace rtsl::tool {
 
-/// Reads and checks the files that the scene imports; null if there were errors.
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CompileOptions &options,
-                                           Messages &messages);
+/// Reads and checks the files that the scene imports; null if there were errors. They find what they include in the scene's
+/// folder too. `filesRead`, if asked for, gets the scene and all shader files.
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
+                                           Messages &messages, std::vector<std::string> *filesRead = nullptr);
 
 /// Which classes the scene has objects of, and which materials meet which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);

@@ -14,8 +14,10 @@ namespace rtsl::tool {
 /// The files of one run with all that they import. What is wrong with them goes to the run's messages.
 class Shaders {
 public:
-  explicit Shaders(Messages &messages) : messages(messages), loader(messages.sources, messages.diagnostics) {}
-  Shaders(Messages &messages, const std::vector<std::string> &files) : Shaders(messages) {
+  Shaders(Messages &messages, const PreprocessorOptions &options)
+      : messages(messages), loader(messages.sources, messages.diagnostics, options) {}
+  Shaders(Messages &messages, const PreprocessorOptions &options, const std::vector<std::string> &files)
+      : Shaders(messages, options) {
     for (const std::string &file : files)
       add(file);
   }
@@ -28,8 +30,11 @@ public:
 
   const std::vector<const ast::TranslationUnit *> &units() const { return parsed; }
 
-  /// The files that were read, imported ones too.
-  std::vector<std::string> files() const { return loader.files(); }
+  /// All files that were read, for -MD.
+  const std::vector<std::string> &filesRead() {
+    loader.loadImports();
+    return loader.files();
+  }
 
   /// Checks everything together, down to what splitting at `trace` would save if that is asked for (-Wlive-state).
   std::unique_ptr<typed::Module> check(const CompileOptions &options) {

@@ -2,6 +2,7 @@
 #include "Harness.h"
 
 #include "frontend/Parser.h"
+#include "frontend/preprocessor/Preprocessor.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -56,11 +57,19 @@ std::unique_ptr<Checked> checkText(const std::string &text) {
     texts[name] += line + "\n";
   }
   std::map<std::string, const ast::TranslationUnit *> parsed;
+  for (const auto &[file, content] : texts)
+    checked->files[file] = checked->sources.add(file, content);
   auto parseFile = [&](const std::string &file) -> const ast::TranslationUnit * {
     if (parsed.count(file))
       return parsed[file];
-    checked->files[file] = checked->sources.add(file, texts.at(file));
-    checked->trees.push_back(parse(checked->files[file], checked->diagnostics));
+    const PreprocessedFile preprocessed =
+        preprocess(checked->files[file], checked->sources, {}, checked->diagnostics);
+    if (preprocessed.isUsable) {
+      checked->trees.push_back(parse(preprocessed.text, checked->diagnostics));
+    } else {
+      checked->trees.push_back(std::make_unique<ast::TranslationUnit>());
+      checked->trees.back()->file = preprocessed.text;
+    }
     return parsed[file] = checked->trees.back().get();
   };
   const ImportResolver resolver = [&](const ast::ImportDecl &import, FileId) {
@@ -87,7 +96,8 @@ std::string withActualMessages(const std::string &text) {
   const std::unique_ptr<Checked> checked = checkText(text);
   std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, std::string>>>
       said; // by line, then column
-  for (const Diagnostic &diagnostic : checked->diagnostics.all()) {
+  for (const Diagnostic &each : checked->diagnostics.all()) {
+    const Diagnostic diagnostic = asWritten(each, checked->sources);
     const LineColumn begin =
         checked->sources.lineColumn(diagnostic.range.file, diagnostic.range.begin);
     const LineColumn end = checked->sources.lineColumn(diagnostic.range.file, diagnostic.range.end);

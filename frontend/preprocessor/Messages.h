@@ -1,0 +1,43 @@
+//===- Messages.h - what clang's preprocessor says, in our words ----------===//
+#pragma once
+
+#include "Session.h"
+#include "Watcher.h"
+
+#include <clang/Basic/Diagnostic.h>
+
+namespace rtsl {
+
+/// Turns clang's diagnostics into messages of DiagnosticCodes.def. What clang says of words that our own lexer reads again
+/// (numbers, strings, characters) is left to that one.
+class Messages final : public clang::DiagnosticConsumer {
+public:
+  void start(Session &session, const Watcher &watcher) {
+    this->session = &session;
+    this->watcher = &watcher;
+  }
+  void HandleDiagnostic(clang::DiagnosticsEngine::Level level, const clang::Diagnostic &info) override;
+
+private:
+  struct Place; // of what clang speaks of
+  void addNote(const clang::Diagnostic &info);
+  // Each knows some of clang's diagnostics, and says whether this was one of them.
+  bool reportFile(const clang::Diagnostic &info, const Place &at);
+  bool reportConditional(const clang::Diagnostic &info, const Place &at);
+  bool reportCondition(const clang::Diagnostic &info, const Place &at);
+  bool reportDefinition(const clang::Diagnostic &info, const Place &at);
+  bool reportUse(const clang::Diagnostic &info, const Place &at);
+  bool reportDirective(const clang::Diagnostic &info, const Place &at);
+  void reportUnknownDirective(const Origin &word);
+  Origin directiveAround(const Origin &place) const;
+
+  Session *session = nullptr;
+  const Watcher *watcher = nullptr;
+  Diagnostic *last = nullptr; // the redefinition that a note may belong to
+  unsigned misuse = 0;        // of a macro: what clang said about it; 0: nothing
+  Origin misused;
+  SourceRange unreadable;     // where the last file was included that cannot be read
+  SourceRange undefined;      // the last name in a condition that is no macro
+};
+
+} // namespace rtsl

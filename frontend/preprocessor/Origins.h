@@ -1,0 +1,49 @@
+//===- Origins.h - from clang's locations to ours -------------------------===//
+#pragma once
+
+#include "SourceFileSystem.h"
+#include "frontend/Expansion.h"
+
+#include <clang/Basic/LangOptions.h>
+#include <clang/Basic/SourceManager.h>
+
+#include <llvm/ADT/DenseMap.h>
+
+namespace rtsl {
+
+/// Says where the words that clang's preprocessor gives were written, and collects the ways that they took.
+class Origins {
+public:
+  Origins(const clang::SourceManager &locations, const clang::LangOptions &language, const SourceFileSystem &files,
+          SourceManager &sources)
+      : locations(locations), language(language), files(files), sources(sources) {}
+
+  /// Of the word of `size` bytes at a location, in a file or in the expansion of a macro.
+  Origin of(clang::SourceLocation location, std::uint32_t size);
+  /// Of the word at a location.
+  Origin of(clang::SourceLocation location) { return of(location, sizeAt(location)); }
+  /// From one word to another.
+  Origin of(clang::SourceLocation first, clang::SourceLocation last);
+
+  /// The text that clang calls `id`; 0: none of ours.
+  FileId fileOf(clang::FileID id);
+  /// The way into that text.
+  std::uint32_t includeOf(clang::FileID id);
+  std::uint32_t sizeAt(clang::SourceLocation location) const;
+
+  /// Names a text that is not on any disk.
+  void setFile(clang::FileID id, FileId file) { fileIds[id] = file; }
+
+  /// 0: the file that is preprocessed.
+  std::vector<Expansion> expansions{1};
+
+private:
+  const clang::SourceManager &locations;
+  const clang::LangOptions &language;
+  const SourceFileSystem &files;
+  SourceManager &sources;
+  llvm::DenseMap<clang::FileID, FileId> fileIds;
+  llvm::DenseMap<clang::FileID, std::uint32_t> known; // expansions and includes by clang's name for them
+};
+
+} // namespace rtsl

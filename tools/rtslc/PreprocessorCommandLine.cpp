@@ -1,0 +1,112 @@
+//===- PreprocessorCommandLine.cpp - -I, -D, -U, -MD and what they ask for -===//
+#include "PreprocessorCommandLine.h"
+
+#include "runtime/AtomicFile.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace rtsl::tool {
+
+namespace {
+
+/// What -D or -U says. Throws CLI::ValidationError if it is no macro.
+MacroOption parseMacro(const char *option, const std::string &text, bool isUndefined) {
+  MacroOption macro;
+  macro.isUndefined = isUndefined;
+  const std::size_t equals = isUndefined ? std::string::npos : text.find('=');
+  macro.name = text.substr(0, equals);
+  macro.value = equals == std::string::npos ? "1" : text.substr(equals + 1);
+  const auto isNameCharacter = [](char c) {
+    return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  const bool isName = !macro.name.empty() && !(macro.name[0] >= '0' && macro.name[0] <= '9') &&
+                      std::all_of(macro.name.begin(), macro.name.end(), isNameCharacter);
+  if (!isName || macro.name == "defined")
+    throw CLI::ValidationError(option, "`" + macro.name + "` cannot be the name of a macro");
+  if (isOfTheLanguage(macro.name))
+    throw CLI::ValidationError(option, "`" + macro.name + "` is defined by the language and cannot be changed");
+  if (macro.value.find_first_of("\n\r") != std::string::npos || macro.value.find('\\') != std::string::npos)
+    throw CLI::ValidationError(option, "the value of `" + macro.name + "` is one line without backslashes");
+  return macro;
+}
+
+/// A path as make reads it.
+std::string escaped(const std::string &path) {
+  std::string result;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const char c = path[i];
+    if (c == ' ' || c == '\t' || c == '#') {
+      // Backslashes in front of these are themselves escaped, and nowhere else.
+      for (std::size_t back = i; back > 0 && path[back - 1] == '\\'; --back)
+        result += '\\';
+      result += '\\';
+    } else if (c == '$') {
+      result += '$';
+    }
+    result += c;
+  }
+  return result;
+}
+
+} // namespace
+
+void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options) {
+  command.add_option("-I", options.includeFolders, "look for included and imported files in this folder too")
+      ->type_name("FOLDER")
+      ->allow_extra_args(false);
+  const auto add = [&](const char *option, const char *help, const char *type, bool isUndefined) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            option,
+            [&options, option, isUndefined](const std::vector<std::string> &texts) {
+              for (const std::string &text : texts)
+                options.macros.push_back(parseMacro(option, text, isUndefined));
+            },
+            help)
+        ->type_name(type)
+        ->allow_extra_args(false)
+        ->trigger_on_parse(); // so that -D and -U keep their order
+  };
+  add("-D", "define a macro, as 1 if no value is given", "NAME[=VALUE]", false);
+  add("-U", "take back an earlier -D", "NAME", true);
+}
+
+void addDependencyOptions(CLI::App &command, DependencyOptions &options) {
+  command.add_flag("--MD", options.isAsked, "(or -MD) write a rule for make that lists the files that were read");
+  command.add_option("--MF", options.file, "(or -MF) where to write that rule")->type_name("FILE");
+  command.add_option("--MT", options.target, "(or -MT) the target of that rule")->type_name("TARGET");
+}
+
+std::vector<std::string> withLongDashes(int argc, char **argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  for (std::string &argument : arguments)
+    if (argument == "-MD" || argument == "-MF" || argument == "-MT")
+      argument.insert(0, "-");
+  return arguments;
+}
+
+std::string dependencyRule(const std::string &target, const std::vector<std::string> &files) {
+  std::string rule = escaped(target) + ":";
+  for (const std::string &file : files)
+    rule += " \\\n  " + escaped(file);
+  return rule + "\n";
+}
+
+void writeDependencies(const DependencyOptions &options, const std::string &output,
+                       const std::vector<std::string> &sources, const std::vector<std::string> &files) {
+  if (!options.isAsked)
+    return;
+  const bool hasOutput = !output.empty() && output != "-";
+  std::string file = options.file;
+  if (file.empty())
+    file = hasOutput ? std::filesystem::path(output).replace_extension(".d").string()
+                     : std::filesystem::path(sources.front() == "-" ? "stdin" : sources.front())
+                           .filename()
+                           .replace_extension(".d")
+                           .string();
+  const std::string target = !options.target.empty() ? options.target : hasOutput ? output : file;
+  runtime::writeFileAtomically(file, dependencyRule(target, files));
+}
+
+} // namespace rtsl::tool

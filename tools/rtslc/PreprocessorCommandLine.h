@@ -1,0 +1,36 @@
+//===- PreprocessorCommandLine.h - -I, -D, -U, -MD and what they ask for --===//
+#pragma once
+
+#include "frontend/preprocessor/Preprocessor.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rtsl::tool {
+
+/// -MD, -MF and -MT.
+struct DependencyOptions {
+  bool isAsked = false;
+  std::string file;   // empty: the output's, or else the first source's, with the suffix .d
+  std::string target; // empty: the output, or else the dependency file
+};
+
+/// Adds -I, -D and -U.
+void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options);
+/// Adds -MD, -MF and -MT.
+void addDependencyOptions(CLI::App &command, DependencyOptions &options);
+
+/// Spells the options of two letters behind one dash (`-MD`) as the command line library wants them (`--MD`).
+std::vector<std::string> withLongDashes(int argc, char **argv);
+
+/// The rule `target: files` for make and ninja.
+std::string dependencyRule(const std::string &target, const std::vector<std::string> &files);
+
+/// Writes the dependency file if it is asked for: what `output` (empty or "-": no file) was made of. `sources` are the files
+/// of the command line, `files` all that were read. Throws runtime::Error with FileUnwritable.
+void writeDependencies(const DependencyOptions &options, const std::string &output,
+                       const std::vector<std::string> &sources, const std::vector<std::string> &files);
+
+} // namespace rtsl::tool
