@@ -25,7 +25,7 @@ std::string count(std::size_t number, const char *noun) {
 /// Writes the mended texts back, all of them or, if one cannot be written, none. What came from standard input goes to
 /// standard output.
 void writeFixes(const Messages &messages) {
-  const std::set<FileId> files = filesToFix(messages.diagnostics);
+  const std::vector<FileId> files = filesToFix(messages.diagnostics);
   const auto path = [&](FileId file) { return std::string(messages.sources.name(file)); };
   for (const FileId file : files)
     if (path(file) != "<stdin>")

@@ -80,8 +80,9 @@ TEST(Colors, GlassWithOneThreeFourAndSixteenComponents) {
     ASSERT_EQ(image.channels, components);
     const Distance far = distance(rgb, image);
     RecordProperty("rmse" + std::to_string(components), std::to_string(far.rmse));
-    if (components > 1)
+    if (components > 1) {
       EXPECT_LT(far.rmse, 1e-3) << components << " components";
+    }
     EXPECT_LT(far.luminance, 5e-3) << components << " components";
     EXPECT_GT(far.rmse, 0) << "it is another computation";
   }
