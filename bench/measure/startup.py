@@ -1,6 +1,8 @@
 """How long small jobs take from the shell: the whole process, nothing subtracted."""
 
 import os
+import shutil
+import tempfile
 from pathlib import Path
 
 from . import process
@@ -9,19 +11,59 @@ from .statistics import summarise
 MATERIAL = Path(__file__).resolve().parent.parent / "inputs" / "RoughMetal.rtsl"
 
 
-def commands(build):
+def long_material():
+    """A material of 500 lines with ten traces: coats one upon the other, each of which weakens and tints what comes
+    through the one below."""
+    lines = ["class Coats : rt_Material;", "", "public float strength = 0.5;", "", "void shade() {",
+             "  color sum = color(0.0);", "  vec3 n = normalize(rt_ShadingNormal);", "  vec3 d = rt_RayDirection;",
+             "  float w = strength;"]
+    for coat in range(10):
+        lines += [f"  float a{coat} = dot(d, n) * {coat + 1}.5 + w;", f"  vec3 t{coat} = d + n * a{coat};"]
+        for step in range(43):
+            lines.append(f"  t{coat} = t{coat} * 0.75 + vec3(a{coat}, w, {step}.25) * sin(a{coat} + {step}.0);"
+                         if step % 4 == 0 else f"  a{coat} = a{coat} * w + {step}.125;")
+        lines += [f"  sum += w * trace(rt_HitPoint, t{coat});", f"  w *= 0.5 + 0.25 * a{coat};", f"  d = reflect(t{coat}, n);"]
+    lines += [""] * (498 - len(lines)) + ["  rt_SampleColor = sum;", "}"]
+    return "\n".join(lines) + "\n"
+
+
+def other_compilers(folder):
+    """What others take to compile the same material, where they are installed."""
+    nvcc = shutil.which("nvcc") or shutil.which("/usr/local/cuda/bin/nvcc")
+    glslang = shutil.which("glslangValidator")
+    found = []
+    if nvcc:
+        source = MATERIAL.with_suffix(".cu")
+        found.append(("nvcc --ptx", [nvcc, "--ptx", str(source), "-o", str(folder / "nvcc.ptx")], None))
+    if glslang:
+        source = MATERIAL.with_suffix(".rchit")
+        found.append(("glslangValidator", [glslang, "--target-env", "vulkan1.2", str(source), "-o", str(folder / "out.spv")], None))
+    return found
+
+
+def commands(build, folder):
     """Name, arguments, and the limit in seconds where the project has set one."""
     rtslc = str(build / "bin" / "rtslc")
+    long_file = folder / "Coats.rtsl"
+    long_file.write_text(long_material(), encoding="utf-8")
     return [
         ("true", ["/bin/true"], None),  # what any process costs here
         ("rtslc --help", [rtslc, "--help"], 0.010),
         ("rtslc check", [rtslc, "check", str(MATERIAL)], 0.015),
         ("rtslc compile --emit=llvm", [rtslc, "compile", str(MATERIAL), "--emit=llvm", "-o", "-"], None),
-    ]
+        ("rtslc compile --emit=ptx", [rtslc, "compile", str(MATERIAL), "--emit=ptx", "-o", "-"], 0.040),
+        ("--emit=ssa, 500 lines", [rtslc, "compile", str(long_file), "--emit=ssa", "-o", "-"], None),
+        ("--emit=split, 500 lines", [rtslc, "compile", str(long_file), "--emit=split", "-o", "-"], None),
+    ] + other_compilers(folder)
 
 
 def measure(build, count):
-    listed = commands(build)
+    with tempfile.TemporaryDirectory() as folder:
+        return measure_in(Path(folder), build, count)
+
+
+def measure_in(folder, build, count):
+    listed = commands(build, folder)
     runs = {name: [] for name, _, _ in listed}
     failures = {}
     for round_ in range(-3, count):  # three rounds to warm the caches

@@ -12,6 +12,7 @@
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
+#include "codegen/passes/continuation/StateGraph.h"
 #include "runtime/DeviceBitcode.h"
 
 #include "mlir/IR/MLIRContext.h"
@@ -270,14 +271,20 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   return cpp::print(module, printing, diagnostics);
 }
 
-std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options, bool json,
-                                         Diagnostics &diagnostics) {
+std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options,
+                                         ReportFormat format, Diagnostics &diagnostics) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, diagnostics, *context);
   if (!ir)
     return std::nullopt;
   const SplitReport report = runToSsa(*ir, TraceMode::Split);
-  return json ? toJson(report) : toText(report);
+  switch (format) {
+  case ReportFormat::Json: return toJson(report);
+  case ReportFormat::Dot: return toDot(report);
+  case ReportFormat::Svg: return toSvg(report);
+  case ReportFormat::Text: break;
+  }
+  return toText(report);
 }
 
 void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics) {

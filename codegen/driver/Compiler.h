@@ -66,10 +66,13 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
 std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
                                    const CompileOptions &options, Diagnostics &diagnostics);
 
-/// What splitting at `trace` saves and recomputes in each function that traces, and the states that it makes: text, or
-/// one JSON document. Nothing if there were errors.
-std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options, bool json,
-                                         Diagnostics &diagnostics);
+/// How a report is written: for people, for programs, for Graphviz, or drawn.
+enum class ReportFormat : std::uint8_t { Text, Json, Dot, Svg };
+
+/// What splitting at `trace` saves and recomputes in each function that traces, and the states that it makes. Nothing if
+/// there were errors.
+std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options,
+                                         ReportFormat format, Diagnostics &diagnostics);
 
 /// Splits the module at `trace` and warns where more than `largeLiveState` bytes are saved: -Wlive-state. Does nothing
 /// if that warning is off, or if the module cannot be lowered.

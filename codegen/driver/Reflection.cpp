@@ -207,7 +207,7 @@ private:
 std::optional<std::string> emitReflection(const typed::Module &module, const CompileOptions &options,
                                           Diagnostics &diagnostics) {
   // How traces cut functions into states, and the frames of those.
-  const std::optional<std::string> states = explainStates(module, options, /*json=*/true, diagnostics);
+  const std::optional<std::string> states = explainStates(module, options, ReportFormat::Json, diagnostics);
   if (!states)
     return std::nullopt;
 

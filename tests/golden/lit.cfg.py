@@ -18,4 +18,4 @@ config.environment["FILECHECK_OPTS"] = "--dump-input=fail"
 # A stack trace with names, where a tool crashes.
 config.environment["LLVM_SYMBOLIZER_PATH"] = os.path.join(config.llvm_tools, "llvm-symbolizer")
 if not os.path.exists(config.programs["rtslc"]):
-    config.excludes += [name for name in os.listdir(config.test_source_root) if name in ("compile", "ptx")]
+    config.excludes += [name for name in os.listdir(config.test_source_root) if name in ("compile", "explain", "ptx")]

@@ -9,6 +9,7 @@
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
+#include "tools/rtslc/PictureSize.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -30,27 +31,19 @@ struct Options {
   std::string package, output, reference;
   Target target = Target::Gpu;
   std::optional<std::uint32_t> samples, depth, seed;
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+  std::optional<tool::PictureSize> size;
   std::uint32_t threads = 0, registers = 0;
   bool quiet = false, json = false;
 };
 
 std::atomic<bool> interrupted{false};
 
-/// "960x540" to its two numbers.
-std::pair<std::uint32_t, std::uint32_t> parseSize(const std::string &text) {
-  unsigned width = 0, height = 0;
-  int used = 0;
-  if (text.size() >= 32 || std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) != 2 ||
-      std::size_t(used) != text.size())
-    throw CLI::ValidationError("--size", "give WIDTHxHEIGHT in pixels, such as 960x540");
-  return {width, height};
-}
-
 runtime::RenderOptions renderOptions(const Options &options, const runtime::Package &package) {
   runtime::RenderOptions render = package.options;
-  if (options.size)
-    std::tie(render.width, render.height) = *options.size;
+  if (options.size) {
+    render.width = options.size->width;
+    render.height = options.size->height;
+  }
   render.samplesPerPixel = options.samples.value_or(render.samplesPerPixel);
   render.maxDepth = options.depth.value_or(render.maxDepth);
   render.seed = options.seed.value_or(render.seed);
@@ -140,9 +133,7 @@ void addOptions(CLI::App &app, Options &options) {
                       .description(""))
       ->type_name("gpu|host");
   app.add_option("--spp", options.samples, "samples a pixel")->check(CLI::Range(1u, 1u << 24))->type_name("N");
-  app.add_option_function<std::string>(
-         "--size", [&options](const std::string &text) { options.size = parseSize(text); }, "size in pixels")
-      ->type_name("WxH");
+  tool::addSizeOption(app, options.size);
   app.add_option("--depth", options.depth, "how often a ray may lead to another; 0: camera rays only")
       ->type_name("N");
   app.add_option("--seed", options.seed, "seed of the random numbers")->type_name("N");

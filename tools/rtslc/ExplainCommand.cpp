@@ -4,6 +4,7 @@
 #include "Output.h"
 #include "Shaders.h"
 
+#include <map>
 #include <memory>
 
 namespace rtsl::tool {
@@ -15,7 +16,7 @@ struct ExplainOptions {
   std::vector<std::string> files;
   std::string output = "-";
   bool states = false;
-  bool json = false;
+  ReportFormat format = ReportFormat::Text;
 };
 
 int explain(const ExplainOptions &options) {
@@ -25,7 +26,7 @@ int explain(const ExplainOptions &options) {
     Shaders shaders(messages, options.common.preprocessor, options.files);
     const std::unique_ptr<typed::Module> module = shaders.check(options.common.compile);
     if (!messages.diagnostics.hasErrors())
-      if (const auto text = explainStates(*module, options.common.compile, options.json, messages.diagnostics))
+      if (const auto text = explainStates(*module, options.common.compile, options.format, messages.diagnostics))
         writeOutput(options.output, *text);
     if (!messages.diagnostics.hasErrors())
       writeDependencies(options.common.dependencies, options.output, options.files, shaders.filesRead());
@@ -44,13 +45,21 @@ void addExplainCommand(CLI::App &app, Action &action) {
   command->add_flag("--states", options->states,
                     "where shaders that trace are cut: their states, and what each trace saves and recomputes")
       ->required();
-  command->add_flag("--json", options->json, "as JSON");
+  command
+      ->add_option("--format", options->format, "text; json; dot, for Graphviz; svg, a picture")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ReportFormat>{{"text", ReportFormat::Text},
+                                                                              {"json", ReportFormat::Json},
+                                                                              {"dot", ReportFormat::Dot},
+                                                                              {"svg", ReportFormat::Svg}})
+                      .description(""))
+      ->type_name("text|json|dot|svg");
+  command->add_flag_callback("--json", [options] { options->format = ReportFormat::Json; }, "the same as --format=json");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
-  command->footer("example:\n  rtslc explain --states Glass.rtsl");
+  command->footer("example:\n  rtslc explain --states Glass.rtsl\n  rtslc explain --states --format=svg Glass.rtsl -o states.svg");
   command->callback([options, &action] { action = [options] { return explain(*options); }; });
 }
 

@@ -35,6 +35,9 @@
 #include "mlir/IR/Dominance.h"
 #include "mlir/IR/IRMapping.h"
 
+#include <optional>
+#include <vector>
+
 namespace rtsl::continuation {
 
 using llvm::BitVector;
@@ -47,7 +50,8 @@ public:
   Planner(FuncOp function, const RematerialiseOptions &options)
       : function(function), options(options), liveness(function),
         summary(function->getParentOfType<mlir::ModuleOp>()), recompute(function, summary),
-        dominance(function), loops(dominance.getDomTree(&function.getBody())) {}
+        dominance(function), loops(dominance.getDomTree(&function.getBody())),
+        object(objectOf(function)), operandNumbers(liveness.values().size()) {}
 
   mlir::FailureOr<llvm::SmallVector<SuspendPlan>> run();
 
@@ -56,7 +60,9 @@ private:
     BitVector needed, saved, recomputed;
   };
   mlir::LogicalResult decide(ir::SuspendOp suspend, Decision &decision);
-  BitVector operandsOf(unsigned value);
+  llvm::ArrayRef<unsigned> operandsOf(unsigned value);
+  std::int64_t costOfSaving(Value value, std::int64_t traceFrequency);
+  std::int64_t costOfRecomputing(Value value, ir::SuspendOp suspend, std::int64_t traceFrequency);
   std::int64_t frequency(mlir::Block *block) { return loopFrequency(loops.getLoopDepth(block)); }
   void dropUnneeded(Decision &decision, const BitVector &needed);
 
@@ -67,29 +73,58 @@ private:
   Recompute recompute;
   mlir::DominanceInfo dominance;
   mlir::CFGLoopInfo loops;
+  Value object; // a parameter of every state
+  std::vector<std::optional<llvm::SmallVector<unsigned, 4>>> operandNumbers; // made when asked for
 };
 
-BitVector Planner::operandsOf(unsigned value) {
-  BitVector operands = liveness.none();
-  mlir::Value object = objectOf(function);
-  for (Value operand : liveness.values()[value].getDefiningOp()->getOperands())
-    if (operand != object)
-      operands.set(liveness.numberOf(operand));
-  return operands;
+llvm::ArrayRef<unsigned> Planner::operandsOf(unsigned value) {
+  std::optional<llvm::SmallVector<unsigned, 4>> &operands = operandNumbers[value];
+  if (!operands) {
+    operands.emplace();
+    for (Value operand : liveness.values()[value].getDefiningOp()->getOperands())
+      if (operand != object)
+        operands->push_back(liveness.numberOf(operand));
+    llvm::sort(*operands);
+    operands->erase(llvm::unique(*operands), operands->end());
+  }
+  return *operands;
+}
+
+std::int64_t Planner::costOfSaving(Value value, std::int64_t traceFrequency) {
+  if (llvm::isa<ir::PtrType>(value.getType()))
+    return impossible;
+  return saveCost(value.getType(), frequency(value.getParentBlock()), traceFrequency);
+}
+
+/// `impossible` where saving is not dearer: then nothing that a value is made of need be looked at.
+std::int64_t Planner::costOfRecomputing(Value value, ir::SuspendOp suspend,
+                                        std::int64_t traceFrequency) {
+  if (options.onlyAddresses && !llvm::isa<ir::PtrType>(value.getType()))
+    return impossible;
+  mlir::Operation *op = value.getDefiningOp();
+  if (!op)
+    return impossible;
+  const std::int64_t cost = recomputeCost(op) * traceFrequency;
+  if (cost >= costOfSaving(value, traceFrequency) || !recompute.isPossible(op, suspend))
+    return impossible;
+  return cost;
 }
 
 /// The cheapest way to have `decision.needed` behind the suspend.
 mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
   // Everything from which something needed can be recomputed.
-  BitVector possible = liveness.none(), reached = decision.needed;
+  const std::int64_t traceFrequency = frequency(suspend->getBlock());
+  llvm::DenseMap<unsigned, std::int64_t> recomputing;
+  BitVector reached = decision.needed;
   llvm::SmallVector<unsigned> worklist(reached.set_bits_begin(), reached.set_bits_end());
   while (!worklist.empty()) {
     unsigned value = worklist.pop_back_val();
-    mlir::Operation *op = liveness.values()[value].getDefiningOp();
-    if (!op || !recompute.isPossible(op, suspend))
+    const std::int64_t cost =
+        costOfRecomputing(liveness.values()[value], suspend, traceFrequency);
+    if (cost == impossible)
       continue;
-    possible.set(value);
-    for (unsigned operand : operandsOf(value).set_bits())
+    recomputing[value] = cost;
+    for (unsigned operand : operandsOf(value))
       if (!reached.test(operand)) {
         reached.set(operand);
         worklist.push_back(operand);
@@ -100,21 +135,16 @@ mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
   llvm::SmallVector<unsigned> values(reached.set_bits_begin(), reached.set_bits_end());
   llvm::DenseMap<unsigned, unsigned> nodeOf;
   std::vector<ValueNode> nodes(values.size());
-  const std::int64_t traceFrequency = frequency(suspend->getBlock());
   for (auto [index, number] : llvm::enumerate(values)) {
-    Value value = liveness.values()[number];
-    bool isAddress = llvm::isa<ir::PtrType>(value.getType());
     ValueNode &node = nodes[index];
     nodeOf[number] = index;
     node.needed = decision.needed.test(number);
-    if (!isAddress)
-      node.saveCost = saveCost(value.getType(), frequency(value.getParentBlock()), traceFrequency);
-    if (!possible.test(number))
+    node.saveCost = costOfSaving(liveness.values()[number], traceFrequency);
+    auto cost = recomputing.find(number);
+    if (cost == recomputing.end())
       continue;
-    node.recomputeCost = options.onlyAddresses && !isAddress
-                             ? impossible
-                             : recomputeCost(value.getDefiningOp()) * traceFrequency;
-    for (unsigned operand : operandsOf(number).set_bits())
+    node.recomputeCost = cost->second;
+    for (unsigned operand : operandsOf(number))
       node.operands.push_back(nodeOf.lookup(operand));
   }
 
@@ -147,7 +177,7 @@ void Planner::dropUnneeded(Decision &decision, const BitVector &needed) {
     unsigned value = worklist.pop_back_val();
     if (!decision.recomputed.test(value))
       continue;
-    for (unsigned operand : operandsOf(value).set_bits())
+    for (unsigned operand : operandsOf(value))
       if (!kept.test(operand)) {
         kept.set(operand);
         worklist.push_back(operand);
@@ -172,16 +202,18 @@ mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
   };
   // Needs only grow here, so this ends. Later traces first: what they save is a need of earlier
   // ones.
-  bool changed = true;
+  bool changed = true, isStale = true;
   while (changed) {
     changed = false;
     for (size_t i = suspends.size(); i-- > 0;) {
-      computeLiveness();
+      if (isStale)
+        computeLiveness();
+      isStale = false;
       BitVector needed = liveness.into(suspends[i].getResume());
       needed |= decisions[i].needed;
       if (needed == decisions[i].needed)
         continue;
-      changed = true;
+      changed = isStale = true;
       decisions[i].needed = needed;
       if (mlir::failed(decide(suspends[i], decisions[i])))
         return mlir::failure();

@@ -31,11 +31,18 @@ struct TraceReport {
       0; // instructions, about (CostTable.h), of all that is recomputed
 };
 
+/// A way from the end of a state to what comes next.
+struct TransitionReport {
+  enum Kind : std::uint8_t { Trace, Jump, Done } kind;
+  std::string from, to; // states; `to` is empty for Done
+};
+
 struct FunctionReport {
   std::string name;
   std::vector<TraceReport> traces;
   continuation::FrameLayout frame;
   std::vector<std::string> states;
+  std::vector<TransitionReport> transitions; // in the order of `states`, none twice
 };
 
 struct SplitReport {

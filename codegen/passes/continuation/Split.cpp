@@ -129,6 +129,23 @@ mlir::LogicalResult FunctionSplitter::cleanUp(llvm::ArrayRef<FuncOp> states) {
   return mlir::success();
 }
 
+static void reportTransitions(FuncOp state, std::vector<TransitionReport> &transitions) {
+  static constexpr std::pair<ir::Transition, TransitionReport::Kind> kinds[] = {
+      {ir::Transition::Trace, TransitionReport::Trace},
+      {ir::Transition::Jump, TransitionReport::Jump},
+      {ir::Transition::Done, TransitionReport::Done}};
+  for (const auto &[transition, kind] : kinds) {
+    llvm::StringSet<> seen;
+    state.walk([&, transition = transition, kind = kind](ir::NextOp next) {
+      if (next.getTransition() != transition)
+        return;
+      const std::string to = next.getState().value_or("").str();
+      if (seen.insert(to).second)
+        transitions.push_back({kind, state.getSymName().str(), to});
+    });
+  }
+}
+
 mlir::LogicalResult FunctionSplitter::run() {
   report.name = function.getSymName().str();
 
@@ -161,7 +178,11 @@ mlir::LogicalResult FunctionSplitter::run() {
     if (mlir::failed(check("split")))
       return mlir::failure();
   }
-  return options.cleanUp ? cleanUp(*states) : mlir::success();
+  if (options.cleanUp && mlir::failed(cleanUp(*states)))
+    return mlir::failure();
+  for (FuncOp state : *states)
+    reportTransitions(state, report.transitions);
+  return mlir::success();
 }
 
 /// A function that the machine can run: nothing comes in but the object, and nothing goes out.
