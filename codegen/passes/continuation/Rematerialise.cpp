@@ -90,8 +90,9 @@ llvm::ArrayRef<unsigned> Planner::operandsOf(unsigned value) {
   return *operands;
 }
 
+/// An address, and an index that has been made of an i32, have no place in a frame.
 std::int64_t Planner::costOfSaving(Value value, std::int64_t traceFrequency) {
-  if (llvm::isa<ir::PtrType>(value.getType()))
+  if (!ir::isValueType(value.getType()))
     return impossible;
   return saveCost(value.getType(), frequency(value.getParentBlock()), traceFrequency);
 }
@@ -99,7 +100,7 @@ std::int64_t Planner::costOfSaving(Value value, std::int64_t traceFrequency) {
 /// `impossible` where saving is not dearer: then nothing that a value is made of need be looked at.
 std::int64_t Planner::costOfRecomputing(Value value, ir::SuspendOp suspend,
                                         std::int64_t traceFrequency) {
-  if (options.onlyAddresses && !llvm::isa<ir::PtrType>(value.getType()))
+  if (options.onlyAddresses && ir::isValueType(value.getType()))
     return impossible;
   mlir::Operation *op = value.getDefiningOp();
   if (!op)

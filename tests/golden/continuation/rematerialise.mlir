@@ -163,3 +163,16 @@ func.func @loop(%self: !rtsl.ref<"M">, %o: vector<3xf32> loc("o")) -> i32 {
 ^done:
   return %square : i32
 }
+
+// An index has no place in a frame: it is made again of the i32.
+// CHECK-LABEL: func.func @index
+// CHECK:        rtsl.suspend %{{.*}}, %{{.*}}, ^bb1(%{{.*}}, %{{.*}} : vector<3xf32>, i32)
+// CHECK:        ^bb1(%[[V:.*]]: vector<3xf32>, %[[I:.*]]: i32)
+// CHECK:        %[[INDEX:.*]] = arith.index_castui %[[I]] : i32 to index
+// CHECK:        vector.extract %[[V]][%[[INDEX]]]
+func.func @index(%v: vector<3xf32>, %i: i32) -> f32 {
+  %index = arith.index_castui %i : i32 to index
+  %c = rtsl.trace %v, %v : vector<3xf32>
+  %x = vector.extract %v[%index] : f32 from vector<3xf32>
+  return %x : f32
+}
