@@ -188,6 +188,36 @@ Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &co
   return {constantAggregate(type, constant)};
 }
 
+// Behind what was made there before, which it may use. While it is made others may be, which it
+// then uses: they stand before it, for it does not count as made until it is.
+Value FunctionLowering::atStart(llvm::function_ref<Value()> make) {
+  mlir::OpBuilder::InsertionGuard guard(emitter);
+  if (lastAtStart)
+    emitter.setInsertionPointAfter(lastAtStart);
+  else
+    emitter.setInsertionPointToStart(&function.getBody().front());
+  Value made = make();
+  lastAtStart = &*std::prev(emitter.getInsertionPoint());
+  return made;
+}
+
+void FunctionLowering::fillConstant(const Type *type, const typed::Constant &constant, Value to) {
+  std::size_t first = 0;
+  if (type->is(TypeKind::Struct)) {
+    for (const typed::Field &field : type->structure->fields) {
+      std::size_t size = scalarsOf(field.type);
+      fillConstant(field.type, slice(constant, first, size), emitter.field(to, field.name));
+      first += size;
+    }
+  } else if (type->is(TypeKind::Array)) {
+    std::size_t size = scalarsOf(type->element);
+    for (unsigned i = 0; i < type->count; ++i)
+      fillConstant(type->element, slice(constant, i * size, size), emitter.element(to, i));
+  } else {
+    storeTo(lowerLiteral(type, constant), to, type);
+  }
+}
+
 // Stored once, at the start of the function; nothing writes there later.
 Value FunctionLowering::constantAggregate(const Type *type, const typed::Constant &constant) {
   std::vector<std::uint32_t> bits;
@@ -196,27 +226,11 @@ Value FunctionLowering::constantAggregate(const Type *type, const typed::Constan
   Value &known = constantAggregates[{type, bits}];
   if (known)
     return known;
-  mlir::OpBuilder::InsertionGuard guard(emitter);
-  emitter.setInsertionPointToStart(&function.getBody().front());
-  Value address = temporary("constant", type);
-  known = address;
-  std::function<void(const Type *, std::size_t, Value)> fill = [&](const Type *part,
-                                                                   std::size_t first, Value to) {
-    if (part->is(TypeKind::Struct)) {
-      for (const typed::Field &field : part->structure->fields) {
-        fill(field.type, first, emitter.field(to, field.name));
-        first += scalarsOf(field.type);
-      }
-    } else if (part->is(TypeKind::Array)) {
-      std::size_t size = scalarsOf(part->element);
-      for (unsigned i = 0; i < part->count; ++i)
-        fill(part->element, first + i * size, emitter.element(to, i));
-    } else {
-      storeTo(lowerLiteral(part, slice(constant, first, scalarsOf(part))), to, part);
-    }
-  };
-  fill(type, 0, address);
-  return address;
+  return known = atStart([&] {
+    Value address = temporary("constant", type);
+    fillConstant(type, constant, address);
+    return address;
+  });
 }
 
 //===----------------------------------------------------------------------===//
@@ -234,16 +248,15 @@ Parts FunctionLowering::lowerVariable(const typed::VariableExpr &expr) {
   // A constant of the file whose value depends on the target, such as one with colors.
   if (!isAggregate(variable.type))
     return lower(*variable.init);
-  Value &global = globalAggregates[&variable];
-  if (!global) {
-    mlir::OpBuilder::InsertionGuard guard(emitter);
-    emitter.setInsertionPointToStart(&function.getBody().front());
+  if (auto global = globalAggregates.find(&variable); global != globalAggregates.end())
+    return {global->second};
+  Value address = atStart([&] {
     Value address = temporary(variable.name, variable.type);
     lowerInto(*variable.init, address);
-    globalAggregates[&variable] = address;
-    return {address};
-  }
-  return {global};
+    return address;
+  });
+  globalAggregates[&variable] = address;
+  return {address};
 }
 
 Parts FunctionLowering::lowerIndex(const typed::IndexExpr &expr) {

@@ -133,6 +133,9 @@ private:
   void lowerInto(const typed::Expr &expr, Value address);
   Parts lowerLiteral(const Type *type, const typed::Constant &constant);
   Value constantAggregate(const Type *type, const typed::Constant &constant);
+  void fillConstant(const Type *type, const typed::Constant &constant, Value to);
+  /// Calls `make` at the start of the function, and returns what it returns.
+  Value atStart(llvm::function_ref<Value()> make);
   Parts lowerVariable(const typed::VariableExpr &expr);
   Parts lowerIndex(const typed::IndexExpr &expr);
   Parts lowerLength(const typed::LengthExpr &expr);
@@ -232,6 +235,7 @@ private:
   // Constant arrays and structs, made once at the start of the function.
   std::map<std::pair<const Type *, std::vector<std::uint32_t>>, Value> constantAggregates;
   std::map<const typed::Variable *, Value> globalAggregates;
+  mlir::Operation *lastAtStart = nullptr; // of what makes them
 };
 
 inline bool isAggregate(const Type *type) {
