@@ -106,22 +106,37 @@ void FunctionChecker::reportUnknownFunction(const ast::Name &callee, SourceRange
 // Arguments and the choice between overloads
 //===----------------------------------------------------------------------===//
 
+FunctionChecker::Access FunctionChecker::accessOf(const std::vector<Signature> &candidates,
+                                                  std::size_t count, std::size_t index) {
+  bool isRead = false, isWritten = false, isOnlyWritten = true;
+  for (const Signature &candidate : candidates) {
+    if (candidate.parameters.size() != count)
+      continue;
+    const ast::Direction direction = candidate.parameters[index].direction;
+    (direction == ast::Direction::In ? isRead : isWritten) = true;
+    isOnlyWritten &= direction == ast::Direction::Out;
+  }
+  if (isRead || !isWritten)
+    return Access::Read;
+  return isOnlyWritten ? Access::Write : Access::ReadWrite;
+}
+
 std::vector<ExprPtr> FunctionChecker::checkArguments(const std::vector<ast::ExprPtr> &args,
                                                      const std::vector<Signature> &candidates) {
   std::vector<ExprPtr> values;
-  for (std::size_t i = 0; i != args.size(); ++i) {
-    Access access = Access::Read;
-    for (const Signature &candidate : candidates) {
-      if (candidate.parameters.size() != args.size())
-        continue;
-      if (candidate.parameters[i].direction == ast::Direction::Out && access == Access::Read)
-        access = Access::Write;
-      else if (candidate.parameters[i].direction == ast::Direction::InOut)
-        access = Access::ReadWrite;
-    }
-    values.push_back(checkValue(*args[i], access));
-  }
+  for (std::size_t i = 0; i != args.size(); ++i)
+    values.push_back(checkValue(*args[i], accessOf(candidates, args.size(), i)));
   return values;
+}
+
+void FunctionChecker::checkWritten(const std::vector<ast::ExprPtr> &args,
+                                   const std::vector<Signature> &candidates, int chosen,
+                                   std::vector<ExprPtr> &values) {
+  const Signature &signature = candidates[static_cast<std::size_t>(chosen)];
+  for (std::size_t i = 0; i != args.size(); ++i)
+    if (const Access access = accessOf({signature}, args.size(), i);
+        access != Access::Read && accessOf(candidates, args.size(), i) == Access::Read)
+      values[i] = checkValue(*args[i], access);
 }
 
 int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature> &candidates,
@@ -216,6 +231,9 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   const int chosen = choose(expr.callee, signatures, args, places, expr.range);
   if (chosen < 0)
     return errorExpr(expr.range);
+  checkWritten(expr.args, signatures, chosen, args);
+  if (anyBroken(args))
+    return errorExpr(expr.range);
   const typed::Function &callee = *candidates[static_cast<std::size_t>(chosen)];
   const Signature &signature = signatures[static_cast<std::size_t>(chosen)];
   if (signature.result->isError())
@@ -290,6 +308,9 @@ ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
   std::vector<ExprPtr> args = checkArguments(expr.args, overloads.signatures);
   const int chosen = choose(expr.callee, overloads.signatures, args, {}, expr.range);
   if (chosen < 0)
+    return errorExpr(expr.range);
+  checkWritten(expr.args, overloads.signatures, chosen, args);
+  if (anyBroken(args))
     return errorExpr(expr.range);
   const Signature &signature = overloads.signatures[static_cast<std::size_t>(chosen)];
   const Builtin builtin = overloads.builtins[static_cast<std::size_t>(chosen)];
