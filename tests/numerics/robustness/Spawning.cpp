@@ -71,25 +71,31 @@ bool hitFrom(Random &random, const Target &target, RtslState &state) {
   return true;
 }
 
-/// Rays that leave in every direction, along the surface too: those that meet it again.
-Outcome runSelfHits(std::uint64_t cases, std::uint32_t seed) {
+/// Calls `judge(random, target, state, worst)` for random targets that were hit.
+template <typename Judge> Outcome forHits(std::uint64_t cases, std::uint32_t seed, Judge judge) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
     const Target target = randomTarget(random);
     RtslState state;
-    if (!hitFrom(random, target, state))
-      continue;
+    if (hitFrom(random, target, state))
+      judge(random, target, state, worst);
+  }
+  return worst.outcome();
+}
+
+/// Rays that leave in every direction, along the surface too: those that meet it again.
+Outcome runSelfHits(std::uint64_t cases, std::uint32_t seed) {
+  return forHits(cases, seed, [](Random &random, const Target &target, const RtslState &state, Worst &worst) {
     const Vec3 point = device::load(state.HitPoint), direction = random.direction() * std::ldexp(1.0f, random.integer(-20, 20));
     const float epsilon = device::spawnEpsilon(state, point, direction);
     device::TriangleHit again;
     const bool isSelfHit = target.meet(point, direction, again) && again.t > epsilon;
     const float cosine = std::fabs(device::dot(device::normalized(direction), device::load(state.GeometricNormal)));
     if (cosine < 2 * device::smallestCosine) // where the bound is given up (runtime/device/Spawn.h)
-      continue;
+      return;
     worst.count(isSelfHit, [&] { return "point " + show(point) + ", direction " + show(direction); });
-  }
-  return worst.outcome();
+  });
 }
 
 /// What a ray that leaves straight up skips, in units in the last place of the largest coordinate, and the hit point's own
@@ -116,45 +122,31 @@ Outcome runGapsOfLargeTriangles(std::uint64_t cases, std::uint32_t seed) { retur
 /// How far off its surface a ray that leaves a triangle would still meet it, if its epsilon were 0: what the bound has to
 /// cover, in rounding units of the largest coordinate.
 Outcome runNeeds(std::uint64_t cases, std::uint32_t seed) {
-  Random random(seed);
-  Worst worst;
-  for (std::uint64_t i = 0; i < cases; ++i) {
-    const Target target = randomTarget(random);
-    RtslState state;
-    if (!hitFrom(random, target, state))
-      continue;
+  return forHits(cases, seed, [](Random &random, const Target &target, const RtslState &state, Worst &worst) {
     const Vec3 point = device::load(state.HitPoint), direction = random.direction();
     device::TriangleHit again;
     if (!target.meet(point, direction, again) || again.t <= 0)
-      continue;
+      return;
     const float across = again.t * std::fabs(device::dot(direction, device::load(state.GeometricNormal)));
     worst.add(double(across) / (double(target.largestCoordinate()) * device::roundingUnit), [&] { return "point " + show(point) + ", direction " + show(direction); });
-  }
-  return worst.outcome();
+  });
 }
 
 /// How far the computed hit point lies from its triangle's plane, in rounding units of the largest coordinate: what the
 /// bound in runtime/device/Spawn.h has to cover.
 Outcome runHitPoints(std::uint64_t cases, std::uint32_t seed) {
-  Random random(seed);
-  Worst worst;
-  for (std::uint64_t i = 0; i < cases; ++i) {
-    const Target target = randomTarget(random);
-    RtslState state;
-    if (!hitFrom(random, target, state))
-      continue;
+  return forHits(cases, seed, [](Random &, const Target &target, const RtslState &state, Worst &worst) {
     // In double, whose error is 2^-29 of what is measured; slivers have no good normal there either.
     const auto difference = [](Vec3 a, Vec3 b) { return std::array<double, 3>{double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; };
     const auto e1 = difference(target.vertex(1), target.vertex(0)), e2 = difference(target.vertex(2), target.vertex(0));
     const std::array<double, 3> n = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]};
     const double length = std::hypot(n[0], n[1], n[2]);
     if (!(length > 1e-3 * std::hypot(e1[0], e1[1], e1[2]) * std::hypot(e2[0], e2[1], e2[2])))
-      continue;
+      return;
     const auto p = difference(device::load(state.HitPoint), target.vertex(0));
     const double distance = std::abs(p[0] * n[0] + p[1] * n[1] + p[2] * n[2]) / length;
     worst.add(distance / (double(target.largestCoordinate()) * device::roundingUnit), [&] { return "point " + show(device::load(state.HitPoint)); });
-  }
-  return worst.outcome();
+  });
 }
 
 double nanosecondsASpawn() {
