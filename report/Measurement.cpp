@@ -7,7 +7,6 @@
 
 #include <charconv>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <unistd.h>
 
@@ -142,15 +141,15 @@ void appendLevel(const std::string &path, const LevelVariance &level) {
   appendLine(path, headerOf<LevelVariance>(), lineOf(level));
 }
 
-std::uint64_t hashOf(const std::vector<float> &pixels) {
+std::uint64_t hashOf(std::string_view bytes) {
   std::uint64_t hash = 14695981039346656037ull;
-  for (float value : pixels) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    for (int byte = 0; byte < 4; ++byte)
-      hash = (hash ^ (bits >> (8 * byte) & 0xFF)) * 1099511628211ull;
-  }
+  for (char byte : bytes)
+    hash = (hash ^ std::uint8_t(byte)) * 1099511628211ull;
   return hash;
+}
+
+std::uint64_t hashOf(const std::vector<float> &pixels) {
+  return hashOf({reinterpret_cast<const char *>(pixels.data()), pixels.size() * sizeof(float)});
 }
 
 } // namespace rtsl::report

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rtsl::report {
@@ -40,7 +41,9 @@ void appendMeasurement(const std::string &path, const Measurement &measurement);
 std::vector<LevelVariance> readLevels(const std::string &path);
 void appendLevel(const std::string &path, const LevelVariance &level);
 
-/// FNV-1a over the bits of the pixels.
+/// FNV-1a.
+std::uint64_t hashOf(std::string_view bytes);
+/// The same over the bits of pixels.
 std::uint64_t hashOf(const std::vector<float> &pixels);
 
 } // namespace rtsl::report

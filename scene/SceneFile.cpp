@@ -334,4 +334,14 @@ std::vector<std::string> classesUsed(const SceneDescription &description) {
   return {names.begin(), names.end()};
 }
 
+runtime::RenderOptions renderOptions(const RenderSettings &settings) {
+  runtime::RenderOptions options;
+  options.width = settings.width;
+  options.height = settings.height;
+  options.samplesPerPixel = settings.samplesPerPixel;
+  options.maxDepth = settings.depth;
+  options.seed = settings.seed;
+  return options;
+}
+
 } // namespace rtsl::scene

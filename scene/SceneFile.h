@@ -12,6 +12,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/RenderOptions.h"
 #include "runtime/Scene.h"
 #include "scene/JsonValue.h"
 
@@ -67,6 +68,9 @@ struct RenderSettings {
   std::uint32_t depth = 8;
   std::uint32_t seed = 1;
 };
+
+/// What the settings ask of the renderer; the rest has its defaults.
+runtime::RenderOptions renderOptions(const RenderSettings &settings);
 
 struct ImportDescription {
   LocatedName name; // as written: "std.cameras" or "glass.rtsl"

@@ -23,16 +23,6 @@ struct PackOptions {
   bool quiet = false;
 };
 
-runtime::RenderOptions renderOptions(const scene::RenderSettings &settings) {
-  runtime::RenderOptions options;
-  options.width = settings.width;
-  options.height = settings.height;
-  options.samplesPerPixel = settings.samplesPerPixel;
-  options.maxDepth = settings.depth;
-  options.seed = settings.seed;
-  return options;
-}
-
 void packScene(const PackOptions &options, Messages &messages) {
   runtime::checkFileWritable(options.output);
   const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
@@ -42,7 +32,7 @@ void packScene(const PackOptions &options, Messages &messages) {
   const LinkRequest request = linkRequest(description);
   runtime::Package package;
   package.compiler = "rtslc " RTSL_VERSION;
-  package.options = renderOptions(description.render);
+  package.options = scene::renderOptions(description.render);
   if (!compilePackage(*module, request, options.common.compile, messages.diagnostics, package))
     return;
 

@@ -50,12 +50,14 @@ double secondsSince(Clock::time_point start) {
 }
 
 runtime::RenderOptions renderOptions(const RenderCommandOptions &options, const scene::RenderSettings &settings) {
-  runtime::RenderOptions render;
-  render.width = options.size ? options.size->width : settings.width;
-  render.height = options.size ? options.size->height : settings.height;
-  render.samplesPerPixel = options.samples.value_or(settings.samplesPerPixel);
-  render.maxDepth = options.depth.value_or(settings.depth);
-  render.seed = options.seed.value_or(settings.seed);
+  runtime::RenderOptions render = scene::renderOptions(settings);
+  if (options.size) {
+    render.width = options.size->width;
+    render.height = options.size->height;
+  }
+  render.samplesPerPixel = options.samples.value_or(render.samplesPerPixel);
+  render.maxDepth = options.depth.value_or(render.maxDepth);
+  render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
   render.traversal = options.traversal;
   render.cancel = &interrupted;

@@ -154,10 +154,7 @@ std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options,
       all += runtime::readFile(geometry.meshPath);
   if (!options.reference.empty())
     all += runtime::readFile(options.reference);
-  std::uint64_t hash = 14695981039346656037ull; // FNV-1a
-  for (char c : all)
-    hash = (hash ^ std::uint8_t(c)) * 1099511628211ull;
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", report::hashOf(all));
 }
 
 /// Makes the folder, or finds the same study in it. Throws if it holds another one.
@@ -246,15 +243,16 @@ std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages
   loaded.module = loadShaders(loaded.description, options.common, messages);
   if (!loaded.module)
     return std::nullopt;
-  const scene::RenderSettings &settings = loaded.description.render;
-  loaded.render.width = options.size ? options.size->width : settings.width;
-  loaded.render.height = options.size ? options.size->height : settings.height;
-  if (!options.size && !options.reference.empty()) { // the size that can be compared
+  loaded.render = scene::renderOptions(loaded.description.render);
+  if (options.size) {
+    loaded.render.width = options.size->width;
+    loaded.render.height = options.size->height;
+  } else if (!options.reference.empty()) { // the size that can be compared
     const runtime::Image reference = runtime::readImage(options.reference);
     loaded.render.width = reference.width;
     loaded.render.height = reference.height;
   }
-  loaded.render.maxDepth = options.depth.value_or(settings.depth);
+  loaded.render.maxDepth = options.depth.value_or(loaded.render.maxDepth);
   loaded.render.threads = options.threads;
   loaded.render.cancel = &interrupted;
   return loaded;
