@@ -93,6 +93,8 @@ public:
   std::optional<std::string> replacement;
   std::vector<RelatedPlace> relatedPlaces;
   std::vector<std::string> notes;
+  /// What else is wrong with the same input, if its reader could go on.
+  std::vector<Error> further;
 };
 
 /// What does not stop a run but deserves a word.

@@ -1,5 +1,6 @@
 #include "runtime/Scene.h"
 
+#include "runtime/ErrorCollector.h"
 #include "runtime/ValueStore.h"
 #include "runtime/device/Random.h"
 
@@ -155,6 +156,8 @@ struct Scene::Implementation {
   void runConstructor(const ClassInfo &classInfo, const ObjectInfo &object,
                       const ObjectValues &values);
   void setMembers(const ClassInfo &classInfo, const ObjectInfo &object, const ObjectValues &values);
+  void setMember(const ClassInfo &classInfo, const ObjectInfo &object, const NamedValue &one,
+                 const std::optional<Place> &place);
   void checkUnset(const ClassInfo &classInfo, const ObjectInfo &object, const ObjectValues &values);
   void setColor(const std::vector<float> &color, float *to, const char *what) const;
   std::uint32_t addInstance(RtslRef primitive, std::uint32_t mesh, RtslRef material,
@@ -257,29 +260,34 @@ void Scene::Implementation::runConstructor(const ClassInfo &classInfo, const Obj
 
 void Scene::Implementation::setMembers(const ClassInfo &classInfo, const ObjectInfo &object,
                                        const ObjectValues &values) {
-  for (const NamedValue &one : values.members) {
-    auto found = std::find_if(classInfo.members.begin(), classInfo.members.end(),
-                              [&](const MemberInfo &member) { return member.name == one.name; });
-    if (found == classInfo.members.end()) {
-      Error error(ErrorCode::UnknownMember,
-                  fmt::format("class `{}` has no member `{}`", classInfo.name, one.name),
-                  one.place ? one.place : values.place);
-      std::vector<std::string> names;
-      for (const MemberInfo &member : classInfo.members)
-        if (member.isPublic)
-          names.push_back(member.name);
-      if (auto near = nearestName(one.name, names))
-        error.fix(*near);
-      throw error;
-    }
-    if (!found->isPublic)
-      throw Error(ErrorCode::NotSettable,
-                  fmt::format("member `{}` of `{}` is not public", one.name, classInfo.name),
-                  one.place ? one.place : values.place);
-    storeValue(found->type, one.value, records.data() + object.object + found->offset,
-               storeContext(), fmt::format("member `{}` of `{}`", one.name, object.name),
-               values.place);
+  ErrorCollector errors;
+  for (const NamedValue &one : values.members)
+    errors.attempt([&] { setMember(classInfo, object, one, values.place); });
+  errors.throwIfAny();
+}
+
+void Scene::Implementation::setMember(const ClassInfo &classInfo, const ObjectInfo &object,
+                                      const NamedValue &one, const std::optional<Place> &place) {
+  auto found = std::find_if(classInfo.members.begin(), classInfo.members.end(),
+                            [&](const MemberInfo &member) { return member.name == one.name; });
+  if (found == classInfo.members.end()) {
+    Error error(ErrorCode::UnknownMember,
+                fmt::format("class `{}` has no member `{}`", classInfo.name, one.name),
+                one.place ? one.place : place);
+    std::vector<std::string> names;
+    for (const MemberInfo &member : classInfo.members)
+      if (member.isPublic)
+        names.push_back(member.name);
+    if (auto near = nearestName(one.name, names))
+      error.fix(*near);
+    throw error;
   }
+  if (!found->isPublic)
+    throw Error(ErrorCode::NotSettable,
+                fmt::format("member `{}` of `{}` is not public", one.name, classInfo.name),
+                one.place ? one.place : place);
+  storeValue(found->type, one.value, records.data() + object.object + found->offset, storeContext(),
+             fmt::format("member `{}` of `{}`", one.name, object.name), place);
 }
 
 void Scene::Implementation::checkUnset(const ClassInfo &classInfo, const ObjectInfo &object,

@@ -1,9 +1,11 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
+#include "runtime/ErrorCollector.h"
 #include "scene/SceneFile.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace rtsl::scene {
 
@@ -29,34 +31,59 @@ public:
       : description(description), program(*program), scene(std::move(program)) {}
 
   Scene build() {
-    if (program.engine == runtime::Engine::Classic)
-      scene.setCamera(add(description.camera.value(), "camera"));
-    else
-      scene.setRayGeneration(add(description.rayGeneration.value(), "rayGeneration"));
+    attempt([&] {
+      if (program.engine == runtime::Engine::Classic)
+        scene.setCamera(add(description.camera.value(), "camera"));
+      else
+        scene.setRayGeneration(add(description.rayGeneration.value(), "rayGeneration"));
+    });
     // Named objects come into being in the order of their names, those that they refer to before
     // them.
     for (const auto &texture : description.textures)
-      named(texture.first, texture.second.className.place);
+      attempt([&] { named(texture.first, texture.second.className.place); });
     for (const auto &material : description.materials)
-      named(material.first, material.second.className.place);
+      attempt([&] { named(material.first, material.second.className.place); });
     for (std::size_t i = 0; i < description.objects.size(); ++i)
-      addGeometry(description.objects[i], i);
+      attempt([&] { addGeometry(description.objects[i], i); });
     for (std::size_t i = 0; i < description.lights.size(); ++i)
-      scene.addLight(add(description.lights[i],
-                         fmt::format("{} (lights.{})", description.lights[i].className.text, i)));
-    if (description.background)
-      scene.setBackground(add(*description.background, "background"));
-    if (description.exception)
-      scene.setException(add(*description.exception, "exception"));
-    if (description.backgroundColor)
-      setColor(*description.backgroundColor,
-               [&](const auto &color) { scene.setBackgroundColor(color); });
-    if (description.ambient)
-      setColor(*description.ambient, [&](const auto &color) { scene.setAmbient(color); });
+      attempt([&] {
+        const ObjectDescription &light = description.lights[i];
+        scene.addLight(add(light, fmt::format("{} (lights.{})", light.className.text, i)));
+      });
+    attempt([&] {
+      if (description.background)
+        scene.setBackground(add(*description.background, "background"));
+    });
+    attempt([&] {
+      if (description.exception)
+        scene.setException(add(*description.exception, "exception"));
+    });
+    attempt([&] {
+      if (description.backgroundColor)
+        setColor(*description.backgroundColor,
+                 [&](const auto &color) { scene.setBackgroundColor(color); });
+    });
+    attempt([&] {
+      if (description.ambient)
+        setColor(*description.ambient, [&](const auto &color) { scene.setAmbient(color); });
+    });
+    errors.throwIfAny();
     return std::move(scene);
   }
 
 private:
+  /// Thrown where an object is asked for that was refused already, with its own message.
+  struct Refused {};
+
+  /// A mistake in one part of the scene keeps no other part from being looked at.
+  template <typename Step>
+  void attempt(Step step) {
+    try {
+      errors.attempt(step);
+    } catch (const Refused &) {
+    }
+  }
+
   RtslRef add(const ObjectDescription &object, const std::string &name) {
     const ClassInfo *classInfo = program.find(object.className.text);
     ObjectValues values;
@@ -81,12 +108,16 @@ private:
              value.fromOverride ? value.place() : object.constructor->place(key)});
       values.constructor = std::move(arguments);
     }
+    runtime::ErrorCollector ofMembers;
     for (const auto &[key, value] : object.members)
-      values.members.push_back(
-          {key.text,
-           convert(*value, classInfo ? typeOf(classInfo->members, key.text) : nullptr,
-                   fmt::format("member `{}` of `{}`", key.text, name)),
-           key.place});
+      ofMembers.attempt([&, &key = key, &value = value] {
+        values.members.push_back(
+            {key.text,
+             convert(*value, classInfo ? typeOf(classInfo->members, key.text) : nullptr,
+                     fmt::format("member `{}` of `{}`", key.text, name)),
+             key.place});
+      });
+    ofMembers.throwIfAny();
     return scene.addObject(object.className.text, values, name);
   }
 
@@ -179,8 +210,16 @@ private:
         error.fix(*near);
       throw error;
     }
+    if (refused.count(name))
+      throw Refused();
     made[name] = 0; // on the way
-    return made[name] = add(*object, name);
+    try {
+      return made[name] = add(*object, name);
+    } catch (...) {
+      made.erase(name);
+      refused.insert(name);
+      throw;
+    }
   }
 
   std::vector<std::string> allNames() const {
@@ -259,6 +298,8 @@ private:
   const Program &program;
   Scene scene;
   std::map<std::string, RtslRef> made; // 0: on the way
+  std::set<std::string> refused;
+  runtime::ErrorCollector errors;
   std::map<std::pair<std::string, decltype(runtime::Transform::columns)>, std::uint32_t> meshes;
 };
 

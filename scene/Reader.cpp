@@ -1,5 +1,6 @@
 #include "scene/Reader.h"
 
+#include "runtime/ErrorCollector.h"
 #include "runtime/Scene.h"
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std:
 
 void checkKeys(const JsonValue &object, std::initializer_list<const char *> known,
                const std::string &what) {
+  runtime::ErrorCollector errors;
   for (const auto &member : object.members) {
     const std::string &key = member.first.text;
     if (std::find(known.begin(), known.end(), key) != known.end())
@@ -30,8 +32,9 @@ void checkKeys(const JsonValue &object, std::initializer_list<const char *> know
                 member.second.fromOverride ? member.second.place() : object.place(member.first));
     if (auto near = runtime::nearestName(key, std::vector<std::string>(known.begin(), known.end())))
       error.fix(*near);
-    throw error;
+    errors.add(std::move(error));
   }
+  errors.throwIfAny();
 }
 
 const JsonValue &require(const JsonValue &object, const char *key, const std::string &what) {

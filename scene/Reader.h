@@ -11,7 +11,7 @@ namespace rtsl::scene {
 /// Throws WrongType unless `value` is of `kind`. `what` begins the message: "`camera`".
 const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what);
 
-/// Throws UnknownKey for the first key of an object that is not in `known`, with what may have been
+/// Throws UnknownKey for the keys of an object that are not in `known`, with what may have been
 /// meant.
 void checkKeys(const JsonValue &object, std::initializer_list<const char *> known,
                const std::string &what);

@@ -2,6 +2,7 @@
 #include "scene/SceneFile.h"
 
 #include "runtime/AtomicFile.h"
+#include "runtime/ErrorCollector.h"
 #include "scene/Reader.h"
 #include "scene/TransformReader.h"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 namespace rtsl::scene {
@@ -26,47 +28,38 @@ public:
 
   void read() {
     expect(root, Kind::Object, "a scene");
-    refuseWhatComesLater();
-    checkKeys(root,
-              {"$schema", "rtsl", "import", "camera", "rayGeneration", "textures", "materials",
-               "objects", "lights", "background", "ambient", "exception", "render"},
-              "a scene");
     readVersion();
-    if (const JsonValue *imports = root.find("import"))
-      readImports(*imports);
-    if (const JsonValue *camera = root.find("camera"))
-      scene.camera = readObject(*camera, "`camera`");
-    if (const JsonValue *generation = root.find("rayGeneration"))
-      scene.rayGeneration = readObject(*generation, "`rayGeneration`");
-    if (const JsonValue *textures = root.find("textures"))
-      readNamed(*textures, "textures", scene.textures);
-    if (const JsonValue *materials = root.find("materials"))
-      readNamed(*materials, "materials", scene.materials);
-    if (const JsonValue *objects = root.find("objects")) {
-      expect(*objects, Kind::Array, "`objects`");
-      for (const JsonValue &object : objects->elements)
-        scene.objects.push_back(readGeometry(object));
-    }
-    if (const JsonValue *lights = root.find("lights")) {
-      expect(*lights, Kind::Array, "`lights`");
-      for (const JsonValue &light : lights->elements)
-        scene.lights.push_back(readObject(light, "a light"));
-    }
-    if (const JsonValue *background = root.find("background")) {
-      if (background->kind == Kind::Object)
-        scene.background = readObject(*background, "`background`");
+    errors.attempt([&] {
+      refuseWhatComesLater();
+      checkKeys(root,
+                {"$schema", "rtsl", "import", "camera", "rayGeneration", "textures", "materials",
+                 "objects", "lights", "background", "ambient", "exception", "render"},
+                "a scene");
+    });
+    section("import", [&](const JsonValue &imports) { readImports(imports); });
+    readSingle("camera", scene.camera);
+    readSingle("rayGeneration", scene.rayGeneration);
+    readNamed("textures", scene.textures);
+    readNamed("materials", scene.materials);
+    readList("objects",
+             [&](const JsonValue &object) { scene.objects.push_back(readGeometry(object)); });
+    readList("lights",
+             [&](const JsonValue &light) { scene.lights.push_back(readObject(light, "a light")); });
+    section("background", [&](const JsonValue &background) {
+      if (background.kind == Kind::Object)
+        scene.background = readObject(background, "`background`");
       else
-        scene.backgroundColor = &readColor(*background, "`background`");
-    }
-    if (const JsonValue *exception = root.find("exception"))
-      scene.exception = readObject(*exception, "`exception`");
-    if (const JsonValue *ambient = root.find("ambient"))
-      scene.ambient = &readColor(*ambient, "`ambient`");
-    if (const JsonValue *render = root.find("render"))
-      readRender(*render);
-    bool isClassic = scene.render.engine == runtime::Engine::Classic;
-    require(root, isClassic ? "camera" : "rayGeneration",
-            isClassic ? "a scene" : "a scene for the engine `programs`");
+        scene.backgroundColor = &readColor(background, "`background`");
+    });
+    readSingle("exception", scene.exception);
+    section("ambient",
+            [&](const JsonValue &ambient) { scene.ambient = &readColor(ambient, "`ambient`"); });
+    errors.attempt([&] {
+      if (const JsonValue *render = root.find("render"))
+        readRender(*render);
+      requireStart();
+    });
+    errors.throwIfAny();
   }
 
 private:
@@ -79,6 +72,36 @@ private:
               ErrorCode::NotSupported,
               fmt::format("`{}` is not supported yet: list what there is to see in `objects`", key),
               member.second.fromOverride ? member.second.place() : root.place(member.first));
+  }
+
+  /// Reads what stands behind a key, if it is there. A mistake in it keeps no other section from
+  /// being read.
+  template <typename Read>
+  void section(const char *key, Read read) {
+    if (const JsonValue *value = root.find(key))
+      errors.attempt([&] { read(*value); });
+  }
+
+  template <typename Read>
+  void readList(const char *key, Read read) {
+    section(key, [&](const JsonValue &list) {
+      expect(list, Kind::Array, fmt::format("`{}`", key));
+      for (const JsonValue &element : list.elements)
+        errors.attempt([&] { read(element); });
+    });
+  }
+
+  void readSingle(const char *key, std::optional<ObjectDescription> &object) {
+    section(key, [&](const JsonValue &value) {
+      object = readObject(value, fmt::format("`{}`", key));
+    });
+  }
+
+  /// What begins a sample.
+  void requireStart() const {
+    bool isClassic = scene.render.engine == runtime::Engine::Classic;
+    require(root, isClassic ? "camera" : "rayGeneration",
+            isClassic ? "a scene" : "a scene for the engine `programs`");
   }
 
   void readVersion() const {
@@ -153,18 +176,24 @@ private:
     return object;
   }
 
-  void readNamed(const JsonValue &value, const std::string &section,
-                 std::map<std::string, ObjectDescription> &objects) const {
-    expect(value, Kind::Object, fmt::format("`{}`", section));
-    for (const auto &[key, member] : value.members) {
-      auto other = scene.textures.find(key.text);
-      if (other != scene.textures.end())
-        throw Error(ErrorCode::DuplicateKey,
-                    fmt::format("`{}` is the name of a texture already", key.text),
-                    value.place(key))
-            .related(other->second.place, "the texture");
-      objects[key.text] = readObject(member, fmt::format("`{}`", key.text));
-    }
+  void readNamed(const char *section, std::map<std::string, ObjectDescription> &objects) {
+    this->section(section, [&](const JsonValue &value) {
+      expect(value, Kind::Object, fmt::format("`{}`", section));
+      for (const auto &[key, member] : value.members)
+        errors.attempt([&, &key = key, &member = member] {
+          refuseNameOfTexture(key.text, value.place(key));
+          objects[key.text] = readObject(member, fmt::format("`{}`", key.text));
+        });
+    });
+  }
+
+  /// Materials and textures share their names.
+  void refuseNameOfTexture(const std::string &name, const Place &place) const {
+    auto texture = scene.textures.find(name);
+    if (texture != scene.textures.end())
+      throw Error(ErrorCode::DuplicateKey, fmt::format("`{}` is the name of a texture already", name),
+                  place)
+          .related(texture->second.place, "the texture");
   }
 
   ReferenceDescription readReference(const JsonValue &value, const std::string &what) const {
@@ -182,15 +211,30 @@ private:
     return reference;
   }
 
-  GeometryDescription readGeometry(const JsonValue &value) const {
+  GeometryDescription readGeometry(const JsonValue &value) {
     expect(value, Kind::Object, "an element of `objects`");
-    checkKeys(value, {"name", "primitive", "mesh", "material", "transform", "mask"}, "an object");
+    errors.attempt([&] {
+      checkKeys(value, {"name", "primitive", "mesh", "material", "transform", "mask"}, "an object");
+    });
     GeometryDescription geometry;
     geometry.place = value.place();
-    if (const JsonValue *name = value.find("name")) {
-      expect(*name, Kind::String, "`name`");
-      geometry.name = {name->string, name->place()};
-    }
+    errors.attempt([&] { readShape(value, geometry); });
+    errors.attempt([&] {
+      geometry.material = readReference(require(value, "material", "an object"), "`material`");
+    });
+    errors.attempt([&] {
+      if (const JsonValue *name = value.find("name")) {
+        expect(*name, Kind::String, "`name`");
+        geometry.name = {name->string, name->place()};
+      }
+      if (const JsonValue *mask = value.find("mask"))
+        geometry.mask = readInteger(*mask, 0, 0xffffffff, "`mask`");
+    });
+    return geometry;
+  }
+
+  /// What there is to hit, and where.
+  void readShape(const JsonValue &value, GeometryDescription &geometry) const {
     const JsonValue *primitive = value.find("primitive"), *mesh = value.find("mesh");
     if (!primitive == !mesh)
       throw Error(primitive ? ErrorCode::UnknownKey : ErrorCode::MissingKey,
@@ -204,9 +248,6 @@ private:
       geometry.mesh = {mesh->string, mesh->place()};
       geometry.meshPath = resolve(*mesh);
     }
-    if (const JsonValue *mask = value.find("mask"))
-      geometry.mask = readInteger(*mask, 0, 0xffffffff, "`mask`");
-    geometry.material = readReference(require(value, "material", "an object"), "`material`");
     if (const JsonValue *transform = value.find("transform")) {
       if (primitive)
         throw Error(
@@ -215,7 +256,6 @@ private:
             transform->place());
       geometry.transform = readTransform(*transform);
     }
-    return geometry;
   }
 
   /// A number or a list of numbers; how many there may be is the program's to say.
@@ -260,6 +300,7 @@ private:
 
   const JsonValue &root;
   SceneDescription &scene;
+  runtime::ErrorCollector errors;
 };
 
 /// Objects written where a reference is asked for name classes too.

@@ -7,7 +7,8 @@
 //   runtime::Scene built = scene::buildScene(description, program);
 //
 // docs/scene-format.md describes the format, docs/scene-schema.json is its schema. All errors are
-// runtime::Error with file, line, column and length.
+// runtime::Error with file, line, column and length; the one
+// that is thrown carries the others that the same scene has.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

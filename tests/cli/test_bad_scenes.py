@@ -36,6 +36,15 @@ class BadScenes(Case):
         self.glass_scene(background={"class": "Skye"})
         self.assert_message(self.render(), "E0810", "Skye", line=self.line_of('"Skye"'), file="scene.json")
 
+    def test_everything_wrong_is_said_at_once(self):
+        self.glass_scene(background={"class": "Skye"}, camera={"class": "PinholeCamra"})
+        diagnostics = self.render()
+        self.assertEqual([(d["code"], d["fixes"][0]["replacement"]) for d in diagnostics], [("E0810", "PinholeCamera"), ("E0810", "Sky")])
+        self.glass_scene(background={"class": "Sky", "horizont": 1}, ambient="blue", render={"spp": 0})
+        self.assertEqual([d["code"] for d in self.render()], ["E0804", "E0805"])
+        self.glass_scene(background={"class": "Sky", "horizont": 1, "zenit": 2})
+        self.assertEqual([d["code"] for d in self.render("--set", "objects.1.material=gless")], ["E0806", "E0812", "E0812"])
+
     def test_engines_want_their_beginning(self):
         self.glass_scene(render={"engine": "programs"})
         self.assert_message(self.render(), "E0803", "a scene for the engine `programs` needs a `rayGeneration`")

@@ -85,6 +85,8 @@ void Messages::report(const runtime::Error &error) {
     diagnostic.note(note);
   if (error.replacement)
     diagnostic.fix(range, *error.replacement);
+  for (const runtime::Error &further : error.further)
+    report(further);
 }
 
 void Messages::report(const runtime::Warning &warning) {

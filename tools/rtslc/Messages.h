@@ -16,7 +16,7 @@ public:
   SourceManager sources;
   Diagnostics diagnostics{sources};
 
-  /// Records what the runtime or a scene file threw, with its place.
+  /// Records what the runtime or a scene file threw, with its place, and what else it found wrong.
   void report(const runtime::Error &error);
   void report(const runtime::Warning &warning);
 

@@ -3,8 +3,31 @@
 
 #include "Shaders.h"
 #include "frontend/FileSearch.h"
+#include "runtime/Scene.h"
+
+#include <fmt/format.h>
 
 namespace rtsl::tool {
+
+namespace {
+
+/// Says which classes of the scene no file has, before any code is made.
+void refuseUnknownClasses(const scene::SceneDescription &description, const typed::Module &module, Messages &messages) {
+  std::vector<std::string> names;
+  for (const auto &one : module.classes)
+    names.push_back(one->name);
+  for (const scene::LocatedName &mention : scene::classMentions(description)) {
+    if (module.findClass(mention.text))
+      continue;
+    const SourceRange range = messages.rangeOf(mention.place);
+    Diagnostic &diagnostic = messages.diagnostics.report(Code::sceneUnknownClass, range,
+                                                         fmt::format("no class is named `{}`", mention.text));
+    if (const auto near = runtime::nearestName(mention.text, names))
+      diagnostic.fix(range, *near);
+  }
+}
+
+} // namespace
 
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
                                            Messages &messages, std::vector<std::string> *filesRead) {
@@ -19,6 +42,8 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
       shaders.add(import.path, range);
   }
   std::unique_ptr<typed::Module> module = shaders.check(options.compile);
+  if (!messages.diagnostics.hasErrors())
+    refuseUnknownClasses(description, *module, messages);
   if (messages.diagnostics.hasErrors())
     return nullptr;
   if (filesRead) {

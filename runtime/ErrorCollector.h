@@ -1,0 +1,67 @@
+//===- ErrorCollector.h - all that is wrong, in one run -------------------===//
+//
+//   ErrorCollector errors;
+//   for (const Part &part : parts)
+//     errors.attempt([&] { read(part); });
+//   errors.throwIfAny();
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/Error.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// Lets a reader go on behind an error in its input. Faults that are not the input's (memory,
+/// cancellation, our own) pass through at once.
+class ErrorCollector {
+public:
+  /// More than anybody reads: the reader stops here.
+  static constexpr std::size_t limit = 100;
+
+  template <typename Step>
+  void attempt(Step &&step) {
+    try {
+      std::forward<Step>(step)();
+    } catch (Error &error) {
+      if (!isOfInput(error.code))
+        throw;
+      add(std::move(error));
+    }
+  }
+
+  /// Keeps an error and those that it carries. Throws when there are `limit`.
+  void add(Error error) {
+    std::vector<Error> further = std::move(error.further);
+    error.further.clear();
+    errors.push_back(std::move(error));
+    for (Error &one : further)
+      errors.push_back(std::move(one));
+    if (errors.size() >= limit)
+      throwIfAny();
+  }
+
+  /// The first error, which carries the others.
+  void throwIfAny() {
+    if (errors.empty())
+      return;
+    Error first = std::move(errors.front());
+    errors.erase(errors.begin());
+    first.further = std::move(errors);
+    throw first;
+  }
+
+private:
+  static bool isOfInput(ErrorCode code) {
+    return code != ErrorCode::OutOfMemory && code != ErrorCode::Cancelled &&
+           code != ErrorCode::Internal;
+  }
+
+  std::vector<Error> errors;
+};
+
+} // namespace rtsl::runtime
