@@ -13,9 +13,11 @@
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
 #include "codegen/passes/continuation/StateGraph.h"
+#include "codegen/passes/restructure/Restructure.h"
 #include "runtime/DeviceBitcode.h"
 
 #include "mlir/IR/MLIRContext.h"
+#include "mlir/IR/Verifier.h"
 #include "mlir/Pass/PassManager.h"
 #include "llvm/IR/LLVMContext.h"
 #include "llvm/IR/Module.h"
@@ -96,6 +98,9 @@ SplitReport runToSsa(mlir::ModuleOp ir, TraceMode trace, bool dispatch = true) {
   }
   return report;
 }
+
+/// Stages that show states by name, before they are numbered.
+bool isLookedAtSplit(Stage stage) { return stage == Stage::Split || stage == Stage::Structured; }
 
 std::string print(mlir::ModuleOp ir) {
   std::string text;
@@ -249,9 +254,11 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
     return std::nullopt;
   if (stage == Stage::Ir)
     return print(*ir);
-  const bool isSplit = stage == Stage::Split || stage == Stage::Ptx;
+  const bool isSplit = stage == Stage::Split || stage == Stage::Structured || stage == Stage::Ptx;
   runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/stage == Stage::Ptx);
-  if (stage == Stage::Ssa || stage == Stage::Split)
+  if (stage == Stage::Structured)
+    expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)); });
+  if (stage == Stage::Ssa || isLookedAtSplit(stage))
     return print(*ir);
 
   declareSlots(*ir);
@@ -337,8 +344,10 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
     return std::nullopt;
   if (stage == Stage::Ir)
     return print(*ir);
-  runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/stage != Stage::Split);
-  if (stage == Stage::Ssa || stage == Stage::Split)
+  runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/!isLookedAtSplit(stage));
+  if (stage == Stage::Structured)
+    expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)); });
+  if (stage == Stage::Ssa || isLookedAtSplit(stage))
     return print(*ir);
 
   if (stage == Stage::Ptx) {
@@ -395,6 +404,10 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   if (!ir)
     return nullptr;
   runToSsa(*ir, trace);
+  if (options.restructure) {
+    expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)) && mlir::succeeded(mlir::verify(*ir)); });
+    run(*ir, codegen::buildSsaPipeline);
+  }
 
   LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/true));
   defineFacts(code, *program);

@@ -19,7 +19,7 @@
 namespace rtsl {
 
 /// What can be looked at on the way, in order.
-enum class Stage : std::uint8_t { Preprocessed, Ast, TypedAst, Ir, Ssa, Split, Llvm, Ptx, Cpp, Reflection };
+enum class Stage : std::uint8_t { Preprocessed, Ast, TypedAst, Ir, Ssa, Split, Structured, Llvm, Ptx, Cpp, Reflection };
 
 /// How `trace` runs: as a call, or as the end of one state and the beginning of another, without recursion
 /// (docs/continuations.md). The picture is the same, bit for bit.
@@ -35,6 +35,8 @@ struct CompileOptions {
   unsigned optimization = 2; // of machine code, 0 to 3
   TraceMode trace = TraceMode::Recurse; // of Target::Host; there is no recursion elsewhere
   Target target = Target::Host;
+  /// Bring everything back to level 1 and down again, with TraceMode::Split: for tests, which ask that this changes nothing.
+  bool restructure = false;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
   std::string gpu = "sm_75";
 };

@@ -41,6 +41,17 @@ Compile jit(unsigned optimization, bool checked, TraceMode trace) {
   };
 }
 
+/// By way of the structured states that C++ is printed from.
+Compile structuredJit() {
+  CompileOptions options;
+  options.optimization = 0;
+  options.trace = TraceMode::Split;
+  options.restructure = true;
+  return [options](const typed::Module &module, const LinkRequest &request, Diagnostics &diagnostics) {
+    return compileProgram(module, request, options, diagnostics);
+  };
+}
+
 /// The first is what the others are compared with; the last that can run a program is farthest from
 /// it, and the one that is taken when nobody asks for others.
 const std::vector<Path> &allPaths() {
@@ -49,6 +60,7 @@ const std::vector<Path> &allPaths() {
       {"jit-O0", true, false, jit(0, true, recurse)},
       {"jit-O0-unchecked", false, false, jit(0, false, recurse)},
       {"jit-O0-split", true, true, jit(0, true, split)},
+      {"jit-O0-structured", true, false, structuredJit()},
       {"jit-O2", true, false, jit(2, true, recurse)},
       {"jit-O2-unchecked", false, false, jit(2, false, recurse)},
       {"jit-O2-split", true, true, jit(2, true, split)},

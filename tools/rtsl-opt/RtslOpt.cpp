@@ -7,6 +7,7 @@
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Passes.h"
+#include "codegen/passes/restructure/Restructure.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlow.h"
@@ -23,6 +24,7 @@ int main(int argc, char **argv) {
   rtsl::codegen::registerPassDependencies(registry);
   rtsl::codegen::registerPasses();
   rtsl::registerContinuationPasses();
+  rtsl::registerRestructurePass();
   rtsl::codegen::registerLlvmPasses();
   mlir::registerTransformsPasses();
   return mlir::asMainReturnCode(

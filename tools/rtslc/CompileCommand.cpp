@@ -23,6 +23,7 @@ const std::map<std::string, Stage> stages = {{"preprocessed", Stage::Preprocesse
                                              {"ir", Stage::Ir},
                                              {"ssa", Stage::Ssa},
                                              {"split", Stage::Split},
+                                             {"structured", Stage::Structured},
                                              {"llvm", Stage::Llvm},
                                              {"ptx", Stage::Ptx},
                                              {"cpp", Stage::Cpp},
@@ -140,7 +141,7 @@ void addCompileCommand(CLI::App &app, Action &action) {
   command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
   command->add_option("--emit", options->stage, "what to write")
       ->transform(CLI::CheckedTransformer(stages).description(""))
-      ->type_name("preprocessed|ast|typed-ast|ir|ssa|split|llvm|ptx|cpp|reflection");
+      ->type_name("preprocessed|ast|typed-ast|ir|ssa|split|structured|llvm|ptx|cpp|reflection");
   command->add_flag_callback("-E", [options] { options->stage = Stage::Preprocessed; }, "the same as --emit=preprocessed");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
   command->add_option("--set", options->overrides, "change a value of the scene file, such as camera.fov=30")

@@ -103,6 +103,10 @@ std::string sourceName(mlir::Value value) {
   return op->getName().stripDialect().str();
 }
 
+std::string authorsName(mlir::Value value) {
+  return nameInLocation(value.getLoc());
+}
+
 std::string UniqueNames::unique(const std::string &name) {
   unsigned count = ++used[name];
   if (count == 1)

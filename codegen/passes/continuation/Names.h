@@ -14,6 +14,9 @@ namespace rtsl::continuation {
 /// every run.
 std::string sourceName(mlir::Value value);
 
+/// The variable that the value was; empty if it was none of the author's.
+std::string authorsName(mlir::Value value);
+
 /// Names for values of one function, each different: the second "sum" is "sum.2".
 class UniqueNames {
 public:

@@ -5,6 +5,7 @@
 // RUN:   | FileCheck %s --check-prefix=CONTINUATIONS
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-rematerialise --rtsl-save-live | FileCheck %s --check-prefix=OPTIMISED
 // RUN: rtsl-opt %s --rtsl-split=no-dispatch | FileCheck %s --check-prefix=STATES
+// RUN: rtsl-opt %s --rtsl-split=no-dispatch --rtsl-restructure | FileCheck %s --check-prefix=STRUCTURED
 // RUN: rtsl-opt %s --rtsl-split | FileCheck %s --check-prefix=MACHINE
 // RUN: rtsl-opt %s --rtsl-split=report=text 2>&1 >/dev/null | FileCheck %s --check-prefix=REPORT
 
@@ -57,7 +58,7 @@ func.func @Fan.miss(%self: !rtsl.ref<"Fan">) attributes {rtsl.class = "Fan", rts
 // OPTIMISED: %[[NEXT:.*]] = arith.addi %[[I]], %[[ONE]]
 // OPTIMISED-NEXT: arith.cmpi ne, %[[NEXT]], %[[END]]
 
-// 4. and 5. Two states; the part of the loop before the trace is in both, and the loop itself is gone.
+// 4. Two states; the part of the loop before the trace is in both, and the loop itself is gone.
 // STATES-LABEL: func.func private @Fan.miss.state0
 // STATES: rtsl.frame_store %{{.*}}, "i"[0] : i32
 // STATES-NEXT: rtsl.spawn
@@ -78,6 +79,25 @@ func.func @Fan.miss(%self: !rtsl.ref<"Fan">) attributes {rtsl.class = "Fan", rts
 // STATES: ^bb2:
 // STATES: rtsl.next done
 // STATES-NOT: func.func
+
+// 5. Structured control flow again, for C++: what was the body of the loop is an `if` now.
+// STRUCTURED-LABEL: func.func private @Fan.miss.state0
+// STRUCTURED-NOT: rtsl.if
+// STRUCTURED: rtsl.frame_store %{{.*}}, "i"[0] : i32
+// STRUCTURED: rtsl.return %{{.*}} : i32
+// STRUCTURED-LABEL: func.func private @Fan.miss.state1
+// STRUCTURED: rtsl.trace_result
+// STRUCTURED: %[[I:.*]] = rtsl.frame_load "i"[0] : i32
+// STRUCTURED: %[[NEXT:.*]] = arith.addi %[[I]]
+// STRUCTURED: rtsl.if %{{.*}} {
+// STRUCTURED:   arith.muli %[[NEXT]]
+// STRUCTURED:   rtsl.frame_store %[[NEXT]], "i"[0] : i32
+// STRUCTURED-NEXT: rtsl.spawn
+// STRUCTURED-NEXT: %[[AGAIN:.*]] = rtsl.next trace @Fan.miss.state1
+// STRUCTURED-NEXT: rtsl.return %[[AGAIN]] : i32
+// STRUCTURED-NEXT: }
+// STRUCTURED: %[[DONE:.*]] = rtsl.next done
+// STRUCTURED-NEXT: rtsl.return %[[DONE]] : i32
 
 // MACHINE: return %c2_i32
 // MACHINE-LABEL: func.func @rtsl_run_state(%arg0: i32, %arg1: !rtsl.ref<"object">, %arg2: !rtsl.ptr<i32>) -> i32

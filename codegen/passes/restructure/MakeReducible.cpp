@@ -1,0 +1,186 @@
+//===- MakeReducible.cpp - loops that are entered at one block ------------===//
+//
+//   for (...) {                       state 1:      ^r: cond_br %v, ^step, ^q
+//     if (u) {                                      ^q: Q; br ^step
+//       c = trace(...);                             ^step: ...; cond_br %again, ^body, ^exit
+//       if (v) continue;      --split-->            ^body: cond_br %u, ^trace, ^q
+//     }
+//     Q;
+//   }
+//
+// The state that begins behind the trace enters the loop of ^q, ^step and ^body at two blocks. What
+// lies before the one that becomes the header is copied: here ^q, which is then once in front of the
+// loop and once in it. A loop in a loop may be copied twice, so in the worst case code grows by a
+// factor of two a level of nesting.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/restructure/Steps.h"
+
+#include "mlir/IR/IRMapping.h"
+#include "llvm/ADT/PostOrderIterator.h"
+#include "llvm/ADT/SetVector.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace rtsl::restructuring {
+
+using mlir::Block;
+
+namespace {
+
+using BlockSet = llvm::SmallSetVector<Block *, 16>;
+
+/// The strongly connected components of a part of the graph (Tarjan, "Depth-first search and linear
+/// graph algorithms", 1972); those of one block only if it branches to itself.
+class Components {
+public:
+  explicit Components(const BlockSet &part) : part(part) {
+    for (Block *block : part)
+      if (!numbers.count(block))
+        visit(block);
+  }
+  llvm::SmallVector<BlockSet> found;
+
+private:
+  void visit(Block *block) {
+    unsigned number = numbers[block] = low[block] = ++count;
+    stack.push_back(block);
+    open.insert(block);
+    bool isLoop = false;
+    for (Block *next : block->getSuccessors()) {
+      if (!part.contains(next))
+        continue;
+      isLoop |= next == block;
+      if (!numbers.count(next)) {
+        visit(next);
+        low[block] = std::min(low[block], low[next]);
+      } else if (open.contains(next)) {
+        low[block] = std::min(low[block], numbers[next]);
+      }
+    }
+    if (low[block] != number)
+      return;
+    BlockSet component;
+    Block *member;
+    do {
+      member = stack.pop_back_val();
+      open.erase(member);
+      component.insert(member);
+    } while (member != block);
+    if (isLoop || component.size() > 1)
+      found.push_back(std::move(component));
+  }
+
+  const BlockSet &part;
+  llvm::DenseMap<Block *, unsigned> numbers, low;
+  llvm::SmallVector<Block *> stack;
+  llvm::DenseSet<Block *> open;
+  unsigned count = 0;
+};
+
+BlockSet entriesOf(const BlockSet &loop) {
+  BlockSet entries;
+  for (Block *block : loop)
+    if (block->isEntryBlock() ||
+        llvm::any_of(block->getPredecessors(), [&](Block *from) { return !loop.contains(from); }))
+      entries.insert(block);
+  return entries;
+}
+
+/// A loop that is entered at several blocks, the largest around it first; empty if there is none.
+BlockSet findIrreducible(const BlockSet &part) {
+  for (const BlockSet &loop : Components(part).found) {
+    BlockSet entries = entriesOf(loop);
+    if (entries.size() > 1)
+      return loop;
+    BlockSet inside = loop;
+    inside.remove(entries.front());
+    if (BlockSet found = findIrreducible(inside); !found.empty())
+      return found;
+  }
+  return {};
+}
+
+/// What of the loop is reached from outside before `header` is.
+BlockSet before(Block *header, const BlockSet &loop, const BlockSet &entries) {
+  BlockSet reached;
+  for (Block *entry : entries)
+    if (entry != header)
+      reached.insert(entry);
+  for (unsigned i = 0; i < reached.size(); ++i) {
+    Block *block = reached[i];
+    for (Block *next : block->getSuccessors())
+      if (next != header && loop.contains(next))
+        reached.insert(next);
+  }
+  return reached;
+}
+
+/// The blocks to copy so that they cost least.
+BlockSet cheapestCopy(const BlockSet &loop) {
+  BlockSet entries = entriesOf(loop), best;
+  std::size_t lowest = std::numeric_limits<std::size_t>::max();
+  for (Block *header : entries) {
+    BlockSet copied = before(header, loop, entries);
+    std::size_t size = 0;
+    for (Block *block : copied)
+      size += block->getOperations().size();
+    if (size < lowest) {
+      lowest = size;
+      best = std::move(copied);
+    }
+  }
+  return best;
+}
+
+/// Ways into the loop from outside go to the copies.
+void copyIntoLoop(const BlockSet &copied, const BlockSet &loop) {
+  mlir::IRMapping mapping;
+  mlir::Region *region = loop.front()->getParent();
+  llvm::SmallVector<Block *> copies;
+  for (Block *block : copied) {
+    Block *copy = new Block;
+    region->push_back(copy);
+    copies.push_back(copy);
+    mapping.map(block, copy);
+  }
+  for (auto [block, copy] : llvm::zip(copied, copies)) {
+    mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(copy);
+    for (mlir::Operation &op : *block)
+      builder.clone(op, mapping);
+  }
+  for (Block *block : copied)
+    for (Block *from : llvm::to_vector(block->getPredecessors())) {
+      bool isCopy = llvm::is_contained(copies, from);
+      if (loop.contains(from) || isCopy)
+        continue;
+      mlir::Operation *terminator = from->getTerminator();
+      for (unsigned i = 0; i < terminator->getNumSuccessors(); ++i)
+        if (terminator->getSuccessor(i) == block)
+          terminator->setSuccessor(mapping.lookup(block), i);
+    }
+}
+
+BlockSet blocksOf(FuncOp function) {
+  BlockSet blocks;
+  for (Block *block : llvm::ReversePostOrderTraversal<Block *>(&function.getBody().front()))
+    blocks.insert(block);
+  return blocks;
+}
+
+} // namespace
+
+void makeReducible(FuncOp function) {
+  BlockSet loop = findIrreducible(blocksOf(function));
+  if (loop.empty())
+    return;
+  // Copies of blocks define values twice, so what leaves a block goes through variables.
+  leaveSsa(function,
+           [](mlir::Value value, Block *use) { return value.getParentBlock() == use ||
+                                                      value.getParentBlock()->isEntryBlock(); });
+  for (; !loop.empty(); loop = findIrreducible(blocksOf(function)))
+    copyIntoLoop(cheapestCopy(loop), loop);
+}
+
+} // namespace rtsl::restructuring
