@@ -30,6 +30,9 @@ if(RTSL_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize=vptr)
   add_link_options(-fsanitize=address,undefined)
 endif()
+if(RTSL_FUZZ) # libFuzzer's own main is linked by its targets alone
+  add_compile_options(-fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined)
+endif()
 
 # Warnings for code of ours (not for generated parsers).
 function(rtsl_warnings target)

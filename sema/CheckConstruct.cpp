@@ -68,7 +68,8 @@ ExprPtr FunctionChecker::convertScalars(ExprPtr arg, const Type *scalar) {
     vector->args.push_back(std::move(arg));
     arg = std::move(vector);
   }
-  return convertTo(std::move(arg), withScalar(arg->type, scalar, types), false);
+  const Type *converted = withScalar(arg->type, scalar, types); // before it is moved
+  return convertTo(std::move(arg), converted, false);
 }
 
 ExprPtr FunctionChecker::constructScalar(const Type *type, ExprPtr arg, SourceRange range) {

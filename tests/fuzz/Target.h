@@ -1,0 +1,20 @@
+//===- Target.h - what a fuzzer runs --------------------------------------===//
+//
+// Both targets, FrontEnd.cpp and SceneReader.cpp, define LLVMFuzzerTestOneInput. libFuzzer calls it with inputs that it makes;
+// Replay.cpp is a plain main that calls it with files. docs/fuzzing.md tells more.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+/// Runs one input. What must not be ends the process.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size);
+
+namespace rtsl::fuzz {
+
+/// Ends the process unless `holds`; fuzzers take that as a crash.
+void require(bool holds, const char *what);
+
+} // namespace rtsl::fuzz
