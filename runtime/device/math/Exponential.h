@@ -6,33 +6,62 @@
 
 namespace rtsl::device {
 
-/// e^x.
-inline float exp(float x) {
-  using namespace detail;
+namespace detail {
+
+/// e^x where plain double does not decide, or the result is no normal float.
+[[gnu::cold, gnu::noinline]] inline float carefulExponential(float x) {
   if (isNaN(x))
     return canonicalNaN();
   if (x > 89.0f) // e^89 > 2^128
     return infinity();
   if (x < -104.0f) // e^-104 < 2^-150
     return 0.0f;
-  Double2 y = exponential(x);
-  return roundToFloat(y);
+  return roundToFloat(exponential(x));
 }
 
-/// 2^x. Exact for integers.
-inline float exp2(float x) {
-  using namespace detail;
+/// 2^x = 2^(step/64 + fraction).
+struct BinaryReduction {
+  NearestInteger step;
+  double fraction;
+};
+
+inline BinaryReduction reduceBinary(double x) {
+  NearestInteger step = nearestInteger(x * exponentialTableSize);
+  return {step, fma(step.asDouble, -1.0 / exponentialTableSize, x)}; // exact
+}
+
+/// 2^x where plain double does not decide, or the result is no normal float.
+[[gnu::cold, gnu::noinline]] inline float carefulBinaryExponential(float x) {
   if (isNaN(x))
     return canonicalNaN();
   if (x >= 128.0f)
     return infinity();
   if (x < -150.0f)
     return 0.0f;
-  NearestInteger step = nearestInteger(double(x) * exponentialTableSize);
-  double fraction = fma(step.asDouble, -1.0 / exponentialTableSize, x); // exact
-  double remainder = fma(fraction, ln2.hi, fraction * ln2.lo);
-  Double2 y = scaledExponential(step.asInt, exponentialTail(remainder));
-  return roundToFloat(y);
+  BinaryReduction reduced = reduceBinary(x);
+  double remainder = fma(reduced.fraction, ln2.hi, reduced.fraction * ln2.lo);
+  return roundToFloat(scaledExponential(reduced.step.asInt, exponentialTail(remainder)));
+}
+
+} // namespace detail
+
+/// e^x.
+inline float exp(float x) {
+  using namespace detail;
+  if (!(x > -87.0f && x < 89.0f)) // e^-87 > 2^-126
+    return carefulExponential(x);
+  double y = plainExponential(x);
+  return roundsSafely(y) ? float(y) : carefulExponential(x);
+}
+
+/// 2^x. Exact for integers.
+inline float exp2(float x) {
+  using namespace detail;
+  if (!(x > -126.0f && x < 128.0f))
+    return carefulBinaryExponential(x);
+  BinaryReduction reduced = reduceBinary(x);
+  double y = plainScaledExponential(reduced.step.asInt, plainExponentialTail(reduced.fraction * ln2.hi));
+  return roundsSafely(y) ? float(y) : carefulBinaryExponential(x);
 }
 
 namespace detail {

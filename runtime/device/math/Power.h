@@ -17,19 +17,10 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// ln(x) for a positive float x, relative error below 2^-51.9.
-inline double plainLogarithm(double x) {
+/// y ln(x) for a positive float x, relative error below 2^-50.9.
+inline double exponentOfPower(double x, double y) {
   LogarithmReduction reduced = reduceLogarithm({x, 0.0});
-  double exponent = reduced.exponent;
-  double head = fma(exponent, ln2Parts[0], reduced.entry.hi); // exact
-  double low = fma(exponent, ln2Parts[1], reduced.entry.lo);
-  return head + (reduced.r + (logarithmCurvature(reduced.r) + low));
-}
-
-/// e^exponent for -104 <= exponent <= 89; if that is y ln(x), x^y with an error below plainBound.
-inline double fastPower(double exponent) {
-  Double2 power = exponential(exponent);
-  return power.hi + power.lo;
+  return y * plainLogarithm(reduced, reduced.exponent);
 }
 
 /// Whether x^y has 53 bits or fewer, for finite x > 0 and y != 0; `result` is then x^y. Needs no
@@ -64,7 +55,7 @@ inline Double2 accuratePower(double x, double y) {
   return accurateExponential(multiply(accurateLogarithm(x), {y, 0.0}));
 }
 
-/// x^y where fastPower() does not decide, or the result is subnormal or zero.
+/// x^y where plain double does not decide, or the result is subnormal or zero.
 [[gnu::cold, gnu::noinline]] inline float carefulPower(double x, double y, double exponent) {
   if (exponent < -104.0) // e^-104 < 2^-150
     return 0.0f;
@@ -76,12 +67,12 @@ inline Double2 accuratePower(double x, double y) {
 
 /// x^y for finite x > 0 and finite y.
 inline float positivePower(double x, double y) {
-  double exponent = y * plainLogarithm(x);
+  double exponent = exponentOfPower(x, y);
   if (exponent > 89.0) // e^89 > 2^128
     return infinity();
   if (exponent < -87.0) // e^-87 > 2^-126
     return carefulPower(x, y, exponent);
-  double power = fastPower(exponent);
+  double power = plainExponential(exponent);
   return roundsSafely(power) ? float(power) : carefulPower(x, y, exponent);
 }
 

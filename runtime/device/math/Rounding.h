@@ -5,6 +5,15 @@
 
 namespace rtsl::device::detail {
 
+/// roundToFloat() where the double nearest to the sum may be midway between two floats.
+[[gnu::cold, gnu::noinline]] inline float roundFromMidpoint(Double2 y) {
+  Double2 sum = normalized(y);
+  uint64_t bits = bitsOf(sum.hi);
+  if (sum.lo != 0.0)
+    bits = (sum.lo > 0.0) == (sum.hi > 0.0) ? bits + 1 : bits - 1;
+  return float(doubleOf(bits));
+}
+
 /// Rounds hi + lo to float as if the sum were exact; |hi| >= |lo|.
 ///
 /// float(hi + lo) would round twice, which goes wrong only where the double nearest to the sum is
@@ -14,11 +23,10 @@ namespace rtsl::device::detail {
 /// "Emulation of a FMA and correctly rounded sums", IEEE Trans. Computers 57(4), 2008, do the same
 /// by rounding to odd.)
 inline float roundToFloat(Double2 y) {
-  Double2 sum = normalized(y);
-  uint64_t bits = bitsOf(sum.hi);
-  if ((bits & 0x0fffffffu) == 0 && sum.lo != 0.0)
-    bits = (sum.lo > 0.0) == (sum.hi > 0.0) ? bits + 1 : bits - 1;
-  return float(doubleOf(bits));
+  double nearest = y.hi + y.lo;
+  if ((bitsOf(nearest) & 0x0fffffffu) != 0)
+    return float(nearest);
+  return roundFromMidpoint(y);
 }
 
 /// The margin of roundsSafely(), relative: two last places of a double or more.

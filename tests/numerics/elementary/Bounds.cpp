@@ -72,7 +72,7 @@ MeasuredBounds measureBounds(std::string_view function, std::uint64_t count) {
     ++measured;
     if (isPower) {
       ruler.setExact(mpfr_pow, x, y);
-      double power = detail::fastPower(y * detail::plainLogarithm(x));
+      double power = detail::plainExponential(detail::exponentOfPower(x, y));
       fast = std::max(fast, ruler.relativeError({power, 0.0}));
       accurate = std::max(accurate, ruler.relativeError(detail::accuratePower(x, y)));
     } else {
