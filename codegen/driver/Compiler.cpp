@@ -3,6 +3,7 @@
 
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/FastMath.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
 #include "codegen/emit/NativeImage.h"
@@ -127,6 +128,8 @@ LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
   code.options = options;
   code.machine = take(codegen::createTargetMachine(options));
   code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
+  if (options.floatingPoint == FloatingPoint::Fast)
+    codegen::relaxArithmetic(*code.module);
   return code;
 }
 
@@ -139,6 +142,7 @@ codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostC
   codegen::MachineOptions machine;
   machine.optimization = options.optimization;
   machine.hostCpu = hostCpu;
+  machine.floatingPoint = options.floatingPoint;
   return machine;
 }
 
@@ -146,6 +150,7 @@ codegen::MachineOptions gpuOptions(const CompileOptions &options) {
   codegen::MachineOptions machine;
   machine.optimization = options.optimization;
   machine.gpu = options.gpu;
+  machine.floatingPoint = options.floatingPoint;
   return machine;
 }
 

@@ -5,6 +5,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/emit/FloatingPoint.h"
 #include "frontend/Diagnostics.h"
 #include "runtime/Program.h"
 #include "runtime/package/Package.h"
@@ -37,6 +38,7 @@ struct CompileOptions {
   Target target = Target::Host;
   /// Bring everything back to level 1 and down again, with TraceMode::Split: for tests, which ask that this changes nothing.
   bool restructure = false;
+  FloatingPoint floatingPoint = FloatingPoint::Strict;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
   std::string gpu = "sm_75";
 };

@@ -102,7 +102,8 @@ createTargetMachine(const MachineOptions &options) {
 }
 
 /// Functions are inlined only where their features allow it, so all of them say the same; also that
-/// there is no C library whose functions could be recognised, as is said of the device code.
+/// there is no C library whose functions could be recognised, as is said of the device code. Estimates
+/// of reciprocals would make a NaN of 1 / 0, with FloatingPoint::Fast too.
 static void setProcessor(llvm::Module &module, llvm::StringRef cpu, llvm::StringRef features) {
   for (llvm::Function &function : module) {
     if (function.isDeclaration())
@@ -114,6 +115,7 @@ static void setProcessor(llvm::Module &module, llvm::StringRef cpu, llvm::String
       function.addFnAttr("target-features", features);
     function.removeFnAttr("tune-cpu");
     function.addFnAttr("no-builtins");
+    function.addFnAttr("reciprocal-estimates", "none");
   }
 }
 

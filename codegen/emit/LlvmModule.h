@@ -12,6 +12,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/emit/FloatingPoint.h"
+
 #include "llvm/ADT/ArrayRef.h"
 #include "llvm/Support/Error.h"
 
@@ -38,12 +40,14 @@ struct MachineOptions {
   bool hostCpu = false;
   /// Code for an NVIDIA GPU, rather than for the host: "sm_75" and the like. Empty: the host.
   std::string gpu;
+  /// Of shader code. Device code is always strict.
+  FloatingPoint floatingPoint = FloatingPoint::Strict;
 };
 
 /// What MLIR needs to be translated; call before the context is made, or append the registry to it.
 void registerLlvmTranslation(mlir::DialectRegistry &registry);
 
-/// Strict floating point: nothing is fused that the program does not fuse.
+/// Nothing is fused that the program does not fuse, or allow to be fused.
 llvm::Expected<std::unique_ptr<llvm::TargetMachine>>
 createTargetMachine(const MachineOptions &options);
 

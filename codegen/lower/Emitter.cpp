@@ -346,6 +346,9 @@ Num ceil(Num a) {
 Num trunc(Num a) {
   return apply<math::TruncOp>(a);
 }
+Num roundEven(Num a) {
+  return apply<math::RoundEvenOp>(a);
+}
 Num abs(Num a) {
   return a.isFloat() ? apply<math::AbsFOp>(a) : select(less(a, 0.0), -a, a);
 }

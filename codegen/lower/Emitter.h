@@ -219,6 +219,7 @@ Num sqrt(Num a);
 Num floor(Num a);
 Num ceil(Num a);
 Num trunc(Num a);
+Num roundEven(Num a); // halves to the even neighbour
 Num abs(Num a); // integers too; the most negative integer stays
 /// All components of a vector of bools.
 Num all(Num a);

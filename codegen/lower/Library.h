@@ -36,7 +36,6 @@ public:
   Num refract(Num incident, Num normal, Num eta);
 
   // LibraryCommon.cpp
-  Num roundEven(Num x);
   Num powInt(Num x, Num exponent); // exponent: a scalar
   Num frexp(Num x, Num &exponent);
   Num ldexp(Num x, Num exponent);

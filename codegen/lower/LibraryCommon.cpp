@@ -110,15 +110,6 @@ Num inside(Num x, Num low, Num high) {
 // Parts of a number
 //===----------------------------------------------------------------------===//
 
-// Adding and taking away 2^23 leaves no room for a fraction: the rounding of the addition is the
-// rounding asked for.
-Num Library::roundEven(Num x) {
-  constexpr double noFraction = 8388608.0;
-  Num magnitude = abs(x);
-  Num rounded = (magnitude + noFraction) - noFraction;
-  return select(less(magnitude, noFraction), copySign(rounded, x), x);
-}
-
 // x = significand * 2^exponent with the significand in [0.5, 1). Zero, infinities and NaN have
 // exponent 0.
 Num Library::frexp(Num x, Num &exponent) {

@@ -140,7 +140,7 @@ std::optional<Parts> FunctionLowering::lowerNumericBuiltin(const typed::BuiltinE
   case Builtin::Round:
   case Builtin::RoundEven:
     evaluate(1);
-    return result(module.library.roundEven(operands[0]));
+    return result(roundEven(operands[0]));
   case Builtin::Ceil:
     evaluate(1);
     return result(ceil(operands[0]));

@@ -136,7 +136,7 @@ std::optional<Parts> FunctionLowering::lowerPackingBuiltin(const typed::BuiltinE
   // NaN becomes the lower bound: max(low, x) keeps its first operand unless it is less.
   auto quantise = [&](Num x, double low, double scale) {
     Num clamped = minimum(maximum(x.like(low), x), x.like(1));
-    Num rounded = module.library.roundEven(clamped * scale);
+    Num rounded = roundEven(clamped * scale);
     return num(emitter.make<ir::ToSintOp>(withScalar(rounded.type(), emitter.getI32Type()),
                                           static_cast<Value>(rounded)));
   };

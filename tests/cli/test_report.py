@@ -28,7 +28,7 @@ class Report(Case):
         document = json.loads(out)
         self.assertEqual(document, json.loads((self.folder / "out" / "report.json").read_text()))
         names = [configuration["name"] for configuration in document["configurations"]]
-        for name in ("strict embree recurse", "strict device split"):
+        for name in ("strict embree recurse", "strict device split", "fast embree recurse", "fast device split"):
             self.assertIn(name, names)
         pictures = {c["commonPicture"] for c in document["configurations"] if c["name"].startswith("strict")}
         self.assertEqual(len(pictures), 1, "in strict mode all of them make the same picture")

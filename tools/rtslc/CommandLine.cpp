@@ -92,6 +92,13 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
           },
           "what a color is made of")
       ->type_name("rgb|mono|spectral:N|N");
+  command
+      .add_option("--fp", options.compile.floatingPoint,
+                  "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and reassociation")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, FloatingPoint>{{"strict", FloatingPoint::Strict},
+                                                                               {"fast", FloatingPoint::Fast}})
+                      .description(""))
+      ->type_name("strict|fast");
   command.add_flag_callback(
       "--unchecked", [&options] { options.compile.checkIndices = false; },
       "trust array and buffer indices: one out of range is then undefined");

@@ -33,7 +33,7 @@ struct CommonOptions {
 
 /// Adds --diagnostics, --ansi, --error-limit and -W.
 void addMessageOptions(CLI::App &command, CommonOptions &options);
-/// Adds --color, --unchecked, --trace, --gpu-arch and -O.
+/// Adds --color, --fp, --unchecked, --trace, --gpu-arch and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);
 
 /// A command's name and what `rtslc --help` says of it.

@@ -111,6 +111,8 @@ void checkInputs(const CompileCommandOptions &options) {
                                          "builds one");
   if (options.stage == Stage::Cpp && options.common.compile.trace == TraceMode::Split)
     throw CLI::ValidationError("--trace", "C++ keeps `trace` as a call; states are printed by --emit=split");
+  if (options.stage == Stage::Cpp && options.common.compile.floatingPoint != FloatingPoint::Strict)
+    throw CLI::ValidationError("--fp", "C++ is strict; what is fast is machine code");
   if (scenes == 0 && !options.overrides.empty())
     throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
 }

@@ -100,6 +100,7 @@ report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions o
 
 /// Every way to render, the usual one first.
 std::vector<report::Subject> subjectsFor(const LoadedScene &loaded, const ReportOptions &options, Messages &messages) {
+  const std::pair<FloatingPoint, const char *> precisions[] = {{FloatingPoint::Strict, "strict"}, {FloatingPoint::Fast, "fast"}};
   const std::pair<TraceMode, const char *> traceModes[] = {{TraceMode::Recurse, "recurse"}, {TraceMode::Split, "split"}};
   const std::pair<runtime::Traversal, const char *> traversals[] = {{runtime::Traversal::Embree, "embree"},
                                                                     {runtime::Traversal::Device, "device"}};
@@ -109,32 +110,34 @@ std::vector<report::Subject> subjectsFor(const LoadedScene &loaded, const Report
            });
   };
   std::vector<report::Subject> subjects;
-  for (const auto &[trace, traceName] : traceModes) {
-    std::optional<Build> shared; // compiled when the first one is wanted
-    for (const auto &[traversal, traversalName] : traversals) {
-      report::Subject subject;
-      subject.name = fmt::format("strict {} {}", traversalName, traceName);
-      if (!isWanted(subject.name))
-        continue;
-      CompileOptions compile = options.common.compile;
-      compile.trace = trace;
-      if (!shared)
-        shared = build(loaded, compile, messages);
-      if (!shared)
-        return {};
-      subject.settings = {{"fp", "strict"}, {"traversal", traversalName}, {"trace", traceName}};
-      subject.compileSeconds = shared->compileSeconds;
-      subject.render = [scene = shared->scene, render = loaded.render, traversal](std::uint32_t samples, std::uint32_t seed) {
-        runtime::RenderOptions options = render;
-        options.traversal = traversal;
-        return renderOnce(*scene, options, samples, seed);
-      };
-      subjects.push_back(std::move(subject));
+  for (const auto &[precision, precisionName] : precisions)
+    for (const auto &[trace, traceName] : traceModes) {
+      std::optional<Build> shared; // compiled when the first one is wanted
+      for (const auto &[traversal, traversalName] : traversals) {
+        report::Subject subject;
+        subject.name = fmt::format("{} {} {}", precisionName, traversalName, traceName);
+        if (!isWanted(subject.name))
+          continue;
+        CompileOptions compile = options.common.compile;
+        compile.floatingPoint = precision;
+        compile.trace = trace;
+        if (!shared)
+          shared = build(loaded, compile, messages);
+        if (!shared)
+          return {};
+        subject.settings = {{"fp", precisionName}, {"traversal", traversalName}, {"trace", traceName}};
+        subject.compileSeconds = shared->compileSeconds;
+        subject.render = [scene = shared->scene, render = loaded.render, traversal](std::uint32_t samples, std::uint32_t seed) {
+          runtime::RenderOptions options = render;
+          options.traversal = traversal;
+          return renderOnce(*scene, options, samples, seed);
+        };
+        subjects.push_back(std::move(subject));
+      }
     }
-  }
   if (subjects.empty())
     throw runtime::Error(runtime::ErrorCode::UnknownName,
-                         "no configuration is left by `--only`; their names are made of strict, embree or device, and recurse or split");
+                         "no configuration is left by `--only`; their names are made of strict or fast, embree or device, and recurse or split");
   return subjects;
 }
 
@@ -345,7 +348,8 @@ void addReportCommand(CLI::App &app, Action &action) {
   command->add_flag("-q,--quiet", options->quiet, "no progress");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addCompileOptions(*command, options->common);
-  command->remove_option(command->get_option("--trace")); // both are measured
+  for (const char *measured : {"--fp", "--trace"}) // each of their values is
+    command->remove_option(command->get_option(measured));
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc report examples/glass/scene.json --out report --size 320x180 --budget 20s");
   command->callback([options, &action] { action = [options] { return report(*options); }; });

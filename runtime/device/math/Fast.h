@@ -7,7 +7,9 @@
 // result. Functions that are missing here are those of Elementary.h.
 #pragma once
 
+#include "runtime/device/math/ArcTangent2.h"
 #include "runtime/device/math/ArgumentReduction.h"
+#include "runtime/device/math/Power.h"
 #include "runtime/device/math/tables/ArcTangentTable.h"
 
 namespace rtsl::device::fast {
@@ -151,6 +153,15 @@ inline float firstQuadrantAngle(float y, float x) {
   return steep ? float(halfPi.hi) - angle : angle;
 }
 
+// ---- what is rare
+
+[[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
+  return device::pow(x, y);
+}
+[[gnu::cold, gnu::noinline]] inline float specialAngle(float y, float x) {
+  return device::atan2(y, x);
+}
+
 } // namespace detail
 
 /// e^x, relative error below 2^-23.
@@ -191,9 +202,12 @@ inline float log2(float x) {
   return fma(parts.ofM, float(inverseLn2.hi), parts.exponent);
 }
 
-/// x^y for x >= 0 as GLSL defines it, relative error below 2^-21 (1 + |y log2 x|); NaN for x < 0,
-/// and for pow(0, 0), pow(1, infinity), pow(infinity, 0).
+/// x^y, relative error below 2^-21 (1 + |y log2 x|); what is special (x <= 0, infinities, NaNs) is
+/// as in Elementary.h.
 inline float pow(float x, float y) {
+  using namespace detail;
+  if (!(x > 0.0f && x < infinity() && absolute(y) < infinity()))
+    return specialPower(x, y);
   return fast::exp2(y * fast::log2(x));
 }
 
@@ -259,11 +273,15 @@ inline float atan(float x) {
   return withSignOf(firstQuadrantAngle(a, 1.0f), x);
 }
 
-/// The angle of (x, y), relative error below 2^-21 for finite x and y, not both 0 and between
-/// 2^-100 and 2^100 if not 0. Elsewhere that of Elementary.h is the one to call.
+/// The angle of (x, y), relative error below 2^-21; where a component is an infinity or a NaN, or
+/// both are 0, too small or too large, it is that of Elementary.h.
 inline float atan2(float y, float x) {
   using namespace detail;
-  float angle = firstQuadrantAngle(absolute(y), absolute(x));
+  float a = absolute(x), b = absolute(y);
+  float larger = a > b ? a : b, smaller = a > b ? b : a;
+  if (!(larger >= 0x1p-100f && larger <= 0x1p100f && (smaller >= 0x1p-100f || smaller == 0.0f)))
+    return specialAngle(y, x);
+  float angle = firstQuadrantAngle(b, a);
   return withSignOf(x < 0.0f ? float(pi.hi) - angle : angle, y);
 }
 

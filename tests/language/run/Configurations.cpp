@@ -19,6 +19,11 @@ static CompileOptions megakernel(unsigned optimization) {
   return compile;
 }
 
+static CompileOptions fast(CompileOptions compile) {
+  compile.floatingPoint = FloatingPoint::Fast;
+  return compile;
+}
+
 const std::vector<Configuration> &configurations() {
   using runtime::Traversal;
   static const std::vector<Configuration> table = {
@@ -29,6 +34,14 @@ const std::vector<Configuration> &configurations() {
       {"recurse_O1_spectral16_unchecked", options(TraceMode::Recurse, 1, 16, false)},
       {"split_O2_unchecked", options(TraceMode::Split, 2, 3, false)},
       {"host_megakernel_O1", megakernel(1)},
+  };
+  return table;
+}
+
+const std::vector<Configuration> &fastConfigurations() {
+  static const std::vector<Configuration> table = {
+      {"fast_recurse_O2", fast(options(TraceMode::Recurse, 2))},
+      {"fast_host_megakernel_O2", fast(megakernel(2))},
   };
   return table;
 }

@@ -17,7 +17,10 @@ struct Configuration {
   runtime::Traversal traversal = runtime::Traversal::Embree;
 };
 
+/// The strict ones: all compute the same.
 const std::vector<Configuration> &configurations();
+/// What is left of the language with --fp=fast.
+const std::vector<Configuration> &fastConfigurations();
 
 /// What GoogleTest shows of one.
 inline void PrintTo(const Configuration &configuration, std::ostream *stream) { *stream << configuration.name; }

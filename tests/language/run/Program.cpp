@@ -95,7 +95,9 @@ void Builder::read(const ProgramFile &file) {
         functions.push_back({match[1], file.name});
       isLeftOut = false;
     } else if (line == "// unchecked: no") {
-      isLeftOut = !configuration.compile.checkIndices;
+      isLeftOut |= !configuration.compile.checkIndices;
+    } else if (line == "// fast: no") {
+      isLeftOut |= configuration.compile.floatingPoint == FloatingPoint::Fast;
     } else if (std::regex_match(line, match, directive)) {
       const std::string kind = match[1], name = match[2], json = match[3];
       if (kind == "texture")

@@ -18,17 +18,14 @@ double systemInverseSquareRootDouble(double x) {
 }
 
 double boundOfFastPower(float x, float y) {
-  bool promised = x > 0.0f && std::isfinite(x) && std::isfinite(y);
+  // Elsewhere it is the strict function.
+  bool isApproximate = x > 0.0f && std::isfinite(x) && std::isfinite(y);
   double exponent = y * std::log2(static_cast<double>(x));
-  return promised ? 0x1p-21 * (1.0 + std::fabs(exponent)) : std::numeric_limits<double>::infinity();
+  return isApproximate ? 0x1p-21 * (1.0 + std::fabs(exponent)) : 0x1p-23;
 }
 
-double boundOfFastAngle(float y, float x) {
-  auto isModerate = [](float a) {
-    return a == 0.0f || (std::fabs(a) >= 0x1p-100f && std::fabs(a) <= 0x1p100f);
-  };
-  bool promised = isModerate(x) && isModerate(y) && (x != 0.0f || y != 0.0f);
-  return promised ? 0x1p-21 : std::numeric_limits<double>::infinity();
+double boundOfFastAngle(float, float) {
+  return 0x1p-21;
 }
 
 } // namespace

@@ -1,0 +1,12 @@
+//===- FloatingPoint.h - how compiled code computes -----------------------===//
+#pragma once
+
+#include <cstdint>
+
+namespace rtsl {
+
+/// Strict: IEEE single, each operation as it is written, with the same bits everywhere. Fast:
+/// approximations and reassociation (docs/fast.md).
+enum class FloatingPoint : std::uint8_t { Strict, Fast };
+
+} // namespace rtsl
