@@ -99,7 +99,7 @@ Window windowAround(std::string_view line, std::size_t place) {
   window.begin = place > bytesBefore ? place - bytesBefore : 0;
   window.begin = std::min(window.begin, line.size() - maxLineBytes);
   window.end = window.begin + maxLineBytes;
-  for (int i = 0; i < 3 && isInside(window.begin); ++i)
+  for (int i = 0; i < 3 && window.begin < place && isInside(window.begin); ++i)
     ++window.begin;
   for (int i = 0; i < 3 && isInside(window.end); ++i)
     --window.end;

@@ -282,6 +282,19 @@ TEST_F(Messages, ShowAWindowOfAVeryLongLine) {
                          "\n");
 }
 
+// Bytes as in the middle of a character, where no character begins: the window must not leave the place out.
+TEST_F(Messages, ShowTheBeginningOfALongLineOfNoCharacters) {
+  const FileId other = sources.add("line.rtsl", std::string(3, '\x80') + std::string(200, 'a'));
+  diagnostics.report(Code::notCallable, SourceRange{other, 0, 1});
+  EXPECT_EQ(shown(), "line.rtsl:1:1: error[E0122]: this cannot be called\n"
+                     "  |\n"
+                     "1 | \\x80\\x80\\x80" +
+                         std::string(157, 'a') +
+                         "...\n"
+                         "  | ^^^^\n"
+                         "\n");
+}
+
 TEST_F(Messages, ShowFarPlacesOfALongLineApart) {
   const FileId other = sources.add("line.rtsl", "(" + std::string(1000, 'a') + "!");
   diagnostics.report(Code::notCallable, SourceRange{other, 1001, 1002})
