@@ -21,7 +21,7 @@ void checkOptions(const RenderOptions &options) {
   checkRange("height", options.height, 1, 65536);
   checkRange("number of samples per pixel", options.samplesPerPixel, 1, 0xfffffffe);
   // Each level of trace takes stack of the thread.
-  checkRange("depth", options.maxDepth, 0, 256);
+  checkRange("depth", options.maxDepth, 0, maxRayDepth);
 }
 
 unsigned threadCount(const RenderOptions &options) {

@@ -14,6 +14,9 @@ enum class Traversal : std::uint8_t {
   Device, // the one that GPUs run
 };
 
+/// The largest limit of depth.
+constexpr std::uint32_t maxRayDepth = 256;
+
 struct RenderOptions {
   std::uint32_t width = 960, height = 540;
   std::uint32_t samplesPerPixel = 16;

@@ -165,7 +165,8 @@ std::string toPtx(LlvmCode code) {
 std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   LlvmCode code = translate(ir, gpuOptions(options));
   for (llvm::Function &function : *code.module)
-    if (function.getName().ends_with("_first")) // no scene, so nothing begins anywhere
+    if (function.getName().ends_with("_first") || function.getName().starts_with("rtsl_ray"))
+      // no scene, so nothing begins anywhere
       function.setLinkage(llvm::GlobalValue::InternalLinkage);
     else
       function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them
@@ -283,13 +284,7 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   return cpp::print(module, printing, diagnostics);
 }
 
-std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options,
-                                         ReportFormat format, Diagnostics &diagnostics) {
-  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
-  const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, diagnostics, *context);
-  if (!ir)
-    return std::nullopt;
-  const SplitReport report = runToSsa(*ir, TraceMode::Split);
+static std::string write(const SplitReport &report, ReportFormat format) {
   switch (format) {
   case ReportFormat::Json: return toJson(report);
   case ReportFormat::Dot: return toDot(report);
@@ -297,6 +292,15 @@ std::optional<std::string> explainStates(const typed::Module &module, const Comp
   case ReportFormat::Text: break;
   }
   return toText(report);
+}
+
+std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options,
+                                         ReportFormat format, Diagnostics &diagnostics) {
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, diagnostics, *context);
+  if (!ir)
+    return std::nullopt;
+  return write(runToSsa(*ir, TraceMode::Split), format);
 }
 
 void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics) {
@@ -366,6 +370,19 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
   linkDeviceCode(code, megakernelCode(/*forGpu=*/false), {"rtsl_lane_bytes", "rtsl_run_lane"});
   codegen::optimize(*code.module, *code.machine, code.options);
   return codegen::printLlvm(*code.module);
+}
+
+std::optional<std::string> explainSceneStates(const typed::Module &module, const LinkRequest &request, std::uint32_t maxDepth,
+                                              const CompileOptions &options, ReportFormat format,
+                                              Diagnostics &diagnostics) {
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  runtime::Program program;
+  const auto ir = linkScene(module, request, options, diagnostics, *context, program);
+  if (!ir)
+    return std::nullopt;
+  SplitReport report = runToSsa(*ir, TraceMode::Split);
+  report.maxDepth = maxDepth;
+  return write(report, format);
 }
 
 bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,

@@ -78,6 +78,11 @@ enum class ReportFormat : std::uint8_t { Text, Json, Dot, Svg };
 std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options,
                                          ReportFormat format, Diagnostics &diagnostics);
 
+/// The same for the linked program of a scene, with its limit of depth.
+std::optional<std::string> explainSceneStates(const typed::Module &module, const LinkRequest &request, std::uint32_t maxDepth,
+                                              const CompileOptions &options, ReportFormat format,
+                                              Diagnostics &diagnostics);
+
 /// Splits the module at `trace` and warns where more than `largeLiveState` bytes are saved: -Wlive-state. Does nothing
 /// if that warning is off, or if the module cannot be lowered.
 void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics);

@@ -16,13 +16,15 @@ std::string runtimeFunction(mlir::Operation *op) {
       })
       .Case([](ir::TraceOp) { return "rtsl_trace"; })
       .Case([](ir::TracePayloadOp) { return "rtsl_trace_payload"; })
-      .Case([](ir::SpawnPayloadOp) { return "rtsl_spawn_payload"; })
+      .Case([](ir::SpawnPayloadOp spawn) {
+        return spawn.getLast() ? "rtsl_spawn_last_payload" : "rtsl_spawn_payload";
+      })
       .Case([](ir::RaiseOp) { return "rtsl_raise"; })
       .Case([](ir::PrintOp) { return "rtsl_print"; })
       .Case([](ir::HitOp) { return "rtsl_hit"; })
       .Case([](ir::RandOp) { return "rtsl_rand"; })
       .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
-      .Case([](ir::SpawnOp) { return "rtsl_spawn"; })
+      .Case([](ir::SpawnOp spawn) { return spawn.getLast() ? "rtsl_spawn_last" : "rtsl_spawn"; })
       .Case([](ir::TraceResultOp) { return "rtsl_trace_result"; })
       .Default([](mlir::Operation *) { return ""; });
 }

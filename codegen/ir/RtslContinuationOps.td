@@ -93,33 +93,36 @@ def Rtsl_FrameObjectOp : Rtsl_Op<"frame_object", [Pure, Rtsl_Named]> {
 def Rtsl_SpawnOp : Rtsl_Op<"spawn", []> {
   let summary = "prepares the ray that is traced when this state ends";
   let description = [{
-    Followed by the end of the state, with `rtsl.next trace`.
+    Followed by the end of the state, with `rtsl.next trace`. With `last` the ray takes the place of the one that sends it:
+    then `rtsl.next last` follows, and nobody comes back here.
 
     Example: `rtsl.spawn %origin, %direction`
   }];
-  let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction);
-  let assemblyFormat = "$origin `,` $direction attr-dict";
+  let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, UnitAttr:$last);
+  let assemblyFormat = "$origin `,` $direction (`last` $last^)? attr-dict";
 }
 
 def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
   let summary = "prepares a ray with a payload, which is traced when this state ends";
   let description = [{
-    Takes what `rtsl.trace_payload` does. The payload lies in the frame.
+    Takes what `rtsl.trace_payload` does. The payload lies in the frame; with `last` it is the one that the ray which sends
+    this one was given itself, see `rtsl.spawn`.
 
     Example: `rtsl.spawn_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
   }];
   let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, F32:$tmin, F32:$tmax,
                        Rtsl_PtrToStruct:$payload, Optional<I32>:$root,
                        Optional<I32>:$mask, Optional<F32>:$time, OptionalAttr<I32Attr>:$ray_type,
-                       OptionalAttr<I32Attr>:$how);
+                       OptionalAttr<I32Attr>:$how, UnitAttr:$last);
   let assemblyFormat = [{
     $origin `,` $direction `from` $tmin `to` $tmax `carries` $payload (`root` $root^)? (`mask` $mask^)? (`time` $time^)?
-    attr-dict `:` type($payload)
+    (`last` $last^)? attr-dict `:` type($payload)
   }];
 }
 
 def Rtsl_Transition : I32Enum<"Transition", "what happens when a state ends", [
-    I32EnumCase<"Done", 0, "done">, I32EnumCase<"Trace", 1, "trace">, I32EnumCase<"Jump", 2, "jump">]> {
+    I32EnumCase<"Done", 0, "done">, I32EnumCase<"Trace", 1, "trace">, I32EnumCase<"Jump", 2, "jump">,
+    I32EnumCase<"Last", 3, "last">]> {
   let cppNamespace = "::rtsl::ir";
 }
 
@@ -127,8 +130,8 @@ def Rtsl_NextOp : Rtsl_Op<"next", [Pure]> {
   let summary = "what comes after this state, as a number";
   let description = [{
     `done`: the method is over. `trace @s`: the spawned ray is traced, then state `@s` runs. `jump @s`: state `@s` runs at
-    once. Numbers are given when the program is complete: 0 for done, the number of the state for `trace`, its negative for
-    `jump`.
+    once. `last`: the spawned ray is traced and the method is over, all in one. Numbers are given when the program is
+    complete: 0 for done, the number of the state for `trace`, its negative for `jump`, RTSL_NEXT_LAST for `last`.
 
     Example: `%next = rtsl.next trace @Glass.shade.state1`
   }];

@@ -59,8 +59,9 @@ void FrameObjectOp::getAsmResultNames(mlir::OpAsmSetValueNameFn setName) {
 }
 
 LogicalResult NextOp::verify() {
-  if (getState().has_value() == (getTransition() == Transition::Done))
-    return emitOpError() << "names a state for `trace` and `jump`, and none for `done`";
+  const bool wantsState = getTransition() == Transition::Trace || getTransition() == Transition::Jump;
+  if (getState().has_value() != wantsState)
+    return emitOpError() << "names a state for `trace` and `jump`, and none for `done` and `last`";
   return mlir::success();
 }
 

@@ -261,7 +261,9 @@ void rtsl_generate(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sa
 //===----------------------------------------------------------------------===//
 
 /// Defined by the compiled program: runs a state on the frame of its ray. Returns what comes next: 0, the method is over;
-/// n > 0, trace the ray that was spawned, then run state n; -n < 0, run state n at once.
+/// n > 0, trace the ray that was spawned, then run state n; -n < 0, run state n at once; RTSL_NEXT_LAST, trace the ray that
+/// was spawned in the place of this one, which is over.
+#define RTSL_NEXT_LAST (-2147483647 - 1)
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame);
 
 /// Defined by the compiled program: bytes of its largest frame, a multiple of 4.
@@ -282,6 +284,20 @@ void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float
 void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float tmin,
                         float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
                         uint32_t how);
+
+/// The same for a trace behind which nothing happens: the ray takes the place of the one that sends it.
+void rtsl_spawn_last(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz);
+void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz, float tmin,
+                             float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
+                             uint32_t how);
+
+/// Defined by the compiled program, for the bound of the stack (runtime/device/StackBound.h): how many kinds of rays there
+/// are, at most RTSL_MAX_RAY_KINDS. Kind 0 are those without a payload, kind n those of payload type n; `generate`, if the
+/// program has it, is the last. And, as bits, the kinds that the programs of one may send and come back from, or send last.
+#define RTSL_MAX_RAY_KINDS 32
+int32_t rtsl_ray_kinds(RtslState *state);
+int32_t rtsl_rays_sent(RtslState *state, int32_t kind);
+int32_t rtsl_rays_sent_last(RtslState *state, int32_t kind);
 
 /// Second half: the color that came back, colorComponents floats.
 const float *rtsl_trace_result(RtslState *parent);

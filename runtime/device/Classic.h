@@ -152,7 +152,7 @@ inline void descend(RtslState &child, const RtslState &parent, uint32_t dimensio
   child.dimension = 0;
 }
 
-/// Makes `child` the ray that `parent` sends.
+/// Makes `child` the ray that `parent` sends. They may be the same.
 inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension, Vec3 origin,
                   Vec3 direction) {
   descend(child, parent, dimension);

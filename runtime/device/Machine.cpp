@@ -21,13 +21,25 @@ void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float d
       {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
 }
 
+void rtsl_spawn_last(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz) {
+  device::spawnInPlace(*reinterpret_cast<device::Level *>(ray), {ox, oy, oz}, {dx, dy, dz});
+}
+
+void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float dx, float dy,
+                             float dz, float tmin, float tmax, void *payload, int32_t root,
+                             uint32_t mask, float time, uint32_t rayType, uint32_t how) {
+  device::spawnInPlace(
+      *reinterpret_cast<device::Level *>(ray),
+      {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
+}
+
 const float *rtsl_trace_result(RtslState *parent) {
   return reinterpret_cast<device::Level *>(parent)->color;
 }
 
 void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
-  void *stack = rtsl_machine_stack(device::stackSize(*launch));
+  void *stack = rtsl_machine_stack(device::stackSize(launch->maxDepth));
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);
   else

@@ -7,10 +7,11 @@
 //   level 1: a ray it sent       state | ...
 //   ...
 //
-// A ray of depth d lies at level d and none is deeper than the launch allows, so maxDepth + 1
-// levels are enough, whatever shaders do. In the programs engine `generate` has level 0 and rays
-// lie one level higher. A payload lies in the frame of who sent the ray. All levels are equally
-// large, so a shader finds the ray that it sends one level up.
+// A ray behind whose last trace nothing happens gives its level to the ray that it sends: such
+// recursion is a loop. Other rays stay until theirs are back, so a ray of depth d lies at level d
+// at most, one higher above `generate`; how many levels a program needs for a limit of depth is
+// exactly what StackBound.h says. A payload lies in the frame of who sent the ray. All levels are
+// equally large, so a shader finds the ray that it sends one level up.
 //
 // Rays start, meet surfaces and end by the functions of Classic.h and Programs.h, in the order of
 // the recursive engines. Therefore the colors are the same, bit for bit.
@@ -21,6 +22,7 @@
 #include "runtime/device/Abi.h"
 #include "runtime/device/Classic.h"
 #include "runtime/device/Programs.h"
+#include "runtime/device/StackBound.h"
 
 namespace rtsl::device {
 
@@ -30,15 +32,19 @@ struct Level {
   float color[RTSL_MAX_COLOR]; // what the last trace brought back
   int32_t resume;              // the state that runs then
   RtslRef object;              // whose method runs
-  uint32_t isSpawned;          // the ray one level up is to be traced
+  uint32_t isSpawned;          // the ray one level up, or the one in this level's place, is to be traced
   uint32_t how;                // rtsl_traverse searches for a ray with a payload
 };
 
-/// Bytes of a level with its frame. Any state will do: each function of a program takes one.
-inline uint64_t levelSize(RtslState *state) {
-  uint64_t frame = uint32_t(rtsl_frame_size(state));
+/// Bytes of a level with its frame.
+inline uint64_t levelSize(uint64_t frame) {
   uint64_t size = sizeof(Level) + (frame > 4 ? frame : 4);
   return (size + 15) / 16 * 16;
+}
+
+/// Any state will do: each function of a program takes one.
+inline uint64_t levelSize(RtslState *state) {
+  return levelSize(uint64_t(uint32_t(rtsl_frame_size(state))));
 }
 
 inline Level *above(Level *level, uint64_t size) {
@@ -53,11 +59,16 @@ inline void *frameOf(Level *level) {
   return level + 1;
 }
 
-/// Bytes for the rays of a launch, and for `generate` below them.
-inline uint64_t stackSize(const RtslLaunch &launch) {
+/// Bytes for the rays of a sample, and for `generate` below them.
+inline uint64_t stackSize(uint32_t maxDepth) {
   RtslState none;
   bool hasGenerate = rtsl_rt_RayGeneration_generate_first(&none) != 0;
-  return (uint64_t(launch.maxDepth) + (hasGenerate ? 2 : 1)) * levelSize(&none);
+  auto sent = [&](uint32_t kind) { return uint32_t(rtsl_rays_sent(&none, int32_t(kind))); };
+  auto sentLast = [&](uint32_t kind) {
+    return uint32_t(rtsl_rays_sent_last(&none, int32_t(kind)));
+  };
+  return mostLevels(uint32_t(rtsl_ray_kinds(&none)), hasGenerate, maxDepth, sent, sentLast) *
+         levelSize(&none);
 }
 
 inline void spawnAbove(Level &parent, Vec3 origin, Vec3 direction) {
@@ -79,6 +90,26 @@ inline void spawnAbove(Level &parent, const PayloadRay &ray, uint32_t how) {
   Level &child = *above(&parent, levelSize(&parent.state));
   spawn(child.state, parent.state, dimension, ray);
   child.how = how;
+}
+
+/// The ray that `level`'s sends takes its place. Where it may not be sent, what it would have
+/// brought back is what the launch's limit of depth says: no color, and the payload as it is.
+inline void spawnInPlace(Level &level, Vec3 origin, Vec3 direction) {
+  uint32_t dimension;
+  level.isSpawned = maySpawn(level.state, &dimension);
+  if (level.isSpawned)
+    spawn(level.state, level.state, dimension, origin, direction);
+  else
+    setColor(level.state.SampleColor, rtsl_color_components(level.state.launch), 0);
+}
+
+inline void spawnInPlace(Level &level, const PayloadRay &ray, uint32_t how) {
+  uint32_t dimension;
+  level.isSpawned = maySpawn(level.state, &dimension);
+  if (!level.isSpawned)
+    return;
+  spawn(level.state, level.state, dimension, ray);
+  level.how = how;
 }
 
 /// `begin` for a ray with a payload.
@@ -117,7 +148,7 @@ struct Rays {
   static constexpr int32_t trace = -1; // what it meets is to be found
 };
 
-/// Starts a sample, on a stack of stackSize(launch) bytes: with `generate` if the program has it,
+/// Starts a sample, on a stack of stackSize(maxDepth) bytes: with `generate` if the program has it,
 /// or else with the camera's ray.
 inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
                       uint32_t index) {
@@ -157,6 +188,10 @@ inline void runState(Rays &rays, int32_t number) {
   int32_t after = rtsl_run_state(&level.state, number, level.object, frameOf(&level));
   if (after == 0) {
     endRay(rays);
+  } else if (after == RTSL_NEXT_LAST) {
+    rays.next = Rays::trace;
+    if (!level.isSpawned)
+      endRay(rays);
   } else if (after < 0) {
     rays.next = -after;
   } else {
@@ -168,7 +203,14 @@ inline void runState(Rays &rays, int32_t number) {
   }
 }
 
-/// One sample of one pixel on a stack of stackSize(launch) bytes.
+/// What follows the last state of a sample.
+inline void endSample(Rays &rays) {
+  RtslState &state = rays.bottom->state;
+  state.Depth = state.launch->rayGeneration ? -1 : 0; // if a ray has taken its place
+  endEvents(state);
+}
+
+/// One sample of one pixel on a stack of stackSize(maxDepth) bytes.
 inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index,
                        void *stack, float *color) {
   Rays rays;
@@ -180,7 +222,7 @@ inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_
     else
       runState(rays, rays.next);
   }
-  endEvents(rays.bottom->state);
+  endSample(rays);
   copyColor(color, rays.bottom->state.SampleColor, rtsl_color_components(&launch));
 }
 

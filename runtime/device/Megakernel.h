@@ -25,9 +25,7 @@ struct alignas(16) Lane {
 constexpr int32_t nothingLeft = -2;
 
 inline uint64_t laneBytes(uint32_t maxDepth) {
-  RtslLaunch launch;
-  launch.maxDepth = maxDepth;
-  return sizeof(Lane) + stackSize(launch);
+  return sizeof(Lane) + stackSize(maxDepth);
 }
 
 /// Adds the color of a sample that is over to its pixel. A color that is not finite counts as black,
@@ -74,8 +72,8 @@ inline void nextSample(const RtslJob &job, Lane &lane, Rays &rays) {
             lane.sample);
 }
 
-inline void endSample(const RtslJob &job, Lane &lane, const Rays &rays) {
-  endEvents(rays.bottom->state);
+inline void endSample(const RtslJob &job, Lane &lane, Rays &rays) {
+  endSample(rays);
   addSample(job, lane, rays.bottom->state.SampleColor);
   if (++lane.sample == job.samplesPerPixel)
     writePixel(job, lane);

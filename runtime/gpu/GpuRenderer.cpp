@@ -71,7 +71,7 @@ Image renderOnGpu(const Package &package, const RenderOptions &options, unsigned
   RtslJob job{};
   job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
   job.status = reinterpret_cast<RtslStatus *>(status);
-  job.laneBytes = package.laneBytesFor(options.maxDepth);
+  job.laneBytes = package.laneBytes[options.maxDepth];
   job.pixels = reinterpret_cast<float *>(pixels);
   job.samplesPerPixel = options.samplesPerPixel;
   gpu.laneBytes = job.laneBytes;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 1;
+constexpr std::uint32_t formatVersion = 2;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -29,9 +29,10 @@ struct Header {
 };
 static_assert(sizeof(Header) == 64);
 
-enum class SectionKind : std::uint32_t { Info = 1, Ptx, HostCode, Scene, Pointers };
+enum class SectionKind : std::uint32_t { Info = 1, Ptx, HostCode, Scene, Pointers, LaneBytes };
 constexpr SectionKind allKinds[] = {SectionKind::Info, SectionKind::Ptx, SectionKind::HostCode,
-                                    SectionKind::Scene, SectionKind::Pointers};
+                                    SectionKind::Scene, SectionKind::Pointers,
+                                    SectionKind::LaneBytes};
 
 struct Section {
   std::uint32_t kind;
@@ -52,10 +53,9 @@ struct Info {
   Layouts layouts;
   std::uint32_t width, height, samplesPerPixel, maxDepth, seed;
   std::uint32_t stateCount, frameBytes, reserved;
-  std::uint64_t laneBytes, levelBytes;
   std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
 };
-static_assert(sizeof(Info) == 96);
+static_assert(sizeof(Info) == 80);
 
 std::string_view bytesOf(const void *data, std::size_t size) {
   return {static_cast<const char *>(data), size};
@@ -84,8 +84,6 @@ Info infoOf(const Package &package) {
   info.seed = package.options.seed;
   info.stateCount = package.stateCount;
   info.frameBytes = package.frameBytes;
-  info.laneBytes = package.laneBytes;
-  info.levelBytes = package.levelBytes;
   info.hostLaneBytes = package.host.laneBytes;
   info.hostRunLane = package.host.runLane;
   return info;
@@ -99,7 +97,8 @@ std::string serialize(const Package &package) {
       bytesOf(&info, sizeof info), package.ptx,
       bytesOf(package.host.bytes.data(), package.host.bytes.size()),
       bytesOf(package.scene.bytes.data(), package.scene.bytes.size()),
-      bytesOf(package.scene.pointers.data(), package.scene.pointers.size() * 8)};
+      bytesOf(package.scene.pointers.data(), package.scene.pointers.size() * 8),
+      bytesOf(package.laneBytes.data(), sizeof package.laneBytes)};
   constexpr std::size_t count = std::size(contents);
   static_assert(count == std::size(allKinds));
 
@@ -212,8 +211,10 @@ private:
     package.options.seed = info.seed;
     package.stateCount = info.stateCount;
     package.frameBytes = info.frameBytes;
-    package.laneBytes = info.laneBytes;
-    package.levelBytes = info.levelBytes;
+    const std::string_view laneBytes = content(SectionKind::LaneBytes);
+    if (laneBytes.size() != sizeof package.laneBytes)
+      refuseDamaged();
+    std::memcpy(package.laneBytes.data(), laneBytes.data(), sizeof package.laneBytes);
     package.host.laneBytes = info.hostLaneBytes;
     package.host.runLane = info.hostRunLane;
     const std::uint64_t code = content(SectionKind::HostCode).size();

@@ -9,6 +9,7 @@
 #include "runtime/FlatScene.h"
 #include "runtime/RenderOptions.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -26,17 +27,12 @@ struct Package {
   std::string compiler; // "rtslc 0.1.0", at most 31 bytes
   RenderOptions options; // the scene's own size, samples, depth and seed
   std::uint32_t stateCount = 0, frameBytes = 0; // of the largest frame
-  std::uint64_t laneBytes = 0;  // of a lane for camera rays alone
-  std::uint64_t levelBytes = 0; // for each level of depth beyond
+  /// What rtsl_lane_bytes of its code says, for each limit of depth from 0 on.
+  std::array<std::uint32_t, maxRayDepth + 1> laneBytes{};
 
   std::string ptx;
   NativeImage host;
   FlatScene scene; // not relocated
-
-  /// What rtsl_lane_bytes of its code says.
-  std::uint64_t laneBytesFor(std::uint32_t maxDepth) const {
-    return laneBytes + maxDepth * levelBytes;
-  }
 };
 
 /// The same package gives the same bytes.

@@ -61,7 +61,7 @@ void report(const Options &options, const runtime::Package &package, const runti
                " \"states\": {}, \"frameBytes\": {}, \"laneBytes\": {}",
                render.width, render.height, render.samplesPerPixel, render.seed, render.maxDepth,
                statistics.renderSeconds, rate, statistics.badRays, statistics.samplesNotFinite, package.stateCount,
-               package.frameBytes, package.laneBytesFor(render.maxDepth));
+               package.frameBytes, package.laneBytes[render.maxDepth]);
     if (gpu)
       fmt::print(",\n \"registers\": {}, \"localBytes\": {}, \"blocks\": {}, \"threadsPerBlock\": {},\n"
                  " \"loadSeconds\": {}, \"uploadSeconds\": {}",

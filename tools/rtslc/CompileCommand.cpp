@@ -38,11 +38,6 @@ struct CompileCommandOptions {
   bool lineDirectives = false;
 };
 
-bool isScene(const std::string &file) {
-  const std::string extension = ".json";
-  return file.size() > extension.size() && file.compare(file.size() - extension.size(), extension.size(), extension) == 0;
-}
-
 /// The text of the asked stage of a whole scene; nothing if there were errors.
 std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages,
                                           std::vector<std::string> &filesRead) {

@@ -47,8 +47,8 @@ void packScene(const PackOptions &options, Messages &messages) {
   package.scene = runtime::flatten(scene);
 
   const runtime::NativeCode code(package.host);
-  package.laneBytes = code.entries().laneBytes(0);
-  package.levelBytes = code.entries().laneBytes(1) - package.laneBytes;
+  for (std::uint32_t depth = 0; depth < package.laneBytes.size(); ++depth)
+    package.laneBytes[depth] = static_cast<std::uint32_t>(code.entries().laneBytes(depth));
 
   const std::string bytes = runtime::serialize(package);
   runtime::writeFileAtomically(options.output, bytes);

@@ -9,6 +9,11 @@
 
 namespace rtsl::tool {
 
+bool isScene(const std::string &file) {
+  const std::string extension = ".json";
+  return file.size() > extension.size() && file.compare(file.size() - extension.size(), extension.size(), extension) == 0;
+}
+
 namespace {
 
 /// Says which classes of the scene no file has, before any code is made.

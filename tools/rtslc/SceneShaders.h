@@ -10,6 +10,9 @@
 
 namespace rtsl::tool {
 
+/// Whether a file is a scene, and no shaders.
+bool isScene(const std::string &file);
+
 /// Reads and checks the files that the scene imports; null if there were errors. They find what they include in the scene's
 /// folder too. `filesRead`, if asked for, gets the scene and all shader files.
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CommonOptions &options,

@@ -2,13 +2,15 @@
 //
 // Makes the frame a parameter and numbers the states, and adds what runtime/device/Machine.h calls:
 //
-//   func @rtsl_run_state(%state: i32, %object, %frame) -> i32     runs a state and gives what comes
-//   next func @rtsl_frame_size() -> i32                                bytes of the largest frame
-//   func @rtsl_rt_Material_shade_first() -> i32                   the state in which an entry
-//   begins
+//   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, gives what comes next
+//   func @rtsl_frame_size() -> i32                              bytes of the largest frame
+//   func @rtsl_rt_Material_shade_first() -> i32                 the state in which an entry begins
+//   func @rtsl_rays_sent(%kind: i32) -> i32                     what bounds the stack (RayGraph.h)
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/RayGraph.h"
 #include "codegen/passes/continuation/Steps.h"
+#include "runtime/device/Abi.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
@@ -37,6 +39,7 @@ private:
   mlir::LogicalResult number(ir::NextOp next);
   FuncOp makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type> inputs);
   void makeConstant(llvm::StringRef name, std::int32_t value);
+  void makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values);
   void makeRunState();
 
   mlir::Value constant(mlir::Location location, std::int32_t value) {
@@ -116,8 +119,8 @@ void Dispatcher::passFrame(FuncOp state) {
 }
 
 mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
-  std::int32_t value = 0;
-  if (next.getTransition() != ir::Transition::Done) {
+  std::int32_t value = next.getTransition() == ir::Transition::Last ? RTSL_NEXT_LAST : 0;
+  if (next.getState()) {
     value = numbers.lookup(*next.getState());
     if (value == 0)
       return next.emitOpError() << "names `" << *next.getState() << "`, which is no state";
@@ -143,6 +146,29 @@ void Dispatcher::makeConstant(llvm::StringRef name, std::int32_t value) {
   makeFunction(name, {});
   mlir::Location location = builder.getUnknownLoc();
   mlir::func::ReturnOp::create(builder, location, constant(location, value));
+}
+
+/// @name(%index: i32) -> i32: one of the values; 0 where there is none.
+void Dispatcher::makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values) {
+  mlir::Location location = builder.getUnknownLoc();
+  FuncOp function = makeFunction(name, {builder.getI32Type()});
+  mlir::Block *entry = &function.getBody().front();
+  mlir::Block *end = function.addBlock();
+  mlir::Value value = end->addArgument(builder.getI32Type(), location);
+  builder.setInsertionPointToEnd(end);
+  mlir::func::ReturnOp::create(builder, location, value);
+  builder.setInsertionPointToEnd(entry);
+  llvm::SmallVector<std::int32_t> indices;
+  llvm::SmallVector<mlir::Value> constants;
+  for (auto [index, one] : llvm::enumerate(values)) {
+    indices.push_back(static_cast<std::int32_t>(index));
+    constants.push_back(constant(location, static_cast<std::int32_t>(one)));
+  }
+  mlir::Value none = constant(location, 0);
+  llvm::SmallVector<mlir::Block *> blocks(indices.size(), end);
+  llvm::SmallVector<mlir::ValueRange> operands(constants.begin(), constants.end());
+  mlir::cf::SwitchOp::create(builder, location, entry->getArgument(0), end, mlir::ValueRange(none),
+                             llvm::ArrayRef<std::int32_t>(indices), blocks, operands);
 }
 
 /// A switch over all states. A number that is none ends the method.
@@ -178,6 +204,7 @@ void Dispatcher::makeRunState() {
 }
 
 mlir::LogicalResult Dispatcher::run() {
+  const RayGraph rays = findRays(module);
   std::int32_t frameSize = 0;
   std::map<std::string, std::int32_t> entries;
   for (llvm::StringRef name : machineEntries())
@@ -209,6 +236,14 @@ mlir::LogicalResult Dispatcher::run() {
   makeConstant("rtsl_frame_size", frameSize);
   for (const auto &[name, number] : entries)
     makeConstant(name, number);
+  llvm::SmallVector<std::uint32_t> sent, sentLast;
+  for (const RayGraph::Kind &kind : rays.kinds) {
+    sent.push_back(kind.sent);
+    sentLast.push_back(kind.sentLast);
+  }
+  makeConstant("rtsl_ray_kinds", static_cast<std::int32_t>(rays.kinds.size()));
+  makeTable("rtsl_rays_sent", sent);
+  makeTable("rtsl_rays_sent_last", sentLast);
   return mlir::success();
 }
 

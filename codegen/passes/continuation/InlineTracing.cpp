@@ -31,7 +31,8 @@ llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
                         .walk([&](mlir::Operation *op) {
                           auto call = llvm::dyn_cast<CallOp>(op);
                           bool here =
-                              llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp>(op) ||
+                              llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp, ir::SpawnOp,
+                                        ir::SpawnPayloadOp>(op) ||
                               (call && tracing.contains(symbols.lookup(call.getCallee())));
                           return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
                         })

@@ -78,7 +78,7 @@ void insertSuspends(FuncOp function) {
     ir::SpawnPayloadOp::create(builder, trace.getLoc(), trace.getOrigin(), trace.getDirection(),
                                trace.getTmin(), trace.getTmax(), trace.getPayload(),
                                trace.getRoot(), trace.getMask(), trace.getTime(),
-                               trace.getRayTypeAttr(), trace.getHowAttr());
+                               trace.getRayTypeAttr(), trace.getHowAttr(), /*last=*/nullptr);
     trace.erase();
   }
 }

@@ -45,6 +45,11 @@ RTSL_FUNCTION_STEP(InsertSuspendsPass, "rtsl-insert-suspends", "ends blocks at t
   insertSuspends(function);
   return mlir::success();
 })
+RTSL_FUNCTION_STEP(LastTracesPass, "rtsl-last-traces",
+                   "gives the place of a ray to the last that it sends", {
+                     endAtLastTraces(function);
+                     return mlir::success();
+                   })
 RTSL_FUNCTION_STEP(FrameObjectsPass, "rtsl-frame-objects",
                    "moves variables that outlive a trace to the frame", {
                      moveVariablesToFrame(function);
@@ -112,6 +117,16 @@ struct InlineTracingPass : ModuleStep<InlineTracingPass> {
   mlir::LogicalResult step(mlir::ModuleOp module) { return inlineTracingCalls(module); }
 };
 
+struct TrimPayloadsPass : ModuleStep<TrimPayloadsPass> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(TrimPayloadsPass)
+  static constexpr llvm::StringLiteral argument = "rtsl-trim-payloads";
+  static constexpr llvm::StringLiteral description = "takes fields out of payloads that nobody reads";
+  mlir::LogicalResult step(mlir::ModuleOp module) {
+    trimPayloads(module);
+    return mlir::success();
+  }
+};
+
 struct SplitStatesPass : ModuleStep<SplitStatesPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(SplitStatesPass)
   static constexpr llvm::StringLiteral argument = "rtsl-split-states";
@@ -167,11 +182,13 @@ struct SplitPass : ModuleStep<SplitPass> {
 void registerContinuationPasses() {
   mlir::PassRegistration<InlineTracingPass>();
   mlir::PassRegistration<InsertSuspendsPass>();
+  mlir::PassRegistration<LastTracesPass>();
   mlir::PassRegistration<FrameObjectsPass>();
   mlir::PassRegistration<TrimVectorsPass>();
   mlir::PassRegistration<RematerialisePass>();
   mlir::PassRegistration<SaveLivePass>();
   mlir::PassRegistration<LayoutFramePass>();
+  mlir::PassRegistration<TrimPayloadsPass>();
   mlir::PassRegistration<SplitStatesPass>();
   mlir::PassRegistration<CleanStoresPass>();
   mlir::PassRegistration<SinkLoadsPass>();

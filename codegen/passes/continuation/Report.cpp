@@ -1,6 +1,8 @@
 //===- Report.cpp - what splitting cost and saved -------------------------===//
 #include "codegen/passes/continuation/Report.h"
 
+#include "runtime/device/Machine.h"
+
 #include "llvm/ADT/StringExtras.h"
 #include "llvm/Support/JSON.h"
 #include "llvm/Support/Path.h"
@@ -24,6 +26,40 @@ std::uint32_t SplitReport::frameSize() const {
   return size;
 }
 
+std::uint64_t SplitReport::levelBytes() const {
+  return device::levelSize(std::uint64_t(frameSize()));
+}
+
+static std::vector<std::string> namesOf(const RayGraph &rays, std::uint32_t kinds) {
+  std::vector<std::string> names;
+  for (std::size_t kind = 0; kind < rays.kinds.size(); ++kind)
+    if (kinds >> kind & 1)
+      names.push_back(rays.kinds[kind].name);
+  return names;
+}
+
+/// "rays: P waits for P, Shadow" and the like, and how large a stack follows from it.
+static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
+  for (const RayGraph::Kind &kind : report.rays.kinds) {
+    if (kind.sent == 0 && kind.sentLast == 0)
+      continue;
+    out << "rays: " << kind.name;
+    if (kind.sent != 0)
+      out << " waits for " << llvm::join(namesOf(report.rays, kind.sent), ", ");
+    if (kind.sentLast != 0)
+      out << (kind.sent != 0 ? ", and" : "") << " gives its place to "
+          << llvm::join(namesOf(report.rays, kind.sentLast), ", ");
+    out << "\n";
+  }
+  for (const continuation::TrimmedPayload &trimmed : report.trimmed)
+    out << "payload " << trimmed.payload << ": not passed, for nobody there reads it, "
+        << llvm::join(trimmed.fields, ", ") << "\n";
+  const std::uint32_t levels = report.rays.levels(report.maxDepth);
+  out << "stack: " << levels << (levels == 1 ? " level" : " levels") << " of "
+      << report.levelBytes() << " bytes for rays as deep as " << report.maxDepth << ", "
+      << (report.rays.grows() ? "more if that is larger" : "and no more if that is larger") << "\n";
+}
+
 static std::string list(const std::vector<std::string> &names) {
   return names.empty() ? "" : ": " + llvm::join(names, ", ");
 }
@@ -35,6 +71,9 @@ std::string toText(const SplitReport &report) {
     out << function.name << ": " << function.states.size()
         << (function.states.size() == 1 ? " state" : " states") << ", frame of "
         << function.frame.size << " bytes\n";
+    for (const TracePlace &last : function.lastTraces)
+      out << "  trace" << (last.text().empty() ? "" : " at " + last.text())
+          << ", the last: its ray takes the place of this one, so recursion runs as a loop\n";
     for (const TraceReport &trace : function.traces) {
       const std::string place = trace.place.text();
       out << "  trace" << (place.empty() ? "" : " at " + place) << ", resumes at "
@@ -45,6 +84,8 @@ std::string toText(const SplitReport &report) {
       if (trace.rematerialisedCost != 0)
         out << " (about " << trace.rematerialisedCost << " instructions)";
       out << "\n";
+      if (trace.onlyScalesAndAdds)
+        out << "    then           sums and products alone\n";
     }
     for (const continuation::FrameSlot &slot : function.frame.slots) {
       out << "  slot " << slot.offset;
@@ -55,6 +96,8 @@ std::string toText(const SplitReport &report) {
       out << slot.name << (slot.isObject ? " (an object)" : "") << "\n";
     }
   }
+  if (!report.functions.empty())
+    writeRays(out, report);
   return text;
 }
 
@@ -71,6 +114,29 @@ std::string toJson(const SplitReport &report) {
   json.object([&] {
     json.attribute("version", 1);
     json.attribute("frameSize", report.frameSize());
+    json.attributeObject("stack", [&] {
+      const std::uint32_t levels = report.rays.levels(report.maxDepth);
+      json.attribute("depth", report.maxDepth);
+      json.attribute("levels", levels);
+      json.attribute("levelBytes", report.levelBytes());
+      json.attribute("bytes", levels * report.levelBytes());
+      json.attribute("growsWithDepth", report.rays.grows());
+    });
+    json.attributeArray("payloads", [&] {
+      for (const continuation::TrimmedPayload &trimmed : report.trimmed)
+        json.object([&] {
+          json.attribute("name", trimmed.payload);
+          names("notPassed", trimmed.fields);
+        });
+    });
+    json.attributeArray("rays", [&] {
+      for (const RayGraph::Kind &kind : report.rays.kinds)
+        json.object([&] {
+          json.attribute("kind", kind.name);
+          names("waitsFor", namesOf(report.rays, kind.sent));
+          names("givesPlaceTo", namesOf(report.rays, kind.sentLast));
+        });
+    });
     json.attributeArray("functions", [&] {
       for (const FunctionReport &function : report.functions)
         json.object([&] {
@@ -78,6 +144,10 @@ std::string toJson(const SplitReport &report) {
           json.attribute("frameSize", function.frame.size);
           json.attribute("frameLowerBound", function.frame.lowerBound);
           names("states", function.states);
+          json.attributeArray("lastTraces", [&] {
+            for (const TracePlace &last : function.lastTraces)
+              json.value(last.text());
+          });
           json.attributeArray("traces", [&] {
             for (const TraceReport &trace : function.traces)
               json.object([&] {
@@ -89,6 +159,7 @@ std::string toJson(const SplitReport &report) {
                 names("saved", trace.saved);
                 names("rematerialised", trace.rematerialised);
                 json.attribute("rematerialisedCost", trace.rematerialisedCost);
+                json.attribute("onlyScalesAndAdds", trace.onlyScalesAndAdds);
               });
           });
           json.attributeArray("slots", [&] {

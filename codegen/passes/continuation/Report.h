@@ -1,6 +1,7 @@
 //===- Report.h - what splitting cost and saved ---------------------------===//
 #pragma once
 
+#include "codegen/passes/continuation/RayGraph.h"
 #include "codegen/passes/continuation/Steps.h"
 
 #include <cstdint>
@@ -29,17 +30,20 @@ struct TraceReport {
   std::vector<std::string> rematerialised; // of what was live; not what it is made from
   std::int64_t rematerialisedCost =
       0; // instructions, about (CostTable.h), of all that is recomputed
+  /// Nothing follows but sums and products of what came back: recursion keeps what these need.
+  bool onlyScalesAndAdds = false;
 };
 
 /// A way from the end of a state to what comes next.
 struct TransitionReport {
-  enum Kind : std::uint8_t { Trace, Jump, Done } kind;
-  std::string from, to; // states; `to` is empty for Done
+  enum Kind : std::uint8_t { Trace, Jump, Done, Last } kind;
+  std::string from, to; // states; `to` is empty for Done and Last
 };
 
 struct FunctionReport {
   std::string name;
   std::vector<TraceReport> traces;
+  std::vector<TracePlace> lastTraces; // whose ray takes the place of this one
   continuation::FrameLayout frame;
   std::vector<std::string> states;
   std::vector<TransitionReport> transitions; // in the order of `states`, none twice
@@ -47,8 +51,14 @@ struct FunctionReport {
 
 struct SplitReport {
   std::vector<FunctionReport> functions;
+  RayGraph rays;
+  std::vector<continuation::TrimmedPayload> trimmed;
+  /// The limit of depth for which the stack is shown; that of scenes that name none.
+  std::uint32_t maxDepth = 8;
   /// Bytes of the largest frame.
   std::uint32_t frameSize() const;
+  /// Bytes that a ray takes on the stack, with a frame of that size.
+  std::uint64_t levelBytes() const;
 };
 
 /// For people: a block of lines a function.

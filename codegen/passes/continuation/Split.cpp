@@ -87,6 +87,7 @@ mlir::LogicalResult FunctionSplitter::reportPlainLiveness() {
   for (const SuspendPlan &plan : *plans) {
     TraceReport trace;
     trace.place = placeOf(ir::SuspendOp(plan.suspend).getLoc());
+    trace.onlyScalesAndAdds = onlyScalesAndAdds(plan.suspend);
     trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
     describe(plan.saved, plainNames, trace.live, trace.liveBytes);
     report.traces.push_back(std::move(trace));
@@ -133,6 +134,7 @@ static void reportTransitions(FuncOp state, std::vector<TransitionReport> &trans
   static constexpr std::pair<ir::Transition, TransitionReport::Kind> kinds[] = {
       {ir::Transition::Trace, TransitionReport::Trace},
       {ir::Transition::Jump, TransitionReport::Jump},
+      {ir::Transition::Last, TransitionReport::Last},
       {ir::Transition::Done, TransitionReport::Done}};
   for (const auto &[transition, kind] : kinds) {
     llvm::StringSet<> seen;
@@ -150,6 +152,8 @@ mlir::LogicalResult FunctionSplitter::run() {
   report.name = function.getSymName().str();
 
   insertSuspends(function);
+  for (mlir::Location last : endAtLastTraces(function))
+    report.lastTraces.push_back(placeOf(last));
   moveVariablesToFrame(function);
   if (mlir::failed(check("suspend")) || mlir::failed(reportPlainLiveness()))
     return mlir::failure();
@@ -191,6 +195,11 @@ bool isRunnable(FuncOp function) {
          function.getNumArguments() == (objectOf(function) ? 1u : 0u);
 }
 
+/// A method that no class of the program has.
+bool isEmpty(FuncOp function) {
+  return llvm::isa<mlir::func::ReturnOp>(function.getBody().front().front());
+}
+
 } // namespace
 
 void keepTracingMethods(mlir::ModuleOp module) {
@@ -211,10 +220,12 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
   if (mlir::failed(inlineTracingCalls(module)))
     return false;
   codegen::Simplify simplify(module.getContext());
+  if (options.trim)
+    report.trimmed = trimPayloads(module);
   llvm::SmallVector<FuncOp> functions = tracingFunctions(module);
   for (llvm::StringRef name : machineEntries())
     if (auto entry = module.lookupSymbol<FuncOp>(name);
-        entry && !entry.isExternal() && !llvm::is_contained(functions, entry))
+        entry && !entry.isExternal() && !isEmpty(entry) && !llvm::is_contained(functions, entry))
       functions.push_back(entry);
   for (FuncOp function : functions) {
     if (!isRunnable(function))
@@ -224,6 +235,7 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
       return false;
     report.functions.push_back(std::move(ofFunction));
   }
+  report.rays = findRays(module);
   if (options.dispatch && mlir::failed(makeDispatch(module)))
     return false;
   return mlir::succeeded(mlir::verify(module));

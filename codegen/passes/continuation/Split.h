@@ -15,7 +15,7 @@ namespace rtsl {
 struct SplitOptions {
   /// Recompute what is cheaper than to save. Off: everything that is live is saved.
   bool rematerialise = true;
-  /// Save the components of vectors that are read, not all.
+  /// Save the components of vectors, and pass the fields of payloads, that are read, not all.
   bool trim = true;
   /// No stores of what a slot holds already; loads where they are used.
   bool cleanUp = true;

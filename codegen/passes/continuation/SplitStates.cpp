@@ -119,11 +119,12 @@ void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
     if (auto suspend = llvm::dyn_cast<ir::SuspendOp>(op)) {
       if (suspend.getOrigin())
         ir::SpawnOp::create(builder, op.getLoc(), mapping.lookup(suspend.getOrigin()),
-                            mapping.lookup(suspend.getDirection()));
+                            mapping.lookup(suspend.getDirection()), /*last=*/false);
       unsigned index = llvm::find(suspends, suspend) - suspends.begin();
       endState(builder, op.getLoc(), ir::Transition::Trace, stateName(index + 1));
     } else if (llvm::isa<mlir::func::ReturnOp>(op)) {
-      endState(builder, op.getLoc(), ir::Transition::Done);
+      endState(builder, op.getLoc(),
+               op.hasAttr("rtsl.last") ? ir::Transition::Last : ir::Transition::Done);
     } else {
       builder.clone(op, mapping);
     }

@@ -36,6 +36,9 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
       lines.push_back(again);
     }
   }
+  for (const TransitionReport &way : function.transitions)
+    if (way.kind == TransitionReport::Last && way.from == state)
+      lines.push_back("the last trace takes this ray's place");
   return lines;
 }
 
@@ -85,9 +88,10 @@ std::string toDot(const SplitReport &report) {
       out << "    " << quoted(state) << " [label=\"" << label << "\"];\n";
     }
     for (const TransitionReport &way : function.transitions) {
-      if (way.kind == TransitionReport::Done) {
-        const std::string end = way.from + " done";
-        out << "    " << quoted(end) << " [shape=point];\n";
+      if (way.to.empty()) {
+        const bool isLast = way.kind == TransitionReport::Last;
+        const std::string end = way.from + (isLast ? " last" : " done");
+        out << "    " << quoted(end) << (isLast ? " [shape=circle, label=\"\", width=0.12];\n" : " [shape=point];\n");
         out << "    " << quoted(way.from) << " -> " << quoted(end) << ";\n";
         continue;
       }
@@ -173,7 +177,7 @@ private:
       Way way;
       way.kind = transition.kind;
       way.from = indexOf(transition.from);
-      if (transition.kind != TransitionReport::Done) {
+      if (!transition.to.empty()) {
         way.to = indexOf(transition.to);
         if (*way.to != way.from + 1 || isTaken(way.from))
           way.track = takeTrack(std::min(way.from, *way.to), std::max(way.from, *way.to));
@@ -226,9 +230,10 @@ private:
     const Box &from = boxes[way.from];
     const int left = margin + leftSpace, right = left + boxWidth;
     if (!way.to) { // to a dot on the left
-      const int y = (from.top + from.bottom) / 2;
-      out << "<path class=\"trace\" d=\"M" << left << " " << y << "H" << margin + 12 << "\"/>\n";
-      out << "<circle class=\"head\" cx=\"" << margin + 8 << "\" cy=\"" << y << "\" r=\"5\"/>\n";
+      const bool isLast = way.kind == TransitionReport::Last;
+      const int y = isLast ? from.bottom - 10 : (from.top + from.bottom) / 2;
+      out << "<path class=\"trace\" d=\"M" << left << " " << y << "H" << margin + 13 << "\"/>\n";
+      out << "<circle class=\"" << (isLast ? "ring" : "head") << "\" cx=\"" << margin + 8 << "\" cy=\"" << y << "\" r=\"5\"/>\n";
       return;
     }
     const Box &to = boxes[*way.to];
@@ -259,9 +264,9 @@ constexpr char style[] =
     "text{fill:#222}.title{font-weight:bold}.name{font-weight:bold}.detail{fill:#555}\n"
     "rect{fill:#f4f6f8;stroke:#8896a4}.first{fill:#e3eefc}\n"
     "path{fill:none;stroke:#3b6ea8;stroke-width:1.5}.jump{stroke-dasharray:5 3}\n"
-    ".head{fill:#3b6ea8;stroke:none}\n"
+    ".head{fill:#3b6ea8;stroke:none}.ring{fill:none;stroke:#3b6ea8;stroke-width:1.5}\n"
     "@media(prefers-color-scheme:dark){svg{background:#15181c}text{fill:#e6e6e6}.detail{fill:#a8b0b8}\n"
-    "rect{fill:#22272d;stroke:#5b6773}.first{fill:#22324a}path{stroke:#7fb0ea}.head{fill:#7fb0ea}}\n"
+    "rect{fill:#22272d;stroke:#5b6773}.first{fill:#22324a}path{stroke:#7fb0ea}.head{fill:#7fb0ea}.ring{stroke:#7fb0ea}}\n"
     "</style>\n";
 
 } // namespace

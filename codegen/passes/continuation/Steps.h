@@ -43,8 +43,26 @@ llvm::ArrayRef<llvm::StringLiteral> machineEntries();
 /// a message if such functions call each other in a circle.
 mlir::LogicalResult inlineTracingCalls(mlir::ModuleOp module);
 
+/// Fields of a payload that are not passed with its rays.
+struct TrimmedPayload {
+  std::string payload;
+  std::vector<std::string> fields;
+};
+
+/// TrimPayloads.cpp: takes fields out of payloads that nobody reads, and those that only the senders
+/// of rays use. Does nothing to a module that is not linked: other classes may read them.
+std::vector<TrimmedPayload> trimPayloads(mlir::ModuleOp module);
+
 /// InsertSuspends.cpp: ends blocks at their traces.
 void insertSuspends(FuncOp function);
+
+/// LastTraces.cpp: a method ends at a trace behind which nothing happens; its ray takes the place of
+/// this one. Gives where these traces stood.
+llvm::SmallVector<mlir::Location> endAtLastTraces(FuncOp function);
+
+/// LastTraces.cpp: whether nothing happens behind a trace but sums and products of what it brings
+/// back.
+bool onlyScalesAndAdds(ir::SuspendOp suspend);
 
 /// FrameObjects.cpp: variables that are still in memory and live across a trace move to the frame.
 void moveVariablesToFrame(FuncOp function);
@@ -123,9 +141,9 @@ void sinkLoads(FuncOp state);
 
 /// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in the order in which they
 /// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`,
-/// and
-/// `@f_first` for each of machineEntries(), 0 if there is no such function, and for each other
-/// exported function that was split.
+/// `@rtsl_ray_kinds` with its tables (RayGraph.h), and `@f_first` for each of machineEntries(), 0 if
+/// there is no such function or it does nothing, and for each other exported function that was
+/// split.
 mlir::LogicalResult makeDispatch(mlir::ModuleOp module);
 
 } // namespace rtsl::continuation

@@ -56,7 +56,7 @@ func.func @f() {
 // -----
 
 func.func @f() {
-  // expected-error @below {{names a state for `trace` and `jump`, and none for `done`}}
+  // expected-error @below {{names a state for `trace` and `jump`, and none for `done` and `last`}}
   %n = rtsl.next done @g
   return
 }

@@ -54,11 +54,27 @@ uint32_t traverse(RtslState *state, uint32_t) {
   return RTSL_HIT;
 }
 
+/// The stack of rays, as large as was asked for, and how far it was written.
+struct Stack {
+  static constexpr uint8_t untouched = 0xa5;
+  uint8_t *memory = nullptr; // AddressSanitizer watches its end
+  uint64_t bytes = 0;
+  uint64_t written = 0; // bytes, the most of all samples
+
+  void look() {
+    for (uint64_t i = bytes; i-- > written;)
+      if (memory[i] != untouched)
+        written = i + 1;
+  }
+} stack;
+
 void *machineStack(uint64_t bytes) {
-  // As large as was asked for and not a byte more.
-  static void *memory = nullptr;
-  std::free(memory);
-  return memory = std::aligned_alloc(16, (bytes + 15) / 16 * 16);
+  stack.look();
+  std::free(stack.memory);
+  stack.bytes = (bytes + 15) / 16 * 16;
+  stack.memory = static_cast<uint8_t *>(std::aligned_alloc(16, stack.bytes));
+  std::memset(stack.memory, Stack::untouched, stack.bytes);
+  return stack.memory;
 }
 
 /// A module of level 1 that runs, recursively or split.
@@ -167,6 +183,85 @@ std::vector<Configuration> configurations() {
           {"no clean-up", noCleanUp, false}};
 }
 
+/// A module with this `shade` and `closestHit`; a miss leaves what it finds.
+std::string mirrors(const std::string &shade, const std::string &closestHit) {
+  std::string text = R"(
+rtsl.class @A root "rt_Material" { rtsl.member_decl @m : f32 access "public" }
+func.func private @A.shade(%self: !rtsl.ref<"A">) attributes {rtsl.class = "A", rtsl.method = "shade"} {
+  %place = rtsl.state "HitPoint" : !rtsl.ptr<vector<3xf32>>
+  %p = rtsl.load %place : !rtsl.ptr<vector<3xf32>>
+  %color = rtsl.state "SampleColor" : !rtsl.ptr<vector<3xf32>>
+  %near = arith.constant 0.0 : f32
+  %far = arith.constant 9.0 : f32
+)" + shade + R"(
+  rtsl.return
+}
+func.func private @A.closestHit.P(%self: !rtsl.ref<"A">) attributes {rtsl.class = "A", rtsl.method = "closestHit.P"} {
+  %place = rtsl.state "HitPoint" : !rtsl.ptr<vector<3xf32>>
+  %p = rtsl.load %place : !rtsl.ptr<vector<3xf32>>
+  %near = arith.constant 0.0 : f32
+  %far = arith.constant 9.0 : f32
+  %own = rtsl.payload : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+)" + closestHit + R"(
+  rtsl.return
+}
+func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
+  %a = rtsl.cast_ref %o : !rtsl.ref<"rt_Material"> -> !rtsl.ref<"A">
+  func.call @A.shade(%a) : (!rtsl.ref<"A">) -> ()
+  rtsl.return
+}
+func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
+  %a = rtsl.cast_ref %o : !rtsl.ref<"rt_Material"> -> !rtsl.ref<"A">
+  func.call @A.closestHit.P(%a) : (!rtsl.ref<"A">) -> ()
+  rtsl.return
+}
+)";
+  // As linking makes them where no class has the method: they do nothing.
+  for (const char *slot :
+       {"rt_Exception_exception", "rt_Miss_miss", "rt_Miss_miss_payload",
+        "rt_RayGeneration_generate", "rt_Camera_generateRay", "rt_Primitive_computeNormal",
+        "rt_Primitive_computeTextureCoordinates", "rt_Primitive_computeDerivatives",
+        "rt_Light_illumination"})
+    text += std::string("func.func @rtsl_") + slot +
+            "(%o: !rtsl.ref<\"object\">) attributes {rtsl.export} {\n  rtsl.return\n}\n";
+  return text;
+}
+
+const std::string waiting = R"(
+  %c = rtsl.trace %p, %p : vector<3xf32>
+  %d = arith.mulf %c, %c : vector<3xf32>
+  rtsl.store %d, %color : !rtsl.ptr<vector<3xf32>>
+)";
+const std::string last = R"(
+  %c = rtsl.trace %p, %p : vector<3xf32>
+  rtsl.store %c, %color : !rtsl.ptr<vector<3xf32>>
+)";
+const std::string sendsPayload = R"(
+  %q = rtsl.var "payload" : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  %x = rtsl.field %q["x"] : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>> -> !rtsl.ptr<f32>
+  rtsl.store %far, %x : !rtsl.ptr<f32>
+  rtsl.trace_payload %p, %p from %near to %far carries %q {ray_type = 1 : i32, how = 0 : i32} : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  %y = rtsl.load %x : !rtsl.ptr<f32>
+  %c = vector.broadcast %y : f32 to vector<3xf32>
+  rtsl.store %c, %color : !rtsl.ptr<vector<3xf32>>
+)";
+const std::string passesPayload = R"(
+  %q = rtsl.var "payload" : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  rtsl.copy %own to %q : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  rtsl.trace_payload %p, %p from %near to %far carries %q {ray_type = 1 : i32, how = 0 : i32} : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  rtsl.copy %q to %own : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+)";
+const std::string waitsForPayload = R"(
+  %q = rtsl.var "payload" : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  rtsl.copy %own to %q : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  rtsl.trace_payload %p, %p from %near to %far carries %q {ray_type = 1 : i32, how = 0 : i32} : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
+  %x = rtsl.field %q["x"] : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>> -> !rtsl.ptr<f32>
+  %y = rtsl.load %x : !rtsl.ptr<f32>
+  %z = arith.addf %y, %far : f32
+  %w = rtsl.field %own["x"] : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>> -> !rtsl.ptr<f32>
+  rtsl.store %z, %w : !rtsl.ptr<f32>
+)";
+
 /// A number from the environment: more programs than every run has time for.
 unsigned asked(const char *name, unsigned otherwise) {
   const char *text = std::getenv(name);
@@ -204,6 +299,42 @@ TEST(Machine, RandomShadersGiveTheSameBitsSplitAndRecursively) {
   EXPECT_GT(raysTraced, 100 * count);
   EXPECT_GT(traces, 2 * count);
   EXPECT_GT(saved, 0u);
+}
+
+/// The stack has exactly the levels that samples use: one fewer, and memory behind it would be
+/// written (and the last test here see it, as would AddressSanitizer); one more, and none is.
+TEST(Machine, TheStackIsAsLargeAsSamplesNeed) {
+  struct Case {
+    const char *name;
+    std::string shade, closestHit;
+    uint32_t (*levels)(uint32_t depth);
+  } cases[] = {
+      {"waits", waiting, "", [](uint32_t depth) { return depth + 1; }},
+      {"last", last, "", [](uint32_t) { return 1u; }},
+      {"a payload that is passed on", sendsPayload, passesPayload,
+       [](uint32_t depth) { return depth == 0 ? 1u : 2u; }},
+      {"a payload that is waited for", sendsPayload, waitsForPayload,
+       [](uint32_t depth) { return depth + 1; }},
+      {"a payload, and no more", sendsPayload, "",
+       [](uint32_t depth) { return depth == 0 ? 1u : 2u; }},
+  };
+  for (const Case &one : cases) {
+    SCOPED_TRACE(one.name);
+    const SplitOptions options;
+    const std::string text = mirrors(one.shade, one.closestHit);
+    Program recursive(text, nullptr), split(text, &options);
+    ASSERT_TRUE(recursive && split);
+    for (uint32_t depth : {0u, 1u, 2u, 5u}) {
+      const std::vector<uint32_t> expected = recursive.render(depth);
+      stack.bytes = stack.written = 0;
+      ASSERT_EQ(expected, split.render(depth)) << depth;
+      stack.look();
+      const uint64_t level = split.report.levelBytes();
+      EXPECT_EQ(stack.bytes, one.levels(depth) * level) << depth;
+      EXPECT_EQ(split.report.rays.levels(depth), one.levels(depth)) << depth;
+      EXPECT_GT(stack.written, (one.levels(depth) - 1) * level) << depth;
+    }
+  }
 }
 
 } // namespace

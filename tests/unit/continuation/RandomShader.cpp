@@ -45,6 +45,7 @@ private:
   void method(const std::string &className, const std::string &name, bool hasPayload = false);
   std::string payloadField(const std::string &base, unsigned field);
   void tracePayload();
+  void lastTrace();
 
   std::mt19937 random;
   std::string text, className;
@@ -94,6 +95,25 @@ void Generator::tracePayload() {
     store(load(payloadField(variable, 2), "i1"), "%b" + std::to_string(below(3)), "i1");
   if (below(2))
     store(load(payloadField(variable, 3), "f32"), "%f" + std::to_string(below(3)), "f32");
+}
+
+/// A trace with whose result the method ends: of a color, or of the payload that came in.
+void Generator::lastTrace() {
+  std::string origin = vectorValue(1), direction = vectorValue(2);
+  if (!hasPayload) {
+    std::string color = emit("rtsl.trace " + origin + ", " + direction + " : " + vec3);
+    return store(color, state("SampleColor", vec3), vec3);
+  }
+  std::string from = floatValue(0), to = floatValue(1);
+  std::string variable = "%p" + std::to_string(counter++);
+  const std::string type = "!rtsl.ptr<" + payload + ">";
+  line(variable + " = rtsl.var \"payload\" : " + type);
+  line("rtsl.copy %own to " + variable + " : " + type);
+  if (below(2))
+    store(vectorValue(1), payloadField(variable, 1), vec3);
+  line("rtsl.trace_payload " + origin + ", " + direction + " from " + from + " to " + to +
+       " carries " + variable + " {ray_type = 1 : i32, how = 0 : i32} : " + type);
+  line("rtsl.copy " + variable + " to %own : " + type);
 }
 
 std::string Generator::element() {
@@ -299,6 +319,10 @@ void Generator::statement(unsigned size) {
     line("rtsl.if " + boolValue(2) + " {");
     block(size - 1);
     unsigned leave = below(8);
+    if (leave == 0 && traces > 0 && below(2)) {
+      --traces;
+      lastTrace();
+    }
     line(leave == 0                     ? "rtsl.return"
          : leave == 1 && breakable > 0  ? "rtsl.break"
          : leave == 2 && breakable == 2 ? "rtsl.continue"

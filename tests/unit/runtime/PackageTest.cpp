@@ -22,8 +22,7 @@ Package smallPackage() {
   package.options.seed = 6;
   package.stateCount = 7;
   package.frameBytes = 28;
-  package.laneBytes = 1000;
-  package.levelBytes = 900;
+  package.laneBytes[2] = 2800;
   package.ptx = ".version 6.3";
   package.host.bytes = {0xc3, 0x90, 0xc3};
   package.host.laneBytes = 0;
@@ -66,7 +65,7 @@ TEST(Package, IsReadAsItWasWritten) {
   EXPECT_EQ(read.options.seed, 6u);
   EXPECT_EQ(read.stateCount, 7u);
   EXPECT_EQ(read.frameBytes, 28u);
-  EXPECT_EQ(read.laneBytesFor(2), 2800u);
+  EXPECT_EQ(read.laneBytes, written.laneBytes);
   EXPECT_EQ(read.ptx, written.ptx);
   EXPECT_EQ(read.host.bytes, written.host.bytes);
   EXPECT_EQ(read.host.runLane, 2u);

@@ -1,0 +1,144 @@
+//===- RayGraph.cpp - which rays send which -------------------------------===//
+#include "codegen/passes/continuation/RayGraph.h"
+
+#include "codegen/ir/Rtsl.h"
+#include "runtime/device/StackBound.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+namespace {
+
+class Finder {
+public:
+  explicit Finder(mlir::ModuleOp module) : module(module) { graph.kinds.push_back({"color"}); }
+  RayGraph run();
+
+private:
+  void numberPayloads();
+  std::uint32_t payload(llvm::StringRef name, std::optional<std::uint32_t> number);
+  std::uint32_t allPayloads() const;
+  std::uint32_t kindsOf(mlir::func::FuncOp state) const;
+  void addRays(mlir::func::FuncOp state);
+
+  mlir::ModuleOp module;
+  RayGraph graph;
+};
+
+llvm::StringRef payloadName(ir::SpawnPayloadOp spawn) {
+  mlir::Type type = llvm::cast<ir::PtrType>(spawn.getPayload().getType()).getPointee();
+  return llvm::cast<ir::StructType>(type).getName();
+}
+
+bool isState(mlir::func::FuncOp function) {
+  return function->hasAttr("rtsl.state");
+}
+
+/// The kind of rays with this payload: its number in a linked program, or else the next one.
+std::uint32_t Finder::payload(llvm::StringRef name, std::optional<std::uint32_t> number) {
+  auto known = std::find_if(graph.kinds.begin() + 1, graph.kinds.end(),
+                            [&](const RayGraph::Kind &kind) { return kind.name == name; });
+  if (!number && known != graph.kinds.end())
+    return known - graph.kinds.begin();
+  const std::uint32_t kind = number.value_or(graph.kinds.size());
+  if (graph.kinds.size() <= kind)
+    graph.kinds.resize(kind + 1);
+  graph.kinds[kind].name = name.str();
+  return kind;
+}
+
+void Finder::numberPayloads() {
+  for (auto state : module.getOps<mlir::func::FuncOp>())
+    if (isState(state))
+      state.walk([&](ir::SpawnPayloadOp spawn) { payload(payloadName(spawn), spawn.getRayType()); });
+}
+
+std::uint32_t Finder::allPayloads() const {
+  const std::uint32_t end = graph.kinds.size() - (graph.hasGenerate ? 1 : 0);
+  return ((1ull << end) - 1) & ~1ull;
+}
+
+/// The kinds whose rays may run this state, as bits.
+std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
+  llvm::StringRef method;
+  if (auto name = state->getAttrOfType<mlir::StringAttr>("rtsl.method"))
+    method = name.getValue();
+  const auto [base, suffix] = method.split('.');
+  if (!suffix.empty()) {
+    for (std::size_t kind = 1; kind < graph.kinds.size(); ++kind)
+      if (graph.kinds[kind].name == suffix)
+        return 1u << kind;
+    return 0; // nobody sends such rays
+  }
+  if (base == "shade" || base == "miss")
+    return 1;
+  if (base == "generate")
+    return 1u << (graph.kinds.size() - 1);
+  // A method that has become part of its entry.
+  llvm::StringRef name = state.getSymName();
+  if (name.starts_with("rtsl_rt_Material_shade.") || name.starts_with("rtsl_rt_Miss_miss."))
+    return 1;
+  if (name.starts_with("rtsl_rt_RayGeneration_generate."))
+    return 1u << (graph.kinds.size() - 1);
+  return name.starts_with("rtsl_") || name.starts_with("dispatch.") ? allPayloads() : 0;
+}
+
+void Finder::addRays(mlir::func::FuncOp state) {
+  std::uint32_t sent = 0, sentLast = 0;
+  auto add = [&](std::uint32_t kind, bool isLast) { (isLast ? sentLast : sent) |= 1u << kind; };
+  state.walk([&](mlir::Operation *op) {
+    if (auto spawn = llvm::dyn_cast<ir::SpawnOp>(op))
+      add(0, spawn.getLast());
+    else if (auto spawn = llvm::dyn_cast<ir::SpawnPayloadOp>(op))
+      add(payload(payloadName(spawn), spawn.getRayType()), spawn.getLast());
+  });
+  const std::uint32_t from = kindsOf(state);
+  for (std::size_t kind = 0; kind < graph.kinds.size(); ++kind)
+    if (from >> kind & 1) {
+      graph.kinds[kind].sent |= sent;
+      graph.kinds[kind].sentLast |= sentLast;
+    }
+}
+
+RayGraph Finder::run() {
+  numberPayloads();
+  for (auto state : module.getOps<mlir::func::FuncOp>()) {
+    auto method = state->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    graph.hasGenerate |= isState(state) &&
+                         ((method && method.getValue() == "generate") ||
+                          state.getSymName().starts_with("rtsl_rt_RayGeneration_generate."));
+  }
+  if (graph.hasGenerate)
+    graph.kinds.push_back({"generate"});
+  if (graph.kinds.size() > RTSL_MAX_RAY_KINDS) { // as if each could send each
+    graph.kinds = {{"any", 1}};
+    return graph;
+  }
+  for (auto state : module.getOps<mlir::func::FuncOp>())
+    if (isState(state))
+      addRays(state);
+  return graph;
+}
+
+} // namespace
+
+std::uint32_t RayGraph::levels(std::uint32_t maxDepth) const {
+  return device::mostLevels(
+      kinds.size(), hasGenerate, maxDepth, [&](std::uint32_t kind) { return kinds[kind].sent; },
+      [&](std::uint32_t kind) { return kinds[kind].sentLast; });
+}
+
+bool RayGraph::grows() const {
+  // In so many steps a way that comes round has come round.
+  constexpr std::uint32_t far = 2 * RTSL_MAX_RAY_KINDS;
+  return levels(2 * far) != levels(far);
+}
+
+RayGraph findRays(mlir::ModuleOp module) {
+  return Finder(module).run();
+}
+
+} // namespace rtsl

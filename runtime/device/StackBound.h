@@ -1,0 +1,40 @@
+//===- StackBound.h - how many rays lie on the stack at once --------------===//
+//
+// A ray keeps its level while those that it has sent are under way, unless it gave the level to the
+// last of them. Which kinds of rays a kind may send is known when a program is complete, so the
+// most levels that any sample can take up is the longest way through that graph within the limit of
+// depth. It is exact: where shaders can send these rays at all, so many levels are in use.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+
+namespace rtsl::device {
+
+/// Levels for one sample. `sent(kind)` and `sentLast(kind)` are bits, a kind each (rtsl_rays_sent).
+template <typename Sent, typename SentLast>
+inline uint32_t mostLevels(uint32_t kinds, bool hasGenerate, uint32_t maxDepth, Sent sent,
+                           SentLast sentLast) {
+  // Levels from a ray of a kind on, itself included, if others may be sent `further` deep from it.
+  uint32_t levels[RTSL_MAX_RAY_KINDS], deeper[RTSL_MAX_RAY_KINDS];
+  for (uint32_t kind = 0; kind < kinds; ++kind)
+    levels[kind] = 1;
+  const uint32_t rays = maxDepth + (hasGenerate ? 1 : 0); // those of `generate` have depth 0
+  for (uint32_t further = 1; further <= rays; ++further) {
+    for (uint32_t kind = 0; kind < kinds; ++kind) {
+      deeper[kind] = 1;
+      for (uint32_t other = 0; other < kinds; ++other) {
+        if (sent(kind) >> other & 1 && deeper[kind] < levels[other] + 1)
+          deeper[kind] = levels[other] + 1;
+        if (sentLast(kind) >> other & 1 && deeper[kind] < levels[other])
+          deeper[kind] = levels[other];
+      }
+    }
+    for (uint32_t kind = 0; kind < kinds; ++kind)
+      levels[kind] = deeper[kind];
+  }
+  return levels[hasGenerate ? kinds - 1 : 0];
+}
+
+} // namespace rtsl::device
