@@ -5,13 +5,14 @@
 #   make golden   renew the expected output of the golden tests (then read the difference)
 #   make bench    build and run the benchmarks
 #   make fuzz     feed mutated inputs to the front end for TIME seconds (TARGET=scene: to the reader of scenes)
+#   make mutations break the continuation passes, and see the tests notice
 #   make numerics run the stiff and extreme cases in full, and renew their table in docs/numerics.md
 
 PRESET ?= release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 
-.PHONY: demo check build configure dependencies golden bench fuzz numerics format install clean
+.PHONY: demo check build configure dependencies golden bench fuzz mutations numerics format install clean
 
 demo: build
 	$(BUILD)/bin/rtslc render examples/glass/scene.json -o $(BUILD)/glass.png
@@ -43,6 +44,9 @@ fuzz: dependencies
 	cmake --preset fuzz $(CMAKE_FLAGS)
 	cmake --build --preset fuzz -j $(JOBS)
 	tests/fuzz/run build/fuzz $(TARGET) $(TIME)
+
+mutations: build
+	tests/mutations/run $(BUILD)
 
 numerics: build
 	tests/numerics/robustness/table $$(find $(BUILD) -type f -name numerics-robustness)

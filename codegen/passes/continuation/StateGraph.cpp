@@ -16,6 +16,10 @@ std::string shortName(const FunctionReport &function, const std::string &state) 
   return state.compare(0, prefix.size(), prefix) == 0 ? state.substr(prefix.size()) : state;
 }
 
+bool isOwn(const FunctionReport &function, const std::string &state) {
+  return std::find(function.states.begin(), function.states.end(), state) != function.states.end();
+}
+
 /// What a box says: the state, and for one behind a trace where that is and what it took along.
 std::vector<std::string> linesOf(const FunctionReport &function, const std::string &state) {
   std::vector<std::string> lines = {shortName(function, state)};
@@ -36,9 +40,14 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
       lines.push_back(again);
     }
   }
-  for (const TransitionReport &way : function.transitions)
-    if (way.kind == TransitionReport::Last && way.from == state)
+  for (const TransitionReport &way : function.transitions) {
+    if (way.from != state)
+      continue;
+    if (way.kind == TransitionReport::Last)
       lines.push_back("the last trace takes this ray's place");
+    if (!way.to.empty() && !isOwn(function, way.to))
+      lines.push_back("or goes on in " + way.to);
+  }
   return lines;
 }
 
@@ -174,6 +183,8 @@ private:
   /// Each way gets the first track in which nothing lies between its ends.
   void placeTracks() {
     for (const TransitionReport &transition : function.transitions) {
+      if (!transition.to.empty() && !isOwn(function, transition.to))
+        continue; // in another column: the box names it
       Way way;
       way.kind = transition.kind;
       way.from = indexOf(transition.from);

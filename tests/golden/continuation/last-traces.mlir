@@ -55,10 +55,11 @@ func.func @draws(%self: !rtsl.ref<"M">) {
 
 // A payload that was given is handed on: no copy, no frame.
 // CHECK-LABEL: func.func @passes
-// CHECK:         %[[OWN:.*]] = rtsl.payload
 // CHECK-NOT:     rtsl.var
-// CHECK-DAG:     %[[Y:.*]] = rtsl.field %[[OWN]]["y"]
-// CHECK-DAG:     rtsl.store %{{.*}}, %[[Y]]
+// CHECK:         rtsl.rand
+// CHECK-NEXT:    %[[OWN:.*]] = rtsl.payload
+// CHECK:         %[[Y:.*]] = rtsl.field %[[OWN]]["y"]
+// CHECK-NEXT:    rtsl.store %{{.*}}, %[[Y]]
 // CHECK:         rtsl.spawn_payload {{.*}} carries %[[OWN]] last
 // CHECK-NEXT:    return {rtsl.last}
 // REPORT-LABEL: passes: 1 state, frame of 0 bytes

@@ -96,9 +96,9 @@ TEST(Package, RefusalsSayWhy) {
   EXPECT_EQ(refusal("an ordinary text that has nothing to do with it"), "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 2;
+  newer[8] = 3;
   EXPECT_EQ(refusal(newer),
-            "`x.rtslpkg` is a package of format 2, and this program reads format 1: use a newer rtsl-run");
+            "`x.rtslpkg` is a package of format 3, and this program reads format 2: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"), std::string::npos);
   std::string damaged = whole;
   damaged[whole.size() - 1] ^= 1;
@@ -116,16 +116,16 @@ std::string forged(std::size_t offset, std::uint32_t word) {
 }
 
 TEST(Package, ContentsThatContradictEachOtherAreRefused) {
-  constexpr std::size_t sections = 64, sectionBytes = 24, info = 192;
+  constexpr std::size_t sections = 64, sectionBytes = 24, info = 256;
   EXPECT_EQ(refusal(forged(info + 32, 30)), ""); // the width, as it was
   EXPECT_NE(refusal(forged(12, 1000000)), "");   // sections
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 6; ++i) {
     EXPECT_NE(refusal(forged(sections + i * sectionBytes, 77)), "") << i;          // kind
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 8, 0x7fffffc0)), "") << i; // offset
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 16, 0x7fffffff)), "") << i; // size
   }
   EXPECT_NE(refusal(forged(info, 1)).find("rtslc 1.2.3"), std::string::npos); // layout of a launch
-  EXPECT_NE(refusal(forged(info + 80, 3)), ""); // an entry behind the code
+  EXPECT_NE(refusal(forged(info + 64, 3)), ""); // an entry behind the code
   std::uint64_t scene;
   const std::string whole = serialize(smallPackage());
   std::memcpy(&scene, &whole[sections + 3 * sectionBytes + 8], sizeof scene);
