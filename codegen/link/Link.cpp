@@ -18,6 +18,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::placeAttributes(context);
   linking::resolveSlots(context);
   linking::resolveRayTypes(context);
+  linking::warnOfEndlessRays(context);
   if (diagnostics.hasErrors())
     return false;
   linking::makeEntries(context);

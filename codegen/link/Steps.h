@@ -62,6 +62,9 @@ std::vector<RayType> numberRayTypes(mlir::ModuleOp ir);
 /// The same for a program, and finds out how hits are to be searched for. Warns where nobody answers.
 void resolveRayTypes(LinkContext &context);
 
+/// EndlessRays.cpp: warns where every material that answers a kind of rays sends another, whatever it finds.
+void warnOfEndlessRays(LinkContext &context);
+
 /// Adds the entries of runtime/device/PayloadSlots.def.
 void makePayloadSlots(LinkContext &context);
 

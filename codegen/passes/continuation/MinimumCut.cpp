@@ -105,21 +105,60 @@ std::vector<bool> Network::sourceSide(unsigned source) {
   return reached;
 }
 
+/// What is decided without a cut. A needed value that cannot be recomputed is saved; one whose
+/// operands are there anyway is recomputed if that alone is cheaper. Then it is there too, for
+/// nothing more, as is what costs nothing to recompute of such values. Of most shaders little is
+/// left.
+class Foregone {
+public:
+  explicit Foregone(const std::vector<ValueNode> &values) : isThere(values.size()) {
+    for (unsigned v = 0; v < values.size(); ++v) {
+      const ValueNode &value = values[v];
+      if (value.recomputeCost >= impossible) {
+        isThere[v] = value.needed && value.saveCost < impossible;
+        if (isThere[v])
+          cost += value.saveCost;
+        continue;
+      }
+      const bool isDecided = value.recomputeCost < value.saveCost &&
+                             std::all_of(value.operands.begin(), value.operands.end(),
+                                         [&](unsigned operand) { return isThere[operand]; });
+      isThere[v] = isDecided && (value.needed || value.recomputeCost == 0);
+      if (isThere[v] && value.needed)
+        cost += value.recomputeCost;
+    }
+  }
+
+  std::vector<bool> isThere;
+  std::int64_t cost = 0; // of those that are needed
+};
+
 } // namespace
 
 Choice chooseSaved(const std::vector<ValueNode> &values) {
-  const unsigned count = values.size(), source = 2 * count, sink = source + 1;
-  auto needed = [](unsigned value) { return 2 * value; };
-  auto recomputed = [](unsigned value) { return 2 * value + 1; };
+  const unsigned count = values.size();
+  const Foregone foregone(values);
+  std::vector<unsigned> nodeOf(count); // N(v) of those that are open; R(v) is the next
+  unsigned nodes = 2;
+  const unsigned source = 0, sink = 1;
+  for (unsigned v = 0; v < count; ++v)
+    if (!foregone.isThere[v]) {
+      nodeOf[v] = nodes;
+      nodes += 2;
+    }
 
-  Network network(2 * count + 2);
+  Network network(nodes);
   for (unsigned v = 0; v < count; ++v) {
+    if (foregone.isThere[v])
+      continue;
+    const unsigned needed = nodeOf[v], recomputed = needed + 1;
     if (values[v].needed)
-      network.connect(source, needed(v), impossible);
-    network.connect(needed(v), recomputed(v), values[v].saveCost);
-    network.connect(recomputed(v), sink, values[v].recomputeCost);
+      network.connect(source, needed, impossible);
+    network.connect(needed, recomputed, values[v].saveCost);
+    network.connect(recomputed, sink, values[v].recomputeCost);
     for (unsigned operand : values[v].operands)
-      network.connect(recomputed(v), needed(operand), impossible);
+      if (!foregone.isThere[operand])
+        network.connect(recomputed, nodeOf[operand], impossible);
   }
   std::int64_t flow = network.maximumFlow(source, sink);
 
@@ -129,11 +168,21 @@ Choice chooseSaved(const std::vector<ValueNode> &values) {
   choice.feasible = flow < impossible;
   if (!choice.feasible)
     return choice;
-  choice.cost = flow;
+  choice.cost = flow + foregone.cost;
   std::vector<bool> side = network.sourceSide(source);
-  for (unsigned v = 0; v < count; ++v) {
-    choice.recomputed[v] = side[recomputed(v)] && side[needed(v)];
-    choice.saved[v] = side[needed(v)] && !side[recomputed(v)];
+  std::vector<bool> isUsed(count);
+  for (unsigned v = count; v-- > 0;) { // operands after what they are used for
+    if (foregone.isThere[v]) {
+      const bool isWanted = values[v].needed || isUsed[v];
+      choice.recomputed[v] = isWanted && values[v].recomputeCost < impossible;
+      choice.saved[v] = isWanted && !choice.recomputed[v];
+    } else {
+      choice.recomputed[v] = side[nodeOf[v]] && side[nodeOf[v] + 1];
+      choice.saved[v] = side[nodeOf[v]] && !side[nodeOf[v] + 1];
+    }
+    if (choice.recomputed[v])
+      for (unsigned operand : values[v].operands)
+        isUsed[operand] = true;
   }
   return choice;
 }

@@ -143,6 +143,8 @@ bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendO
 }
 
 bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
+  if (free.lookup(op))
+    return true;
   if (op->getNumRegions() != 0 || op->hasTrait<mlir::OpTrait::IsTerminator>() ||
       llvm::isa<ir::FrameLoadOp>(op))
     return false;
@@ -163,7 +165,10 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
     return isConstantForLaunch(element.getBuffer());
   if (auto length = llvm::dyn_cast<ir::BufferLengthOp>(op))
     return isConstantForLaunch(length.getBuffer());
-  return mlir::isMemoryEffectFree(op);
+  auto [known, isNew] = free.try_emplace(op, false);
+  if (isNew)
+    known->second = mlir::isMemoryEffectFree(op);
+  return known->second;
 }
 
 } // namespace rtsl::continuation

@@ -52,6 +52,7 @@ private:
   FuncOp function;
   const WriteSummary &summary;
   llvm::DenseMap<std::pair<mlir::Operation *, mlir::Operation *>, bool> unchanged;
+  llvm::DenseMap<mlir::Operation *, bool> free; // of effects; asked for again at each trace
 };
 
 } // namespace rtsl::continuation

@@ -51,7 +51,8 @@ public:
       : function(function), options(options), liveness(function),
         summary(function->getParentOfType<mlir::ModuleOp>()), recompute(function, summary),
         dominance(function), loops(dominance.getDomTree(&function.getBody())),
-        object(objectOf(function)), operandNumbers(liveness.values().size()) {}
+        object(objectOf(function)), operandNumbers(liveness.values().size()),
+        costs(liveness.values().size(), -1) {}
 
   mlir::FailureOr<llvm::SmallVector<SuspendPlan>> run();
 
@@ -62,7 +63,8 @@ private:
   mlir::LogicalResult decide(ir::SuspendOp suspend, Decision &decision);
   llvm::ArrayRef<unsigned> operandsOf(unsigned value);
   std::int64_t costOfSaving(Value value, std::int64_t traceFrequency);
-  std::int64_t costOfRecomputing(Value value, ir::SuspendOp suspend, std::int64_t traceFrequency);
+  std::int64_t costOfRecomputing(unsigned number, ir::SuspendOp suspend,
+                                 std::int64_t traceFrequency);
   std::int64_t frequency(mlir::Block *block) { return loopFrequency(loops.getLoopDepth(block)); }
   void dropUnneeded(Decision &decision, const BitVector &needed);
 
@@ -75,6 +77,7 @@ private:
   mlir::CFGLoopInfo loops;
   Value object; // a parameter of every state
   std::vector<std::optional<llvm::SmallVector<unsigned, 4>>> operandNumbers; // made when asked for
+  std::vector<std::int64_t> costs; // of executing what makes a value once; -1: not asked for yet
 };
 
 llvm::ArrayRef<unsigned> Planner::operandsOf(unsigned value) {
@@ -98,14 +101,17 @@ std::int64_t Planner::costOfSaving(Value value, std::int64_t traceFrequency) {
 }
 
 /// `impossible` where saving is not dearer: then nothing that a value is made of need be looked at.
-std::int64_t Planner::costOfRecomputing(Value value, ir::SuspendOp suspend,
+std::int64_t Planner::costOfRecomputing(unsigned number, ir::SuspendOp suspend,
                                         std::int64_t traceFrequency) {
+  Value value = liveness.values()[number];
   if (options.onlyAddresses && ir::isValueType(value.getType()))
     return impossible;
   mlir::Operation *op = value.getDefiningOp();
   if (!op)
     return impossible;
-  const std::int64_t cost = recomputeCost(op) * traceFrequency;
+  if (costs[number] < 0)
+    costs[number] = recomputeCost(op);
+  const std::int64_t cost = costs[number] * traceFrequency;
   if (cost >= costOfSaving(value, traceFrequency) || !recompute.isPossible(op, suspend))
     return impossible;
   return cost;
@@ -120,8 +126,7 @@ mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
   llvm::SmallVector<unsigned> worklist(reached.set_bits_begin(), reached.set_bits_end());
   while (!worklist.empty()) {
     unsigned value = worklist.pop_back_val();
-    const std::int64_t cost =
-        costOfRecomputing(liveness.values()[value], suspend, traceFrequency);
+    const std::int64_t cost = costOfRecomputing(value, suspend, traceFrequency);
     if (cost == impossible)
       continue;
     recomputing[value] = cost;

@@ -95,6 +95,12 @@ std::string toText(const SplitReport &report) {
         out << " to " << slot.offset + slot.size << ": ";
       out << slot.name << (slot.isObject ? " (an object)" : "") << "\n";
     }
+    if (!function.traces.empty() || !function.lastTraces.empty()) {
+      if (function.endings.alwaysTraces)
+        out << "  traces on every way: the limit of depth ends it, or what its rays meet\n";
+      else if (!function.endings.by.empty())
+        out << "  traces or not by " << llvm::join(function.endings.by, " and ") << "\n";
+    }
   }
   if (!report.functions.empty())
     writeRays(out, report);
@@ -144,6 +150,8 @@ std::string toJson(const SplitReport &report) {
           json.attribute("frameSize", function.frame.size);
           json.attribute("frameLowerBound", function.frame.lowerBound);
           names("states", function.states);
+          json.attribute("alwaysTraces", function.endings.alwaysTraces);
+          names("endsBy", function.endings.by);
           json.attributeArray("lastTraces", [&] {
             for (const TracePlace &last : function.lastTraces)
               json.value(last.text());

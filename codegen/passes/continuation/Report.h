@@ -43,6 +43,7 @@ struct TransitionReport {
 struct FunctionReport {
   std::string name;
   std::vector<TraceReport> traces;
+  continuation::Endings endings;
   std::vector<TracePlace> lastTraces; // whose ray takes the place of this one
   continuation::FrameLayout frame;
   std::vector<std::string> states;

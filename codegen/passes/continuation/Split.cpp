@@ -150,6 +150,7 @@ static void reportTransitions(FuncOp state, std::vector<TransitionReport> &trans
 
 mlir::LogicalResult FunctionSplitter::run() {
   report.name = function.getSymName().str();
+  report.endings = endingsOf(function);
 
   insertSuspends(function);
   for (mlir::Location last : endAtLastTraces(function))

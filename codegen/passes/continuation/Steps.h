@@ -53,6 +53,15 @@ struct TrimmedPayload {
 /// of rays use. Does nothing to a module that is not linked: other classes may read them.
 std::vector<TrimmedPayload> trimPayloads(mlir::ModuleOp module);
 
+/// What ends a chain of rays but the limit of depth.
+struct Endings {
+  bool alwaysTraces = false;   // on every way: nothing does
+  std::vector<std::string> by; // what conditions are made of: "rand()", "its payload", "rt_Depth"
+};
+
+/// Endings.cpp: of a function that traces, before it is split.
+Endings endingsOf(FuncOp function);
+
 /// InsertSuspends.cpp: ends blocks at their traces.
 void insertSuspends(FuncOp function);
 

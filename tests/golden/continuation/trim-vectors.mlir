@@ -35,6 +35,23 @@ func.func @product(%o: vector<3xf32>, %v: vector<3xf32> loc("v")) -> f32 {
   return %x : f32
 }
 
+// Two of its components are two products.
+// CHECK-LABEL: func.func @two
+// CHECK:        rtsl.suspend %arg0, %arg0, ^bb1(%{{.*}}, %{{.*}} : f32, f32) names ["v.z", "v.x"]
+// CHECK-NEXT: ^bb1(%[[Z:.*]]: f32, %[[X:.*]]: f32):
+// CHECK-DAG:    %[[CX:.*]] = vector.extract %{{.*}}[0]
+// CHECK-DAG:    %[[CZ:.*]] = vector.extract %{{.*}}[2]
+// CHECK-DAG:    %[[PX:.*]] = arith.mulf %[[X]], %[[CX]] : f32
+// CHECK-DAG:    %[[PZ:.*]] = arith.mulf %[[Z]], %[[CZ]] : f32
+// CHECK:        return %[[PX]], %[[PZ]]
+func.func @two(%o: vector<3xf32>, %v: vector<3xf32> loc("v")) -> (f32, f32) {
+  %c = rtsl.trace %o, %o : vector<3xf32>
+  %p = arith.mulf %v, %c : vector<3xf32>
+  %x = vector.extract %p[0] : f32 from vector<3xf32>
+  %z = vector.extract %p[2] : f32 from vector<3xf32>
+  return %x, %z : f32, f32
+}
+
 // A swizzle that leaves something out is a part as well.
 // CHECK-LABEL: func.func @swizzle
 // CHECK:        rtsl.suspend %arg0, %arg0, ^bb1(%{{.*}} : vector<2xf32>)

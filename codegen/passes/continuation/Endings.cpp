@@ -1,0 +1,93 @@
+//===- Endings.cpp - what ends a chain of rays ----------------------------===//
+//
+// For the report: a program that traces on every way ends by the limit of depth alone. Others ask
+// something first: the branches are found of whose ways some lead to a trace, whatever comes, and
+// some may lead past all, and what their conditions are made of.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Steps.h"
+
+#include "mlir/IR/RegionGraphTraits.h"
+#include "mlir/Interfaces/ControlFlowInterfaces.h"
+#include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/SmallPtrSet.h"
+
+#include <algorithm>
+
+namespace rtsl::continuation {
+
+namespace {
+
+bool traces(mlir::Block &block) {
+  return llvm::any_of(block, llvm::IsaPred<ir::TraceOp, ir::TracePayloadOp>);
+}
+
+/// Blocks from whose beginning some way leads to the end of the function without a trace.
+llvm::SmallPtrSet<mlir::Block *, 16> blocksThatMayEnd(FuncOp function) {
+  llvm::SmallPtrSet<mlir::Block *, 16> mayEnd;
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (mlir::Block &block : function.getBody()) {
+      if (mayEnd.contains(&block) || traces(block))
+        continue;
+      if (block.getNumSuccessors() == 0 || llvm::any_of(block.getSuccessors(), [&](mlir::Block *next) {
+            return mayEnd.contains(next);
+          }))
+        changed |= mayEnd.insert(&block).second;
+    }
+  }
+  return mayEnd;
+}
+
+/// What a value is made of, as an author would name it; nothing if it is none of these.
+void addSources(mlir::Value value, llvm::SetVector<mlir::Value> &seen,
+                std::vector<std::string> &sources) {
+  if (!seen.insert(value))
+    return;
+  auto add = [&](const char *source) {
+    if (std::find(sources.begin(), sources.end(), source) == sources.end())
+      sources.push_back(source);
+  };
+  if (auto argument = llvm::dyn_cast<mlir::BlockArgument>(value)) {
+    for (mlir::Block *before : argument.getOwner()->getPredecessors()) {
+      auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(before->getTerminator());
+      for (unsigned i = 0; branch && i < before->getNumSuccessors(); ++i)
+        if (before->getSuccessor(i) == argument.getOwner())
+          if (mlir::Value passed = branch.getSuccessorOperands(i)[argument.getArgNumber()])
+            addSources(passed, seen, sources);
+    }
+    return;
+  }
+  mlir::Operation *op = value.getDefiningOp();
+  if (llvm::isa<ir::RandOp>(op))
+    add("rand()");
+  if (llvm::isa<ir::PayloadOp>(op))
+    add("its payload");
+  if (auto state = llvm::dyn_cast<ir::StateOp>(op); state && state.getName() == "Depth")
+    add("rt_Depth");
+  for (mlir::Value operand : op->getOperands())
+    addSources(operand, seen, sources);
+}
+
+} // namespace
+
+Endings endingsOf(FuncOp function) {
+  Endings endings;
+  const auto mayEnd = blocksThatMayEnd(function);
+  endings.alwaysTraces = !mayEnd.contains(&function.getBody().front());
+  llvm::SetVector<mlir::Value> seen;
+  for (mlir::Block &block : function.getBody()) {
+    const bool isDecision = mayEnd.contains(&block) &&
+                            llvm::any_of(block.getSuccessors(), [&](mlir::Block *next) {
+                              return !mayEnd.contains(next);
+                            });
+    if (isDecision)
+      for (mlir::Value operand : block.getTerminator()->getOperands())
+        if (operand.getType().isInteger())
+          addSources(operand, seen, endings.by);
+  }
+  return endings;
+}
+
+} // namespace rtsl::continuation
