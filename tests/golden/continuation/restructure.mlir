@@ -3,6 +3,8 @@
 // What comes out is level 1: it goes back to level 2, and there and back again it does not change any more.
 // RUN: rtsl-opt %s --rtsl-restructure --rtsl-to-cf --rtsl-restructure --split-input-file | FileCheck %s --check-prefix=AGAIN
 // AGAIN-NOT: cf.
+// AGAIN: rtsl.if
+// AGAIN-NOT: cf.
 
 // A choice, and a variable that both arms set.
 // CHECK-LABEL: @choice(
