@@ -2,6 +2,7 @@
 #include "codegen/cpp/Printer.h"
 
 #include "codegen/lower/Analysis.h"
+#include "runtime/device/math/Elementary.h"
 #include "sema/Casting.h"
 
 #include <fmt/format.h>
@@ -414,7 +415,13 @@ std::string FunctionPrinter::illuminance(const typed::IlluminanceStmt &stmt) {
     pointers.push_back(stmt.normal.get());
     pointers.push_back(stmt.angle.get());
   }
-  const std::vector<std::string> args = operands(pointers, Binding::Assignment);
+  std::vector<std::string> args = operands(pointers, Binding::Assignment);
+  if (stmt.angle)
+    if (const auto *angle = dynCast<typed::LiteralExpr>(stmt.angle.get())) {
+      constexpr float pi = 3.14159265358979323846F;
+      const float known = std::min(std::max(angle->value.scalars.front().f, 0.0F), pi);
+      args.push_back(floatText(device::cos(known)));
+    }
   return "for (rtsl::Lights lights(rt, " + join(args, ", ") + "); lights.next();)\n" + nested(stmt.body);
 }
 

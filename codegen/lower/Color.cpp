@@ -1,6 +1,7 @@
 //===- Color.cpp - colors of as many components as the target chooses -----===//
 #include "codegen/lower/Color.h"
 
+#include "codegen/lower/Library.h"
 #include "runtime/ColorBasis.h"
 
 namespace rtsl::lowering {
@@ -41,11 +42,7 @@ Num luminance(Num color) {
       weights[i] += luminanceWeights[j] * basis.toRgb[j][i];
   if (color.count() == 1)
     return color[0]; // the one component is it
-  Num products = color * constantVector(color.at(), weights);
-  Num sum = products[0];
-  for (unsigned i = 1; i < color.count(); ++i)
-    sum = sum + products[i];
-  return sum;
+  return dot(color, constantVector(color.at(), weights));
 }
 
 } // namespace rtsl::lowering

@@ -1,6 +1,8 @@
 //===- Simplify.cpp - folding over `cf` -----------------------------------===//
 #include "codegen/passes/Simplify.h"
 
+#include "codegen/passes/FoldFma.h"
+
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/IR/Dominance.h"
 #include "mlir/IR/Matchers.h"
@@ -24,6 +26,7 @@ Simplify::Simplify(mlir::MLIRContext *context) {
   for (mlir::RegisteredOperationName op : context->getRegisteredOperations())
     if (op.getDialectNamespace() != branches)
       op.getCanonicalizationPatterns(all, context);
+  addFmaFolding(all);
   patterns = mlir::FrozenRewritePatternSet(std::move(all));
 }
 

@@ -52,8 +52,12 @@ public:
   Lights(State<N> &rt, const glm::vec3 &point) : rt(rt), point(point) {}
   /// Those within `angle` (radians) of the normal.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float angle)
-      : rt(rt), point(point), normal(normal),
-        cosAngle(rtsl::cos(rtsl::clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)))) {}
+      : Lights(rt, point, normal, angle,
+               rtsl::cos(rtsl::clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)))) {}
+  /// For an angle whose cosine was known when the code was made.
+  Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float /*angle*/,
+         float cosine)
+      : rt(rt), point(point), normal(normal), cosAngle(cosine) {}
 
   /// Sets LightDirection, LightDistance and LightColor to those of the next light that reaches the
   /// point; false if there is none.

@@ -10,6 +10,7 @@
 #include "runtime/device/Abi.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -245,7 +246,7 @@ inline float luminance(const Color<N> &color) {
     }();
     float sum = color.components[0] * weights.elements[0];
     for (int i = 1; i < N; ++i)
-      sum = sum + color.components[i] * weights.elements[i];
+      sum = std::fma(color.components[i], weights.elements[i], sum);
     return sum;
   }
 }

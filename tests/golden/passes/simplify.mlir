@@ -43,3 +43,19 @@ func.func @choice(%a: i32, %b: i32) -> i32 {
 ^end(%r: i32):
   return %r : i32
 }
+
+// MLIR leaves math.fma of constants alone. (1 + 2^-23)^2 - (1 + 2^-22) is 2^-46 in one rounding, 0 in two.
+// CHECK-LABEL: func.func @fusedConstants
+// CHECK-DAG:     %[[SCALAR:.*]] = arith.constant 1.42108547E-14 : f32
+// CHECK-DAG:     %[[VECTOR:.*]] = arith.constant dense<[7.000000e+00, 1.000000e+00]> : vector<2xf32>
+// CHECK:         return %[[SCALAR]], %[[VECTOR]]
+func.func @fusedConstants() -> (f32, vector<2xf32>) {
+  %near = arith.constant 1.00000012 : f32
+  %less = arith.constant -1.00000024 : f32
+  %scalar = math.fma %near, %near, %less : f32
+  %a = arith.constant dense<[2.0, 3.0]> : vector<2xf32>
+  %b = arith.constant dense<[3.0, 0.0]> : vector<2xf32>
+  %c = arith.constant dense<1.0> : vector<2xf32>
+  %vector = math.fma %a, %b, %c : vector<2xf32>
+  return %scalar, %vector : f32, vector<2xf32>
+}

@@ -1,0 +1,14 @@
+//===- FoldFma.h - math.fma of constants ----------------------------------===//
+#pragma once
+
+namespace mlir {
+class RewritePatternSet;
+}
+
+namespace rtsl::codegen {
+
+/// Adds a pattern that computes math.fma of constants, scalars and vectors, which MLIR itself leaves
+/// alone.
+void addFmaFolding(mlir::RewritePatternSet &patterns);
+
+} // namespace rtsl::codegen
