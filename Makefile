@@ -49,7 +49,7 @@ mutations: build
 	tests/mutations/run $(BUILD)
 
 numerics: build
-	tests/numerics/robustness/table $$(find $(BUILD) -type f -name numerics-robustness)
+	tests/numerics/robustness/table $(BUILD)
 
 format:
 	git ls-files '*.cpp' '*.h' | xargs clang-format-22 -i

@@ -1,6 +1,7 @@
 //===- Main.cpp - stiff and extreme cases against their bounds ------------===//
 //
-//   numerics-robustness [ROW...] [--quick] [--json] [--bounds bounds.json]
+//   numerics-robustness [ROW...] [--quick] [--json] --bounds bounds.json          rows of the runtime
+//   numerics-shaders [ROW...] [--fp strict|fast] ...                              rows of compiled shaders
 //
 // Runs the rows whose names begin with one of the arguments, all of them if there are none. Exit status: 0 all bounds hold, 1
 // some do not, 2 wrong arguments.
@@ -14,7 +15,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 
+using rtsl::FloatingPoint;
 using namespace rtsl::numerics;
 
 namespace {
@@ -24,14 +27,14 @@ struct Options {
   std::string bounds;
   bool quick = false, json = false;
   std::uint32_t seed = 1;
+  FloatingPoint floatingPoint = FloatingPoint::Strict;
 };
 
-std::vector<Row> chosenRows(const std::vector<std::string> &names) {
+std::vector<Row> chosenRows(const Options &options) {
   std::vector<Row> rows;
-  for (const auto &family : {triangleRows(), boxRows(), spawnRows(), sumRows()})
-    for (const Row &row : family)
-      if (names.empty() || std::any_of(names.begin(), names.end(), [&](const std::string &name) { return std::string(row.name).rfind(name, 0) == 0; }))
-        rows.push_back(row);
+  for (Row &row : allRows(options.floatingPoint))
+    if (options.rows.empty() || std::any_of(options.rows.begin(), options.rows.end(), [&](const std::string &name) { return std::string(row.name).rfind(name, 0) == 0; }))
+      rows.push_back(std::move(row));
   return rows;
 }
 
@@ -42,7 +45,7 @@ int run(const Options &options) {
     fmt::print(stderr, "numerics-robustness: cannot read the bounds in `{}`\n", options.bounds);
     return 2;
   }
-  const std::vector<Row> rows = chosenRows(options.rows);
+  const std::vector<Row> rows = chosenRows(options);
   if (rows.empty()) {
     fmt::print(stderr, "numerics-robustness: there is no such row\n");
     return 2;
@@ -53,8 +56,9 @@ int run(const Options &options) {
     // A row of sums needs its million samples for one case.
     const std::uint64_t cases = options.quick ? std::max<std::uint64_t>(row.cases / 100, 1000) : row.cases;
     const Outcome outcome = row.run(cases, options.seed);
-    const bool hasBound = bounds.contains(row.name);
-    const double bound = hasBound ? bounds[row.name].get<double>() : -1;
+    const std::string key = options.floatingPoint == FloatingPoint::Fast ? std::string(row.name) + " fast" : row.name;
+    const bool hasBound = bounds.contains(key);
+    const double bound = hasBound ? bounds[key].get<double>() : -1;
     const bool holds = hasBound && outcome.worst <= bound && outcome.cases > 0;
     allHold &= holds;
     const double nanoseconds = options.json ? row.nanoseconds() : 0;
@@ -72,11 +76,14 @@ int run(const Options &options) {
 } // namespace
 
 int main(int argc, char **argv) {
-  CLI::App app("holds the runtime's arithmetic against exact oracles", "numerics-robustness");
+  CLI::App app("holds arithmetic against exact oracles");
   Options options;
   app.add_option("ROW", options.rows, "rows, or beginnings of their names; all if not given");
   app.add_option("--bounds", options.bounds, "the bounds, as JSON")->required();
   app.add_option("--seed", options.seed, "of the random inputs");
+  app.add_option("--fp", options.floatingPoint, "how shaders are compiled")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, FloatingPoint>{{"strict", FloatingPoint::Strict}, {"fast", FloatingPoint::Fast}}));
+  addOptions(app);
   app.add_flag("--quick", options.quick, "a hundredth of the cases");
   app.add_flag("--json", options.json, "for scripts, with the time of a call");
   CLI11_PARSE(app, argc, argv);

@@ -1,9 +1,16 @@
 //===- Row.h - one stiff or extreme case ----------------------------------===//
 #pragma once
 
+#include "codegen/emit/FloatingPoint.h"
+
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace rtsl::numerics {
 
@@ -20,13 +27,25 @@ struct Row {
   const char *description; // what is done, to what, compared with what
   const char *unit;        // of `worst`
   std::uint64_t cases;     // of a full run; --quick runs a hundredth, at least 1000
-  Outcome (*run)(std::uint64_t cases, std::uint32_t seed);
-  double (*nanoseconds)(); // a call of the code under test, on easy inputs
+  std::function<Outcome(std::uint64_t cases, std::uint32_t seed)> run;
+  std::function<double()> nanoseconds; // a call of the code under test, on easy inputs
 };
 
 std::vector<Row> triangleRows();
 std::vector<Row> boxRows();
 std::vector<Row> spawnRows();
 std::vector<Row> sumRows();
+
+// Of compiled shaders.
+std::vector<Row> sphereRows(FloatingPoint floatingPoint);
+std::vector<Row> scatteringRows(FloatingPoint floatingPoint);
+std::vector<Row> matrixRows(FloatingPoint floatingPoint);
+std::vector<Row> attenuationRows(FloatingPoint floatingPoint);
+
+/// What a program adds to the command line.
+void addOptions(CLI::App &app);
+
+/// Those that the program has. The runtime's own code is strict whatever is asked for.
+std::vector<Row> allRows(FloatingPoint floatingPoint);
 
 } // namespace rtsl::numerics

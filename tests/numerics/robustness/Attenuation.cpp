@@ -1,0 +1,179 @@
+//===- Attenuation.cpp - light through media, thin and thick --------------===//
+#include "CompiledShaders.h"
+#include "Generators.h"
+#include "HighPrecision.h"
+#include "Row.h"
+#include "Timing.h"
+#include "Worst.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rtsl::numerics {
+
+namespace {
+
+constexpr int layerCount = 16;
+struct Layer {
+  float sigma = 0, length = 0;
+  Precise depth() const { return Precise(sigma) * Precise(length); }
+};
+using Stack = std::array<Layer, layerCount>;
+
+/// What the shader says of a stack.
+struct Transmittances {
+  float first, product, atOnce;
+};
+
+class Layers {
+public:
+  explicit Layers(FloatingPoint floatingPoint)
+      : shaders({"tests/numerics/robustness/shaders/Layers.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Layers", "Probe"}, {}, floatingPoint),
+        object(shaders.scene().addObject("Layers")) {
+    shaders.scene().setCamera(shaders.scene().addObject("Probe"));
+    shaders.finish();
+    sigmas = shaders.member(object, "sigmas");
+    lengths = shaders.member(object, "lengths");
+  }
+
+  Transmittances operator()(const Stack &stack) const {
+    for (int i = 0; i < layerCount; ++i) {
+      sigmas[i] = stack[std::size_t(i)].sigma;
+      lengths[i] = stack[std::size_t(i)].length;
+    }
+    RtslState state = shaders.ray();
+    shaders.slots().rt_Texture_lookup(&state, object);
+    return {state.TextureColor[0], state.TextureColor[1], state.TextureColor[2]};
+  }
+
+private:
+  CompiledShaders shaders;
+  RtslRef object;
+  float *sigmas, *lengths;
+};
+
+const Layers &layers(FloatingPoint floatingPoint) {
+  static const Layers only(floatingPoint);
+  return only;
+}
+
+float powerOfTen(Random &random, float low, float high) { return std::pow(10.0f, random.between(low, high)); }
+
+/// Coefficients from 1e-8 to 1e8 over lengths from 1e-6 to 1e6. Nearly all such pairs are clear or black, so that of three in
+/// four the length is chosen to leave something.
+Layer randomLayer(Random &random) {
+  Layer layer{powerOfTen(random, -8, 8), powerOfTen(random, -6, 6)};
+  if (random.integer(0, 3))
+    layer.length = std::clamp(powerOfTen(random, -10, 1.5f) / layer.sigma, 1e-6f, 1e6f);
+  return layer;
+}
+
+/// One to sixteen layers; the rest is empty.
+Stack randomStack(Random &random, Precise &depth) {
+  Stack stack;
+  depth = 0;
+  const int count = random.integer(1, layerCount);
+  for (int i = 0; i < count; ++i) {
+    stack[std::size_t(i)] = randomLayer(random);
+    depth += stack[std::size_t(i)].depth();
+  }
+  return stack;
+}
+
+std::string show(const Stack &stack) {
+  std::string text;
+  for (const Layer &layer : stack)
+    if (layer.sigma != 0)
+      text += fmt::format("{}{:a} over {:a}", text.empty() ? "" : ", ", layer.sigma, layer.length);
+  return text;
+}
+
+/// A transmittance against the exact one. A relative error in the exponent is an error of that many times the depth in the result,
+/// so the unit is a rounding unit of the result times 1 + depth. Outside [0, 1] nothing is right.
+double errorOf(float value, const Precise &depth) {
+  if (!(value >= 0 && value <= 1))
+    return std::numeric_limits<double>::infinity();
+  return roundingUnits(value, exp(-depth)) / (1 + static_cast<double>(depth));
+}
+
+Outcome runSingle(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    Stack stack;
+    stack[0] = randomLayer(random);
+    worst.add(errorOf(layers(floatingPoint)(stack).first, stack[0].depth()), [&] { return show(stack); });
+  }
+  return worst.outcome();
+}
+
+Outcome runProduct(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    Precise depth;
+    const Stack stack = randomStack(random, depth);
+    worst.add(errorOf(layers(floatingPoint)(stack).product, depth), [&] { return show(stack); });
+  }
+  return worst.outcome();
+}
+
+Outcome runAtOnce(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    Precise depth;
+    const Stack stack = randomStack(random, depth);
+    worst.add(errorOf(layers(floatingPoint)(stack).atOnce, depth), [&] { return show(stack); });
+  }
+  return worst.outcome();
+}
+
+/// The same layers in another order.
+Outcome runOrder(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    Precise depth;
+    Stack stack = randomStack(random, depth);
+    const float first = layers(floatingPoint)(stack).product;
+    for (int k = layerCount - 1; k > 0; --k)
+      std::swap(stack[std::size_t(k)], stack[std::size_t(random.integer(0, k))]);
+    worst.add(roundingUnits(layers(floatingPoint)(stack).product, Precise(first)), [&] { return show(stack); });
+  }
+  return worst.outcome();
+}
+
+double nanosecondsAStack(FloatingPoint floatingPoint) {
+  constexpr int count = 100'000;
+  Random random(1);
+  Precise depth;
+  const Stack stack = randomStack(random, depth);
+  return timeOf(count, [&] {
+    float sum = 0;
+    for (int i = 0; i < count; ++i)
+      sum += layers(floatingPoint)(stack).product;
+    return sum;
+  });
+}
+
+} // namespace
+
+std::vector<Row> attenuationRows(FloatingPoint floatingPoint) {
+  const auto row = [&](const char *name, const char *description, const char *unit, auto run) {
+    return Row{name, description, unit, 500'000, [=](std::uint64_t n, std::uint32_t seed) { return run(floatingPoint, n, seed); },
+               [=] { return nanosecondsAStack(floatingPoint); }};
+  };
+  const char *unit = "rounding units times 1 + optical depth";
+  return {
+      row("attenuation.single", "exp(-sigma t), sigma from 1e-8 to 1e8, t from 1e-6 to 1e6", unit, runSingle),
+      row("attenuation.layers", "up to 16 such layers, one after the other", unit, runProduct),
+      row("attenuation.atOnce", "the same by the sum of their depths", unit, runAtOnce),
+      row("attenuation.order", "the same layers in another order: the difference", "rounding units", runOrder),
+  };
+}
+
+} // namespace rtsl::numerics

@@ -1,0 +1,277 @@
+//===- Scattering.cpp - the materials and lights of the examples ----------===//
+//
+// The examples' materials scatter inside of `shade`, so each is asked by rays: a floor of the material under surroundings whose
+// color says where light came from.
+//
+//===----------------------------------------------------------------------===//
+#include "CompiledShaders.h"
+#include "Generators.h"
+#include "HighPrecision.h"
+#include "Row.h"
+#include "Timing.h"
+#include "Worst.h"
+
+#include "runtime/Renderer.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace rtsl::numerics {
+
+namespace {
+
+using device::Vec3;
+using runtime::Value;
+
+const std::string ownShaders = "tests/numerics/robustness/shaders/";
+
+/// A floor at y = 0 of examples/glass's Glass or Lambert, and one ray.
+class Floor {
+public:
+  Floor(const char *materialClass, FloatingPoint floatingPoint)
+      : shaders({"examples/glass/Parallelogram.rtsl", std::string("examples/glass/") + materialClass + ".rtsl", "examples/glass/BallLight.rtsl",
+                 ownShaders + "White.rtsl", ownShaders + "Probe.rtsl", ownShaders + "Surroundings.rtsl"},
+                {"Parallelogram", materialClass, "BallLight", "White", "Probe", "Surroundings"}, {{"Parallelogram", materialClass}}, floatingPoint) {
+    runtime::Scene &scene = shaders.scene();
+    camera = scene.addObject("Probe");
+    surroundings = scene.addObject("Surroundings");
+    light = scene.addObject("BallLight", runtime::ObjectValues{{}, {{"position", {0, 1, 0}}}, {}});
+    if (std::string(materialClass) == "Glass")
+      material = scene.addObject("Glass", std::vector<Value>{1.5, 1.0, {1, 1, 1}});
+    else
+      material = scene.addObject(materialClass, runtime::ObjectValues{{}, {{"albedo", Value::reference(scene.addObject("White"))}}, {}});
+    const RtslRef floor = scene.addObject("Parallelogram", std::vector<Value>{{-1e4, 0, 1e4}, {2e4, 0, 0}, {0, 0, -2e4}});
+    scene.addPrimitive(floor, material);
+    scene.addLight(light);
+    scene.setCamera(camera);
+    scene.setBackground(surroundings);
+    shaders.finish();
+    runtime::RenderOptions options;
+    options.width = options.height = 1;
+    options.maxDepth = 8;
+    options.traversal = runtime::Traversal::Device;
+    renderer = std::make_unique<runtime::Renderer>(scene, options);
+  }
+
+  void set(RtslRef object, const char *name, std::initializer_list<float> values) const { std::copy(values.begin(), values.end(), shaders.member(object, name)); }
+
+  /// The color that comes from along the ray.
+  std::array<float, 3> look(Vec3 origin, Vec3 direction) const {
+    set(camera, "origin", {origin.x, origin.y, origin.z});
+    set(camera, "direction", {direction.x, direction.y, direction.z});
+    std::array<float, RTSL_MAX_COLOR> color{};
+    shaders.scene().program().sample(&renderer->launch(), 0, 0, 0, color.data());
+    return {color[0], color[1], color[2]};
+  }
+
+  mutable CompiledShaders shaders;
+  RtslRef camera, surroundings, light, material;
+
+private:
+  std::unique_ptr<runtime::Renderer> renderer;
+};
+
+const Floor &glass(FloatingPoint floatingPoint) {
+  static const Floor only("Glass", floatingPoint);
+  return only;
+}
+const Floor &lambert(FloatingPoint floatingPoint) {
+  static const Floor only("Lambert", floatingPoint);
+  return only;
+}
+
+/// A cosine in (0, 1]: 1, nearly 1, nearly 0, or anything.
+float randomCosine(Random &random) {
+  switch (random.integer(0, 5)) {
+  case 0:
+    return 1;
+  case 1:
+    return 1 - std::ldexp(1.0f, -random.integer(2, 24));
+  case 2:
+    return std::ldexp(1.0f, -random.integer(1, 12));
+  default:
+    return random.between(0x1p-12f, 1);
+  }
+}
+float sineOf(float cosine) { return std::sqrt((1 - cosine) * (1 + cosine)); }
+
+/// Relative to air, from nearly nothing to more than any glass has.
+float randomIndex(Random &random) { return random.integer(0, 3) ? random.between(1.01f, 4) : 1 + std::ldexp(1.0f, -random.integer(1, 20)); }
+
+/// A ray to the origin in the plane of x and y, from above or from below.
+struct Incidence {
+  Vec3 origin, direction;
+};
+Incidence incidence(float cosine, bool isAbove, float length) {
+  const float sine = sineOf(cosine), side = isAbove ? 1.0f : -1.0f;
+  const Vec3 direction = Vec3{sine, -side * cosine, 0} * length;
+  return {Vec3{-sine, side * cosine, 0}, direction};
+}
+
+/// In a white furnace glass is invisible: what is reflected and what passes make 1, from both sides.
+Outcome runGlassFurnace(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  const Floor &floor = glass(floatingPoint);
+  floor.set(floor.surroundings, "isWhite", {1});
+  floor.set(floor.material, "transmission", {1, 1, 1});
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    const float index = randomIndex(random), cosine = randomCosine(random);
+    floor.set(floor.material, "innerIndex", {index});
+    floor.set(floor.material, "outerIndex", {1});
+    const Incidence ray = incidence(cosine, random.integer(0, 1), std::ldexp(1.0f, random.integer(-4, 4)));
+    worst.add(roundingUnits(floor.look(ray.origin, ray.direction)[0], 1), [&] { return fmt::format("index {:a}, cosine {:a}", index, cosine); });
+  }
+  return worst.outcome();
+}
+
+/// The same share is reflected along a path and along the same path backwards. Where the outer ray grazes, the inner one's angle no
+/// longer tells the outer one's.
+Outcome runGlassReciprocity(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  const Floor &floor = glass(floatingPoint);
+  floor.set(floor.surroundings, "isWhite", {0});
+  floor.set(floor.material, "transmission", {1, 1, 1});
+  floor.set(floor.material, "outerIndex", {1});
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    const float index = random.between(1.05f, 4), cosine = i % 8 == 0 ? 1.0f : random.between(0.05f, 1);
+    floor.set(floor.material, "innerIndex", {index});
+    const Incidence outside = incidence(cosine, true, 1);
+    const Precise inner = sqrt(1 - (1 - Precise(cosine) * Precise(cosine)) / (Precise(index) * Precise(index)));
+    const Incidence inside = incidence(static_cast<float>(inner), false, 1);
+    const float forwards = floor.look(outside.origin, outside.direction)[0], backwards = floor.look(inside.origin, inside.direction)[1];
+    // The inner ray's rounding moves the outer cosine by index / cosine as much.
+    worst.add(std::fabs(double(forwards) - double(backwards)) / 0x1p-24 * double(cosine) / double(index), [&] { return fmt::format("index {:a}, cosine {:a}: {} and {}", index, cosine, forwards, backwards); });
+  }
+  return worst.outcome();
+}
+
+/// Where the refracted ray goes: its sine against Snell's law.
+Outcome runGlassSnell(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  const Floor &floor = glass(floatingPoint);
+  floor.set(floor.surroundings, "isWhite", {0});
+  floor.set(floor.material, "transmission", {1, 1, 1});
+  floor.set(floor.material, "outerIndex", {1});
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    const float index = randomIndex(random), cosine = randomCosine(random);
+    floor.set(floor.material, "innerIndex", {index});
+    const Incidence ray = incidence(cosine, true, 1);
+    const std::array<float, 3> color = floor.look(ray.origin, ray.direction);
+    if (color[1] < 0.01f) // nearly all is reflected
+      continue;
+    const Precise length = sqrt(Precise(ray.direction.x) * ray.direction.x + Precise(ray.direction.y) * ray.direction.y);
+    const Precise sine = Precise(ray.direction.x) / length / Precise(index);
+    worst.add(static_cast<double>(abs(Precise(color[2]) / Precise(color[1]) - sine)) / 0x1p-24, [&] { return fmt::format("index {:a}, cosine {:a}", index, cosine); });
+  }
+  return worst.outcome();
+}
+
+/// What is left of white light that came through colored glass: the tint to the power of the way.
+Outcome runGlassTint(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  const Floor &floor = glass(floatingPoint);
+  floor.set(floor.surroundings, "isWhite", {1});
+  floor.set(floor.material, "innerIndex", {1.5f});
+  floor.set(floor.material, "outerIndex", {1});
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    // From clear to black, over ways from 1e-6 to 1e6.
+    const float depth = std::pow(10.0f, random.between(-8, 1.5f)), way = std::pow(10.0f, random.between(-6, 6));
+    const float tint = std::exp(-depth / way);
+    if (!(tint > 0))
+      continue;
+    floor.set(floor.material, "transmission", {tint, 1, 0});
+    const std::array<float, 3> color = floor.look({0, -way, 0}, {0, std::ldexp(1.0f, random.integer(-4, 4)), 0});
+    const Precise exact = pow(Precise(tint), Precise(way));
+    const double passed = roundingUnits(color[0], exact) / (1 + static_cast<double>(-log(exact)));
+    const bool isClear = roundingUnits(color[1], 1) <= 8, isBlack = color[2] == 0;
+    worst.add(isClear && isBlack ? passed : std::numeric_limits<double>::infinity(), [&] { return fmt::format("tint {:a} over {:a}", tint, way); });
+  }
+  return worst.outcome();
+}
+
+/// A point light over a diffuse floor at any angle, right above and below, and in the floor's plane: cosine / distance^2 and the
+/// surroundings' nothing, in rounding units of 1 / distance^2.
+Outcome runLambert(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  const Floor &floor = lambert(floatingPoint);
+  floor.set(floor.light, "radius", {0});
+  floor.set(floor.light, "intensity", {1, 1, 1});
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    const float cosines[] = {1, 0, -1, std::ldexp(1.0f, -random.integer(1, 30)), random.between(-1, 1)}, cosine = cosines[i % 5];
+    const float distance = std::pow(10.0f, random.between(-3, 3)), angle = random.between(0, 6.2831853f), sine = sineOf(cosine);
+    const Vec3 at = Vec3{sine * std::cos(angle), cosine, sine * std::sin(angle)} * distance;
+    floor.set(floor.light, "position", {at.x, at.y, at.z});
+    const float seen = floor.look({0, 1, 0}, {0, -1, 0})[0];
+    const PreciseVec3 path = precise(at);
+    const Precise square = dot(path, path), exact = at.y > 0 ? path[1] / (square * sqrt(square)) : Precise(0);
+    // In the plane itself the floor may hide the light: both answers are off by a cosine of less than 1e-3 (see Spawn.h).
+    const bool isHidden = seen == 0 && cosine < 1e-3f;
+    const double error = isHidden && cosine > 0 ? 0 : static_cast<double>(abs(Precise(seen) - exact) * square) / 0x1p-24;
+    worst.add(std::isfinite(seen) && seen >= 0 ? error : std::numeric_limits<double>::infinity(), [&] { return fmt::format("light at {}: {}", numerics::show(at), seen); });
+  }
+  return worst.outcome();
+}
+
+/// Pearson's chi-square of the points that BallLight draws, in 512 cells of equal area; as a deviation from its mean, 511, in its
+/// standard deviations.
+Outcome runBallLight(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+  const Floor &floor = lambert(floatingPoint);
+  floor.set(floor.light, "position", {0, 0, 0});
+  floor.set(floor.light, "radius", {1});
+  constexpr int heights = 16, turns = 32, cells = heights * turns;
+  std::array<std::uint64_t, cells> counts{};
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    RtslState state = floor.shaders.ray();
+    state.randomKey[0] = std::uint32_t(i * 0x9E3779B9u);
+    state.randomKey[1] = seed;
+    floor.shaders.slots().rt_Light_illumination(&state, floor.light);
+    const float *d = state.LightDirection;
+    const double height = (double(d[1]) + 1) / 2 * heights, turn = (std::atan2(double(d[2]), double(d[0])) / 6.283185307179586 + 0.5) * turns;
+    ++counts[std::size_t(std::clamp(int(height), 0, heights - 1) * turns + std::clamp(int(turn), 0, turns - 1))];
+  }
+  const double expected = double(cases) / cells;
+  double chiSquare = 0;
+  for (std::uint64_t count : counts)
+    chiSquare += (double(count) - expected) * (double(count) - expected) / expected;
+  Worst worst;
+  worst.add(std::fabs(chiSquare - (cells - 1)) / std::sqrt(2.0 * (cells - 1)), [&] { return fmt::format("chi-square {}", chiSquare); });
+  Outcome outcome = worst.outcome();
+  outcome.cases = cases;
+  return outcome;
+}
+
+double nanosecondsALook(const Floor &floor) {
+  constexpr int count = 100'000;
+  return timeOf(count, [&] {
+    float sum = 0;
+    for (int i = 0; i < count; ++i)
+      sum += floor.look({0.1f, 1, 0}, {0.1f, -1, 0})[0];
+    return sum;
+  });
+}
+
+} // namespace
+
+std::vector<Row> scatteringRows(FloatingPoint floatingPoint) {
+  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run, auto floor) {
+    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(floatingPoint, n, seed); },
+               [=] { return nanosecondsALook(floor(floatingPoint)); }};
+  };
+  return {
+      row("scattering.glassFurnace", "glass in a white furnace, from both sides, at cosines from 2^-12 to 1: reflected and refracted light against 1", "rounding units", 500'000, runGlassFurnace, glass),
+      row("scattering.glassReciprocity", "what is reflected along a path and along its reverse, at outer cosines from 0.05 to 1", "rounding units times index / outer cosine", 500'000, runGlassReciprocity, glass),
+      row("scattering.glassSnell", "the sine of the refracted ray against Snell's law", "rounding units of 1", 500'000, runGlassSnell, glass),
+      row("scattering.glassTint", "white light through colored glass of thickness 1e-6 to 1e6", "rounding units times 1 + optical depth", 500'000, runGlassTint, glass),
+      row("scattering.lambert", "a diffuse floor under a point light, at cosines 0, 1, -1 and between", "rounding units of the light's irradiance", 500'000, runLambert, lambert),
+      row("scattering.ballLight", "the points that the ball light draws: chi-square over 512 cells of equal area", "standard deviations", 5'000'000, runBallLight, lambert),
+  };
+}
+
+} // namespace rtsl::numerics

@@ -1,0 +1,21 @@
+//===- ShaderRows.cpp - the rows of numerics-shaders ----------------------===//
+#include "CompiledShaders.h"
+#include "Row.h"
+
+#include <CLI/CLI.hpp>
+
+namespace rtsl::numerics {
+
+void addOptions(CLI::App &app) {
+  sourceRoot = RTSL_SOURCE_ROOT;
+  app.add_option("--root", sourceRoot, "the tree whose shaders are tested, if it is not this one");
+}
+
+std::vector<Row> allRows(FloatingPoint floatingPoint) {
+  std::vector<Row> rows;
+  for (const auto &family : {sphereRows(floatingPoint), scatteringRows(floatingPoint), matrixRows(floatingPoint), attenuationRows(floatingPoint)})
+    rows.insert(rows.end(), family.begin(), family.end());
+  return rows;
+}
+
+} // namespace rtsl::numerics
