@@ -15,6 +15,7 @@
 #include "mlir/Conversion/MathToLLVM/MathToLLVM.h"
 #include "mlir/Conversion/UBToLLVM/UBToLLVM.h"
 #include "mlir/Conversion/VectorToLLVM/ConvertVectorToLLVM.h"
+#include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/Dialect/UB/IR/UBOps.h"
 #include "mlir/Pass/Pass.h"
@@ -150,7 +151,45 @@ void addStateParameter(mlir::ModuleOp module) {
 }
 
 //===----------------------------------------------------------------------===//
-// 5. Operations
+// 5. Vectors of bools as results
+//===----------------------------------------------------------------------===//
+
+/// FastISel of LLVM 22 cannot take a `<4 x i1>` from a call where the processor has AVX-512 (llvm-project issue 179100).
+mlir::Type returnedType(mlir::Type type) {
+  auto vector = llvm::dyn_cast<mlir::VectorType>(type);
+  return vector && vector.getElementType().isInteger(1)
+             ? vector.clone(mlir::IntegerType::get(type.getContext(), 32))
+             : type;
+}
+
+void returnBoolsAsNumbers(mlir::ModuleOp module) {
+  for (FuncOp function : module.getOps<FuncOp>()) {
+    const mlir::FunctionType type = function.getFunctionType();
+    const auto results = llvm::map_to_vector(type.getResults(), returnedType);
+    function.setFunctionType(type.clone(type.getInputs(), results));
+    function.walk([](mlir::func::ReturnOp op) {
+      mlir::OpBuilder builder(op);
+      for (mlir::OpOperand &result : op->getOpOperands())
+        if (const mlir::Type returned = returnedType(result.get().getType()); returned != result.get().getType())
+          result.set(mlir::arith::ExtUIOp::create(builder, op.getLoc(), returned, result.get()));
+    });
+  }
+  module.walk([](CallOp call) {
+    mlir::OpBuilder builder(call->getContext());
+    builder.setInsertionPointAfter(call);
+    for (mlir::Value result : call.getResults()) {
+      const mlir::Type wanted = result.getType();
+      result.setType(returnedType(wanted));
+      if (result.getType() == wanted)
+        continue;
+      auto bools = mlir::arith::TruncIOp::create(builder, call.getLoc(), wanted, result);
+      result.replaceAllUsesExcept(bools, bools);
+    }
+  });
+}
+
+//===----------------------------------------------------------------------===//
+// 6. Operations
 //===----------------------------------------------------------------------===//
 
 void declareNullRecord(mlir::ModuleOp module) {
@@ -194,7 +233,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
   llvm::StringRef getArgument() const override { return "rtsl-to-llvm"; }
   llvm::StringRef getDescription() const override { return "level 2 becomes the LLVM dialect"; }
   void getDependentDialects(mlir::DialectRegistry &registry) const override {
-    registry.insert<LLVM::LLVMDialect, mlir::ub::UBDialect>();
+    registry.insert<LLVM::LLVMDialect, mlir::arith::ArithDialect, mlir::ub::UBDialect>();
   }
 
   void runOnOperation() override {
@@ -204,6 +243,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     markWriters(module);
     renameFunctions(module);
     addStateParameter(module);
+    returnBoolsAsNumbers(module);
     declareRuntimeFunctions(module);
     declareNullRecord(module);
     // Members find their classes by name, so the declarations go last; members are converted by
