@@ -3,6 +3,8 @@
 
 #include "sema/TypeProperties.h"
 
+#include <algorithm>
+
 namespace rtsl::random {
 
 static const char *const toColor = "rt_SampleColor = toColor(h); ";
@@ -162,7 +164,7 @@ void Generator::overrideFunction(ClassPlan &plan, Node &members) {
 /// `result`, which makes the state that the method writes from it.
 void Generator::addMethod(const ClassPlan &plan, Node &members, const std::string &name,
                           std::vector<Variable> state, const std::string &result,
-                          unsigned statementCount, Context rules) {
+                          unsigned statementCount, Context rules, const std::string &parameters) {
   context = rules;
   context.self = &plan;
   context.onReturn = result;
@@ -187,7 +189,20 @@ void Generator::addMethod(const ClassPlan &plan, Node &members, const std::strin
     if (variable.writable)
       body->children.push_back(hashed(variable));
   members.children.push_back(
-      makeNode(Role::Fixed, "void " + name + "() {$  " + result + "}", std::move(body)));
+      makeNode(Role::Fixed, "void " + name + "(" + parameters + ") {$  " + result + "}", std::move(body)));
+}
+
+/// A method that answers rays which carry a `payload`.
+void Generator::addPayloadMethod(const ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
+                                 std::vector<Variable> state, Context rules) {
+  const std::string parameter = fresh("p");
+  const bool asks = name == "anyHit";
+  const bool writes = !asks || chance(60); // if it does not, the order in which hits are asked for does not show
+  state.push_back({parameter, payload, writes});
+  std::string result = writes ? parameter + ".h = h; " : "";
+  if (asks) // for some hits
+    result += "if ((h & 3u) == 0u) ignoreIntersection(); if ((h & 12u) == 0u) terminateRay(); ";
+  addMethod(plan, members, name, std::move(state), result, 1 + below(4), rules, "inout " + toString(payload) + " " + parameter);
 }
 
 //===----------------------------------------------------------------------===//
@@ -353,7 +368,12 @@ void Generator::makeMiss(const std::vector<const ClassPlan *> &) {
   Context rules;
   rules.rand = true;
   rules.traces = traces;
+  rules.print = true;
   addMethod(*plan, *members, "miss", state, toColor, 1 + below(4), rules);
+  state.erase(state.end() - 1);
+  for (const Type *payload : payloads)
+    if (chance(70))
+      addPayloadMethod(*plan, *members, "miss", payload, state, rules);
   program.miss = plan->name;
 }
 
@@ -395,20 +415,36 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base,
     Context rules;
     rules.rand = rules.lookup = true;
     rules.illuminance = chance(50);
+    rules.print = true;
     rules.traces = traces;
     addMethod(*plan, *members, "shade", state, toColor, 4 + below(6), rules);
+    rules.illuminance = false;
+    state.erase(std::find_if(state.begin(), state.end(), [](const Variable &each) { return each.writable; }));
+    for (const Type *payload : payloads) {
+      rules.traces = traces / 2;
+      if (chance(80))
+        addPayloadMethod(*plan, *members, "closestHit", payload, state, rules);
+      rules.traces = 0;
+      if (chance(50))
+        addPayloadMethod(*plan, *members, "anyHit", payload, state, rules);
+    }
   }
   program.materials.push_back(plan->name);
+  if (plan->scratch.empty())
+    program.meshMaterials.push_back(plan->name);
   return plan;
 }
 
 void Generator::makeClasses() {
   for (unsigned n = below(4), words = 0; n-- > 0;) {
     const Type *type = smallType();
-    words += type->is(TypeKind::Color) ? 4 : type->componentCount();
+    words += type->is(TypeKind::Color) ? program.colorComponents : type->componentCount();
     if (words <= 28)
       attributes.push_back({fresh("s"), type});
   }
+  if (program.traces && likely(80))
+    for (unsigned n = 1 + below(2); n-- > 0;)
+      makePayload();
   makeCamera();
   makePrimitive(nullptr);
   if (likely(30))

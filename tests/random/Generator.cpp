@@ -10,6 +10,7 @@ Generator::Generator(std::uint32_t seed)
   program.tree = makeList();
   program.inRange = isInRange(seed);
   program.traces = hasTraces(seed);
+  program.colorComponents = colorComponents(seed);
 }
 
 Program Generator::run() {
@@ -27,6 +28,10 @@ Program Generator::run() {
 
 bool isInRange(std::uint32_t seed) { return seed % 5 != 4; }
 bool hasTraces(std::uint32_t seed) { return seed % 5 < 3 || seed % 10 == 4; }
+unsigned colorComponents(std::uint32_t seed) {
+  static const unsigned counts[] = {3, 1, 4, 16};
+  return counts[seed / 50 % 4];
+}
 
 Program generate(std::uint32_t seed) { return Generator(seed).run(); }
 

@@ -54,7 +54,7 @@ struct ClassPlan {
 /// What may be done where code stands.
 struct Context {
   bool constantOnly = false;
-  bool rand = false, lookup = false, illuminance = false;
+  bool rand = false, lookup = false, illuminance = false, print = false;
   unsigned traces = 0;                    // rays that may still be sent
   const ClassPlan *self = nullptr;        // null: a free function
   const Type *result = nullptr;           // of `return`; null: void
@@ -103,6 +103,8 @@ private:
   const Type *withScalar(const Type *shape, const Type *scalar);
   bool hasColor(const Type *type) const;
   void makeStruct();
+  const Type *structure(std::vector<typed::Field> fields, unsigned more); // and `more` random fields
+  void makePayload();
 
   // Expressions (Expressions.cpp)
   NodePtr expression(const Type *type, unsigned depth);
@@ -157,6 +159,8 @@ private:
   NodePtr switchStatement(unsigned depth);
   NodePtr jump();
   NodePtr illuminance(unsigned depth);
+  NodePtr payloadRay();
+  NodePtr print();
   NodePtr hashed(const Variable &variable);
   void hashAll(Node &list, std::size_t from);
   NodePtr declare(const std::string &name, const Type *type, NodePtr value,
@@ -182,7 +186,9 @@ private:
   void overrideFunction(ClassPlan &plan, Node &members);
   void addMethod(const ClassPlan &plan, Node &members, const std::string &name,
                  std::vector<Variable> state, const std::string &result, unsigned statementCount,
-                 Context rules);
+                 Context rules, const std::string &parameters = "");
+  void addPayloadMethod(const ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
+                        std::vector<Variable> state, Context rules);
   const ClassPlan *makeTexture(const ClassPlan *base, const std::vector<const ClassPlan *> &targets);
   void makeCamera();
   void makePrimitive(const ClassPlan *base);
@@ -201,6 +207,7 @@ private:
   unsigned work = 0, workLimit = 0, indexDepth = 0;
 
   std::vector<const Type *> structs;
+  std::vector<const Type *> payloads; // structs; the first field is `uint h`
   std::vector<Variable> constants;
   std::vector<Function> functions;
   std::vector<std::unique_ptr<ClassPlan>> plans;

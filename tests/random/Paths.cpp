@@ -21,7 +21,7 @@ const char *name(Failure failure) {
 namespace {
 
 using Compile = std::function<std::shared_ptr<const runtime::Program>(
-    const typed::Module &, const LinkRequest &, Diagnostics &)>;
+    const typed::Module &, const LinkRequest &, unsigned colorComponents, Diagnostics &)>;
 
 /// One way from a checked module to a program that runs.
 struct Path {
@@ -31,14 +31,21 @@ struct Path {
   Compile compile;
 };
 
+Compile compileWith(const CompileOptions &options) {
+  return [options](const typed::Module &module, const LinkRequest &request, unsigned colorComponents,
+                   Diagnostics &diagnostics) {
+    CompileOptions ofColors = options;
+    ofColors.colorComponents = colorComponents;
+    return compileProgram(module, request, ofColors, diagnostics);
+  };
+}
+
 Compile jit(unsigned optimization, bool checked, TraceMode trace) {
   CompileOptions options;
   options.optimization = optimization;
   options.checkIndices = checked;
   options.trace = trace;
-  return [options](const typed::Module &module, const LinkRequest &request, Diagnostics &diagnostics) {
-    return compileProgram(module, request, options, diagnostics);
-  };
+  return compileWith(options);
 }
 
 /// By way of the structured states that C++ is printed from.
@@ -47,9 +54,7 @@ Compile structuredJit() {
   options.optimization = 0;
   options.trace = TraceMode::Split;
   options.restructure = true;
-  return [options](const typed::Module &module, const LinkRequest &request, Diagnostics &diagnostics) {
-    return compileProgram(module, request, options, diagnostics);
-  };
+  return compileWith(options);
 }
 
 /// The first is what the others are compared with; the last that can run a program is farthest from
@@ -98,8 +103,9 @@ struct Checked {
     module = check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
     for (const Program *program : programs)
       for (auto &[primitive, material] : World::surfaces(*program))
-        if (module->findClass(primitive) && module->findClass(material))
+        if ((primitive.empty() || module->findClass(primitive)) && module->findClass(material))
           request.surfaces.emplace_back(primitive, material);
+    request.features = RTSL_FEATURE_PRINT;
   }
   /// The errors, without the warnings, of which there may be many.
   std::string errors() const {
@@ -145,7 +151,7 @@ std::vector<Finding> compare(const std::vector<const Program *> &programs,
   std::vector<Finding> findings(programs.size());
   auto failAll = [&](Failure failure, const std::string &detail) {
     for (Finding &finding : findings)
-      finding = {failure, detail};
+      finding = {failure, detail, finding.hit};
     return findings;
   };
   try {
@@ -161,17 +167,21 @@ std::vector<Finding> compare(const std::vector<const Program *> &programs,
     for (const Path *chosen : choosePaths(wanted, inRange, traces)) {
       const Path &path = *chosen;
       const bool isReference = expected.empty();
-      const auto code = path.compile(*checked.module, checked.request, checked.diagnostics);
+      const auto code = path.compile(*checked.module, checked.request, programs.front()->colorComponents,
+                                     checked.diagnostics);
       if (!code)
         return failAll(Failure::Rejected, std::string(path.name) + ": " + checked.errors());
       for (std::size_t i = 0; i != programs.size(); ++i) {
-        const Words words = World(*code, *programs[i]).run();
+        World world(*code, *programs[i]);
+        const Words words = world.run();
+        findings[i].hit |= world.hitSomething();
         if (isReference)
           expected.push_back(words);
         else if (std::string what = difference(expected[i], words);
                  !what.empty() && findings[i].failure == Failure::None)
-          findings[i] = {Failure::Mismatch, fmt::format("{} against {}: {}", path.name,
-                                                        allPaths().front().name, what)};
+          findings[i] = {Failure::Mismatch,
+                         fmt::format("{} against {}: {}", path.name, allPaths().front().name, what),
+                         findings[i].hit};
       }
     }
   } catch (const std::exception &fault) {

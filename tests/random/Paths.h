@@ -23,6 +23,7 @@ const char *name(Failure failure);
 struct Finding {
   Failure failure = Failure::None;
   std::string detail;
+  bool hit = false; // some ray met something, so that a material ran
 };
 
 /// Runs the programs, compiled together, on every path whose name is in `wanted` and that can run

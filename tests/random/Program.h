@@ -20,9 +20,11 @@ struct Program {
   /// No index is ever out of range, so that it may run unchecked.
   bool inRange = true;
   bool traces = false;
+  unsigned colorComponents = 3;
   /// The objects of the scene, by class; what refers to others stands behind them.
   std::vector<std::string> textures, lights, primitives, materials;
   std::string camera, miss; // miss may be empty
+  std::vector<std::string> meshMaterials; // those that ask nothing of a primitive that meshes have not
 
   std::string text() const { return toText(*tree); }
 };
@@ -32,6 +34,8 @@ struct Program {
 Program generate(std::uint32_t seed);
 bool isInRange(std::uint32_t seed);
 bool hasTraces(std::uint32_t seed);
+/// 3, 1, 4 or 16: the same for fifty seeds, so that they fit into one compilation.
+unsigned colorComponents(std::uint32_t seed);
 
 /// The functions that programs share, as far as `text` uses them: they fold values into a hash and
 /// make numbers of it.

@@ -46,7 +46,7 @@ NodePtr Generator::block(unsigned count, unsigned depth) {
 
 NodePtr Generator::statement(unsigned depth) {
   if (depth != 0 && work < workLimit) {
-    switch (below(22)) {
+    switch (below(25)) {
     case 0:
     case 1:
     case 2:
@@ -77,6 +77,15 @@ NodePtr Generator::statement(unsigned depth) {
     case 12:
       if (NodePtr made = methodCall(types.voidType, 2))
         return makeNode(Role::Statement, "$;", std::move(made));
+      break;
+    case 13:
+    case 14:
+      if (!payloads.empty() && context.traces >= context.weight)
+        return payloadRay();
+      break;
+    case 15:
+      if (context.print && context.weight < 4)
+        return print();
       break;
     default:
       break;
@@ -263,6 +272,42 @@ NodePtr Generator::illuminance(unsigned depth) {
     return makeNode(Role::Statement, "illuminance ($) {$}", std::move(point), std::move(body));
   return makeNode(Role::Statement, "illuminance ($, $, $) {$}", std::move(point), std::move(axis),
                   std::move(angle), std::move(body));
+}
+
+/// A ray that carries something. Most of them can meet something.
+NodePtr Generator::payloadRay() {
+  context.traces -= context.weight;
+  const Type *vec3 = types.vector(types.floatType, 3);
+  NodePtr origin = converted(vec3, 1), direction = converted(vec3, 1);
+  NodePtr tMin = chance(70) ? makeNode(Role::Fixed, "0.0") : converted(types.floatType, 1);
+  NodePtr tMax = chance(70) ? makeNode(Role::Fixed, "64.0") : converted(types.floatType, 1);
+  NodePtr payload = target(pick(payloads));
+  std::string more;
+  std::vector<NodePtr> values;
+  if (chance(30)) {
+    more += chance(90) ? ", 0" : ", 1";
+    if (chance(70)) {
+      more += ", $";
+      values.push_back(expression(types.uintType, 1));
+      if (chance(50)) {
+        more += ", $";
+        values.push_back(converted(types.floatType, 1));
+      }
+    }
+  }
+  NodePtr ray = makeNode(Role::Statement, "trace($, $, $, $, $" + more + ");", std::move(origin), std::move(direction),
+                         std::move(tMin), std::move(tMax), std::move(payload));
+  for (NodePtr &value : values)
+    ray->children.push_back(std::move(value));
+  return ray;
+}
+
+/// Numbers that have one spelling: no floats, for a NaN may have any sign.
+NodePtr Generator::print() {
+  const Type *scalar = vocabulary.scalars[1 + below(2)];
+  return makeNode(Role::Statement, "print(\"" + fresh("t") + "\", $, $);",
+                  expression(withScalar(types.vector(types.floatType, 2 + below(3)), scalar), 2),
+                  expression(scalar, 1));
 }
 
 //===----------------------------------------------------------------------===//

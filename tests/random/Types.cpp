@@ -46,23 +46,36 @@ const Type *Generator::anyType() {
 
 bool Generator::hasColor(const Type *type) const { return contains(type, TypeKind::Color); }
 
-void Generator::makeStruct() {
-  std::vector<typed::Field> fields;
-  NodePtr list = makeList();
-  for (unsigned n = 1 + below(4); n-- > 0;) {
+const Type *Generator::structure(std::vector<typed::Field> fields, unsigned more) {
+  while (more-- > 0) {
     typed::Field field;
     field.name = fresh("m");
     field.type = anyType();
-    list->children.push_back(makeNode(Role::Fixed, toString(field.type) + " " + field.name + ";"));
     fields.push_back(std::move(field));
   }
+  NodePtr list = makeList();
+  for (const typed::Field &field : fields)
+    list->children.push_back(makeNode(Role::Fixed, toString(field.type) + " " + field.name + ";"));
   const std::string name = global("S");
   const Type *type = vocabulary.structure(name, std::move(fields));
   // Constructors give every field, so a field cannot simply be deleted.
   list->role = Role::List;
   program.tree->children.push_back(makeNode(Role::Fixed, "struct " + name + " {$};", std::move(list)));
+  return type;
+}
+
+void Generator::makeStruct() {
+  const Type *type = structure({}, 1 + below(4));
   if (scalarCount(type) + (hasColor(type) ? 8 : 0) <= 40)
     structs.push_back(type);
+}
+
+/// What rays carry: a number, and some more.
+void Generator::makePayload() {
+  typed::Field hash;
+  hash.name = "h";
+  hash.type = types.uintType;
+  payloads.push_back(structure({hash}, below(3)));
 }
 
 } // namespace rtsl::random

@@ -6,7 +6,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include <csignal>
 #include <fcntl.h>
@@ -35,11 +38,11 @@ void write(int pipe, const std::string &text) {
   }
 }
 
-/// A finding is a letter for the failure, the text and a zero.
+/// A finding is a letter for the failure, a large one if a ray met something, the text and a zero.
 void report(int pipe, const std::vector<Finding> &findings) {
   std::string text;
   for (const Finding &finding : findings) {
-    text += static_cast<char>('a' + static_cast<int>(finding.failure));
+    text += static_cast<char>((finding.hit ? 'A' : 'a') + static_cast<int>(finding.failure));
     text += finding.detail.substr(0, 4000);
     text += '\0';
   }
@@ -81,7 +84,8 @@ std::vector<Finding> finish(Worker &worker, unsigned seconds) {
   std::vector<Finding> findings;
   for (std::size_t at = 0; at < worker.text.size();) {
     const char *text = worker.text.c_str() + at;
-    findings.push_back({static_cast<Failure>(*text - 'a'), text + 1});
+    const bool hit = *text < 'a';
+    findings.push_back({static_cast<Failure>(*text - (hit ? 'A' : 'a')), text + 1, hit});
     at += std::strlen(text) + 1;
   }
   return findings;
@@ -108,32 +112,31 @@ std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds,
   return compare(pointers, paths);
 }
 
-/// Programs of a kind share a compilation: what may run unchecked, what traces.
+/// Programs of a kind share a compilation: what may run unchecked, what traces, what a color is.
 std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count,
                                                    unsigned size) {
   std::deque<std::vector<std::uint32_t>> batches;
-  for (unsigned kind = 0; kind != 4; ++kind) {
-    std::vector<std::uint32_t> batch;
-    for (std::uint32_t seed = first; seed != first + count; ++seed) {
-      if (isInRange(seed) != ((kind & 1) == 0) || hasTraces(seed) != ((kind & 2) == 0))
-        continue;
-      batch.push_back(seed);
-      if (batch.size() == size)
-        batches.push_back(std::move(batch)), batch.clear();
-    }
+  std::map<std::tuple<bool, bool, unsigned>, std::vector<std::uint32_t>> kinds;
+  for (std::uint32_t seed = first; seed != first + count; ++seed) {
+    std::vector<std::uint32_t> &batch = kinds[{isInRange(seed), hasTraces(seed), colorComponents(seed)}];
+    batch.push_back(seed);
+    if (batch.size() == size)
+      batches.push_back(std::exchange(batch, {}));
+  }
+  for (auto &[kind, batch] : kinds)
     if (!batch.empty())
       batches.push_back(std::move(batch));
-  }
   return batches;
 }
 
 } // namespace
 
-std::vector<FailedSeed> runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &options,
-                                 const std::function<void(std::size_t)> &progress) {
+Results runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &options,
+                 const std::function<void(std::size_t)> &progress) {
   std::deque<std::vector<std::uint32_t>> waiting = makeBatches(first, count, options.batch);
   std::vector<Worker> running;
-  std::vector<FailedSeed> failed;
+  Results results;
+  std::vector<FailedSeed> &failed = results.failed;
   std::size_t done = 0;
   auto settle = [&](Worker &worker) {
     const std::vector<std::uint32_t> seeds = worker.seeds;
@@ -154,6 +157,8 @@ std::vector<FailedSeed> runSeeds(std::uint32_t first, std::uint32_t count, const
         failed.push_back({seeds[i], {Failure::Crash, "no answer"}});
       else if (findings[i].failure != Failure::None)
         failed.push_back({seeds[i], findings[i]});
+    for (const Finding &finding : findings)
+      results.hit += finding.hit;
     done += seeds.size();
     progress(done);
   };
@@ -178,7 +183,7 @@ std::vector<FailedSeed> runSeeds(std::uint32_t first, std::uint32_t count, const
   }
   std::sort(failed.begin(), failed.end(),
             [](const FailedSeed &a, const FailedSeed &b) { return a.seed < b.seed; });
-  return failed;
+  return results;
 }
 
 Finding runAlone(const Program &program, const RunOptions &options) {

@@ -19,11 +19,16 @@ struct FailedSeed {
   Finding finding;
 };
 
+struct Results {
+  std::vector<FailedSeed> failed; // by seed
+  std::size_t hit = 0;            // programs in which some ray met something
+};
+
 /// Runs the programs of `count` seeds from `first` on. What crashes takes only its process along; a
 /// batch that fails is halved until it is known which programs fail. `progress` hears how many
 /// programs are done.
-std::vector<FailedSeed> runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &options,
-                                 const std::function<void(std::size_t done)> &progress);
+Results runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &options,
+                 const std::function<void(std::size_t done)> &progress);
 
 /// One program, in a process of its own.
 Finding runAlone(const Program &program, const RunOptions &options);

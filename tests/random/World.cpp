@@ -1,8 +1,10 @@
 //===- World.cpp - a small scene that a random program runs in ------------===//
 #include "World.h"
 
+#include "runtime/device/AnyHit.h"
 #include "runtime/device/Traverse.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,14 +19,25 @@ using rtsl::runtime::ValueType;
 // What compiled programs ask of the host
 //===----------------------------------------------------------------------===//
 
-using Intersect = void(RtslState *, RtslRef);
+/// All that was printed, as one number.
+static std::uint32_t printed = 0;
+static std::uint32_t raysThatHit = 0;
 
-/// Nothing here prints.
-extern "C" void rtsl_print(RtslState *, std::uint32_t, const std::uint32_t *, std::uint32_t) {}
+extern "C" void rtsl_print(RtslState *, std::uint32_t format, const std::uint32_t *words, std::uint32_t count) {
+  auto add = [](std::uint32_t word) { printed = (printed ^ word) * 16777619u ^ printed >> 15; };
+  add(format);
+  for (std::uint32_t i = 0; i != count; ++i)
+    add(words[i]);
+}
 
-extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t anyHit) {
-  auto *intersect = reinterpret_cast<Intersect *>(const_cast<void *>(state->launch->host));
-  return rtsl::device::traverseDevice(*state, anyHit != 0, intersect);
+extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
+  const auto &slots = *static_cast<const rtsl::runtime::Program::Slots *>(state->launch->host);
+  const std::uint32_t answer =
+      how & RTSL_ASK_ANY_HIT
+          ? rtsl::device::traverseAsking(*state, how, slots)
+          : rtsl::device::traverseDevice(*state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect);
+  raysThatHit += answer == RTSL_HIT;
+  return answer;
 }
 
 static constexpr std::uint64_t guardBytes = 64;
@@ -194,7 +207,35 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
   }
 }
 
-World::World(const runtime::Program &code, const Program &program) : code(code), program(program) {
+/// One in three is not there for some rays.
+void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
+  const auto number = static_cast<std::uint32_t>(instances.size());
+  instance.mask = number % 3 == 2 ? 0xaaaaaaaau : ~0u;
+  for (const Object &object : objects)
+    if (object.reference == instance.material) {
+      instance.needs = code.needs & object.info->needs;
+      instance.anyHit = object.info->anyHit;
+    }
+  instances.push_back(instance);
+  for (std::uint32_t primitive = 0; primitive != primitives; ++primitive)
+    items.push_back({number, primitive});
+}
+
+/// Three triangles round where rays begin.
+static RtslMesh someMesh() {
+  static const float positions[] = {-2, -1, 0.7f, 2, -1, 0.7f, 0, 2, 0.7f, 0.9f, -3, -3, 0.9f, 3, -3, 0.9f, 0, 3};
+  static const float uvs[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  static const std::uint32_t indices[] = {0, 1, 2, 3, 4, 5, 0, 4, 2};
+  RtslMesh mesh{};
+  mesh.positions = positions;
+  mesh.uvs = uvs;
+  mesh.indices = indices;
+  mesh.vertexCount = 6;
+  mesh.triangleCount = 3;
+  return mesh;
+}
+
+World::World(const runtime::Program &code, const Program &program) : code(code), program(program), mesh(someMesh()) {
   std::size_t words = used;
   std::vector<std::string> all = {program.camera, program.miss};
   for (const auto *names : {&program.textures, &program.lights, &program.primitives, &program.materials})
@@ -220,14 +261,20 @@ World::World(const runtime::Program &code, const Program &program) : code(code),
       instance.primitive = primitives[i % primitives.size()];
       instance.material = materials[i % materials.size()];
       instance.firstPrimitive = static_cast<std::uint32_t>(2 * i);
-      for (const Object &object : objects)
-        if (object.reference == instance.material)
-          instance.needs = code.needs & object.info->needs;
-      instances.push_back(instance);
-      for (std::uint32_t primitive = 0; primitive != 1 + i % 2; ++primitive)
-        items.push_back({static_cast<std::uint32_t>(i), primitive});
+      addInstance(instance, 1 + static_cast<std::uint32_t>(i) % 2);
     }
+    for (const Object &object : objects)
+      if (std::find(program.meshMaterials.begin(), program.meshMaterials.end(), object.info->name) !=
+          program.meshMaterials.end()) {
+        RtslInstance instance{};
+        instance.material = object.reference;
+        instance.firstPrimitive = static_cast<std::uint32_t>(2 * count);
+        addInstance(instance, mesh.triangleCount);
+        break;
+      }
   }
+  launch.meshes = &mesh;
+  launch.meshCount = 1;
   launch.instances = instances.data();
   launch.instanceCount = static_cast<std::uint32_t>(instances.size());
   launch.lights = lights.data();
@@ -246,7 +293,7 @@ World::World(const runtime::Program &code, const Program &program) : code(code),
   launch.rootIsLeaf = 1;
   launch.nodeCount = static_cast<std::uint32_t>(items.size());
   launch.needs = code.needs;
-  launch.host = reinterpret_cast<const void *>(code.slots.rt_Primitive_intersect);
+  launch.host = &code.slots;
 }
 
 std::vector<std::pair<std::string, std::string>> World::surfaces(const Program &program) {
@@ -254,10 +301,17 @@ std::vector<std::pair<std::string, std::string>> World::surfaces(const Program &
   for (const std::string &primitive : program.primitives)
     for (const std::string &material : program.materials)
       pairs.emplace_back(primitive, material);
+  for (const std::string &material : program.meshMaterials)
+    pairs.emplace_back("", material);
   return pairs;
 }
 
+bool World::hitSomething() const {
+  return raysThatHit != 0;
+}
+
 std::vector<std::uint32_t> World::run() {
+  printed = raysThatHit = 0;
   std::vector<std::uint32_t> words;
   for (std::uint32_t depth : {0u, 2u}) {
     launch.maxDepth = depth;
@@ -267,6 +321,7 @@ std::vector<std::uint32_t> World::run() {
       checkGuard();
       for (unsigned i = 0; i != code.colorComponents; ++i)
         words.push_back(std::isnan(color[i]) ? 0x7fc00000u : bitsOf(color[i]));
+      words.push_back(printed);
     }
   }
   return words;

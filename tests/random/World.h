@@ -17,9 +17,11 @@ class World {
 public:
   World(const runtime::Program &code, const Program &program);
 
-  /// The colors of some pixels, each without and with the rays that shaders send, as bits; all NaNs
-  /// are one.
+  /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
+  /// are one), and what was printed until then.
   std::vector<std::uint32_t> run();
+  /// Has some ray met something, so that a material ran?
+  bool hitSomething() const;
 
   /// Which primitive may meet which material.
   static std::vector<std::pair<std::string, std::string>> surfaces(const Program &program);
@@ -28,6 +30,7 @@ private:
   void addObjects(const std::vector<std::string> &classes, std::vector<RtslRef> *references);
   void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
+  void addInstance(RtslInstance instance, std::uint32_t primitives);
   RtslRef choose(const std::string &className, std::uint32_t key) const;
   bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
 
@@ -44,6 +47,7 @@ private:
   std::vector<RtslRef> lights, primitives, materials, others;
   std::vector<RtslInstance> instances;
   std::vector<RtslLeafItem> items;
+  RtslMesh mesh{};
   RtslLaunch launch{};
 };
 
