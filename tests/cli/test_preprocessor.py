@@ -125,6 +125,18 @@ class Preprocessor(Case):
         self.assertTrue((self.folder / "grey.d").read_text().startswith("grey.d: \\\n  grey.rtsl"))
 
     @unittest.skipUnless(shutil.which("make"), "needs make")
+    def test_dependencies_of_a_picture_and_a_package(self):
+        glass = self.folder / "glass"
+        shutil.copytree(EXAMPLES / "glass", glass)
+        small = ["glass/scene.json", "--set", "render.size=[8, 8]", "--set", "render.spp=1", "-q", "-MD"]
+        self.run_rtslc("render", *small, "-o", "out.png")
+        self.run_rtslc("pack", "glass/scene.json", "-q", "-MD", "-o", "out.rtslpkg", "-MF", "package.d")
+        for name, target in (("out.d", "out.png"), ("package.d", "out.rtslpkg")):
+            lines = (self.folder / name).read_text().split(" \\\n  ")
+            self.assertEqual(lines[:2], [f"{target}:", "glass/scene.json"])
+            self.assertIn("glass/Glass.rtsl", lines)
+            self.assertTrue(any(line.strip().endswith((".obj", ".ply")) for line in lines), lines)
+
     def test_make_understands_the_dependencies(self):
         self.write("a b#$.rtsl", "#include \"lib/shared.rtsl\"\n")
         self.run_rtslc("compile", "a b#$.rtsl", "--emit=ast", "-o", "out.ast", "-MD")

@@ -26,7 +26,8 @@ struct PackOptions {
 void packScene(const PackOptions &options, Messages &messages) {
   runtime::checkFileWritable(options.output);
   const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages);
+  std::vector<std::string> filesRead;
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
   const LinkRequest request = linkRequest(description);
@@ -52,6 +53,7 @@ void packScene(const PackOptions &options, Messages &messages) {
 
   const std::string bytes = runtime::serialize(package);
   runtime::writeFileAtomically(options.output, bytes);
+  writeDependencies(options.common.dependencies, options.output, {options.scene}, withMeshes(description, filesRead));
   if (!options.quiet && !options.common.jsonDiagnostics)
     fmt::print(stderr, "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB\n", options.output,
                double(bytes.size()) / (1 << 20), package.ptx.size() / 1000, options.common.compile.gpu,
@@ -80,6 +82,7 @@ void addPackCommand(CLI::App &app, Action &action) {
       ->allow_extra_args(false);
   command->add_flag("-q,--quiet", options->quiet, "no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
+  addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run glass.rtslpkg -o glass.png --target=gpu");

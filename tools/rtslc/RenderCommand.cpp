@@ -139,7 +139,8 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
 
   Times times;
   Clock::time_point start = Clock::now();
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages);
+  std::vector<std::string> filesRead;
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
   LinkRequest request = linkRequest(description);
@@ -177,6 +178,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
 
   start = Clock::now();
   runtime::writeImage(options.output, image);
+  writeDependencies(options.common.dependencies, options.output, {options.scene}, withMeshes(description, filesRead));
   times.image = secondsSince(start);
   printSummary(options, render, statistics, printed, times);
 }
@@ -230,6 +232,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
+  addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");

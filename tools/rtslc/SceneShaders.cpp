@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace rtsl::tool {
 
 bool isScene(const std::string &file) {
@@ -57,6 +59,14 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
     filesRead->insert(filesRead->end(), files.begin(), files.end());
   }
   return module;
+}
+
+std::vector<std::string> withMeshes(const scene::SceneDescription &description, std::vector<std::string> filesRead) {
+  for (const scene::GeometryDescription &geometry : description.objects)
+    if (!geometry.meshPath.empty() &&
+        std::find(filesRead.begin(), filesRead.end(), geometry.meshPath) == filesRead.end())
+      filesRead.push_back(geometry.meshPath);
+  return filesRead;
 }
 
 LinkRequest linkRequest(const scene::SceneDescription &description) {

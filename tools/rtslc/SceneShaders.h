@@ -18,6 +18,9 @@ bool isScene(const std::string &file);
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
                                            Messages &messages, std::vector<std::string> *filesRead = nullptr);
 
+/// What a picture of the scene is made of, for -MD: `filesRead` and the meshes.
+std::vector<std::string> withMeshes(const scene::SceneDescription &description, std::vector<std::string> filesRead);
+
 /// Which classes the scene has objects of, and which materials meet which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);
 
