@@ -133,7 +133,7 @@ const ForeignSpelling *foreignSpelling(const std::string &name) {
       {"tex2D", {"", "a texture is a reference to an object: `albedo.lookup()`"}},
       {"texture2D", {"", "a texture is a reference to an object: `albedo.lookup()`"}},
       // OptiX, Vulkan and DirectX ray tracing
-      {"rtTrace", {"trace", ""}},
+      {"rtTrace", {"trace", "", true}}, // arguments that do not fit have a message of their own
       {"optixTrace", {"trace", ""}},
       {"TraceRay", {"trace", ""}},
       {"traceRay", {"trace", ""}},

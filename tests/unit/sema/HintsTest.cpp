@@ -168,6 +168,8 @@ TEST(SureFixes, SpellingsOfOptix) {
                "rtIgnoreIntersection();\n    optixTerminateRay();\n  }\n};",
                "struct P { float x; };\nclass A : rt_Material {\n  void anyHit(inout P p) {\n    if (p.x > 0.5) "
                "ignoreIntersection();\n    terminateRay();\n  }\n};");
+  expectMended("class A : rt_Material { void shade() { rt_SampleColor = rtTrace(rt_HitPoint, rt_RayDirection); } };",
+               "class A : rt_Material { void shade() { rt_SampleColor = trace(rt_HitPoint, rt_RayDirection); } };");
 }
 
 TEST(SureFixes, HabitsOfOtherLanguages) {
@@ -192,7 +194,6 @@ TEST(SureFixes, AreNoGuesses) {
   expectLeft("vec2 f(vec4 v) { return v; }");
   expectLeft("color f(vec3 v) { return v; }");
   expectLeft("float4x4 f(float4x4 m) { return m; }");
-  expectLeft("class A : rt_Material { void shade() { rt_SampleColor = rtTrace(rt_HitPoint, rt_RayDirection); } };");
 }
 
 } // namespace
