@@ -260,7 +260,7 @@ std::string ModulePrinter::structure(const typed::Struct &structure) {
 
 std::string ModulePrinter::constant(const typed::Variable &constant) {
   FunctionPrinter printer(*this, nullptr);
-  const bool isPlain = constant.type->isScalar() && constant.constant;
+  const bool isPlain = (constant.type->isScalar() && constant.constant) || printer.isTable(*constant.init);
   std::string text = commentText(constant.comment) + "inline " + (isPlain ? "constexpr " : "const ") +
                      type(constant.type) + " " +
                      declarator(type(constant.type), names.of(&constant), printer.initialiser(*constant.init)) + ";";
@@ -301,7 +301,7 @@ std::string ModulePrinter::member(const typed::Member &member) {
   std::string text = commentText(member.comment);
   const std::string &name = names.of(&member);
   if (member.isConst) {
-    const bool isPlain = member.type->isScalar() && member.constant;
+    const bool isPlain = (member.type->isScalar() && member.constant) || (member.init && printer.isTable(*member.init));
     text += std::string(isPlain ? "static constexpr " : "inline static const ") + type(member.type) + " " +
             declarator(type(member.type), name, member.init ? printer.initialiser(*member.init) : zero(member.type)) + ";";
   } else {

@@ -257,6 +257,19 @@ const void *FunctionPrinter::namedConstant(const typed::LiteralExpr &expr) const
   return nullptr;
 }
 
+/// Named ones need not be known to C++ while it compiles.
+bool FunctionPrinter::isTable(const typed::Expr &expr) const {
+  auto isNumber = [&](const typed::Expr &element) {
+    auto *literal = dynCast<typed::LiteralExpr>(&element);
+    return literal && element.type->isScalar() && !namedConstant(*literal) &&
+           (!element.type->is(TypeKind::Float) || std::isfinite(literal->value.scalars.front().f));
+  };
+  auto *array = dynCast<typed::ConstructExpr>(&expr);
+  return array && array->type->is(TypeKind::Array) &&
+         std::all_of(array->args.begin(), array->args.end(),
+                     [&](const typed::ExprPtr &element) { return isNumber(*element) || isTable(*element); });
+}
+
 Code FunctionPrinter::scalarLiteral(const Type *type, typed::Constant::Scalar value,
                                     const std::string &spelling) {
   switch (type->kind) {

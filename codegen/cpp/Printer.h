@@ -131,6 +131,8 @@ public:
   std::string body();
   /// An initialiser outside of functions.
   std::string initialiser(const typed::Expr &expr);
+  /// Is it an array of numbers that are written out? C++ can make it while it compiles.
+  bool isTable(const typed::Expr &expr) const;
 
 private:
   // Statements.cpp

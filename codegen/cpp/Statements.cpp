@@ -154,7 +154,7 @@ std::string FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, boo
   std::string text;
   std::string line; // declarators of one type share a line
   const Type *lineType = nullptr;
-  bool lineIsConst = false;
+  std::string lineQualifier;
   auto finish = [&] {
     if (!line.empty())
       text += line + ";\n";
@@ -183,14 +183,17 @@ std::string FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, boo
         text += statement + "\n";
     }
     const bool isUnread = !readVariables.count(variable);
-    if (!line.empty() && (lineType != variable->type || lineIsConst != variable->isConst || isUnread))
+    const std::string qualifier = !variable->isConst                             ? ""
+                                  : variable->init && isTable(*variable->init) ? "static constexpr "
+                                                                                 : "const ";
+    if (!line.empty() && (lineType != variable->type || lineQualifier != qualifier || isUnread))
       finish();
     const std::string declared = declarator(module.type(variable->type), name, value);
     if (line.empty()) {
-      line = std::string(isUnread ? "[[maybe_unused]] " : "") + (variable->isConst ? "const " : "") +
+      line = (isUnread ? "[[maybe_unused]] " : "") + qualifier +
              module.type(variable->type) + " " + declared;
       lineType = variable->type;
-      lineIsConst = variable->isConst;
+      lineQualifier = qualifier;
       if (isUnread)
         finish();
     } else {

@@ -8,55 +8,29 @@
 
 #include "rtsl/shader/Common.h"
 
+/// X(name) for each function of one number.
+#define RTSL_ELEMENTARY_FUNCTIONS(X)                                                               \
+  X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(asinh)                    \
+  X(acosh) X(atanh) X(exp) X(exp2) X(log) X(log2) X(inversesqrt)
+
 extern "C" {
-#define RTSL_ELEMENTARY(name) float rtsl_##name(float x);
-RTSL_ELEMENTARY(sin)
-RTSL_ELEMENTARY(cos)
-RTSL_ELEMENTARY(tan)
-RTSL_ELEMENTARY(asin)
-RTSL_ELEMENTARY(acos)
-RTSL_ELEMENTARY(atan)
-RTSL_ELEMENTARY(sinh)
-RTSL_ELEMENTARY(cosh)
-RTSL_ELEMENTARY(tanh)
-RTSL_ELEMENTARY(asinh)
-RTSL_ELEMENTARY(acosh)
-RTSL_ELEMENTARY(atanh)
-RTSL_ELEMENTARY(exp)
-RTSL_ELEMENTARY(exp2)
-RTSL_ELEMENTARY(log)
-RTSL_ELEMENTARY(log2)
-RTSL_ELEMENTARY(inversesqrt)
-#undef RTSL_ELEMENTARY
+#define RTSL_DECLARE(name) float rtsl_##name(float x);
+RTSL_ELEMENTARY_FUNCTIONS(RTSL_DECLARE)
+#undef RTSL_DECLARE
 float rtsl_atan2(float y, float x);
 float rtsl_pow(float x, float y);
 }
 
 namespace rtsl {
 
-#define RTSL_ELEMENTARY(name)                                                                      \
+#define RTSL_DEFINE(name)                                                                          \
   template <typename T>                                                                            \
   inline auto name(const T &value) {                                                               \
     return each([](float x) { return rtsl_##name(x); }, value);                                    \
   }
-RTSL_ELEMENTARY(sin)
-RTSL_ELEMENTARY(cos)
-RTSL_ELEMENTARY(tan)
-RTSL_ELEMENTARY(asin)
-RTSL_ELEMENTARY(acos)
-RTSL_ELEMENTARY(atan)
-RTSL_ELEMENTARY(sinh)
-RTSL_ELEMENTARY(cosh)
-RTSL_ELEMENTARY(tanh)
-RTSL_ELEMENTARY(asinh)
-RTSL_ELEMENTARY(acosh)
-RTSL_ELEMENTARY(atanh)
-RTSL_ELEMENTARY(exp)
-RTSL_ELEMENTARY(exp2)
-RTSL_ELEMENTARY(log)
-RTSL_ELEMENTARY(log2)
-RTSL_ELEMENTARY(inversesqrt)
-#undef RTSL_ELEMENTARY
+RTSL_ELEMENTARY_FUNCTIONS(RTSL_DEFINE)
+#undef RTSL_DEFINE
+#undef RTSL_ELEMENTARY_FUNCTIONS
 
 template <typename Y, typename X>
 inline auto atan(const Y &a, const X &b) {
