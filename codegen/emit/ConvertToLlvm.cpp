@@ -200,6 +200,30 @@ void declareNullRecord(mlir::ModuleOp module) {
                          LLVM::Linkage::Internal, nullRecord, builder.getI32IntegerAttr(0));
 }
 
+/// One global for all tables with the same words. The second of a name has `.1` behind it, and so on.
+void declareTables(mlir::ModuleOp module) {
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
+  llvm::DenseMap<mlir::Attribute, mlir::StringAttr> symbols; // by words
+  module.walk([&](ir::TableOp table) {
+    mlir::StringAttr &symbol = symbols[table.getWordsAttr()];
+    if (!symbol) {
+      const std::string wanted = "constant." + table.getName().str();
+      std::string name = wanted;
+      for (unsigned number = 1; module.lookupSymbol(name); ++number)
+        name = wanted + "." + std::to_string(number);
+      symbol = builder.getStringAttr(name);
+      const auto count = static_cast<int64_t>(table.getWords().size());
+      auto words = mlir::DenseIntElementsAttr::get(
+          mlir::RankedTensorType::get({count}, builder.getI32Type()), table.getWords());
+      auto global = LLVM::GlobalOp::create(builder, table.getLoc(),
+                                           LLVM::LLVMArrayType::get(builder.getI32Type(), static_cast<unsigned>(count)),
+                                           /*isConstant=*/true, LLVM::Linkage::Private, name, words, ir::memoryAlignment);
+      global.setUnnamedAddr(LLVM::UnnamedAddr::Global);
+    }
+    table->setAttr(tableSymbol, symbol);
+  });
+}
+
 LogicalResult convertOperations(mlir::ModuleOp module) {
   mlir::MLIRContext *context = module.getContext();
   mlir::LLVMTypeConverter converter(context);
@@ -246,6 +270,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     returnBoolsAsNumbers(module);
     declareRuntimeFunctions(module);
     declareNullRecord(module);
+    declareTables(module);
     // Members find their classes by name, so the declarations go last; members are converted by
     // then or not at all.
     llvm::SmallVector<ir::ClassOp> classes(module.getOps<ir::ClassOp>());

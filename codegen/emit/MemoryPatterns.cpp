@@ -31,10 +31,12 @@ mlir::Type memoryType(const mlir::TypeConverter &converter, mlir::Type type) {
   return isBool(type) ? ir::intLike(type) : converter.convertType(type);
 }
 
-/// Whether what lies at `address` stays as it is while the program runs: it is part of a member, or
-/// of a buffer, and the code does not belong to a constructor.
+/// Whether what lies at `address` stays as it is while the program runs: it is part of a constant, or of a member or of
+/// a buffer, and the code does not belong to a constructor.
 bool isInvariant(Value address) {
   while (mlir::Operation *op = address.getDefiningOp()) {
+    if (llvm::isa<ir::TableOp>(op))
+      return true;
     if (llvm::isa<ir::MemberOp>(op)) {
       auto function = op->getParentOfType<mlir::FunctionOpInterface>();
       return function && !function->hasAttr(writesMembers);
@@ -186,6 +188,15 @@ uint32_t stateOffset(llvm::StringRef name) {
   llvm_unreachable("the verifier knows the names");
 }
 
+struct ConvertTable : ConvertOpToLLVMPattern<ir::TableOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::TableOp op, OpAdaptor, ConversionPatternRewriter &rewriter) const override {
+    auto symbol = op->getAttrOfType<mlir::StringAttr>(tableSymbol);
+    rewriter.replaceOpWithNewOp<LLVM::AddressOfOp>(op, LLVM::LLVMPointerType::get(op.getContext()), symbol.getValue());
+    return mlir::success();
+  }
+};
+
 struct ConvertState : ConvertOpToLLVMPattern<ir::StateOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::StateOp op, OpAdaptor,
@@ -325,7 +336,7 @@ struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
 
 void addMemoryPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
   patterns.add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
-               ConvertElement, ConvertMember, ConvertState, ConvertFrameSlot, ConvertAttribute,
+               ConvertElement, ConvertMember, ConvertTable, ConvertState, ConvertFrameSlot, ConvertAttribute,
                ConvertBufferElement, ConvertBufferLength, ConvertNullRef, ConvertCastRef,
                ConvertEqualRef, ConvertClassId>(converter);
 }

@@ -22,6 +22,9 @@ constexpr llvm::StringLiteral writesMembers = "rtsl.writes_members";
 /// A constant record whose class id is 0, for the class of the null reference.
 constexpr llvm::StringLiteral nullRecord = "rtsl.null_record";
 
+/// The name of the global that a table has become.
+constexpr llvm::StringLiteral tableSymbol = "rtsl.symbol";
+
 //===----------------------------------------------------------------------===//
 // What the patterns share
 //===----------------------------------------------------------------------===//

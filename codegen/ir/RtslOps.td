@@ -113,6 +113,7 @@ def Rtsl_LoadOp : Rtsl_Op<"load", [
   let results = (outs Rtsl_Value:$result);
   let assemblyFormat = "$address attr-dict `:` type($address)";
   let builders = [OpBuilder<(ins "::mlir::Value":$address)>];
+  let hasFolder = 1;
 }
 
 def Rtsl_StoreOp : Rtsl_Op<"store", [
@@ -208,6 +209,19 @@ def Rtsl_AttributeOp : Rtsl_Op<"attribute", [Pure, Rtsl_Named]> {
   let assemblyFormat = "$name attr-dict `:` type($result)";
   let hasVerifier = 1;
   let builders = [OpBuilder<(ins "::llvm::StringRef":$name, "::mlir::Type":$type)>];
+}
+
+def Rtsl_TableOp : Rtsl_Op<"table", [Pure, Rtsl_Named]> {
+  let summary = "address of a constant struct, array or matrix";
+  let description = [{
+    `words` is what lies there, 32 bits each, as Layout.h lays it out. Nothing is ever written there.
+
+    Example: `%w = rtsl.table "weights" [1056964608, 1048576000] : !rtsl.ptr<!rtsl.array<2 x f32>>`
+  }];
+  let arguments = (ins StrAttr:$name, DenseI32ArrayAttr:$words);
+  let results = (outs Rtsl_Ptr:$result);
+  let assemblyFormat = "$name $words attr-dict `:` type($result)";
+  let hasVerifier = 1;
 }
 
 def Rtsl_BufferElementOp : Rtsl_Op<"buffer_element", []> {

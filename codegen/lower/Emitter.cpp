@@ -122,7 +122,7 @@ Value Emitter::variable(llvm::StringRef name, mlir::Type type) {
   return make<ir::VarOp>(name, type);
 }
 Value Emitter::load(Value address) {
-  return make<ir::LoadOp>(address);
+  return fold<ir::LoadOp>(address);
 }
 void Emitter::store(Value value, Value address) {
   make<ir::StoreOp>(value, address);

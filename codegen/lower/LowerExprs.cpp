@@ -9,6 +9,9 @@
 #include "codegen/lower/Lowering.h"
 
 #include "sema/Casting.h"
+#include "sema/ConstantFold.h"
+
+#include "mlir/IR/Matchers.h"
 
 namespace rtsl::lowering {
 
@@ -47,9 +50,12 @@ Parts FunctionLowering::lower(const typed::Expr &expr) {
   case ExprKind::Member: {
     const typed::Member &member = *cast<typed::MemberExpr>(expr).member;
     if (member.isConst && member.constant)
-      return lowerLiteral(member.type, *member.constant);
-    if (member.isConst)
+      return lowerLiteral(member.type, *member.constant, member.name);
+    if (member.isConst) {
+      if (Value constant = tableOf(*member.init, member.name))
+        return {constant};
       return lower(*member.init);
+    }
     return load(place(expr));
   }
   case ExprKind::Field:
@@ -108,11 +114,18 @@ Parts FunctionLowering::lower(const typed::Expr &expr) {
   llvm_unreachable("every kind of expression is listed");
 }
 
+/// A constant array with more leaves is copied as a whole.
+constexpr unsigned mostStores = 64;
+
 void FunctionLowering::lowerInto(const typed::Expr &expr, Value address) {
   emitter.setLoc(module.location(expr.range));
   if (livesInMemory(expr.type)) {
-    if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && isAggregate(expr.type))
+    if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && isAggregate(expr.type)) {
+      if (ir::leafCount(module.type(expr.type)) > mostStores)
+        if (Value constant = tableOf(expr, "constant"))
+          return emitter.copy(constant, address);
       return constructInto(*construct, address);
+    }
     if (auto *call = dynCast<typed::CallExpr>(&expr)) {
       lowerCall(*call, address);
       return;
@@ -133,28 +146,21 @@ Parts FunctionLowering::snapshot(Parts parts, const Type *type) {
 // Constants
 //===----------------------------------------------------------------------===//
 
-static std::size_t scalarsOf(const Type *type) {
-  if (type->is(TypeKind::Struct)) {
-    std::size_t sum = 0;
+/// The words of a constant of this type; `next` is the first scalar of it.
+static void wordsOf(const Type *type, const typed::Constant::Scalar *&next,
+                    llvm::SmallVectorImpl<std::int32_t> &words) {
+  if (type->is(TypeKind::Struct))
     for (const typed::Field &field : type->structure->fields)
-      sum += scalarsOf(field.type);
-    return sum;
-  }
-  if (type->is(TypeKind::Array))
-    return type->count * scalarsOf(type->element);
-  return type->componentCount();
+      wordsOf(field.type, next, words);
+  else if (type->is(TypeKind::Array))
+    for (unsigned i = 0; i < type->count; ++i)
+      wordsOf(type->element, next, words);
+  else
+    for (unsigned i = 0; i < type->componentCount(); ++i, ++next)
+      words.push_back(type->scalar()->is(TypeKind::Bool) ? next->b : next->i);
 }
 
-// The scalars [first, first + count) as a constant of their own.
-static typed::Constant slice(const typed::Constant &constant, std::size_t first,
-                             std::size_t count) {
-  typed::Constant part;
-  auto begin = constant.scalars.begin() + static_cast<std::ptrdiff_t>(first);
-  part.scalars.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
-  return part;
-}
-
-Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &constant) {
+Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &constant, llvm::StringRef name) {
   auto scalar = [&](const Type *scalarType, typed::Constant::Scalar value) -> Value {
     switch (scalarType->kind) {
     case TypeKind::Float:
@@ -181,11 +187,18 @@ Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &co
   }
   if (type->isMatrix()) {
     Parts columns;
-    for (unsigned i = 0; i < type->columns(); ++i)
-      columns.append(lowerLiteral(type->element, slice(constant, i * type->rows(), type->rows())));
+    for (unsigned i = 0; i < type->columns(); ++i) {
+      typed::Constant column;
+      const auto first = constant.scalars.begin() + i * type->rows();
+      column.scalars.assign(first, first + type->rows());
+      columns.append(lowerLiteral(type->element, column));
+    }
     return columns;
   }
-  return {constantAggregate(type, constant)};
+  llvm::SmallVector<std::int32_t> words;
+  const typed::Constant::Scalar *next = constant.scalars.data();
+  wordsOf(type, next, words);
+  return {table(name, type, words)};
 }
 
 // Behind what was made there before, which it may use. While it is made others may be, which it
@@ -201,36 +214,52 @@ Value FunctionLowering::atStart(llvm::function_ref<Value()> make) {
   return made;
 }
 
-void FunctionLowering::fillConstant(const Type *type, const typed::Constant &constant, Value to) {
-  std::size_t first = 0;
-  if (type->is(TypeKind::Struct)) {
-    for (const typed::Field &field : type->structure->fields) {
-      std::size_t size = scalarsOf(field.type);
-      fillConstant(field.type, slice(constant, first, size), emitter.field(to, field.name));
-      first += size;
-    }
-  } else if (type->is(TypeKind::Array)) {
-    std::size_t size = scalarsOf(type->element);
-    for (unsigned i = 0; i < type->count; ++i)
-      fillConstant(type->element, slice(constant, i * size, size), emitter.element(to, i));
-  } else {
-    storeTo(lowerLiteral(type, constant), to, type);
-  }
+// Made once, at the start of the function.
+Value FunctionLowering::table(llvm::StringRef name, const Type *type, llvm::ArrayRef<std::int32_t> words) {
+  const mlir::Type pointer = module.pointer(type);
+  Value &known = tables[{pointer, emitter.getDenseI32ArrayAttr(words)}];
+  return known ? known : known = atStart([&] { return emitter.make<ir::TableOp>(pointer, name, words); });
 }
 
-// Stored once, at the start of the function; nothing writes there later.
-Value FunctionLowering::constantAggregate(const Type *type, const typed::Constant &constant) {
-  std::vector<std::uint32_t> bits;
-  for (typed::Constant::Scalar value : constant.scalars)
-    bits.push_back(type->isError() ? 0 : value.u);
-  Value &known = constantAggregates[{type, bits}];
-  if (known)
-    return known;
-  return known = atStart([&] {
-    Value address = temporary("constant", type);
-    fillConstant(type, constant, address);
-    return address;
-  });
+/// The bits of a constant, a word a scalar; false if `value` is none.
+static bool wordsOf(Value value, llvm::SmallVectorImpl<std::int32_t> &words) {
+  auto append = [&](mlir::Attribute scalar) {
+    const auto number = llvm::dyn_cast<mlir::FloatAttr>(scalar);
+    const llvm::APInt bits =
+        number ? number.getValue().bitcastToAPInt() : llvm::cast<mlir::IntegerAttr>(scalar).getValue();
+    words.push_back(static_cast<std::int32_t>(bits.getZExtValue()));
+  };
+  mlir::Attribute constant;
+  if (!mlir::matchPattern(value, mlir::m_Constant(&constant)))
+    return false;
+  if (auto elements = llvm::dyn_cast<mlir::DenseElementsAttr>(constant))
+    llvm::for_each(elements.getValues<mlir::Attribute>(), append);
+  else if (llvm::isa<mlir::FloatAttr, mlir::IntegerAttr>(constant))
+    append(constant);
+  else
+    return false;
+  return true;
+}
+
+bool FunctionLowering::appendWords(const typed::Expr &expr, llvm::SmallVectorImpl<std::int32_t> &words) {
+  if (!isAggregate(expr.type))
+    return llvm::all_of(lower(expr), [&](Value part) { return wordsOf(part, words); });
+  if (auto *construct = dynCast<typed::ConstructExpr>(&expr))
+    return llvm::all_of(construct->args, [&](const typed::ExprPtr &arg) { return appendWords(*arg, words); });
+  const std::optional<typed::Constant> constant = evaluate(expr);
+  if (!constant)
+    return false;
+  const typed::Constant::Scalar *next = constant->scalars.data();
+  wordsOf(expr.type, next, words);
+  return true;
+}
+
+Value FunctionLowering::tableOf(const typed::Expr &expr, llvm::StringRef name) {
+  llvm::SmallVector<std::int32_t> words;
+  const typed::Expr *obstacle = nullptr;
+  if (!isAggregate(expr.type) || !isConstantExpression(expr, &obstacle) || !appendWords(expr, words))
+    return nullptr;
+  return table(name, expr.type, words);
 }
 
 //===----------------------------------------------------------------------===//
@@ -244,17 +273,19 @@ Parts FunctionLowering::lowerVariable(const typed::VariableExpr &expr) {
     return known->second.address ? loadFrom(known->second.address, variable.type)
                                  : known->second.value;
   if (variable.constant)
-    return lowerLiteral(variable.type, *variable.constant);
+    return lowerLiteral(variable.type, *variable.constant, variable.name);
   // A constant of the file whose value depends on the target, such as one with colors.
   if (!isAggregate(variable.type))
     return lower(*variable.init);
   if (auto global = globalAggregates.find(&variable); global != globalAggregates.end())
     return {global->second};
-  Value address = atStart([&] {
-    Value address = temporary(variable.name, variable.type);
-    lowerInto(*variable.init, address);
-    return address;
-  });
+  Value address = tableOf(*variable.init, variable.name);
+  if (!address)
+    address = atStart([&] {
+      Value address = temporary(variable.name, variable.type);
+      lowerInto(*variable.init, address);
+      return address;
+    });
   globalAggregates[&variable] = address;
   return {address};
 }

@@ -69,10 +69,14 @@ void FunctionLowering::lower(const typed::Stmt &stmt) {
 
 void FunctionLowering::lowerDeclaration(const typed::Variable &variable) {
   emitter.setLoc(module.location(variable.range));
-  Binding &known = variables[&variable];
-  if (!known.address)
-    known.address = emitter.variable(variable.name, module.type(variable.type));
-  Value address = known.address; // `known` moves when the initialiser declares something
+  Value address = variables.lookup(&variable).address;
+  if (!address && variable.isConst && variable.init)
+    if (Value constant = tableOf(*variable.init, variable.name)) {
+      variables[&variable].address = constant;
+      return;
+    }
+  if (!address)
+    address = variables[&variable].address = emitter.variable(variable.name, module.type(variable.type));
   if (variable.init)
     lowerInto(*variable.init, address);
 }

@@ -131,9 +131,13 @@ private:
   Num number(const typed::Expr &expr) { return {emitter, value(expr)}; }
   /// Evaluates into memory that nothing else refers to.
   void lowerInto(const typed::Expr &expr, Value address);
-  Parts lowerLiteral(const Type *type, const typed::Constant &constant);
-  Value constantAggregate(const Type *type, const typed::Constant &constant);
-  void fillConstant(const Type *type, const typed::Constant &constant, Value to);
+  Parts lowerLiteral(const Type *type, const typed::Constant &constant, llvm::StringRef name = "constant");
+  /// The address of a constant struct or array whose memory is known; `name` is for people.
+  Value table(llvm::StringRef name, const Type *type, llvm::ArrayRef<std::int32_t> words);
+  /// The same for an expression; null if it is no constant struct or array.
+  Value tableOf(const typed::Expr &expr, llvm::StringRef name);
+  /// Appends the memory of an expression; false if the expression has other parts than constants.
+  bool appendWords(const typed::Expr &expr, llvm::SmallVectorImpl<std::int32_t> &words);
   /// Calls `make` at the start of the function, and returns what it returns.
   Value atStart(llvm::function_ref<Value()> make);
   Parts lowerVariable(const typed::VariableExpr &expr);
@@ -232,9 +236,9 @@ private:
   bool commitsScratch = false;
   bool mayEndAnyHit = false; // it is `anyHit`, or a function that may run on its behalf
 
-  // Constant arrays and structs, made once at the start of the function.
-  std::map<std::pair<const Type *, std::vector<std::uint32_t>>, Value> constantAggregates;
-  std::map<const typed::Variable *, Value> globalAggregates;
+  // Constant structs and arrays, made once at the start of the function.
+  llvm::DenseMap<std::pair<mlir::Type, mlir::Attribute>, Value> tables;
+  std::map<const typed::Variable *, Value> globalAggregates; // constants of the file that are no literals
   mlir::Operation *lastAtStart = nullptr; // of what makes them
 };
 

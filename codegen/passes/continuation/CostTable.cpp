@@ -25,7 +25,7 @@ static std::int64_t components(mlir::Type type) {
 /// What a load costs a word, by where it loads from.
 static std::int64_t loadCost(mlir::Value address) {
   while (mlir::Operation *op = address.getDefiningOp()) {
-    if (llvm::isa<ir::MemberOp>(op))
+    if (llvm::isa<ir::MemberOp, ir::TableOp>(op))
       return 2;
     if (llvm::isa<ir::BufferElementOp>(op))
       return 16;
@@ -45,7 +45,7 @@ std::int64_t recomputeCost(mlir::Operation *op) {
   std::int64_t width = op->getNumResults() == 0 ? 1 : components(op->getResult(0).getType());
   return llvm::TypeSwitch<mlir::Operation *, std::int64_t>(op)
       .Case<ir::StateOp, ir::MemberOp, ir::AttributeOp, ir::FieldOp, ir::CastRefOp, ir::NullRefOp,
-            ir::FrameObjectOp, ir::PayloadOp>([](auto) { return 0; })
+            ir::FrameObjectOp, ir::PayloadOp, ir::TableOp>([](auto) { return 0; })
       .Case([](ir::ElementOp element) { return element.constantIndex() ? 0 : 2; })
       .Case([&](ir::LoadOp load) { return loadCost(load.getAddress()) * width; })
       .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp>([](auto) { return 2; })

@@ -38,6 +38,8 @@ static std::string nameOfAddress(mlir::Value address) {
     return attribute.getName().str();
   if (auto variable = llvm::dyn_cast_or_null<ir::VarOp>(op))
     return variable.getName().str();
+  if (auto table = llvm::dyn_cast_or_null<ir::TableOp>(op))
+    return table.getName().str();
   if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
     return object.getName().str();
   if (auto field = llvm::dyn_cast_or_null<ir::FieldOp>(op))

@@ -149,9 +149,9 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
       llvm::isa<ir::FrameLoadOp>(op))
     return false;
   auto isConstantForLaunch = [&](mlir::Value address) {
-    return llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(
-               baseOf(address).getDefiningOp()) &&
-           !function->hasAttr("rtsl.constructor");
+    mlir::Operation *base = baseOf(address).getDefiningOp();
+    return llvm::isa_and_nonnull<ir::TableOp>(base) ||
+           (llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(base) && !function->hasAttr("rtsl.constructor"));
   };
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
     mlir::Operation *base = baseOf(load.getAddress()).getDefiningOp();

@@ -22,6 +22,20 @@ func.func @members(%self: !rtsl.ref<"M">, %o: vector<3xf32>) -> f32 {
   return %square : f32
 }
 
+// What lies in a table is read again where its index is at hand: the address is not saved, and nothing of the table.
+// CHECK-LABEL: func.func @table
+// CHECK:        rtsl.suspend %{{.*}}, %{{.*}}, ^bb1(%{{.*}} : i32) names ["argument"]
+// CHECK-NEXT: ^bb1(%[[I:.*]]: i32):
+// CHECK:        %[[E:.*]] = rtsl.element %{{.*}}[%[[I]]]
+// CHECK-NEXT:   %[[X:.*]] = rtsl.load %[[E]]
+func.func @table(%i: i32, %o: vector<3xf32>) -> (f32, i32) {
+  %t = rtsl.table "t" [0, 1] : !rtsl.ptr<!rtsl.array<2 x f32>>
+  %e = rtsl.element %t[%i] : !rtsl.ptr<!rtsl.array<2 x f32>> -> !rtsl.ptr<f32>
+  %x = rtsl.load %e : !rtsl.ptr<f32>
+  %c = rtsl.trace %o, %o : vector<3xf32>
+  return %x, %i : f32, i32
+}
+
 // But a sine costs more than a word.
 // CHECK-LABEL: func.func @dear
 // CHECK:        rtsl.suspend %{{.*}}, %{{.*}}, ^bb1(%{{.*}} : f32) names ["elementary"]

@@ -250,3 +250,21 @@ func.func @f(%x: f32) {
 
 // expected-error @below {{`rtsl.class` is to be a string}}
 func.func private @f() attributes {rtsl.class}
+
+// -----
+
+func.func @f() {
+  // expected-error @below {{has 1 words, and '!rtsl.array<2 x f32>' has 2}}
+  %t = rtsl.table "t" [0] : !rtsl.ptr<!rtsl.array<2 x f32>>
+  return
+}
+
+// -----
+
+rtsl.class @A root "rt_Texture" {
+}
+func.func @f() {
+  // expected-error @below {{holds numbers, and}}
+  %t = rtsl.table "t" [0] : !rtsl.ptr<!rtsl.array<1 x !rtsl.ref<"A">>>
+  return
+}
