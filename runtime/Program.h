@@ -87,6 +87,14 @@ struct Program {
 #include "runtime/device/Slots.def"
 #define RTSL_PAYLOAD_SLOT(base, method) void (*base##_##method##_payload)(RtslState *, RtslRef) = nullptr;
 #include "runtime/device/PayloadSlots.def"
+
+    /// Of shaders in C++ that were split at their traces: what the machine asks for (runtime/device/Machine.h).
+    /// Without `run` traces are calls.
+    struct States {
+      std::int32_t (*run)(RtslState *, std::int32_t number, RtslRef object, void *frame) = nullptr;
+      std::int32_t frameSize = 0;                  // bytes of the largest frame
+      std::int32_t shadeFirst = 0, missFirst = 0; // the states in which the methods begin; 0: there is none
+    } states;
   } slots;
 
   /// RTSL_NEEDS_*: what the methods of the program's classes read.

@@ -9,6 +9,7 @@
 #include "runtime/HostScene.h"
 
 #include "runtime/device/Device.cpp"
+#include "runtime/device/Machine.cpp"
 
 namespace {
 
@@ -27,9 +28,35 @@ const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) {
 extern "C" {
 #include "runtime/device/Slots.def"
 
-/// rtsl_sample of such a program.
+int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {
+  return slotsOf(state).states.run(state, number, object, frame);
+}
+int32_t rtsl_frame_size(RtslState *state) {
+  return slotsOf(state).states.frameSize;
+}
+int32_t rtsl_rt_Material_shade_first(RtslState *state) {
+  return slotsOf(state).states.shadeFirst;
+}
+int32_t rtsl_rt_Miss_miss_first(RtslState *state) {
+  return slotsOf(state).states.missFirst;
+}
+// C++ has no rays with a payload, and so no `generate`.
+int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *) {
+  return 0;
+}
+int32_t rtsl_rt_Miss_miss_payload_first(RtslState *) {
+  return 0;
+}
+int32_t rtsl_rt_RayGeneration_generate_first(RtslState *) {
+  return 0;
+}
+
+/// rtsl_sample of such a program, with calls or with the machine.
 void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
-  rtsl_sample(launch, x, y, sample, color);
+  if (static_cast<const rtsl::runtime::HostScene *>(launch->host)->programSlots().states.run)
+    rtsl_sample_split(launch, x, y, sample, color);
+  else
+    rtsl_sample(launch, x, y, sample, color);
 }
 }

@@ -12,8 +12,9 @@
 
 namespace rtsl::cpp {
 
-ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics)
-    : module(module), options(options), names(module), effects(module), notes(diagnostics.sources()),
+ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
+                             const StateProgram *states)
+    : module(module), options(options), names(module), effects(module), notes(diagnostics.sources()), states(states),
       diagnostics(diagnostics) {}
 
 void ModulePrinter::unsupported(SourceRange range, const std::string &what) {
@@ -345,12 +346,13 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
             !lowering::sameParameters(*method, *function) && shown.insert(method->name).second)
           text += "\nusing " + names.of(at) + "::" + names.of(method.get()) + ";\n";
   for (const auto &function : definition.functions) {
-    if (!function->body)
+    if (!function->body || isPartOfStates(definition, *function))
       continue;
-    text += (isFirst ? "" : "\n") + this->function(*function, true);
+    text += (isFirst ? "" : "\n") +
+            (isSplit(definition, *function) ? stateMachine(definition, *function) : this->function(*function, true));
     isFirst = false;
   }
-  return text + "};\n";
+  return text + inheritedStateMachines(definition) + "};\n";
 }
 
 //===----------------------------------------------------------------------===//
@@ -395,6 +397,7 @@ std::string ModulePrinter::run() {
         ids.push_back(fmt::format("{} = {}", names.of(definition.get()), next++));
       return join(ids, ", ");
     }()));
+  add(stepNumbers());
   add(classes);
   add(methods);
   add(entries);
@@ -408,8 +411,9 @@ std::string ModulePrinter::run() {
   return format(text);
 }
 
-std::optional<std::string> print(const typed::Module &module, const Options &options, Diagnostics &diagnostics) {
-  ModulePrinter printer(module, options, diagnostics);
+std::optional<std::string> print(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
+                                 const StateProgram *states) {
+  ModulePrinter printer(module, options, diagnostics, states);
   std::string text = printer.run();
   if (printer.failed || diagnostics.hasErrors())
     return std::nullopt;

@@ -21,9 +21,12 @@ struct Options {
   bool lineDirectives = false;       // #line before what stands in the author's files
 };
 
-/// The text, formatted; nothing if something cannot be printed, which is reported.
+struct StateProgram;
+
+/// The text, formatted; nothing if something cannot be printed, which is reported. `states`: methods that trace, split, to
+/// be printed as their states (States.h); null: traces are calls.
 std::optional<std::string> print(const typed::Module &module, const Options &options,
-                                 Diagnostics &diagnostics);
+                                 Diagnostics &diagnostics, const StateProgram *states = nullptr);
 
 /// An identifier made of a file's name: "my-glass.cpp" gives "my_glass".
 std::string identifierOf(const std::string &path);

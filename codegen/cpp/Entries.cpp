@@ -180,6 +180,8 @@ std::string ModulePrinter::slots() {
                      "//===----------------------------------------------------------------------===//\n"
                      "\nnamespace slots {\n";
   for (const Slot &slot : allSlots) {
+    if (isRunBySteps(slot.method))
+      continue;
     const std::vector<const typed::Class *> classes = classesBelow(slot.base);
     const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
       const typed::Function *method = slotMethod(definition, slot.method);
@@ -197,7 +199,7 @@ std::string ModulePrinter::slots() {
                           "State &rt = rtsl::stateOf<{}>(ray);\n{}}}\n",
                           slot.method, options.colorComponents, body);
   }
-  return text + "\n} // namespace slots\n";
+  return text + runState() + "\n} // namespace slots\n";
 }
 
 //===----------------------------------------------------------------------===//
@@ -312,11 +314,11 @@ std::string ModulePrinter::description() {
     text += "program.needs(" + words + ");\n";
   for (const Slot &slot : allSlots)
     for (const typed::Class *definition : classesBelow(slot.base))
-      if (slotMethod(*definition, slot.method)) {
+      if (!isRunBySteps(slot.method) && slotMethod(*definition, slot.method)) {
         text += fmt::format("program.slots().{}_{} = &slots::{};\n", slot.base, slot.method, slot.method);
         break;
       }
-  return text + "return program.finish();\n}\n";
+  return text + describeStates() + "return program.finish();\n}\n";
 }
 
 } // namespace rtsl::cpp

@@ -78,6 +78,7 @@ std::vector<std::string> FunctionPrinter::operands(const std::vector<const typed
     all.push_back(module.effects.expression(*expr));
     anyEffects |= !all.back().isPure();
   }
+  anyEffects &= replaced.empty(); // what has effects stands elsewhere
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < exprs.size(); ++i) {
     bool shows = false;
@@ -116,6 +117,8 @@ std::string FunctionPrinter::operand(const typed::Expr &expr, Binding atLeast) {
 }
 
 Code FunctionPrinter::expr(const typed::Expr &expr) {
+  if (auto found = replaced.find(&expr); found != replaced.end())
+    return found->second;
   if (before)
     return lowered(expr);
   // Nothing can go before this expression: what must, goes into a function that is called at once.

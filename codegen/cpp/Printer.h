@@ -50,9 +50,14 @@ struct Interval {
   std::int64_t low = 0, high = 0;
 };
 
+struct StateProgram;
+struct FrameField;
+
 class ModulePrinter {
 public:
-  ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics);
+  /// `states`: what traces, split; null: traces are calls.
+  ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
+                const StateProgram *states);
   std::string run();
 
   /// `inMemory`: as it lies in a record, a struct or an array, where a bool has 32 bits.
@@ -70,6 +75,8 @@ public:
   void useThroughReference(const std::string &className, const std::string &method,
                            const typed::Function *function);
   void unsupported(SourceRange range, const std::string &what);
+  /// The C++ names that mean something in every method of a class.
+  std::set<std::string> namesInScope(const typed::Class &definition) const;
 
   std::string commentText(const std::string &comment) const;
   std::string lineDirective(SourceRange range) const;
@@ -101,6 +108,18 @@ private:
   std::vector<const typed::Class *> family(const typed::Class &definition) const;
   bool hasScratch(const typed::Class &definition);
 
+  // States.cpp
+  /// Is the method printed as its states in this class? Has it become part of those of others?
+  bool isSplit(const typed::Class &definition, const typed::Function &method) const;
+  bool isPartOfStates(const typed::Class &definition, const typed::Function &function) const;
+  std::string stateMachine(const typed::Class &definition, const typed::Function &method);
+  std::string inheritedStateMachines(const typed::Class &definition);
+  std::string meaningOf(const typed::Function &method, const FrameField &field) const;
+  std::string stepNumbers() const;
+  std::string runState();
+  std::string describeStates() const;
+  bool isRunBySteps(const std::string &slot) const; // "shade" and "miss", if anything traces
+
   // Entries.cpp
   std::string references();
   std::string referenceMethods();
@@ -112,6 +131,18 @@ private:
                        const std::function<std::string(const typed::Class &)> &call);
   const typed::Function *findMethod(const typed::Class &definition, const typed::Function &like) const;
 
+  /// A state that runs when a ray is back.
+  struct Step {
+    std::string name;                        // its number in C++
+    const typed::Class *definition = nullptr;
+    const typed::Function *method = nullptr;
+    std::string call; // `shadeAfterTrace1(rt, frame)`
+  };
+  std::vector<Step> steps;
+  std::map<std::pair<const typed::Class *, std::string>, std::string> firstCalls; // by class and method
+  std::vector<std::string> frames;                                                 // the structs
+
+  const StateProgram *states;
   Diagnostics &diagnostics;
   struct ThroughReference {
     std::string method;
@@ -215,7 +246,10 @@ private:
   std::set<const typed::Variable *> readVariables, mentionedVariables, hoistedDeclarations;
   std::map<const typed::Variable *, Interval> counters;
 
+  std::map<const typed::Expr *, Code> replaced; // parts that stand elsewhere, as what they are here
+
   friend class ModulePrinter;
+  friend class StateWriter;
 };
 
 /// `text` in parentheses if it binds less tightly than `atLeast`.

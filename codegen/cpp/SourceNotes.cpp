@@ -81,6 +81,18 @@ bool SourceNotes::followsEmptyLine(SourceRange range, SourceRange previous) cons
 
 std::string SourceNotes::file(SourceRange range) const { return std::string(sources.name(range.file)); }
 
+std::string SourceNotes::textOfLine(SourceRange range, unsigned line) const {
+  if (!range.isValid() || line == 0)
+    return {};
+  std::string_view text = sources.line(range.file, line);
+  text = text.substr(0, text.find("//"));
+  while (!text.empty() && isSpace(text.front()))
+    text.remove_prefix(1);
+  while (!text.empty() && (isSpace(text.back()) || text.back() == ';' || text.back() == '{'))
+    text.remove_suffix(1);
+  return std::string(text);
+}
+
 unsigned SourceNotes::line(SourceRange range) const {
   return sources.lineColumn(range.file, range.begin).line;
 }

@@ -2,6 +2,7 @@
 #include "codegen/driver/Compiler.h"
 
 #include "codegen/cpp/EmitCpp.h"
+#include "codegen/cpp/States.h"
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/FastMath.h"
 #include "codegen/emit/Jit.h"
@@ -275,12 +276,54 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
   return codegen::printLlvm(*code.module);
 }
 
+namespace {
+
+/// C++ with the states of what traces.
+std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp::Options &printing,
+                                         const CompileOptions &options, Diagnostics &diagnostics) {
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  SourceTable source = cpp::makeSourceTable(module);
+  LowerOptions lowering;
+  lowering.diagnostics = &diagnostics;
+  lowering.colorComponents = options.colorComponents;
+  lowering.checkIndices = false; // C++ clamps where it takes an index
+  lowering.source = &source;
+  const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, *context);
+  if (!ir)
+    return std::nullopt;
+  runToSsa(*ir, TraceMode::Split, /*dispatch=*/false);
+  mlir::ModuleOp program = *ir;
+  for (auto function : program.getOps<mlir::func::FuncOp>())
+    if (function->hasAttr("rtsl.state"))
+      expectSuccess(*ir, [&] { return mlir::succeeded(restructure(function)); });
+  const cpp::StateProgram states = {program, source};
+  return cpp::print(module, printing, diagnostics, &states);
+}
+
+bool mayTrace(const typed::Module &module) {
+  for (const auto &definition : module.classes)
+    for (const auto &function : definition->functions)
+      if (function->mayTrace)
+        return true;
+  return false;
+}
+
+} // namespace
+
 std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
-                                   const CompileOptions &options, Diagnostics &diagnostics) {
+                                   std::optional<TraceMode> trace, const CompileOptions &options,
+                                   Diagnostics &diagnostics) {
   cpp::Options printing;
   printing.name = name;
   printing.colorComponents = options.colorComponents;
   printing.lineDirectives = lineDirectives;
+  if (trace == TraceMode::Recurse || !mayTrace(module))
+    return cpp::print(module, printing, diagnostics);
+  if (trace == TraceMode::Split)
+    return printSplitCpp(module, printing, options, diagnostics);
+  Diagnostics refusals(diagnostics.sources());
+  if (std::optional<std::string> text = printSplitCpp(module, printing, options, refusals))
+    return text;
   return cpp::print(module, printing, diagnostics);
 }
 

@@ -67,8 +67,12 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
 
 /// The module as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md). `name` becomes its namespace, and
 /// `<name>_shaders` what it exports. Nothing if there were errors.
+///
+/// `trace`: what becomes of a method that traces: its states, or a call where it traces. Without it states, or calls
+/// if something in such a method cannot be printed as states.
 std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
-                                   const CompileOptions &options, Diagnostics &diagnostics);
+                                   std::optional<TraceMode> trace, const CompileOptions &options,
+                                   Diagnostics &diagnostics);
 
 /// How a report is written: for people, for programs, for Graphviz, or drawn.
 enum class ReportFormat : std::uint8_t { Text, Json, Dot, Svg };

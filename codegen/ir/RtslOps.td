@@ -676,5 +676,6 @@ def Rtsl_ReturnOp : Rtsl_Op<"return", [Terminator]> {
 }
 
 include "codegen/ir/RtslContinuationOps.td"
+include "codegen/ir/RtslSourceOps.td"
 
 #endif

@@ -12,7 +12,7 @@ using typed::ExprKind;
 // Questions
 //===----------------------------------------------------------------------===//
 
-static bool isPureBuiltin(typed::Builtin builtin) {
+bool isPureBuiltin(typed::Builtin builtin) {
   switch (builtin) {
   case typed::Builtin::Modf:
   case typed::Builtin::Frexp:

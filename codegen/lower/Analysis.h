@@ -5,6 +5,9 @@
 
 namespace rtsl::lowering {
 
+/// Does the function change nothing and give the same for the same arguments?
+bool isPureBuiltin(typed::Builtin builtin);
+
 /// May evaluation change something, or end in another way than with a value?
 bool hasSideEffects(const typed::Expr &expr);
 

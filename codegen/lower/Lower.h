@@ -7,6 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/lower/SourceTable.h"
 #include "frontend/Diagnostics.h"
 #include "sema/TypedAst.h"
 
@@ -31,6 +32,8 @@ struct LowerOptions {
   /// An index out of range is an exception too; `print` prints. Without, `print` does nothing, and
   /// its arguments are not evaluated.
   bool raisesExceptions = false, prints = false;
+  /// Keep expressions whole, for C++: see SourceTable.h. Null: lower them.
+  SourceTable *source = nullptr;
   /// Lower these classes only, with the functions that they call. Empty: everything.
   std::set<std::string> classes;
 };

@@ -39,6 +39,9 @@ Parts FunctionLowering::zeroOf(const Type *type) {
 }
 
 Parts FunctionLowering::lower(const typed::Expr &expr) {
+  if (module.options.source)
+    if (std::optional<Parts> whole = lowerWhole(expr))
+      return *whole;
   emitter.setLoc(module.location(expr.range));
   switch (expr.kind) {
   case ExprKind::Literal:
@@ -119,6 +122,15 @@ constexpr unsigned mostStores = 64;
 
 void FunctionLowering::lowerInto(const typed::Expr &expr, Value address) {
   emitter.setLoc(module.location(expr.range));
+  if (auto *choice = dynCast<typed::ConditionalExpr>(&expr); choice && module.options.source) {
+    if (std::optional<Parts> whole = lowerWhole(expr))
+      return storeTo(*whole, address, expr.type);
+    // Under the name of what it is for, not of a temporary.
+    Value condition = value(*choice->condition);
+    return emitter.ifThen(
+        condition, [&] { lowerInto(*choice->whenTrue, address); },
+        [&] { lowerInto(*choice->whenFalse, address); });
+  }
   if (livesInMemory(expr.type)) {
     if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && isAggregate(expr.type)) {
       if (ir::leafCount(module.type(expr.type)) > mostStores)
@@ -335,6 +347,9 @@ Parts FunctionLowering::lowerIncDec(const typed::IncDecExpr &expr) {
     after.push_back(expr.increment ? old + 1.0 : old - 1.0);
   }
   emitter.setLoc(module.location(expr.range));
+  if (module.options.source && before.size() == 1)
+    after = {wholeExpression(SourceTable::Kind::Step, expr, {expr.target.get()}, before,
+                             before.front().getType())};
   store(after, target);
   return expr.prefix ? after : before;
 }
@@ -346,7 +361,12 @@ Parts FunctionLowering::lowerAssign(const typed::AssignExpr &expr) {
     Parts old = load(target);
     Parts operand = lower(*expr.value);
     emitter.setLoc(module.location(expr.range));
-    result = binary(expr.op, old, expr.target->type, operand, expr.value->type);
+    if (module.options.source && old.size() == 1 && operand.size() == 1)
+      result = {wholeExpression(SourceTable::Kind::Compound, expr,
+                                {expr.target.get(), expr.value.get()},
+                                {old.front(), operand.front()}, old.front().getType())};
+    else
+      result = binary(expr.op, old, expr.target->type, operand, expr.value->type);
   } else {
     result = lower(*expr.value);
     emitter.setLoc(module.location(expr.range));

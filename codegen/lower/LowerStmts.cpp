@@ -131,6 +131,11 @@ void FunctionLowering::lowerIlluminance(const typed::IlluminanceStmt &stmt) {
   Value normal, cosAngle;
   if (stmt.normal && stmt.angle) {
     normal = value(*stmt.normal);
+    if (module.options.source)
+      cosAngle = wholeExpression(SourceTable::Kind::AngleCosine, *stmt.angle, {stmt.angle.get()},
+                                 value(*stmt.angle), emitter.getF32Type());
+  }
+  if (stmt.normal && stmt.angle && !module.options.source) {
     Num angle = number(*stmt.angle);
     constexpr double pi = 3.14159265358979323846;
     cosAngle = elementary(ir::Elementary::Cos, clamp(angle, angle.like(0), angle.like(pi)));

@@ -150,6 +150,16 @@ private:
   /// The same value, safe from what happens later: structs and arrays are copied.
   Parts snapshot(Parts parts, const Type *type);
 
+  // LowerSource.cpp
+  /// The expression as one operation, if it is to be kept whole and can be.
+  std::optional<Parts> lowerWhole(const typed::Expr &expr);
+  bool collectLeaves(const typed::Expr &expr, std::vector<const typed::Expr *> &leaves) const;
+  bool isKept(const typed::Expr &expr) const;
+  std::optional<Parts> lowerEvaluation(const typed::Expr &expr);
+  Value wholeExpression(SourceTable::Kind kind, const typed::Expr &expr,
+                        std::vector<const typed::Expr *> leaves, llvm::ArrayRef<Value> operands,
+                        mlir::Type type);
+
   // LowerPlaces.cpp
   Place place(const typed::Expr &expr);
   Place indexPlace(const typed::IndexExpr &expr);

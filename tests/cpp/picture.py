@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
-"""picture.py RTSLC PROGRAM GLASS: the program's picture is that of the scene file, to the last bit."""
+"""picture.py RTSLC GLASS PROGRAM...: each program's picture is that of the scene file, to the last bit."""
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-rtslc, program, glass = sys.argv[1:]
+rtslc, glass, *programs = sys.argv[1:]
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
     ours, theirs = (str(pathlib.Path(folder) / name) for name in ("cpp.exr", "jit.exr"))
-    subprocess.run([program, f"{glass}/knot.obj", ours, "96", "4"], check=True)
     subprocess.run([rtslc, "render", f"{glass}/scene.json", "-o", theirs, "--size", "96x54", "--spp", "4", "-q"], check=True)
-    subprocess.run([rtslc, "compare", ours, theirs, "--threshold", "0"], check=True)
-    # Without its mesh there is a message and no picture.
-    done = subprocess.run([program, "nowhere.obj", f"{folder}/none.png"], capture_output=True, text=True)
-    assert done.returncode == 1 and "nowhere.obj" in done.stderr, done
-    assert not pathlib.Path(folder, "none.png").exists()
+    for program in programs:
+        subprocess.run([program, f"{glass}/knot.obj", ours, "96", "4"], check=True)
+        subprocess.run([rtslc, "compare", ours, theirs, "--threshold", "0"], check=True)
+        # Without its mesh there is a message and no picture.
+        done = subprocess.run([program, "nowhere.obj", f"{folder}/none.png"], capture_output=True, text=True)
+        assert done.returncode == 1 and "nowhere.obj" in done.stderr, done
+        assert not pathlib.Path(folder, "none.png").exists()

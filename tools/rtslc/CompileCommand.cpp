@@ -36,6 +36,7 @@ struct CompileCommandOptions {
   std::vector<std::string> overrides;
   std::string output = "-";
   bool lineDirectives = false;
+  std::optional<TraceMode> trace; // if it was given
 };
 
 /// The text of the asked stage of a whole scene; nothing if there were errors.
@@ -59,7 +60,8 @@ std::optional<std::string> translate(const CompileCommandOptions &options, const
     return emitReflection(module, options.common.compile, messages.diagnostics);
   if (*options.stage == Stage::Cpp) {
     const std::string &named = options.output == "-" ? options.files.front() : options.output;
-    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.common.compile, messages.diagnostics);
+    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace, options.common.compile,
+                   messages.diagnostics);
   }
   return emit(module, *options.stage, options.common.compile, messages.diagnostics);
 }
@@ -104,8 +106,6 @@ void checkInputs(const CompileCommandOptions &options) {
   if (options.stage == Stage::Cpp && scenes > 0)
     throw CLI::ValidationError("--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
                                          "builds one");
-  if (options.stage == Stage::Cpp && options.common.compile.trace == TraceMode::Split)
-    throw CLI::ValidationError("--trace", "C++ keeps `trace` as a call; states are printed by --emit=split");
   if (options.stage == Stage::Cpp && options.common.compile.floatingPoint != FloatingPoint::Strict)
     throw CLI::ValidationError("--fp", "C++ is strict; what is fast is machine code");
   if (scenes == 0 && !options.overrides.empty())
@@ -154,7 +154,9 @@ void addCompileCommand(CLI::App &app, Action &action) {
                   "  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir\n"
                   "  rtslc compile Glass.rtsl --emit=cpp -o glass.cpp\n"
                   "  rtslc compile scene.json --emit=ptx --gpu-arch=sm_90 -o scene.ptx");
-  command->callback([options, &action] {
+  command->callback([options, command, &action] {
+    if (command->count("--trace") > 0)
+      options->trace = options->common.compile.trace;
     checkInputs(*options);
     action = [options] { return compile(*options); };
   });

@@ -49,6 +49,7 @@ std::int64_t recomputeCost(mlir::Operation *op) {
       .Case([](ir::ElementOp element) { return element.constantIndex() ? 0 : 2; })
       .Case([&](ir::LoadOp load) { return loadCost(load.getAddress()) * width; })
       .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp>([](auto) { return 2; })
+      .Case([](ir::ExpressionOp expression) { return std::int64_t(expression.getCost()); })
       .Case<ir::BufferElementOp>([](auto) { return 6; })
       .Case<ir::AmbientOp>([&](auto) { return 2 * width; })
       .Case([&](ir::ElementaryOp function) {

@@ -107,6 +107,13 @@ StateWrites WriteSummary::of(mlir::Operation *op) const {
   }
   if (llvm::isa<ir::IlluminateOp>(op))
     return illumination;
+  if (auto call = llvm::dyn_cast<ir::EvaluateOp>(op)) {
+    writes.any = !call.getWrites();
+    if (call.getWrites())
+      for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
+        writes.names.insert(name.getValue());
+    return writes;
+  }
   if (llvm::isa<ir::CallMethodOp, ir::HitOp>(op))
     writes.any = true;
   return writes;

@@ -10,6 +10,7 @@
 #include "rtsl/program.h"
 #include "rtsl/shader/State.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
@@ -321,6 +322,13 @@ public:
   }
 
   runtime::Program::Slots &slots() { return result->slots; }
+  /// Methods were split at their traces: what runs a state, and the numbers of the states in which `shade` and `miss` begin.
+  template <typename... Frames>
+  void states(decltype(runtime::Program::Slots::States::run) run, std::int32_t shade, std::int32_t miss) {
+    std::size_t size = 4;
+    ((size = std::max(size, sizeof(Frames))), ...);
+    result->slots.states = {run, static_cast<std::int32_t>((size + 3) / 4 * 4), shade, miss};
+  }
   void needs(std::uint32_t what) { result->needs = what; }
   RtslShaders finish() { return {std::move(result)}; }
 

@@ -17,6 +17,36 @@ inline Color<N> trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &di
   return color;
 }
 
+//===----------------------------------------------------------------------===//
+// Methods that were split at their traces (docs/continuations.md)
+//===----------------------------------------------------------------------===//
+
+/// What comes after a state: `done`, or the number of the state that runs when the ray is back.
+using Next = std::int32_t;
+inline constexpr Next done = 0;
+
+/// Prepares the ray that is traced when the state ends.
+template <int N, typename Step>
+inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction) {
+  rtsl_spawn(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
+  return static_cast<Next>(step);
+}
+
+/// The color that the ray has brought back.
+template <int N>
+inline Color<N> traced(State<N> &rt) {
+  Color<N> color;
+  std::copy_n(rtsl_trace_result(rawState(rt)), N, color.components);
+  return color;
+}
+
+/// The frame of a method, in which its values survive its rays.
+template <typename Frame>
+inline Frame &frameAt(void *memory) {
+  static_assert(alignof(Frame) <= 4 && std::is_trivially_copyable_v<Frame>);
+  return *static_cast<Frame *>(memory);
+}
+
 /// Reports a hit at distance `t`; true if it is the nearest so far.
 template <int N>
 inline bool hit(State<N> &rt, float t) {
@@ -43,6 +73,25 @@ inline Color<N> ambient(const State<N> &rt) {
   return color;
 }
 
+template <int N>
+inline int lightCount(const State<N> &rt) {
+  return static_cast<int>(rt.launch->lightCount);
+}
+
+/// The cosine of an angle of `illuminance`, which is in [0, pi]: beyond, every light counts.
+inline float cosOfAngle(float angle) {
+  return rtsl::cos(rtsl::clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)));
+}
+
+/// Lights a point with one light: sets LightDirection, LightDistance and LightColor; false if nothing arrives. Only lights
+/// within the angle of the normal count; no cosine (-2): all do.
+template <int N>
+inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point,
+                       const glm::vec3 &normal = glm::vec3(0.0f), float cosAngle = -2.0f) {
+  return rtsl_illuminance(rawState(rt), static_cast<std::uint32_t>(index), point.x, point.y, point.z,
+                          normal.x, normal.y, normal.z, cosAngle) != 0;
+}
+
 /// The lights that reach a point, one after the other:
 ///
 ///     for (rtsl::Lights lights(rt, point, normal, angle); lights.next();)
@@ -52,8 +101,7 @@ public:
   Lights(State<N> &rt, const glm::vec3 &point) : rt(rt), point(point) {}
   /// Those within `angle` (radians) of the normal.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float angle)
-      : Lights(rt, point, normal, angle,
-               rtsl::cos(rtsl::clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)))) {}
+      : Lights(rt, point, normal, angle, cosOfAngle(angle)) {}
   /// For an angle whose cosine was known when the code was made.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float /*angle*/,
          float cosine)
@@ -62,9 +110,8 @@ public:
   /// Sets LightDirection, LightDistance and LightColor to those of the next light that reaches the
   /// point; false if there is none.
   bool next() {
-    while (index < rt.launch->lightCount)
-      if (rtsl_illuminance(rawState(rt), index++, point.x, point.y, point.z, normal.x, normal.y,
-                           normal.z, cosAngle) != 0)
+    while (index < lightCount(rt))
+      if (illuminate(rt, index++, point, normal, cosAngle))
         return true;
     return false;
   }
@@ -73,7 +120,7 @@ private:
   State<N> &rt;
   glm::vec3 point, normal = glm::vec3(0.0f);
   float cosAngle = -2.0f; // no cosine: every light
-  std::uint32_t index = 0;
+  int index = 0;
 };
 
 } // namespace rtsl

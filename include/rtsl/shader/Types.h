@@ -261,6 +261,13 @@ constexpr auto swizzle(const T &value) {
   return glm::vec<int(sizeof...(I)), Scalar<T>>(part<I>(value)...);
 }
 
+/// `vector` with component I replaced.
+template <int I, int L, typename T, glm::qualifier Q>
+constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, T value) {
+  vector[I] = value;
+  return vector;
+}
+
 /// Component or column `index`, clamped into what there is.
 template <int L, typename T, glm::qualifier Q, typename Index>
 constexpr T &at(glm::vec<L, T, Q> &vector, Index index) {

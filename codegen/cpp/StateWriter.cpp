@@ -1,0 +1,774 @@
+//===- StateWriter.cpp - the body of a state ------------------------------===//
+#include "codegen/cpp/StateWriter.h"
+
+#include "codegen/passes/continuation/Names.h"
+#include "sema/Casting.h"
+#include "sema/Walk.h"
+
+#include "mlir/Dialect/Arith/IR/Arith.h"
+#include "mlir/Dialect/Vector/IR/VectorOps.h"
+#include "mlir/IR/Matchers.h"
+#include "llvm/ADT/TypeSwitch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::cpp {
+
+namespace arith = mlir::arith;
+using typed::ExprKind;
+
+unsigned lineOf(mlir::Location location) {
+  if (auto file = llvm::dyn_cast<mlir::FileLineColLoc>(location))
+    return file.getLine();
+  if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
+    return lineOf(name.getChildLoc());
+  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location))
+    return lineOf(call.getCallee());
+  if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location))
+    for (mlir::Location part : fused.getLocations())
+      if (unsigned line = lineOf(part))
+        return line;
+  return 0;
+}
+
+StateWriter::StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine)
+    : module(module), source(source), machine(machine), printer(module, machine.method) {
+  always = module.namesInScope(*machine.definition);
+}
+
+void StateWriter::Touches::add(const Touches &other) {
+  reads.insert(other.reads.begin(), other.reads.end());
+  writes.insert(other.writes.begin(), other.writes.end());
+  readsAny |= other.readsAny;
+  writesAny |= other.writesAny;
+}
+
+/// Would it show if the two changed places?
+bool StateWriter::meet(const Touches &a, const Touches &b) {
+  auto common = [](const std::set<std::string> &x, const std::set<std::string> &y) {
+    return std::any_of(x.begin(), x.end(), [&](const std::string &key) { return y.count(key) != 0; });
+  };
+  // Unknown methods reach the ray's state and draw random numbers; variables and the frame are this function's own.
+  auto isOpen = [](const std::set<std::string> &keys) {
+    return std::any_of(keys.begin(), keys.end(), [](const std::string &key) {
+      return key.compare(0, 6, "state ") == 0 || key == "random";
+    });
+  };
+  auto writesMeet = [&](const Touches &x, const Touches &y) {
+    return common(x.writes, y.reads) || common(x.writes, y.writes) ||
+           (x.writesAny && (y.readsAny || y.writesAny || isOpen(y.reads) || isOpen(y.writes))) ||
+           (x.readsAny && isOpen(y.writes));
+  };
+  return writesMeet(a, b) || writesMeet(b, a);
+}
+
+void StateWriter::unsupported(mlir::Operation &op) {
+  module.unsupported(machine.method->range, fmt::format("`{}` in a method that traces, as C++ states (line {})",
+                                                        op.getName().getStringRef().str(), lineOf(op.getLoc())));
+}
+
+//===----------------------------------------------------------------------===//
+// Names and types
+//===----------------------------------------------------------------------===//
+
+std::string StateWriter::freshName(std::string wanted) {
+  std::string clean;
+  for (char c : wanted)
+    clean += std::isalnum(static_cast<unsigned char>(c)) || c == '_' ? c : '_';
+  while (clean.find("__") != std::string::npos)
+    clean.erase(clean.find("__"), 1);
+  if (clean.empty() || std::isdigit(static_cast<unsigned char>(clean.front())))
+    clean = "value" + clean;
+  std::string name = clean;
+  for (unsigned i = 2; isReserved(name) || always.count(name) || !taken.insert(name).second; ++i)
+    name = clean + (i == 2 && (isReserved(clean) || always.count(clean)) ? "_" : std::to_string(i));
+  return name;
+}
+
+/// What the operations of the IR are called among people.
+static std::string nameFor(mlir::Value value) {
+  if (std::string name = continuation::authorsName(value); !name.empty())
+    return name.substr(0, name.find('.') == std::string::npos ? name.size() : name.find('.'));
+  mlir::Operation *op = value.getDefiningOp();
+  if (llvm::isa_and_nonnull<ir::RandOp>(op))
+    return "random";
+  if (llvm::isa_and_nonnull<ir::TraceResultOp>(op))
+    return "traced";
+  if (auto load = llvm::dyn_cast_or_null<ir::FrameLoadOp>(op))
+    return load.getName().str();
+  if (auto load = llvm::dyn_cast_or_null<ir::LoadOp>(op)) {
+    std::string name = continuation::sourceName(value);
+    name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+    return name;
+  }
+  return "value";
+}
+
+const std::string &StateWriter::nameOf(ir::VarOp variable) {
+  std::string &name = variableNames[variable];
+  if (name.empty())
+    name = freshName(variable.getName().str());
+  return name;
+}
+
+static std::string scalarType(mlir::Type type) {
+  if (type.isF32())
+    return "float";
+  if (type.isInteger(1))
+    return "bool";
+  if (type.isInteger(32))
+    return "int";
+  return {};
+}
+
+static std::string stateType(llvm::StringRef name) {
+  static const std::map<std::string, std::string> types = {
+#define RTSL_STATE_VARIABLE(name, type) {#name, #type},
+#include "runtime/device/StateVariables.def"
+  };
+  const std::string &word = types.at(name.str());
+  if (word == "color")
+    return "Color";
+  if (word == "uint2")
+    return "glm::uvec2";
+  return word == "float" || word == "int" ? word : "glm::" + word;
+}
+
+std::string StateWriter::varType(ir::VarOp variable) {
+  auto [at, isNew] = variableTypes.try_emplace(variable);
+  if (!isNew)
+    return at->second;
+  std::string type;
+  for (mlir::Operation *user : variable->getUsers())
+    if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty())
+      type = typeOf(store.getValue());
+  if (type.empty())
+    type = scalarType(llvm::cast<ir::PtrType>(variable.getType()).getPointee());
+  return variableTypes[variable] = type;
+}
+
+std::string StateWriter::typeOf(mlir::Value value) {
+  mlir::Operation *op = value.getDefiningOp();
+  if (!op)
+    return {};
+  return llvm::TypeSwitch<mlir::Operation *, std::string>(op)
+      .Case([&](ir::ExpressionOp expression) {
+        const SourceTable::Entry &entry = source.entries[expression.getSource()];
+        return entry.kind == SourceTable::Kind::AngleCosine ? "float" : module.type(entry.expr->type);
+      })
+      .Case([&](ir::EvaluateOp call) { return module.type(source.entries[call.getSource()].expr->type); })
+      .Case([&](ir::LoadOp load) {
+        if (auto variable = load.getAddress().getDefiningOp<ir::VarOp>())
+          return varType(variable);
+        if (auto state = load.getAddress().getDefiningOp<ir::StateOp>())
+          return stateType(state.getName());
+        return scalarType(value.getType());
+      })
+      .Case([&](ir::FrameLoadOp load) {
+        for (const FrameField &field : machine.frame)
+          if (field.slot == load.getName())
+            return field.type;
+        return std::string();
+      })
+      .Case<ir::TraceResultOp>([](auto) { return std::string("Color"); })
+      .Case([&](arith::SelectOp select) {
+        std::string type = typeOf(select.getTrueValue());
+        return type.empty() ? typeOf(select.getFalseValue()) : type;
+      })
+      .Case([&](mlir::vector::InsertOp insert) { return typeOf(insert.getDest()); })
+      .Default([&](mlir::Operation *) { return scalarType(value.getType()); });
+}
+
+//===----------------------------------------------------------------------===//
+// What is evaluated when
+//===----------------------------------------------------------------------===//
+
+std::string StateWriter::keyOf(mlir::Value address) {
+  mlir::Operation *op = address.getDefiningOp();
+  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
+    return "state " + state.getName().str();
+  if (llvm::isa_and_nonnull<ir::VarOp>(op))
+    return fmt::format("var {}", static_cast<const void *>(op));
+  return {};
+}
+
+StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
+  Touches touches;
+  op->walk([&](mlir::Operation *inner) {
+    if (auto load = llvm::dyn_cast<ir::LoadOp>(inner))
+      touches.reads.insert(keyOf(load.getAddress()));
+    else if (auto store = llvm::dyn_cast<ir::StoreOp>(inner))
+      touches.writes.insert(keyOf(store.getAddress()));
+    else if (auto frameLoad = llvm::dyn_cast<ir::FrameLoadOp>(inner))
+      touches.reads.insert("frame " + frameLoad.getName().str());
+    else if (auto frameStore = llvm::dyn_cast<ir::FrameStoreOp>(inner))
+      touches.writes.insert("frame " + frameStore.getName().str());
+    else if (llvm::isa<ir::RandOp>(inner))
+      touches.writes.insert("random");
+    else if (auto call = llvm::dyn_cast<ir::EvaluateOp>(inner)) {
+      touches.readsAny = true;
+      touches.writes.insert("random");
+      touches.writesAny = !call.getWrites();
+      if (call.getWrites())
+        for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
+          touches.writes.insert("state " + name.getValue().str());
+    } else if (llvm::isa<ir::IlluminateOp>(inner)) {
+      touches.readsAny = touches.writesAny = true;
+    }
+  });
+  return touches;
+}
+
+void StateWriter::emit(Statements &out, std::string text) {
+  Statement statement;
+  if (auto comment = comments.find(currentLine); comment != comments.end()) {
+    statement.comment = module.commentText(comment->second);
+    comments.erase(comment);
+  }
+  statement.text = std::move(text);
+  statement.mentions = std::move(mentioned);
+  mentioned.clear();
+  out.push_back(std::move(statement));
+}
+
+/// Gives a value that waits for its use a variable now.
+void StateWriter::materialise(mlir::Value value, Statements &out) {
+  Pending waiting = std::move(pending[value]);
+  pending.erase(value);
+  const std::set<mlir::Operation *> before = std::move(mentioned);
+  mentioned.clear();
+  const std::string type = typeOf(value);
+  if (type.empty())
+    unsupported(*value.getDefiningOp());
+  const std::string name = freshName(nameFor(value));
+  emit(out, fmt::format("{} {};", type, declarator(type, name, waiting.code.text)));
+  declared[value] = name;
+  mentioned = before;
+}
+
+/// Before something that touches this happens, what waits and would notice is evaluated.
+void StateWriter::flush(const Touches &touches, Statements &out) {
+  llvm::SmallVector<mlir::Value> first;
+  for (auto &[value, waiting] : pending)
+    if (meet(waiting.touches, touches))
+      first.push_back(value);
+  for (mlir::Value value : first)
+    materialise(value, out);
+}
+
+/// Before a construct with regions.
+void StateWriter::flushBefore(mlir::Operation &op, Statements &out) {
+  const Touches inside = touchesOf(&op);
+  const bool isLoop = llvm::isa<ir::LoopOp>(op);
+  llvm::SmallVector<mlir::Value> first;
+  for (auto &[value, waiting] : pending) {
+    const bool isUsedBehind = llvm::any_of(value.getUsers(), [&](mlir::Operation *user) {
+      return !op.isProperAncestor(user) && !declared.count(value);
+    });
+    const bool meets = meet(waiting.touches, inside);
+    const bool isConstant = waiting.isTrivial && waiting.touches.reads.empty();
+    if (!waiting.isPure || (isLoop && (meets || (waiting.usesLeft == 1 && !isConstant))) ||
+        (meets && (isUsedBehind || waiting.usesLeft > 1)))
+      first.push_back(value);
+  }
+  for (mlir::Value value : first)
+    materialise(value, out);
+}
+
+/// An operation has given a value: it waits for its use, or gets a variable.
+void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out) {
+  mlir::Value value = op.getResult(0);
+  const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
+  if (uses == 0) {
+    if (!isPure)
+      emit(out, code.text + ";");
+    return;
+  }
+  auto *user = *value.user_begin();
+  auto stores = [&] {
+    return llvm::isa<ir::FrameStoreOp>(user) ||
+           (llvm::isa<ir::StoreOp>(user) && user->getBlock() == op.getBlock());
+  };
+  const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
+                       !continuation::authorsName(value).empty();
+  const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp>(op);
+  auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
+  const bool isTrivial = isRead || (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
+  pending[value] = {std::move(code), std::move(touches), uses, isPure, isTrivial};
+  if (uses == 1 ? isNamed && !stores() : isNamed || !isTrivial)
+    materialise(value, out);
+}
+
+Code StateWriter::use(mlir::Value value, const std::string &type) {
+  if (auto found = declared.find(value); found != declared.end())
+    return {found->second};
+  auto found = pending.find(value);
+  if (found == pending.end())
+    return constant(value, type);
+  Code code = found->second.code;
+  consumed.add(found->second.touches);
+  if (--found->second.usesLeft == 0)
+    pending.erase(value);
+  return code;
+}
+
+Code StateWriter::constant(mlir::Value value, const std::string &type) {
+  mlir::Attribute attribute;
+  if (!mlir::matchPattern(value, mlir::m_Constant(&attribute))) {
+    if (value.getDefiningOp<ir::NullRefOp>())
+      return {type.empty() ? "{}" : type + "{}"};
+    if (value.getDefiningOp())
+      unsupported(*value.getDefiningOp());
+    return {"0"};
+  }
+  if (auto integer = llvm::dyn_cast<mlir::IntegerAttr>(attribute)) {
+    if (integer.getType().isInteger(1))
+      return {integer.getValue().isZero() ? "false" : "true"};
+    return {std::to_string(integer.getInt())};
+  }
+  if (auto number = llvm::dyn_cast<mlir::FloatAttr>(attribute))
+    return {floatText(number.getValue().convertToFloat())};
+  auto dense = llvm::dyn_cast<mlir::DenseElementsAttr>(attribute);
+  if (!type.empty() && dense && dense.isSplat() && dense.getElementType().isF32())
+    return {type + "(" + floatText(dense.getSplatValue<float>()) + ")"};
+  unsupported(*value.getDefiningOp());
+  return {"0"};
+}
+
+//===----------------------------------------------------------------------===//
+// Expressions
+//===----------------------------------------------------------------------===//
+
+Code StateWriter::place(mlir::Value address) {
+  if (auto state = address.getDefiningOp<ir::StateOp>())
+    return {"rt." + state.getName().str()};
+  if (auto variable = address.getDefiningOp<ir::VarOp>()) {
+    mentioned.insert(variable);
+    return {nameOf(variable)};
+  }
+  unsupported(*address.getDefiningOp());
+  return {"0"};
+}
+
+/// `isCompound`: on return, whether the first operand is the target of `target op= value`, which may be printed so.
+Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound) {
+  isCompound = false;
+  printer.replaced.clear();
+  for (auto [leaf, operand] : llvm::zip(entry.leaves, operands))
+    printer.replaced[leaf] = use(operand, module.type(leaf->type));
+  switch (entry.kind) {
+  case SourceTable::Kind::Value:
+    return printer.expr(*entry.expr);
+  case SourceTable::Kind::AngleCosine:
+    return {"rtsl::cosOfAngle(" + printer.argument(*entry.expr) + ")"};
+  case SourceTable::Kind::Compound: {
+    const auto &assign = static_cast<const typed::AssignExpr &>(*entry.expr);
+    isCompound = printer.plainOperator(assign.op, *assign.target, *assign.value) != nullptr;
+    return printer.binary(assign.op, *assign.target, *assign.value);
+  }
+  case SourceTable::Kind::Step: {
+    const auto &step = static_cast<const typed::IncDecExpr &>(*entry.expr);
+    const Type *scalar = step.target->type->scalar();
+    const std::string target = printer.operand(*step.target, Binding::Sum);
+    if (scalar->is(TypeKind::Int))
+      return {fmt::format("rtsl::{}({}, 1)", step.increment ? "add" : "sub", target)};
+    return {fmt::format("{} {} {}", target, step.increment ? "+" : "-", scalar->is(TypeKind::Float) ? "1.0f" : "1u"),
+            Binding::Sum};
+  }
+  }
+  return {"0"};
+}
+
+//===----------------------------------------------------------------------===//
+// Operations
+//===----------------------------------------------------------------------===//
+
+void StateWriter::operation(mlir::Operation &op, Statements &out) {
+  consumed = {};
+  if (unsigned line = lineOf(op.getLoc()))
+    currentLine = line;
+  auto pure = [&](Code code) { define(op, std::move(code), consumed, true, out); };
+  auto infix = [&](const char *sign, Binding binding) {
+    const auto tighter = static_cast<Binding>(static_cast<int>(binding) + 1);
+    const std::string left = bind(use(op.getOperand(0)), binding == Binding::Or ? Binding::BitOr : binding);
+    pure({left + " " + sign + " " + bind(use(op.getOperand(1)), binding == Binding::Or ? Binding::BitOr : tighter),
+          binding});
+  };
+  llvm::TypeSwitch<mlir::Operation *>(&op)
+      .Case([&](ir::VarOp variable) {
+        Statement statement;
+        statement.declares = variable;
+        out.push_back(std::move(statement));
+      })
+      .Case([&](ir::LoadOp load) {
+        Code code = place(load.getAddress());
+        Touches touches;
+        touches.reads.insert(keyOf(load.getAddress()));
+        flush(touches, out);
+        define(op, code, touches, true, out);
+      })
+      .Case([&](ir::FrameLoadOp load) {
+        for (const FrameField &field : machine.frame)
+          if (field.slot == load.getName()) {
+            Touches touches;
+            touches.reads.insert("frame " + field.slot);
+            define(op, {"frame." + field.name}, touches, true, out);
+          }
+      })
+      .Case([&](ir::ExpressionOp whole) {
+        bool isCompound;
+        Code code = expression(source.entries[whole.getSource()], op.getOperands(), isCompound);
+        usesScratch |= module.effects.expression(*source.entries[whole.getSource()].expr).usesScratch;
+        pure(code);
+      })
+      .Case([&](ir::EvaluateOp call) {
+        bool isCompound;
+        const SourceTable::Entry &entry = source.entries[call.getSource()];
+        Code code = expression(entry, op.getOperands(), isCompound);
+        usesScratch |= module.effects.expression(*entry.expr).usesScratch;
+        Touches touches = touchesOf(&op);
+        flush(touches, out);
+        touches.add(consumed);
+        if (op.getNumResults() == 0)
+          emit(out, code.text + ";");
+        else
+          define(op, code, touches, false, out);
+      })
+      .Case([&](ir::RandOp) {
+        Touches touches = touchesOf(&op);
+        flush(touches, out);
+        define(op, {"rtsl::rand(rt)"}, touches, false, out);
+      })
+      .Case([&](ir::TraceResultOp) { define(op, {"rtsl::traced(rt)"}, {}, true, out); })
+      .Case([&](ir::LightCountOp) { define(op, {"rtsl::lightCount(rt)"}, {}, true, out); })
+      .Case([&](ir::IlluminateOp light) {
+        std::vector<std::string> arguments = {"rt"};
+        for (mlir::Value operand : op.getOperands())
+          arguments.push_back(bind(use(operand), Binding::Assignment));
+        Touches touches = touchesOf(&op);
+        flush(touches, out);
+        touches.add(consumed);
+        define(op, {"rtsl::illuminate(" + join(arguments, ", ") + ")"}, touches, false, out);
+      })
+      .Case([&](ir::StoreOp stored) { store(stored, out); })
+      .Case([&](ir::FrameStoreOp stored) {
+        for (const FrameField &field : machine.frame)
+          if (field.slot == stored.getName()) {
+            const std::string value = bind(use(stored.getValue(), field.type), Binding::Assignment);
+            flush(touchesOf(&op), out);
+            if (value != "frame." + field.name)
+              emit(out, "frame." + field.name + " = " + value + ";");
+          }
+      })
+      .Case([&](ir::SpawnOp spawn) {
+        const std::string origin = bind(use(spawn.getOrigin(), "glm::vec3"), Binding::Assignment);
+        spawned = origin + ", " + bind(use(spawn.getDirection(), "glm::vec3"), Binding::Assignment);
+      })
+      .Case([&](ir::ReturnOp end) { leave(end, out); })
+      .Case([&](ir::BreakOp) { emit(out, "break;"); })
+      .Case([&](ir::ContinueOp) { emit(out, "continue;"); })
+      .Case([&](ir::IfOp inner) { choice(inner, out); })
+      .Case([&](ir::LoopOp inner) { loop(inner, out); })
+      .Case([&](ir::SwitchOp inner) { switchOver(inner, out); })
+      .Case([&](mlir::vector::ExtractOp part) {
+        auto position = part.getStaticPosition();
+        if (part.hasDynamicPosition() || position.size() != 1 || position.front() > 3)
+          return unsupported(op);
+        pure({bind(use(part.getSource()), Binding::Primary) + "." + "xyzw"[position.front()]});
+      })
+      .Case([&](mlir::vector::InsertOp part) {
+        auto position = part.getStaticPosition();
+        if (part.hasDynamicPosition() || position.size() != 1 || position.front() > 3)
+          return unsupported(op);
+        const std::string vector = use(part.getDest(), typeOf(part.getDest())).text;
+        const std::string value = bind(use(part.getValueToStore()), Binding::Assignment);
+        insertions[part.getResult()] = {vector, value, static_cast<unsigned>(position.front())};
+        pure({fmt::format("rtsl::with<{}>({}, {})", position.front(), vector, value)});
+      })
+      .Case([&](arith::XOrIOp negation) {
+        if (!op.getResult(0).getType().isInteger(1) || !mlir::matchPattern(negation.getRhs(), mlir::m_One()))
+          return unsupported(op);
+        pure({"!" + bind(use(negation.getLhs()), Binding::Unary), Binding::Unary});
+      })
+      .Case([&](arith::AndIOp) {
+        op.getResult(0).getType().isInteger(1) ? infix("&&", Binding::And) : unsupported(op);
+      })
+      .Case([&](arith::OrIOp) {
+        op.getResult(0).getType().isInteger(1) ? infix("||", Binding::Or) : unsupported(op);
+      })
+      .Case([&](arith::AddIOp) { infix("+", Binding::Sum); }) // of a light's number
+      .Case([&](arith::CmpIOp compare) {
+        compare.getPredicate() == arith::CmpIPredicate::ult ? infix("<", Binding::Relation) : unsupported(op);
+      })
+      .Case([&](arith::SelectOp select) {
+        const std::string type = typeOf(select.getResult());
+        const std::string condition = bind(use(select.getCondition()), Binding::Or);
+        const std::string first = bind(use(select.getTrueValue(), type), Binding::Assignment);
+        pure({condition + " ? " + first + " : " + bind(use(select.getFalseValue(), type), Binding::Assignment),
+              Binding::Assignment});
+      })
+      .Case<arith::ConstantOp, ir::NullRefOp, ir::NextOp, ir::StateOp, ir::YieldOp, ir::ConditionOp,
+            ir::TraceReturnedOp>([](auto) {})
+      .Default([&](mlir::Operation *) { unsupported(op); });
+}
+
+/// `target += y` for `target + y`, where `value` is the whole expression of the source that made it.
+std::string StateWriter::assignment(const std::string &target, const std::string &value, mlir::Value made) {
+  auto whole = made.getDefiningOp<ir::ExpressionOp>();
+  if (whole && source.entries[whole.getSource()].kind == SourceTable::Kind::Compound) {
+    const auto &assign = static_cast<const typed::AssignExpr &>(*source.entries[whole.getSource()].expr);
+    const char *sign = printer.plainOperator(assign.op, *assign.target, *assign.value);
+    const std::string begin = sign ? target + " " + sign + " " : std::string();
+    if (sign && value.compare(0, begin.size(), begin) == 0)
+      return target + " " + sign + "= " + value.substr(begin.size()) + ";";
+  }
+  return target + " = " + value + ";";
+}
+
+void StateWriter::store(ir::StoreOp op, Statements &out) {
+  auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
+  const std::string type = variable ? varType(variable) : typeOf(op.getValue());
+  const std::string target = place(op.getAddress()).text;
+  // A component of what lies there.
+  auto insertion = insertions.find(op.getValue());
+  const bool isPart = insertion != insertions.end() && pending.count(op.getValue()) && insertion->second.vector == target;
+  const std::string value = bind(use(op.getValue(), type), Binding::Assignment);
+  flush(touchesOf(op), out);
+  if (value == target)
+    return;
+  if (isPart) {
+    const std::string part = target + "." + "xyzw"[insertion->second.component];
+    mlir::Value scalar = op.getValue().getDefiningOp<mlir::vector::InsertOp>().getValueToStore();
+    return emit(out, assignment(part, insertion->second.value, scalar));
+  }
+  emit(out, assignment(target, value, op.getValue()));
+  if (variable) {
+    out.back().assigns = variable;
+    out.back().value = value;
+  }
+}
+
+void StateWriter::leave(ir::ReturnOp op, Statements &out) {
+  auto next = op.getValues().empty() ? ir::NextOp() : op.getValues().front().getDefiningOp<ir::NextOp>();
+  if (!next || next.getTransition() == ir::Transition::Done)
+    return emit(out, "return rtsl::done;");
+  const std::string &step = machine.stepOf.at(next.getState()->str());
+  if (next.getTransition() == ir::Transition::Jump)
+    return unsupported(*op);
+  emit(out, "return rtsl::traceThen(rt, Step::" + step + ", " + spawned + ");");
+}
+
+//===----------------------------------------------------------------------===//
+// Constructs
+//===----------------------------------------------------------------------===//
+
+void StateWriter::choice(ir::IfOp op, Statements &out) {
+  const unsigned line = currentLine;
+  const Code condition = use(op.getCondition());
+  const std::set<mlir::Operation *> inCondition = std::move(mentioned);
+  mentioned.clear();
+  flushBefore(*op, out);
+  Statements thenPart, elsePart;
+  block(op.getThenRegion().front(), thenPart);
+  if (!op.getElseRegion().empty())
+    block(op.getElseRegion().front(), elsePart);
+
+  auto assigns = [](const Statements &part) {
+    return part.size() == 1 && part.front().assigns && !part.front().value.empty() ? part.front().assigns : nullptr;
+  };
+  if (mlir::Operation *target = assigns(thenPart); target && target == assigns(elsePart)) {
+    const std::string name = nameOf(llvm::cast<ir::VarOp>(target));
+    const std::string first = thenPart.front().value, second = elsePart.front().value;
+    std::string value = bind(condition, Binding::Or) + " ? " + first + " : " + second;
+    if (second == "false")
+      value = bind(condition, Binding::And) + " && (" + first + ")";
+    if (first == "true")
+      value = "(" + condition.text + ") || (" + second + ")";
+    mentioned = inCondition;
+    currentLine = line;
+    for (const Statements *part : {&thenPart, &elsePart})
+      mentioned.insert(part->front().mentions.begin(), part->front().mentions.end());
+    emit(out, name + " = " + value + ";");
+    out.back().assigns = target;
+    out.back().value = value;
+    return;
+  }
+  std::string text = "if (" + condition.text + ")" + under(thenPart);
+  if (!elsePart.empty())
+    text += (text.back() == '\n' ? "else" : " else") + under(elsePart);
+  while (text.back() == '\n')
+    text.pop_back();
+  mentioned = inCondition;
+  currentLine = line;
+  for (const Statements *part : {&thenPart, &elsePart})
+    for (const Statement &statement : *part)
+      mentioned.insert(statement.mentions.begin(), statement.mentions.end());
+  emit(out, text);
+}
+
+/// The head of a `for`, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nobody else asks for i. What the head says
+/// is taken out of what stands before the loop, and of the body.
+std::string StateWriter::counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body) {
+  if (out.empty() || body.empty() || !out.back().assigns || out.back().assigns != body.back().assigns)
+    return {};
+  auto variable = llvm::cast<ir::VarOp>(out.back().assigns);
+  const std::string &name = nameOf(variable);
+  // Below its bound an int can be counted up without overflow.
+  if (body.back().value != "rtsl::add(" + name + ", 1)" || condition.compare(0, name.size() + 3, name + " < ") != 0)
+    return {};
+  unsigned outside = 0;
+  for (mlir::Operation *user : variable->getUsers())
+    outside += !op->isProperAncestor(user);
+  const bool isContinued = op.getBody()
+                               .walk([&](ir::ContinueOp jump) {
+                                 return jump->getParentOfType<ir::LoopOp>() == op ? mlir::WalkResult::interrupt()
+                                                                                  : mlir::WalkResult::advance();
+                               })
+                               .wasInterrupted();
+  if (outside != 1 || isContinued)
+    return {};
+  const std::string head =
+      fmt::format("for ({} {} = {}; {}; ++{})", varType(variable), name, out.back().value, condition, name);
+  out.pop_back();
+  body.pop_back();
+  out.erase(std::remove_if(out.begin(), out.end(),
+                           [&](const Statement &statement) { return statement.declares == variable.getOperation(); }),
+            out.end());
+  return head;
+}
+
+void StateWriter::loop(ir::LoopOp op, Statements &out) {
+  const unsigned line = currentLine;
+  flushBefore(*op, out);
+  Statements head, body;
+  std::string condition = "true";
+  std::set<mlir::Operation *> inCondition;
+  if (!op.getCondition().empty()) {
+    mlir::Block &test = op.getCondition().front();
+    block(test, head);
+    consumed = {};
+    condition = use(llvm::cast<ir::ConditionOp>(test.back()).getCondition()).text;
+    inCondition = std::move(mentioned);
+    mentioned.clear();
+  }
+  block(op.getBody().front(), body);
+  std::string text;
+  if (head.empty()) {
+    const std::string counting = counter(op, condition, out, body);
+    text = counting.empty() ? "while (" + condition + ")" : counting;
+    text += " {\n" + this->text(body) + "}";
+  } else {
+    text = "while (true) {\n" + this->text(head) + "if (!(" + condition + "))\nbreak;\n" + this->text(body) + "}";
+  }
+  mentioned = inCondition;
+  currentLine = line;
+  for (const Statements *part : {&head, &body})
+    for (const Statement &statement : *part)
+      mentioned.insert(statement.mentions.begin(), statement.mentions.end());
+  emit(out, text);
+}
+
+void StateWriter::switchOver(ir::SwitchOp op, Statements &out) {
+  const unsigned line = currentLine;
+  const std::string value = use(op.getValue()).text;
+  const std::set<mlir::Operation *> inValue = std::move(mentioned);
+  mentioned.clear();
+  flushBefore(*op, out);
+  std::string text = "switch (" + value + ") {\n";
+  std::set<mlir::Operation *> inside = inValue;
+  for (auto [index, arm] : llvm::enumerate(op.getArms())) {
+    for (std::int32_t number : op.armValues(static_cast<unsigned>(index)))
+      text += fmt::format("case {}:\n", number);
+    if (op.getDefaultArm() && *op.getDefaultArm() == index)
+      text += "default:\n";
+    Statements statements;
+    block(arm.front(), statements);
+    for (const Statement &statement : statements)
+      inside.insert(statement.mentions.begin(), statement.mentions.end());
+    text += "{\n" + this->text(statements) + "}\n";
+  }
+  if (!op.getDefaultArm())
+    text += "default:\nbreak;\n";
+  mentioned = inside;
+  currentLine = line;
+  emit(out, text + "}");
+}
+
+void StateWriter::block(mlir::Block &block, Statements &out) {
+  for (mlir::Operation &op : block)
+    operation(op, out);
+  joinDeclarations(out);
+}
+
+//===----------------------------------------------------------------------===//
+// Statements
+//===----------------------------------------------------------------------===//
+
+/// A variable is declared where it first gets its value.
+void StateWriter::joinDeclarations(Statements &statements) {
+  for (std::size_t i = 0; i < statements.size(); ++i) {
+    auto variable = llvm::dyn_cast_or_null<ir::VarOp>(statements[i].declares);
+    if (!variable)
+      continue;
+    const std::string type = varType(variable);
+    if (type.empty())
+      unsupported(*variable);
+    const std::string &name = nameOf(variable);
+    auto first = std::find_if(statements.begin() + static_cast<std::ptrdiff_t>(i) + 1, statements.end(),
+                              [&](const Statement &statement) { return statement.mentions.count(variable) != 0; });
+    if (first == statements.end()) {
+      statements.erase(statements.begin() + static_cast<std::ptrdiff_t>(i--));
+      continue;
+    }
+    if (first->assigns == variable.getOperation()) {
+      first->text = type + " " + declarator(type, name, first->value) + ";";
+      first->declares = nullptr;
+      statements.erase(statements.begin() + static_cast<std::ptrdiff_t>(i--));
+      continue;
+    }
+    const bool isNumber = type == "float" || type == "int" || type == "bool";
+    const char *zero = type == "float" ? "0.0f" : type == "int" ? "0" : "false";
+    statements[i].text = isNumber ? fmt::format("{} {} = {};", type, name, zero) : fmt::format("{} {}{{}};", type, name);
+    statements[i].declares = nullptr;
+    statements[i].mentions.insert(variable);
+  }
+}
+
+std::string StateWriter::text(const Statements &statements) {
+  std::string text;
+  for (const Statement &statement : statements)
+    text += statement.comment + statement.text + "\n";
+  return text;
+}
+
+/// What stands under an `if`, without braces where none are needed.
+std::string StateWriter::under(const Statements &statements) {
+  const bool isShort = statements.size() == 1 && statements.front().comment.empty() &&
+                       statements.front().text.find('\n') == std::string::npos &&
+                       statements.front().text.compare(0, 2, "if") != 0;
+  return isShort ? "\n" + statements.front().text + "\n" : " {\n" + text(statements) + "}";
+}
+
+std::string StateWriter::body(mlir::func::FuncOp state) {
+  taken.clear();
+  pending.clear();
+  declared.clear();
+  variableNames.clear();
+  variableTypes.clear();
+  mentioned.clear();
+  usesScratch = false;
+  insertions.clear();
+  comments.clear();
+  currentLine = 0;
+  forEachStmt(*machine.method->body, [&](const typed::Stmt &stmt) {
+    if (!stmt.comment.empty())
+      comments[module.notes.line(stmt.range)] = stmt.comment;
+  });
+  Statements statements;
+  block(state.getBody().front(), statements);
+  return text(statements);
+}
+
+} // namespace rtsl::cpp

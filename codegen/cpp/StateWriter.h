@@ -1,0 +1,126 @@
+//===- StateWriter.h - the body of a state --------------------------------===//
+//
+// Walks the structured IR of a state. What is computed once and used once becomes part of the
+// expression that uses it, unless something in between would change it; the rest gets a variable
+// under the author's name.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/States.h"
+#include "codegen/ir/Rtsl.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/MapVector.h"
+
+namespace rtsl::cpp {
+
+/// What stays in the frame of a method while its rays are traced.
+struct FrameField {
+  std::string slot; // as the IR names it
+  std::string name, type;
+  unsigned neededBy = 0; // the first line that reads it
+  unsigned madeIn = 0;   // the line of what is saved
+  bool isTraced = false; // a color that a ray brought back
+};
+
+/// What the states of one method share.
+struct Machine {
+  const typed::Class *definition = nullptr;
+  const typed::Function *method = nullptr;
+  std::vector<mlir::func::FuncOp> states;
+  std::vector<FrameField> frame;
+  std::map<std::string, std::string> stepOf; // by the symbol of the state
+};
+
+/// The line of an operation in the author's file; 0: unknown.
+unsigned lineOf(mlir::Location location);
+
+class StateWriter {
+public:
+  StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine);
+
+  /// The statements of a state, without braces.
+  std::string body(mlir::func::FuncOp state);
+  /// The C++ type of a value; empty if it cannot be told.
+  std::string typeOf(mlir::Value value);
+  bool usesScratch = false; // of the state that was written last
+
+private:
+  /// What reading or writing meets: "var x", "state RayOrigin", "frame i", "random"; `any` is everything.
+  struct Touches {
+    std::set<std::string> reads, writes;
+    bool readsAny = false, writesAny = false;
+    void add(const Touches &other);
+  };
+  static bool meet(const Touches &a, const Touches &b);
+
+  struct Pending {
+    Code code;
+    Touches touches;
+    unsigned usesLeft = 0;
+    bool isPure = true;     // no effects of its own
+    bool isTrivial = false; // may stand in the text more than once
+  };
+  struct Statement {
+    std::string comment, text;
+    mlir::Operation *declares = nullptr; // a variable whose declaration this is, to be joined with its first assignment
+    mlir::Operation *assigns = nullptr;  // `x = value;`
+    std::string value;
+    std::set<mlir::Operation *> mentions;
+  };
+  using Statements = std::vector<Statement>;
+
+  void block(mlir::Block &block, Statements &out);
+  void operation(mlir::Operation &op, Statements &out);
+  void choice(ir::IfOp op, Statements &out);
+  void loop(ir::LoopOp op, Statements &out);
+  void switchOver(ir::SwitchOp op, Statements &out);
+  void store(ir::StoreOp op, Statements &out);
+  void leave(ir::ReturnOp op, Statements &out);
+  std::string text(const Statements &statements);
+  std::string under(const Statements &statements);
+  std::string assignment(const std::string &target, const std::string &value, mlir::Value made);
+  std::string counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body);
+  void joinDeclarations(Statements &statements);
+
+  Code use(mlir::Value value, const std::string &type = {});
+  Code constant(mlir::Value value, const std::string &type);
+  void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out);
+  void materialise(mlir::Value value, Statements &out);
+  void flush(const Touches &touches, Statements &out);
+  void flushBefore(mlir::Operation &op, Statements &out);
+  Touches touchesOf(mlir::Operation *op);
+  std::string keyOf(mlir::Value address);
+  Code place(mlir::Value address);
+  Code expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound);
+  std::string varType(ir::VarOp variable);
+  const std::string &nameOf(ir::VarOp variable);
+  std::string freshName(std::string wanted);
+  void emit(Statements &out, std::string text);
+  void unsupported(mlir::Operation &op);
+
+  ModulePrinter &module;
+  const SourceTable &source;
+  Machine &machine;
+  FunctionPrinter printer;
+  std::set<std::string> taken, always;
+  llvm::MapVector<mlir::Value, Pending> pending;
+  llvm::DenseMap<mlir::Value, std::string> declared;
+  llvm::DenseMap<mlir::Operation *, std::string> variableNames;
+  llvm::DenseMap<mlir::Operation *, std::string> variableTypes;
+  std::set<mlir::Operation *> mentioned; // by the statement that is being put together
+  Touches consumed;
+  struct Insertion {
+    std::string vector, value;
+    unsigned component;
+  };
+  llvm::DenseMap<mlir::Value, Insertion> insertions; // vectors with one component replaced
+  std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
+  unsigned currentLine = 0;
+  std::string spawned; // the arguments of the ray that is traced when the state ends
+};
+
+} // namespace rtsl::cpp

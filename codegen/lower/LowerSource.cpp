@@ -1,0 +1,237 @@
+//===- LowerSource.cpp - expressions that are kept whole ------------------===//
+//
+// For C++ (SourceTable.h). An expression becomes one operation whose operands are what in it may
+// change: variables, the ray's state, and parts that have effects, which are lowered first, from left
+// to right. Members and constants stay inside.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/lower/Analysis.h"
+#include "codegen/lower/Lowering.h"
+
+#include "sema/Casting.h"
+
+#include <algorithm>
+
+namespace rtsl::lowering {
+
+using typed::ExprKind;
+
+/// The place that a field, an element or components are part of.
+static const typed::Expr &rootOf(const typed::Expr &expr) {
+  const typed::Expr *root = &expr;
+  for (;;) {
+    if (auto *field = dynCast<typed::FieldExpr>(root))
+      root = field->base.get();
+    else if (auto *index = dynCast<typed::IndexExpr>(root))
+      root = index->base.get();
+    else
+      return *root;
+  }
+}
+
+static bool isLocal(const typed::Expr &expr) {
+  auto *variable = dynCast<typed::VariableExpr>(&expr);
+  return variable && variable->variable->kind != typed::Variable::Kind::Global;
+}
+
+static bool takesValues(const typed::Function &function) {
+  return !livesInMemory(function.returnType) &&
+         std::all_of(function.parameters.begin(), function.parameters.end(), [](const auto &p) {
+           return p->direction == ast::Direction::In && !livesInMemory(p->type);
+         });
+}
+
+/// Is the operation itself, whatever its operands are, one that may stand in a whole expression?
+bool FunctionLowering::isKept(const typed::Expr &expr) const {
+  switch (expr.kind) {
+  case ExprKind::Assign:
+  case ExprKind::IncDec:
+  case ExprKind::MethodCall:
+  case ExprKind::Comma:
+  case ExprKind::String:
+    return false;
+  case ExprKind::Builtin:
+    return isPureBuiltin(cast<typed::BuiltinExpr>(expr).builtin);
+  case ExprKind::Call: {
+    const typed::Function &callee = *cast<typed::CallExpr>(expr).function;
+    return takesValues(callee) && module.options.source->isPure(callee);
+  }
+  case ExprKind::Conditional:
+  case ExprKind::Binary: {
+    // Parts that run only if they are needed cannot run before.
+    auto *binary = dynCast<typed::BinaryExpr>(&expr);
+    if (binary && binary->op != ast::BinaryOp::LogicalAnd && binary->op != ast::BinaryOp::LogicalOr)
+      return true;
+    bool isKeptWithin = true;
+    forEachExpr(expr, [&](const typed::Expr &inner) {
+      auto *innerBinary = dynCast<typed::BinaryExpr>(&inner);
+      const bool isChoice = inner.kind == ExprKind::Conditional || innerBinary;
+      isKeptWithin = isKeptWithin && (isChoice || isKept(inner));
+    });
+    return isKeptWithin;
+  }
+  default:
+    return true;
+  }
+}
+
+bool FunctionLowering::collectLeaves(const typed::Expr &expr,
+                                     std::vector<const typed::Expr *> &leaves) const {
+  auto leaf = [&] {
+    leaves.push_back(&expr);
+    return !livesInMemory(expr.type);
+  };
+  auto all = [&](const std::vector<typed::ExprPtr> &parts) {
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const auto &part) { return collectLeaves(*part, leaves); });
+  };
+  if (!isKept(expr))
+    return leaf();
+  switch (expr.kind) {
+  case ExprKind::Variable:
+    return !isLocal(expr) || leaf();
+  case ExprKind::State:
+    return livesInMemory(expr.type) || leaf(); // matrices of the instance do not change
+  case ExprKind::Field:
+    if (isLocal(rootOf(expr)))
+      return leaf();
+    return collectLeaves(*cast<typed::FieldExpr>(expr).base, leaves);
+  case ExprKind::Index: {
+    const auto &index = cast<typed::IndexExpr>(expr);
+    if (!index.base->type->isVector() && isLocal(rootOf(expr)))
+      return leaf();
+    return collectLeaves(*index.base, leaves) && collectLeaves(*index.index, leaves);
+  }
+  case ExprKind::Swizzle:
+    return collectLeaves(*cast<typed::SwizzleExpr>(expr).base, leaves);
+  case ExprKind::Length:
+    return collectLeaves(*cast<typed::LengthExpr>(expr).base, leaves);
+  case ExprKind::Unary:
+    return collectLeaves(*cast<typed::UnaryExpr>(expr).operand, leaves);
+  case ExprKind::Convert:
+    return collectLeaves(*cast<typed::ConvertExpr>(expr).operand, leaves);
+  case ExprKind::Binary:
+    return collectLeaves(*cast<typed::BinaryExpr>(expr).left, leaves) &&
+           collectLeaves(*cast<typed::BinaryExpr>(expr).right, leaves);
+  case ExprKind::Conditional: {
+    const auto &choice = cast<typed::ConditionalExpr>(expr);
+    return collectLeaves(*choice.condition, leaves) && collectLeaves(*choice.whenTrue, leaves) &&
+           collectLeaves(*choice.whenFalse, leaves);
+  }
+  case ExprKind::Construct:
+    return all(cast<typed::ConstructExpr>(expr).args);
+  case ExprKind::Builtin:
+    return all(cast<typed::BuiltinExpr>(expr).args);
+  case ExprKind::Call:
+    return all(cast<typed::CallExpr>(expr).args);
+  default:
+    return true; // literals and members
+  }
+}
+
+/// About how many instructions the expression takes.
+static std::int32_t costOf(const typed::Expr &expr, const std::vector<const typed::Expr *> &leaves) {
+  std::int32_t cost = 0;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    if (std::find(leaves.begin(), leaves.end(), &inner) != leaves.end())
+      return;
+    const auto width = static_cast<std::int32_t>(
+        livesInMemory(inner.type) || inner.type->is(TypeKind::Void) || inner.type->is(TypeKind::Class)
+            ? 1u
+            : std::max(1u, inner.type->is(TypeKind::Color) ? 3u : inner.type->componentCount()));
+    switch (inner.kind) {
+    case ExprKind::Member:
+      cost += 2 * width;
+      break;
+    case ExprKind::Unary:
+    case ExprKind::Binary:
+    case ExprKind::Conditional:
+    case ExprKind::Convert:
+      cost += width;
+      break;
+    case ExprKind::Index:
+      cost += 8;
+      break;
+    case ExprKind::Builtin:
+      cost += 12 * width;
+      break;
+    case ExprKind::Call:
+      cost += 50;
+      break;
+    default:
+      break;
+    }
+  });
+  return cost;
+}
+
+Value FunctionLowering::wholeExpression(SourceTable::Kind kind, const typed::Expr &expr,
+                                        std::vector<const typed::Expr *> leaves,
+                                        llvm::ArrayRef<Value> operands, mlir::Type type) {
+  SourceTable &table = *module.options.source;
+  const auto number = static_cast<std::uint32_t>(table.entries.size());
+  const std::int32_t cost = kind == SourceTable::Kind::Value         ? costOf(expr, leaves)
+                            : kind == SourceTable::Kind::AngleCosine ? 50
+                                                                     : 2;
+  table.entries.push_back({kind, &expr, std::move(leaves)});
+  return emitter.make<ir::ExpressionOp>(type, number, static_cast<std::uint32_t>(cost), operands);
+}
+
+/// A call with effects that takes values only. One that traces is no such thing: it has to be taken
+/// apart.
+std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr) {
+  std::vector<const typed::Expr *> leaves;
+  const typed::Function *callee = nullptr;
+  if (auto *call = dynCast<typed::CallExpr>(&expr)) {
+    callee = call->function;
+    for (const typed::ExprPtr &arg : call->args)
+      leaves.push_back(arg.get());
+  } else {
+    const auto &method = cast<typed::MethodCallExpr>(expr);
+    callee = method.function;
+    leaves.push_back(method.receiver.get());
+    for (const typed::ExprPtr &arg : method.args)
+      leaves.push_back(arg.get());
+  }
+  if (callee && (callee->mayTrace || !takesValues(*callee)))
+    return std::nullopt;
+  llvm::SmallVector<Value, 8> operands;
+  for (const typed::Expr *leaf : leaves)
+    operands.push_back(value(*leaf));
+  emitter.setLoc(module.location(expr.range));
+  SourceTable &table = *module.options.source;
+  const auto number = static_cast<std::uint32_t>(table.entries.size());
+  table.entries.push_back({SourceTable::Kind::Value, &expr, leaves});
+  mlir::ArrayAttr writes;
+  if (std::optional<std::vector<std::string>> names = table.writes(expr)) {
+    std::vector<llvm::StringRef> refs(names->begin(), names->end());
+    writes = emitter.getStrArrayAttr(refs);
+  }
+  llvm::SmallVector<mlir::Type, 1> types;
+  if (!expr.type->is(TypeKind::Void))
+    types.push_back(module.type(expr.type));
+  auto op = emitter.make<ir::EvaluateOp>(types, number, operands, writes);
+  return Parts(op.getResults().begin(), op.getResults().end());
+}
+
+std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
+  const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall;
+  if (livesInMemory(expr.type) || expr.kind == ExprKind::String)
+    return std::nullopt;
+  if (isCall && !isKept(expr))
+    return lowerEvaluation(expr);
+  if (expr.type->is(TypeKind::Void) ||
+      (expr.kind == ExprKind::Literal && expr.type->is(TypeKind::Bool)))
+    return std::nullopt;
+  std::vector<const typed::Expr *> leaves;
+  if (!collectLeaves(expr, leaves) || (leaves.size() == 1 && leaves.front() == &expr))
+    return std::nullopt;
+  llvm::SmallVector<Value, 8> operands;
+  for (const typed::Expr *leaf : leaves)
+    operands.push_back(value(*leaf));
+  emitter.setLoc(module.location(expr.range));
+  return Parts{wholeExpression(SourceTable::Kind::Value, expr, leaves, operands,
+                               module.type(expr.type))};
+}
+
+} // namespace rtsl::lowering

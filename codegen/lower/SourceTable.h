@@ -1,0 +1,38 @@
+//===- SourceTable.h - expressions that the IR keeps whole ----------------===//
+//
+// Lowering with a table (LowerOptions::source) makes one `rtsl.expression` of an expression instead of the operations that
+// compute it. Whoever prints the IR for people finds the author's tree here.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "sema/TypedAst.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rtsl {
+
+struct SourceTable {
+  enum class Kind : std::uint8_t {
+    Value,
+    Compound,   // the new value of the target of `target op= value`
+    Step,       // that of `++target`
+    AngleCosine // the cosine of the angle of an `illuminance`
+  };
+  struct Entry {
+    Kind kind = Kind::Value;
+    const typed::Expr *expr = nullptr;
+    std::vector<const typed::Expr *> leaves; // what the operands stand for, one each
+  };
+  std::vector<Entry> entries; // by the number of the operation
+
+  /// Does a call read nothing but its arguments and members, and change nothing?
+  std::function<bool(const typed::Function &)> isPure;
+  /// The state variables that a call may change; nothing: any.
+  std::function<std::optional<std::vector<std::string>>(const typed::Expr &call)> writes;
+};
+
+} // namespace rtsl

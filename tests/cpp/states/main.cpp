@@ -1,0 +1,39 @@
+// Renders a row of spheres, one a material of Shapes.rtsl, without the compiler: states PICTURE.exr
+#include <rtsl/runtime.h>
+
+#include <cstdio>
+
+using namespace rtsl::runtime;
+
+RTSL_DECLARE_SHADERS(shapes);
+
+int main(int argc, char **argv) try {
+  if (argc != 2)
+    return std::fprintf(stderr, "usage: %s PICTURE.exr\n", argv[0]), 2;
+  Scene scene(rtsl::program(shapes_shaders()));
+  auto make = [&](const char *name, std::vector<NamedValue> members) {
+    return scene.addObject(name, ObjectValues{{}, std::move(members), {}});
+  };
+  scene.setCamera(scene.addObject("PinholeCamera", {{0, 2, 9}, {0, 1, 0}, {0, -0.12, -1},
+                                                    {-1.6, -0.9}, {1.6, 0.9}, 2.7}));
+  RtslRef checks = make("Checker", {{"scale", 8}, {"even", {0.85, 0.83, 0.78}},
+                                    {"odd", {0.12, 0.14, 0.2}}});
+  RtslRef floor = scene.addObject("Parallelogram", {{-8, 0, 6}, {16, 0, 0}, {0, 0, -16}});
+  scene.addPrimitive(floor, make("Glossy", {{"albedo", Value::reference(checks)}}));
+  double x = -3.5;
+  for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Base", "Derived"}) {
+    scene.addPrimitive(make("Sphere", {{"center", {x, 0.8, 0}}, {"radius", 0.7}}), make(name, {}));
+    x += 1.2;
+  }
+  scene.addLight(make("BallLight", {{"position", {4, 6, 4}}, {"radius", 0.4}, {"intensity", {38, 36, 33}}}));
+  scene.setAmbient({0.12f, 0.13f, 0.16f});
+  scene.setBackground(make("Sky", {}));
+  RenderOptions options;
+  options.width = 96;
+  options.height = 54;
+  options.samplesPerPixel = 2;
+  options.maxDepth = 4;
+  writeImage(argv[1], render(scene, options));
+} catch (const Error &error) {
+  return std::fprintf(stderr, "%s\n", error.what()), 1;
+}

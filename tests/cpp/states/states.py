@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""states.py RTSLC GLASS PROGRAM...: the programs' pictures are that of the same scene by machine code, to the last bit."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+rtslc, glass, *programs = sys.argv[1:]
+here = pathlib.Path(__file__).parent
+names = ["Many", "Nested", "Middle", "Choices", "Endless", "Base", "Derived"]
+shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
+scene = {
+    "rtsl": 1,
+    "import": [f"{glass}/{name}.rtsl" for name in shaders] + [str(here / "Shapes.rtsl")],
+    "camera": {"class": "PinholeCamera", "constructor": [[0, 2, 9], [0, 1, 0], [0, -0.12, -1], [-1.6, -0.9], [1.6, 0.9], 2.7]},
+    "textures": {"checks": {"class": "Checker", "scale": 8, "even": [0.85, 0.83, 0.78], "odd": [0.12, 0.14, 0.2]}},
+    "materials": {"floor": {"class": "Glossy", "albedo": "checks"}, **{name: {"class": name} for name in names}},
+    "objects": [{"primitive": {"class": "Parallelogram", "constructor": [[-8, 0, 6], [16, 0, 0], [0, 0, -16]]},
+                 "material": "floor"}],
+    "lights": [{"class": "BallLight", "position": [4, 6, 4], "radius": 0.4, "intensity": [38, 36, 33]}],
+    "ambient": [0.12, 0.13, 0.16],
+    "background": {"class": "Sky"},
+    "render": {"engine": "classic", "size": [96, 54], "spp": 2, "depth": 4, "seed": 1},
+}
+x = -3.5
+for name in names:
+    scene["objects"].append({"primitive": {"class": "Sphere", "center": [x, 0.8, 0], "radius": 0.7}, "material": name})
+    x += 1.2
+with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
+    file, ours, theirs = (str(pathlib.Path(folder) / name) for name in ("scene.json", "cpp.exr", "jit.exr"))
+    pathlib.Path(file).write_text(json.dumps(scene))
+    subprocess.run([rtslc, "render", file, "-o", theirs, "-q"], check=True)
+    for program in programs:
+        subprocess.run([program, ours], check=True)
+        subprocess.run([rtslc, "compare", ours, theirs, "--threshold", "0"], check=True)
