@@ -27,6 +27,10 @@ std::string ModulePrinter::commentText(const std::string &comment) const {
 }
 
 std::string ModulePrinter::lineDirective(SourceRange range) const {
+  return lineDirective(range, range.isValid() ? notes.line(range) : 0);
+}
+
+std::string ModulePrinter::lineDirective(SourceRange range, unsigned line) const {
   if (!options.lineDirectives || !range.isValid())
     return {};
   std::string file;
@@ -35,7 +39,7 @@ std::string ModulePrinter::lineDirective(SourceRange range) const {
       file += '\\';
     file += c;
   }
-  return fmt::format("#line {} \"{}\"\n", notes.line(range), file);
+  return fmt::format("#line {} \"{}\"\n", line, file);
 }
 
 //===----------------------------------------------------------------------===//

@@ -30,7 +30,7 @@ bool isReserved(const std::string &word) {
       "FP_SUBNORMAL", "SIZE_MAX",
       // What generated code uses.
       "glm", "std", "rtsl", "rt", "scratch", "State", "Color", "Scratch", "Id", "lights", "program",
-      "describe", "describeFields", "slots", "className", "visit", "Step", "frame"};
+      "describe", "describeFields", "slots", "className", "visit", "Step"};
   if (words.count(word))
     return true;
   // Reserved to the implementation, and RTSL's and GLM's macros.

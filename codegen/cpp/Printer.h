@@ -80,6 +80,7 @@ public:
 
   std::string commentText(const std::string &comment) const;
   std::string lineDirective(SourceRange range) const;
+  std::string lineDirective(SourceRange ofFile, unsigned line) const;
 
   const typed::Module &module;
   const Options &options;

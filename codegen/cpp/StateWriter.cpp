@@ -3,7 +3,6 @@
 
 #include "codegen/passes/continuation/Names.h"
 #include "sema/Casting.h"
-#include "sema/Walk.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -36,6 +35,9 @@ unsigned lineOf(mlir::Location location) {
 StateWriter::StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine)
     : module(module), source(source), machine(machine), printer(module, machine.method) {
   always = module.namesInScope(*machine.definition);
+  while (always.count(machine.frameName))
+    machine.frameName += '_';
+  always.insert(machine.frameName);
 }
 
 void StateWriter::Touches::add(const Touches &other) {
@@ -65,8 +67,16 @@ bool StateWriter::meet(const Touches &a, const Touches &b) {
 }
 
 void StateWriter::unsupported(mlir::Operation &op) {
-  module.unsupported(machine.method->range, fmt::format("`{}` in a method that traces, as C++ states (line {})",
-                                                        op.getName().getStringRef().str(), lineOf(op.getLoc())));
+  if (hasRefused) // one message a method says enough
+    return;
+  hasRefused = true;
+  std::string what = op.getName().stripDialect().str();
+  if (llvm::isa<ir::VarOp, ir::FrameObjectOp, ir::ElementOp, ir::FieldOp>(op))
+    what = "an array or a struct";
+  const unsigned line = lineOf(op.getLoc());
+  module.unsupported(machine.method->range,
+                     fmt::format("{} in states in C++{} (--trace=recurse keeps `trace` as a call)", what,
+                                 line ? fmt::format(", of line {}", line) : ""));
 }
 
 //===----------------------------------------------------------------------===//
@@ -227,6 +237,8 @@ void StateWriter::emit(Statements &out, std::string text) {
     statement.comment = module.commentText(comment->second);
     comments.erase(comment);
   }
+  if (currentLine != 0)
+    statement.comment += module.lineDirective(machine.method->range, currentLine);
   statement.text = std::move(text);
   statement.mentions = std::move(mentioned);
   mentioned.clear();
@@ -295,7 +307,7 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
                        !continuation::authorsName(value).empty();
   const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
-  const bool isTrivial = isRead || (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
+  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) || (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
   pending[value] = {std::move(code), std::move(touches), uses, isPure, isTrivial};
   if (uses == 1 ? isNamed && !stores() : isNamed || !isTrivial)
     materialise(value, out);
@@ -381,6 +393,20 @@ Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange o
   return {"0"};
 }
 
+Code negated(const Code &code) {
+  if (code.binding != Binding::Unary || code.text.front() != '!')
+    return {"!" + bind(code, Binding::Unary), Binding::Unary};
+  const std::string inner = code.text.substr(1);
+  int depth = 0; // do parentheses hold all of it?
+  std::size_t end = 0;
+  do
+    depth += inner[end] == '(' ? 1 : inner[end] == ')' ? -1 : 0;
+  while (depth != 0 && ++end != inner.size());
+  if (inner.front() == '(' && end + 1 == inner.size())
+    return {inner.substr(1, inner.size() - 2), Binding::Assignment};
+  return {inner, Binding::Primary};
+}
+
 //===----------------------------------------------------------------------===//
 // Operations
 //===----------------------------------------------------------------------===//
@@ -414,7 +440,7 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
           if (field.slot == load.getName()) {
             Touches touches;
             touches.reads.insert("frame " + field.slot);
-            define(op, {"frame." + field.name}, touches, true, out);
+            define(op, {machine.frameName + "." + field.name}, touches, true, out);
           }
       })
       .Case([&](ir::ExpressionOp whole) {
@@ -458,8 +484,8 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
           if (field.slot == stored.getName()) {
             const std::string value = bind(use(stored.getValue(), field.type), Binding::Assignment);
             flush(touchesOf(&op), out);
-            if (value != "frame." + field.name)
-              emit(out, "frame." + field.name + " = " + value + ";");
+            if (value != machine.frameName + "." + field.name)
+              emit(out, machine.frameName + "." + field.name + " = " + value + ";");
           }
       })
       .Case([&](ir::SpawnOp spawn) {
@@ -490,7 +516,7 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
       .Case([&](arith::XOrIOp negation) {
         if (!op.getResult(0).getType().isInteger(1) || !mlir::matchPattern(negation.getRhs(), mlir::m_One()))
           return unsupported(op);
-        pure({"!" + bind(use(negation.getLhs()), Binding::Unary), Binding::Unary});
+        pure(negated(use(negation.getLhs())));
       })
       .Case([&](arith::AndIOp) {
         op.getResult(0).getType().isInteger(1) ? infix("&&", Binding::And) : unsupported(op);
@@ -558,217 +584,6 @@ void StateWriter::leave(ir::ReturnOp op, Statements &out) {
   if (next.getTransition() == ir::Transition::Jump)
     return unsupported(*op);
   emit(out, "return rtsl::traceThen(rt, Step::" + step + ", " + spawned + ");");
-}
-
-//===----------------------------------------------------------------------===//
-// Constructs
-//===----------------------------------------------------------------------===//
-
-void StateWriter::choice(ir::IfOp op, Statements &out) {
-  const unsigned line = currentLine;
-  const Code condition = use(op.getCondition());
-  const std::set<mlir::Operation *> inCondition = std::move(mentioned);
-  mentioned.clear();
-  flushBefore(*op, out);
-  Statements thenPart, elsePart;
-  block(op.getThenRegion().front(), thenPart);
-  if (!op.getElseRegion().empty())
-    block(op.getElseRegion().front(), elsePart);
-
-  auto assigns = [](const Statements &part) {
-    return part.size() == 1 && part.front().assigns && !part.front().value.empty() ? part.front().assigns : nullptr;
-  };
-  if (mlir::Operation *target = assigns(thenPart); target && target == assigns(elsePart)) {
-    const std::string name = nameOf(llvm::cast<ir::VarOp>(target));
-    const std::string first = thenPart.front().value, second = elsePart.front().value;
-    std::string value = bind(condition, Binding::Or) + " ? " + first + " : " + second;
-    if (second == "false")
-      value = bind(condition, Binding::And) + " && (" + first + ")";
-    if (first == "true")
-      value = "(" + condition.text + ") || (" + second + ")";
-    mentioned = inCondition;
-    currentLine = line;
-    for (const Statements *part : {&thenPart, &elsePart})
-      mentioned.insert(part->front().mentions.begin(), part->front().mentions.end());
-    emit(out, name + " = " + value + ";");
-    out.back().assigns = target;
-    out.back().value = value;
-    return;
-  }
-  std::string text = "if (" + condition.text + ")" + under(thenPart);
-  if (!elsePart.empty())
-    text += (text.back() == '\n' ? "else" : " else") + under(elsePart);
-  while (text.back() == '\n')
-    text.pop_back();
-  mentioned = inCondition;
-  currentLine = line;
-  for (const Statements *part : {&thenPart, &elsePart})
-    for (const Statement &statement : *part)
-      mentioned.insert(statement.mentions.begin(), statement.mentions.end());
-  emit(out, text);
-}
-
-/// The head of a `for`, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nobody else asks for i. What the head says
-/// is taken out of what stands before the loop, and of the body.
-std::string StateWriter::counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body) {
-  if (out.empty() || body.empty() || !out.back().assigns || out.back().assigns != body.back().assigns)
-    return {};
-  auto variable = llvm::cast<ir::VarOp>(out.back().assigns);
-  const std::string &name = nameOf(variable);
-  // Below its bound an int can be counted up without overflow.
-  if (body.back().value != "rtsl::add(" + name + ", 1)" || condition.compare(0, name.size() + 3, name + " < ") != 0)
-    return {};
-  unsigned outside = 0;
-  for (mlir::Operation *user : variable->getUsers())
-    outside += !op->isProperAncestor(user);
-  const bool isContinued = op.getBody()
-                               .walk([&](ir::ContinueOp jump) {
-                                 return jump->getParentOfType<ir::LoopOp>() == op ? mlir::WalkResult::interrupt()
-                                                                                  : mlir::WalkResult::advance();
-                               })
-                               .wasInterrupted();
-  if (outside != 1 || isContinued)
-    return {};
-  const std::string head =
-      fmt::format("for ({} {} = {}; {}; ++{})", varType(variable), name, out.back().value, condition, name);
-  out.pop_back();
-  body.pop_back();
-  out.erase(std::remove_if(out.begin(), out.end(),
-                           [&](const Statement &statement) { return statement.declares == variable.getOperation(); }),
-            out.end());
-  return head;
-}
-
-void StateWriter::loop(ir::LoopOp op, Statements &out) {
-  const unsigned line = currentLine;
-  flushBefore(*op, out);
-  Statements head, body;
-  std::string condition = "true";
-  std::set<mlir::Operation *> inCondition;
-  if (!op.getCondition().empty()) {
-    mlir::Block &test = op.getCondition().front();
-    block(test, head);
-    consumed = {};
-    condition = use(llvm::cast<ir::ConditionOp>(test.back()).getCondition()).text;
-    inCondition = std::move(mentioned);
-    mentioned.clear();
-  }
-  block(op.getBody().front(), body);
-  std::string text;
-  if (head.empty()) {
-    const std::string counting = counter(op, condition, out, body);
-    text = counting.empty() ? "while (" + condition + ")" : counting;
-    text += " {\n" + this->text(body) + "}";
-  } else {
-    text = "while (true) {\n" + this->text(head) + "if (!(" + condition + "))\nbreak;\n" + this->text(body) + "}";
-  }
-  mentioned = inCondition;
-  currentLine = line;
-  for (const Statements *part : {&head, &body})
-    for (const Statement &statement : *part)
-      mentioned.insert(statement.mentions.begin(), statement.mentions.end());
-  emit(out, text);
-}
-
-void StateWriter::switchOver(ir::SwitchOp op, Statements &out) {
-  const unsigned line = currentLine;
-  const std::string value = use(op.getValue()).text;
-  const std::set<mlir::Operation *> inValue = std::move(mentioned);
-  mentioned.clear();
-  flushBefore(*op, out);
-  std::string text = "switch (" + value + ") {\n";
-  std::set<mlir::Operation *> inside = inValue;
-  for (auto [index, arm] : llvm::enumerate(op.getArms())) {
-    for (std::int32_t number : op.armValues(static_cast<unsigned>(index)))
-      text += fmt::format("case {}:\n", number);
-    if (op.getDefaultArm() && *op.getDefaultArm() == index)
-      text += "default:\n";
-    Statements statements;
-    block(arm.front(), statements);
-    for (const Statement &statement : statements)
-      inside.insert(statement.mentions.begin(), statement.mentions.end());
-    text += "{\n" + this->text(statements) + "}\n";
-  }
-  if (!op.getDefaultArm())
-    text += "default:\nbreak;\n";
-  mentioned = inside;
-  currentLine = line;
-  emit(out, text + "}");
-}
-
-void StateWriter::block(mlir::Block &block, Statements &out) {
-  for (mlir::Operation &op : block)
-    operation(op, out);
-  joinDeclarations(out);
-}
-
-//===----------------------------------------------------------------------===//
-// Statements
-//===----------------------------------------------------------------------===//
-
-/// A variable is declared where it first gets its value.
-void StateWriter::joinDeclarations(Statements &statements) {
-  for (std::size_t i = 0; i < statements.size(); ++i) {
-    auto variable = llvm::dyn_cast_or_null<ir::VarOp>(statements[i].declares);
-    if (!variable)
-      continue;
-    const std::string type = varType(variable);
-    if (type.empty())
-      unsupported(*variable);
-    const std::string &name = nameOf(variable);
-    auto first = std::find_if(statements.begin() + static_cast<std::ptrdiff_t>(i) + 1, statements.end(),
-                              [&](const Statement &statement) { return statement.mentions.count(variable) != 0; });
-    if (first == statements.end()) {
-      statements.erase(statements.begin() + static_cast<std::ptrdiff_t>(i--));
-      continue;
-    }
-    if (first->assigns == variable.getOperation()) {
-      first->text = type + " " + declarator(type, name, first->value) + ";";
-      first->declares = nullptr;
-      statements.erase(statements.begin() + static_cast<std::ptrdiff_t>(i--));
-      continue;
-    }
-    const bool isNumber = type == "float" || type == "int" || type == "bool";
-    const char *zero = type == "float" ? "0.0f" : type == "int" ? "0" : "false";
-    statements[i].text = isNumber ? fmt::format("{} {} = {};", type, name, zero) : fmt::format("{} {}{{}};", type, name);
-    statements[i].declares = nullptr;
-    statements[i].mentions.insert(variable);
-  }
-}
-
-std::string StateWriter::text(const Statements &statements) {
-  std::string text;
-  for (const Statement &statement : statements)
-    text += statement.comment + statement.text + "\n";
-  return text;
-}
-
-/// What stands under an `if`, without braces where none are needed.
-std::string StateWriter::under(const Statements &statements) {
-  const bool isShort = statements.size() == 1 && statements.front().comment.empty() &&
-                       statements.front().text.find('\n') == std::string::npos &&
-                       statements.front().text.compare(0, 2, "if") != 0;
-  return isShort ? "\n" + statements.front().text + "\n" : " {\n" + text(statements) + "}";
-}
-
-std::string StateWriter::body(mlir::func::FuncOp state) {
-  taken.clear();
-  pending.clear();
-  declared.clear();
-  variableNames.clear();
-  variableTypes.clear();
-  mentioned.clear();
-  usesScratch = false;
-  insertions.clear();
-  comments.clear();
-  currentLine = 0;
-  forEachStmt(*machine.method->body, [&](const typed::Stmt &stmt) {
-    if (!stmt.comment.empty())
-      comments[module.notes.line(stmt.range)] = stmt.comment;
-  });
-  Statements statements;
-  block(state.getBody().front(), statements);
-  return text(statements);
 }
 
 } // namespace rtsl::cpp

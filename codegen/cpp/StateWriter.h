@@ -32,11 +32,15 @@ struct Machine {
   const typed::Function *method = nullptr;
   std::vector<mlir::func::FuncOp> states;
   std::vector<FrameField> frame;
+  std::string frameName = "frame"; // of the parameter
   std::map<std::string, std::string> stepOf; // by the symbol of the state
 };
 
 /// The line of an operation in the author's file; 0: unknown.
 unsigned lineOf(mlir::Location location);
+
+/// The opposite of a condition.
+Code negated(const Code &code);
 
 class StateWriter {
 public:
@@ -83,6 +87,7 @@ private:
   std::string text(const Statements &statements);
   std::string under(const Statements &statements);
   std::string assignment(const std::string &target, const std::string &value, mlir::Value made);
+  std::string lights(ir::LoopOp op, mlir::Block *&lit);
   std::string counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body);
   void joinDeclarations(Statements &statements);
 
@@ -120,6 +125,7 @@ private:
   llvm::DenseMap<mlir::Value, Insertion> insertions; // vectors with one component replaced
   std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
   unsigned currentLine = 0;
+  bool hasRefused = false;
   std::string spawned; // the arguments of the ray that is traced when the state ends
 };
 

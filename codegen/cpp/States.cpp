@@ -147,13 +147,16 @@ static void collectFrame(Machine &machine, StateWriter &writer) {
     for (FrameField &known : machine.frame)
       if (known.slot == slot)
         return known;
-    std::string name;
-    for (char c : slot.split(".component").first.str())
-      name += std::isalnum(static_cast<unsigned char>(c)) || c == '_' ? c : '_';
+    std::string name; // "sum.2" is the second sum, "ray.origin" a part
+    for (std::size_t at = 0; at != slot.size(); ++at)
+      if (std::isalnum(static_cast<unsigned char>(slot[at])) || slot[at] == '_')
+        name += slot[at];
+      else if (at + 1 == slot.size() || !std::isdigit(static_cast<unsigned char>(slot[at + 1])))
+        name += '_';
     std::string unique = name;
     for (unsigned i = 2; isReserved(unique) || !taken.insert(unique).second; ++i)
       unique = name + std::to_string(i);
-    machine.frame.push_back({slot.str(), unique, "", 0, 0, false});
+    machine.frame.push_back({slot.str(), unique, "", 0, 0, true});
     return machine.frame.back();
   };
   for (mlir::func::FuncOp state : machine.states) {
@@ -161,7 +164,7 @@ static void collectFrame(Machine &machine, StateWriter &writer) {
       FrameField &saved = field(store.getName());
       if (unsigned line = lineOf(store.getLoc()); saved.madeIn == 0)
         saved.madeIn = line;
-      saved.isTraced |= store.getValue().getDefiningOp<ir::TraceResultOp>() != nullptr;
+      saved.isTraced &= store.getValue().getDefiningOp<ir::TraceResultOp>() != nullptr;
     });
     state.walk([&](ir::FrameLoadOp load) {
       FrameField &saved = field(load.getName());
@@ -246,10 +249,10 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
       parameters.emplace_back("const Scratch &scratch");
       arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
     }
-    if (mentions(body, "frame")) {
+    if (mentions(body, machine.frameName)) {
       bool writes = false;
       machine.states[i].walk([&](ir::FrameStoreOp) { writes = true; });
-      parameters.push_back((writes ? "" : "const ") + frame + " &frame");
+      parameters.push_back((writes ? "" : "const ") + frame + " &" + machine.frameName);
       arguments.push_back(fmt::format("rtsl::frameAt<{}::{}>(frame)", names.of(&definition), frame));
     }
     const std::string call = functions[i] + "(" + join(arguments, ", ") + ")";
@@ -262,6 +265,8 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
       text += line ? fmt::format("\n// When the ray of line {} is back.\n", line) : "\n";
       steps.push_back({machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
     }
+    if (i == 0)
+      text += lineDirective(method.range);
     text += fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", functions[i], join(parameters, ", "), body);
   }
   return text;

@@ -411,7 +411,8 @@ Parts FunctionLowering::lowerShortCircuit(const typed::BinaryExpr &expr) {
     return {isAnd ? left & right : left | right};
   }
   emitter.setLoc(module.location(expr.range));
-  Value result = temporary(isAnd ? "and" : "or", expr.type);
+  const bool isRead = module.options.source != nullptr; // then `and` is no name
+  Value result = temporary(isRead ? isAnd ? "both" : "either" : isAnd ? "and" : "or", expr.type);
   emitter.store(left, result);
   emitter.ifThen(isAnd ? left : !left, [&] { emitter.store(value(*expr.right), result); });
   return {emitter.load(result)};

@@ -9,6 +9,9 @@ using Color = rtsl::Color<3>;
 
 enum class Id : std::uint32_t { Dielectric = 1 };
 
+// Where a method goes on: `shade` and `miss` begin, the others run when a ray is back.
+enum class Step : rtsl::Next { shade = 1, miss, Dielectric_shadeAfterTrace1 };
+
 // Glass with the exact reflectance (Fresnel's equations for unpolarised light). Chance decides
 // whether the reflected or the refracted ray is followed, so there is one ray a hit.
 struct Dielectric : rtsl::Material {
@@ -27,20 +30,31 @@ struct Dielectric : rtsl::Material {
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
   }
 
-  void shade(State &rt) const {
+  // What `shade` needs when its rays come back.
+  struct ShadeFrame {
+    Color attenuation; // needed by line 32: `color attenuation = color(1.0)`
+  };
+
+  rtsl::Next shade(State &rt, ShadeFrame &frame) const {
     glm::vec3 direction = rtsl::normalize(rt.RayDirection);
     bool entering = rtsl::dot(direction, rt.GeometricNormal) < 0.0f;
     glm::vec3 normal = entering ? rt.ShadingNormal : -rt.ShadingNormal;
     float ratio = entering ? 1.0f / index : index;
     float cosine = rtsl::clamp(-rtsl::dot(direction, normal), 0.0f, 1.0f);
-
     glm::vec3 next = rtsl::rand(rt) < reflectance(cosine, ratio)
                          ? rtsl::reflect(direction, normal)
                          : rtsl::refract(direction, normal, ratio);
     Color attenuation = Color(1.0f);
     if (!entering)
       attenuation = rtsl::pow(tint, rt.HitDistance * rtsl::length(rt.RayDirection));
-    rt.SampleColor = attenuation * rtsl::trace(rt, rt.HitPoint, next);
+    frame.attenuation = attenuation;
+    return rtsl::traceThen(rt, Step::Dielectric_shadeAfterTrace1, rt.HitPoint, next);
+  }
+
+  // When the ray of line 32 is back.
+  rtsl::Next shadeAfterTrace1(State &rt, const ShadeFrame &frame) const {
+    rt.SampleColor = frame.attenuation * rtsl::traced(rt);
+    return rtsl::done;
   }
 };
 
@@ -50,9 +64,20 @@ struct Dielectric : rtsl::Material {
 
 namespace slots {
 
-inline void shade(RtslState *ray, RtslRef object) {
+inline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object,
+                           [[maybe_unused]] void *frame) {
   State &rt = rtsl::stateOf<3>(ray);
-  rtsl::object<Dielectric>(rt, object).shade(rt);
+  switch (static_cast<Step>(step)) {
+  case Step::shade:
+    return rtsl::object<Dielectric>(rt, object)
+        .shade(rt, rtsl::frameAt<Dielectric::ShadeFrame>(frame));
+  case Step::miss:
+    return rtsl::done;
+  case Step::Dielectric_shadeAfterTrace1:
+    return rtsl::object<Dielectric>(rt, object)
+        .shadeAfterTrace1(rt, rtsl::frameAt<Dielectric::ShadeFrame>(frame));
+  }
+  return rtsl::done;
 }
 
 } // namespace slots
@@ -65,7 +90,8 @@ static RtslShaders describe() {
       .member("index", &Dielectric::index, rtsl::Access::Public, rtsl::Default::Given)
       .member("tint", &Dielectric::tint, rtsl::Access::Public, rtsl::Default::Given)
       .methods({"reflectance", "shade"});
-  program.slots().rt_Material_shade = &slots::shade;
+  program.states<Dielectric::ShadeFrame>(&slots::runState, static_cast<rtsl::Next>(Step::shade),
+                                         rtsl::done);
   return program.finish();
 }
 

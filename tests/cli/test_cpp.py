@@ -30,7 +30,31 @@ class Cpp(Case):
 
     def test_what_cpp_cannot_be_made_of(self):
         self.run_rtslc("compile", EXAMPLES / "glass/scene.json", "--emit=cpp", status=USAGE)
-        self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp", "--trace=split", status=USAGE)
+
+    def test_methods_that_trace(self):
+        split, _ = self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp")
+        self.assertEqual(split, self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp", "--trace=split")[0])
+        self.assertIn("struct ShadeFrame {", split)
+        self.assertIn("// needed by line 40: `vec3 refracted = refract(direction, ...`", split)
+        self.assertNotIn("rtsl::trace(", split)
+        recurse, _ = self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp", "--trace=recurse")
+        self.assertIn("rtsl::trace(rt, rt.HitPoint, reflected)", recurse)
+        self.assertNotIn("Frame", recurse)
+
+    def test_states_that_cannot_be_printed(self):
+        shader = self.write("table.rtsl", """class Table : rt_Material;
+            void shade() {
+              float table[4];
+              for (int i = 0; i < 4; ++i) table[i] = float(i);
+              color c = trace(rt_HitPoint, rt_ShadingNormal);
+              rt_SampleColor = c * table[rt_Depth];
+            }
+            """)
+        text, _ = self.run_rtslc("compile", shader, "--emit=cpp")
+        self.assertIn("rtsl::trace(", text)
+        _, error = self.run_rtslc("compile", shader, "--emit=cpp", "--trace=split", status=DIAGNOSED)
+        self.assertIn("table.rtsl:2:", error)
+        self.assertIn("--trace=recurse", error)
 
     def test_names_that_cpp_has_taken(self):
         shader = self.write("my-names.rtsl", """

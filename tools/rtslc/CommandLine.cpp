@@ -104,7 +104,8 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
       "trust array and buffer indices: one out of range is then undefined");
   command
       .add_option("--trace", options.compile.trace,
-                  "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU")
+                  "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU. If not given: recurse; of "
+                  "C++ split, if it can be printed so")
       ->transform(CLI::CheckedTransformer(std::map<std::string, TraceMode>{{"recurse", TraceMode::Recurse},
                                                                            {"split", TraceMode::Split}})
                       .description(""))
