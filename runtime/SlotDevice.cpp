@@ -40,6 +40,16 @@ int32_t rtsl_rt_Material_shade_first(RtslState *state) {
 int32_t rtsl_rt_Miss_miss_first(RtslState *state) {
   return slotsOf(state).states.missFirst;
 }
+// A shader in C++ may send rays that others answer, and so on: one kind of ray, which sends its like.
+int32_t rtsl_ray_kinds(RtslState *) {
+  return 1;
+}
+int32_t rtsl_rays_sent(RtslState *, int32_t) {
+  return 1;
+}
+int32_t rtsl_rays_sent_last(RtslState *, int32_t) {
+  return 1;
+}
 // C++ has no rays with a payload, and so no `generate`.
 int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *) {
   return 0;
@@ -54,9 +64,14 @@ int32_t rtsl_rt_RayGeneration_generate_first(RtslState *) {
 /// rtsl_sample of such a program, with calls or with the machine.
 void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
-  if (static_cast<const rtsl::runtime::HostScene *>(launch->host)->programSlots().states.run)
-    rtsl_sample_split(launch, x, y, sample, color);
+  const auto &states = static_cast<const rtsl::runtime::HostScene *>(launch->host)->programSlots().states;
+  if (!states.run)
+    return rtsl_sample(launch, x, y, sample, color);
+  const uint64_t levels = uint64_t(launch->maxDepth) + 1;
+  void *stack = rtsl_machine_stack(levels * device::levelSize(uint64_t(states.frameSize)));
+  if (stack)
+    device::runMachine(*launch, x, y, sample, stack, color);
   else
-    rtsl_sample(launch, x, y, sample, color);
+    device::setColor(color, rtsl_color_components(launch), 0);
 }
 }

@@ -50,6 +50,7 @@ def commands(build, folder):
         ("true", ["/bin/true"], None),  # what any process costs here
         ("rtslc --help", [rtslc, "--help"], 0.010),
         ("rtslc check", [rtslc, "check", str(MATERIAL)], 0.015),
+        ("rtslc compile --emit=cpp", [rtslc, "compile", str(MATERIAL), "--emit=cpp", "-o", "-"], 0.025),
         ("rtslc compile --emit=llvm", [rtslc, "compile", str(MATERIAL), "--emit=llvm", "-o", "-"], None),
         ("rtslc compile --emit=ptx", [rtslc, "compile", str(MATERIAL), "--emit=ptx", "-o", "-"], 0.040),
         ("rtslc compile --emit=cpp", [rtslc, "compile", str(MATERIAL), "--emit=cpp", "-o", "-"], 0.025),

@@ -81,8 +81,8 @@ void StateWriter::choice(ir::IfOp op, Statements &out) {
   emit(out, text);
 }
 
-/// The head of a `for`, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nobody else asks for i. What the head says
-/// is taken out of what stands before the loop, and of the body.
+/// The head of a `for`, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nobody else asks
+/// for i. What the head says is taken out of what stands before the loop, and of the body.
 std::string StateWriter::counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body) {
   if (out.empty() || body.empty() || !out.back().assigns || out.back().assigns != body.back().assigns)
     return {};
@@ -116,7 +116,8 @@ std::string StateWriter::counter(ir::LoopOp op, const std::string &condition, St
 std::string StateWriter::lights(ir::LoopOp op, mlir::Block *&lit) {
   if (op.getCondition().empty())
     return {};
-  auto compare = llvm::cast<ir::ConditionOp>(op.getCondition().front().back()).getCondition().getDefiningOp<arith::CmpIOp>();
+  auto condition = llvm::cast<ir::ConditionOp>(op.getCondition().front().back());
+  auto compare = condition.getCondition().getDefiningOp<arith::CmpIOp>();
   auto load = compare ? compare.getLhs().getDefiningOp<ir::LoadOp>() : ir::LoadOp();
   auto count = compare ? compare.getRhs().getDefiningOp<ir::LightCountOp>() : ir::LightCountOp();
   auto variable = load ? load.getAddress().getDefiningOp<ir::VarOp>() : ir::VarOp();
@@ -273,7 +274,8 @@ void StateWriter::joinDeclarations(Statements &statements) {
     }
     const bool isNumber = type == "float" || type == "int" || type == "bool";
     const char *zero = type == "float" ? "0.0f" : type == "int" ? "0" : "false";
-    statements[i].text = isNumber ? fmt::format("{} {} = {};", type, name, zero) : fmt::format("{} {}{{}};", type, name);
+    statements[i].text = isNumber ? fmt::format("{} {} = {};", type, name, zero)
+                                  : fmt::format("{} {}{{}};", type, name);
     statements[i].declares = nullptr;
     statements[i].mentions.insert(variable);
   }

@@ -270,19 +270,15 @@ void StateWriter::flush(const Touches &touches, Statements &out) {
     materialise(value, out);
 }
 
-/// Before a construct with regions.
+/// Before a construct with regions: what an inner statement would change cannot wait for another region, and nothing that
+/// is used once waits to be evaluated in each round of a loop.
 void StateWriter::flushBefore(mlir::Operation &op, Statements &out) {
   const Touches inside = touchesOf(&op);
   const bool isLoop = llvm::isa<ir::LoopOp>(op);
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending) {
-    const bool isUsedBehind = llvm::any_of(value.getUsers(), [&](mlir::Operation *user) {
-      return !op.isProperAncestor(user) && !declared.count(value);
-    });
-    const bool meets = meet(waiting.touches, inside);
     const bool isConstant = waiting.isTrivial && waiting.touches.reads.empty();
-    if (!waiting.isPure || (isLoop && (meets || (waiting.usesLeft == 1 && !isConstant))) ||
-        (meets && (isUsedBehind || waiting.usesLeft > 1)))
+    if (!waiting.isPure || meet(waiting.touches, inside) || (isLoop && waiting.usesLeft == 1 && !isConstant))
       first.push_back(value);
   }
   for (mlir::Value value : first)
@@ -307,7 +303,8 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
                        !continuation::authorsName(value).empty();
   const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
-  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) || (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
+  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
+                         (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
   pending[value] = {std::move(code), std::move(touches), uses, isPure, isTrivial};
   if (uses == 1 ? isNamed && !stores() : isNamed || !isTrivial)
     materialise(value, out);
@@ -559,7 +556,8 @@ void StateWriter::store(ir::StoreOp op, Statements &out) {
   const std::string target = place(op.getAddress()).text;
   // A component of what lies there.
   auto insertion = insertions.find(op.getValue());
-  const bool isPart = insertion != insertions.end() && pending.count(op.getValue()) && insertion->second.vector == target;
+  const bool isPart = insertion != insertions.end() && pending.count(op.getValue()) &&
+                      insertion->second.vector == target;
   const std::string value = bind(use(op.getValue(), type), Binding::Assignment);
   flush(touchesOf(op), out);
   if (value == target)
@@ -580,6 +578,8 @@ void StateWriter::leave(ir::ReturnOp op, Statements &out) {
   auto next = op.getValues().empty() ? ir::NextOp() : op.getValues().front().getDefiningOp<ir::NextOp>();
   if (!next || next.getTransition() == ir::Transition::Done)
     return emit(out, "return rtsl::done;");
+  if (next.getTransition() == ir::Transition::Last)
+    return emit(out, "return rtsl::traceLast(rt, " + spawned + ");");
   const std::string &step = machine.stepOf.at(next.getState()->str());
   if (next.getTransition() == ir::Transition::Jump)
     return unsupported(*op);

@@ -92,7 +92,7 @@ static std::vector<mlir::func::FuncOp> statesOf(const StateProgram &program, con
 
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
   return states && method.isStateMethod && method.parameters.empty() && traces(module, method) &&
-         statesOf(*states, definition.name, method.name).size() > 1;
+         !statesOf(*states, definition.name, method.name).empty();
 }
 
 bool ModulePrinter::isPartOfStates(const typed::Class &, const typed::Function &function) const {
@@ -100,7 +100,7 @@ bool ModulePrinter::isPartOfStates(const typed::Class &, const typed::Function &
 }
 
 bool ModulePrinter::isRunBySteps(const std::string &slot) const {
-  return !steps.empty() && (slot == "shade" || slot == "miss");
+  return !firstCalls.empty() && (slot == "shade" || slot == "miss");
 }
 
 std::set<std::string> ModulePrinter::namesInScope(const typed::Class &definition) const {
@@ -272,8 +272,8 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   return text;
 }
 
-// Objects of a class that inherits a method run that of the base, unless what it calls on itself is another function and
-// has become part of the states.
+// Objects of a class that inherits a method run that of the base, unless what it calls on itself is
+// another function and has become part of the states.
 std::string ModulePrinter::inheritedStateMachines(const typed::Class &definition) {
   std::string text;
   if (!states)
@@ -295,7 +295,7 @@ std::string ModulePrinter::inheritedStateMachines(const typed::Class &definition
 //===----------------------------------------------------------------------===//
 
 std::string ModulePrinter::stepNumbers() const {
-  if (steps.empty())
+  if (firstCalls.empty())
     return {};
   std::vector<std::string> numbers = {"shade = 1", "miss"};
   for (const Step &step : steps)
@@ -306,7 +306,7 @@ std::string ModulePrinter::stepNumbers() const {
 }
 
 std::string ModulePrinter::runState() {
-  if (steps.empty())
+  if (firstCalls.empty())
     return {};
   auto object = [&](const typed::Class &definition) {
     return "rtsl::object<" + names.of(&definition) + ">(rt, object).";
@@ -340,7 +340,7 @@ std::string ModulePrinter::runState() {
 }
 
 std::string ModulePrinter::describeStates() const {
-  if (steps.empty())
+  if (firstCalls.empty())
     return {};
   auto has = [&](const char *base, const char *name) {
     for (const typed::Class *definition : classesBelow(base))

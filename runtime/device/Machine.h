@@ -62,7 +62,6 @@ inline void *frameOf(Level *level) {
 /// Bytes for the rays of a sample, and for `generate` below them.
 inline uint64_t stackSize(uint32_t maxDepth) {
   RtslState none;
-  none.launch = &launch; // shaders in C++ find their program by it
   bool hasGenerate = rtsl_rt_RayGeneration_generate_first(&none) != 0;
   auto sent = [&](uint32_t kind) { return uint32_t(rtsl_rays_sent(&none, int32_t(kind))); };
   auto sentLast = [&](uint32_t kind) {

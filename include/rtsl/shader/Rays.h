@@ -21,7 +21,7 @@ inline Color<N> trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &di
 // Methods that were split at their traces (docs/continuations.md)
 //===----------------------------------------------------------------------===//
 
-/// What comes after a state: `done`, or the number of the state that runs when the ray is back.
+/// What comes after a state: `done`, or the number of the state that runs when the ray is back, or that none does.
 using Next = std::int32_t;
 inline constexpr Next done = 0;
 
@@ -30,6 +30,13 @@ template <int N, typename Step>
 inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction) {
   rtsl_spawn(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
   return static_cast<Next>(step);
+}
+
+/// Prepares a ray that takes the place of the one that sends it: what it brings back is SampleColor.
+template <int N>
+inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction) {
+  rtsl_spawn_last(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
+  return RTSL_NEXT_LAST;
 }
 
 /// The color that the ray has brought back.

@@ -20,8 +20,8 @@ int main(int argc, char **argv) try {
                                     {"odd", {0.12, 0.14, 0.2}}});
   RtslRef floor = scene.addObject("Parallelogram", {{-8, 0, 6}, {16, 0, 0}, {0, 0, -16}});
   scene.addPrimitive(floor, make("Glossy", {{"albedo", Value::reference(checks)}}));
-  double x = -3.5;
-  for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Base", "Derived"}) {
+  double x = -4.1;
+  for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived"}) {
     scene.addPrimitive(make("Sphere", {{"center", {x, 0.8, 0}}, {"radius", 0.7}}), make(name, {}));
     x += 1.2;
   }

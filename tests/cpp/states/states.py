@@ -8,7 +8,7 @@ import tempfile
 
 rtslc, glass, *programs = sys.argv[1:]
 here = pathlib.Path(__file__).parent
-names = ["Many", "Nested", "Middle", "Choices", "Endless", "Base", "Derived"]
+names = ["Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived"]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
     "rtsl": 1,
@@ -23,7 +23,7 @@ scene = {
     "background": {"class": "Sky"},
     "render": {"engine": "classic", "size": [96, 54], "spp": 2, "depth": 4, "seed": 1},
 }
-x = -3.5
+x = -4.1
 for name in names:
     scene["objects"].append({"primitive": {"class": "Sphere", "center": [x, 0.8, 0], "radius": 0.7}, "material": name})
     x += 1.2
