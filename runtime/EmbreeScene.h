@@ -34,12 +34,16 @@ public:
   /// The ray of `state` must be good (device::isGoodRay) and have no hit yet.
   EmbreeAnswer traverse(RtslState &state, bool anyHit) const;
 
-  /// The same for a ray that isEasy.
+  /// The same for a ray that isEasy. In EmbreeRay.h.
   EmbreeAnswer traverseEasy(RtslState &state, bool anyHit) const;
+
+  struct Implementation;
 
   /// Is the ray of `state` good, and can Embree take it as it is? Most are; the test is made for
   /// them.
   static bool isEasy(const RtslState &state) {
+    if (state.isEasy)
+      return true;
     const float *o = state.RayOrigin, *d = state.RayDirection;
     auto sum = [](const float *v) {
       return __builtin_fabsf(v[0]) + __builtin_fabsf(v[1]) + __builtin_fabsf(v[2]);
@@ -56,7 +60,6 @@ private:
   /// Lengths of directions for which Embree works as it should, with room on both sides.
   static constexpr float shortest = 0x1p-20f, longest = 0x1p20f;
 
-  struct Implementation;
   std::unique_ptr<Implementation> self;
 };
 

@@ -27,19 +27,10 @@ public:
   /// The launch with our own tree; with Embree it is built when the first ray needs it.
   const RtslLaunch &deviceLaunch() const;
 
-  /// rtsl_traverse. Here, so that it is not a call of its own there.
-  std::uint32_t traverse(RtslState &state, std::uint32_t how) const {
-    if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0)
-      return traverseOurselves(state, how);
-    bool anyHit = how & RTSL_FIRST_HIT;
-    if (!embree || !EmbreeScene::isEasy(state))
-      return traverseCarefully(state, anyHit);
-    float distance = state.HitDistance;
-    EmbreeAnswer answer = embree->traverseEasy(state, anyHit);
-    if (answer == EmbreeAnswer::Refused)
-      return retrace(state, anyHit, distance);
-    return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
-  }
+  /// rtsl_traverse.
+  std::uint32_t traverse(RtslState &state, std::uint32_t how) const;
+  /// The same, inline in HostTraversal.cpp alone.
+  std::uint32_t traverseFast(RtslState &state, std::uint32_t how) const;
 
   /// The program's own code for each slot.
   const Program::Slots &programSlots() const { return slots; }

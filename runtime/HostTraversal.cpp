@@ -1,6 +1,7 @@
 //===- HostTraversal.cpp - rtsl_traverse on the host ----------------------===//
 #include "runtime/HostScene.h"
 
+#include "runtime/EmbreeRay.h"
 #include "runtime/device/AnyHit.h"
 
 namespace rtsl::runtime {
@@ -77,8 +78,27 @@ std::uint32_t HostScene::traverseOurselves(RtslState &state, std::uint32_t how) 
   return answer;
 }
 
+[[gnu::always_inline]] inline std::uint32_t HostScene::traverseFast(RtslState &state,
+                                                                    std::uint32_t how) const {
+  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0)
+    return traverseOurselves(state, how);
+  bool anyHit = how & RTSL_FIRST_HIT;
+  if (!embree || !EmbreeScene::isEasy(state))
+    return traverseCarefully(state, anyHit);
+  float distance = state.HitDistance;
+  EmbreeAnswer answer = embree->traverseEasy(state, anyHit);
+  if (answer == EmbreeAnswer::Refused)
+    return retrace(state, anyHit, distance);
+  return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
+}
+
+std::uint32_t HostScene::traverse(RtslState &state, std::uint32_t how) const {
+  return traverseFast(state, how);
+}
+
 } // namespace rtsl::runtime
 
 extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
-  return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)->traverse(*state, how);
+  return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)
+      ->traverseFast(*state, how);
 }

@@ -51,12 +51,16 @@ struct ClassInfo {
   std::vector<MemberInfo> parameters; // of the constructor
   std::uint32_t parameterSize = 0;    // bytes of the packed arguments
   std::vector<std::string> methods;   // defined or inherited; with a payload: `closestHit(Radiance)`
-  std::uint32_t needs = RTSL_NEEDS_ALL; // of a material: what its methods read of a hit
+  /// What its methods read of a hit (of a material: those that run at hits, and the lights), without
+  /// what they call on objects that they refer to.
+  std::uint32_t needs = RTSL_NEEDS_ALL;
   std::uint32_t anyHit = 0; // of a material: rtslRayTypeBit of the payloads for which it has `anyHit`
   /// Writes member defaults into the record at `object`. Null: there are none.
   void (*initialize)(RtslState *state, RtslRef object) = nullptr;
   /// Runs the constructor on the record at `object`. Null: there is none.
   void (*construct)(RtslState *state, RtslRef object, const void *arguments) = nullptr;
+  /// Of a primitive: its own `intersect`. Null: the slot is to be asked.
+  void (*intersect)(RtslState *state, RtslRef object) = nullptr;
 };
 
 /// A part of what a `print` prints: a text, or a value by the name of its type.
@@ -66,6 +70,17 @@ struct PrintItem {
   std::uint32_t words = 0;                       // 0: a text
 };
 using PrintFormat = std::vector<PrintItem>;
+
+/// What the compiler may know of a scene when its objects are made.
+struct SceneFacts {
+  struct Object {
+    std::string className;
+    const std::uint8_t *record; // of the class's recordSize bytes
+  };
+  std::vector<Object> objects;
+  std::uint32_t lightCount = 0;
+  std::vector<float> ambient; // a number for each component of a color
+};
 
 /// Where a sample begins: with the camera's ray, or with `generate`.
 enum class Engine : std::uint8_t { Classic, Programs };

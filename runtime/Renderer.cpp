@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -46,7 +47,8 @@ struct Renderer::Implementation {
   Implementation(const Scene &scene, const RenderOptions &options)
       : scene(scene), options(options) {}
 
-  void renderTile(std::uint64_t tile, std::uint64_t &notFinite);
+  template <typename Count>
+  void renderTile(std::uint64_t tile, std::uint64_t &notFinite, Count components);
   void work();
   void report();
 };
@@ -84,10 +86,12 @@ const RtslLaunch &Renderer::launch() const {
   return self->launch;
 }
 
-/// Sums of a pixel are taken in the order of its samples, whoever takes them.
-void Renderer::Implementation::renderTile(std::uint64_t tile, std::uint64_t &notFinite) {
+/// Sums of a pixel are taken in the order of its samples, whoever takes them. A number of
+/// components that is a constant makes no loops of them.
+template <typename Count>
+void Renderer::Implementation::renderTile(std::uint64_t tile, std::uint64_t &notFinite,
+                                          Count components) {
   auto sample = scene.program().sample;
-  std::uint32_t components = launch.colorComponents;
   std::uint32_t x0 = std::uint32_t(tile % tilesAcross) * tileSize,
                 y0 = std::uint32_t(tile / tilesAcross) * tileSize;
   std::uint32_t x1 = std::min(x0 + tileSize, launch.width),
@@ -126,7 +130,10 @@ void Renderer::Implementation::work() {
       std::uint64_t tile = nextTile.fetch_add(1, std::memory_order_relaxed);
       if (tile >= tileCount)
         break;
-      renderTile(tile, notFinite);
+      if (launch.colorComponents == 3)
+        renderTile(tile, notFinite, std::integral_constant<std::uint32_t, 3>());
+      else
+        renderTile(tile, notFinite, launch.colorComponents);
       report();
     }
   } catch (...) {

@@ -162,12 +162,65 @@ struct Scene::Implementation {
   void setColor(const std::vector<float> &color, float *to, const char *what) const;
   std::uint32_t addInstance(RtslRef primitive, std::uint32_t mesh, RtslRef material,
                             std::string name, std::uint32_t primitives, std::uint32_t mask);
+  /// RtslInstance::needs of whatever has this material: what it reads, and the objects behind it.
+  std::uint32_t needsAt(RtslRef material) const;
   bool isClassic() const { return program->engine == Engine::Classic; }
   /// What an object needs that only the classic engine counts on.
   std::vector<std::string> ifClassic(const char *method) const {
     return isClassic() ? std::vector<std::string>{method} : std::vector<std::string>{};
   }
 };
+
+namespace {
+
+/// Calls `visit` with each reference in a value of this type that lies at `bytes`.
+template <typename Visit>
+void forEachReference(const ValueType &type, const std::uint8_t *bytes, const Visit &visit) {
+  if (type.kind != ValueType::Kind::Reference && type.kind != ValueType::Kind::Struct)
+    return;
+  std::size_t count = 1, size = type.size;
+  if (type.bufferRank != 0) {
+    RtslBuffer buffer;
+    std::memcpy(&buffer, bytes, sizeof buffer);
+    for (std::uint8_t i = 0; i < type.bufferRank; ++i)
+      count *= buffer.size[i];
+    const std::uint64_t address = std::uint64_t(buffer.addressHigh) << 32 | buffer.addressLow;
+    bytes = reinterpret_cast<const std::uint8_t *>(address);
+    size = count * type.elementSize;
+  }
+  for (std::uint32_t length : type.arraySizes)
+    count *= length;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t *element = bytes + i * (size / count);
+    if (type.kind == ValueType::Kind::Reference) {
+      RtslRef reference;
+      std::memcpy(&reference, element, sizeof reference);
+      if (reference != 0)
+        visit(reference);
+      continue;
+    }
+    for (const MemberInfo &field : type.fields)
+      forEachReference(field.type, element + field.offset, visit);
+  }
+}
+
+} // namespace
+
+std::uint32_t Scene::Implementation::needsAt(RtslRef material) const {
+  std::uint32_t needs = 0;
+  std::vector<RtslRef> reached = {material};
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const ObjectInfo &object = info(reached[next]);
+    needs |= object.classInfo->needs;
+    for (const MemberInfo &member : object.classInfo->members)
+      forEachReference(member.type, records.data() + object.object + member.offset,
+                       [&](RtslRef reference) {
+                         if (std::find(reached.begin(), reached.end(), reference) == reached.end())
+                           reached.push_back(reference);
+                       });
+  }
+  return program->needs & needs;
+}
 
 Scene::Scene(std::shared_ptr<const Program> program) : self(std::make_unique<Implementation>()) {
   self->program = std::move(program);
@@ -182,6 +235,22 @@ Scene &Scene::operator=(Scene &&) noexcept = default;
 
 const Program &Scene::program() const {
   return *self->program;
+}
+
+void Scene::useProgram(std::shared_ptr<const Program> program) {
+  const std::vector<ClassInfo> &before = self->program->classes, &after = program->classes;
+  if (program->engine != self->program->engine ||
+      program->colorComponents != self->program->colorComponents ||
+      !std::equal(before.begin(), before.end(), after.begin(), after.end(),
+                  [](const ClassInfo &a, const ClassInfo &b) {
+                    return a.name == b.name && a.id == b.id && a.recordSize == b.recordSize;
+                  }))
+    throw Error(ErrorCode::Internal, "the scene was made for another program");
+  for (ObjectInfo &object : self->objects)
+    object.classInfo = &after[std::size_t(object.classInfo - before.data())];
+  self->program = std::move(program);
+  for (RtslInstance &instance : self->instances)
+    instance.needs = self->needsAt(instance.material);
 }
 
 //===----------------------------------------------------------------------===//
@@ -367,6 +436,14 @@ const std::uint8_t *Scene::record(RtslRef object) const {
 const ClassInfo &Scene::classOf(RtslRef object) const {
   return *self->info(object).classInfo;
 }
+SceneFacts Scene::facts() const {
+  SceneFacts facts;
+  for (const ObjectInfo &object : self->objects)
+    facts.objects.push_back({object.classInfo->name, self->records.data() + object.object});
+  facts.lightCount = std::uint32_t(self->lights.size());
+  facts.ambient.assign(self->ambient, self->ambient + self->program->colorComponents);
+  return facts;
+}
 const std::string &Scene::nameOf(RtslRef object) const {
   return self->info(object).name;
 }
@@ -381,9 +458,8 @@ std::uint32_t Scene::Implementation::addInstance(RtslRef primitive, std::uint32_
   requireRole(material, "rt_Material", ifClassic("shade"));
   if (primitiveTotal + primitives > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
-  const ClassInfo &materialClass = *info(material).classInfo;
-  instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal),
-                       program->needs & materialClass.needs, mask, materialClass.anyHit});
+  instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal), needsAt(material),
+                       mask, info(material).classInfo->anyHit});
   primitiveTotal += primitives;
   instanceNames.push_back(std::move(name));
   instanceBounds.push_back({});

@@ -41,6 +41,10 @@ public:
 
   const Program &program() const;
 
+  /// Exchanges the program for one that was linked from the same classes, and may be bound to the
+  /// objects that the scene has: nothing can be added any more.
+  void useProgram(std::shared_ptr<const Program> program);
+
   /// Adds an object of class `className`: defaults, then the constructor, then the public members.
   /// `name` is for messages; empty: the class's name. Throws UnknownClass, UnknownMember,
   /// NotSettable, BadArguments, WrongType, WrongClass, MissingMember.
@@ -75,9 +79,11 @@ public:
   void setBackgroundColor(const std::vector<float> &color);
   void setAmbient(const std::vector<float> &color);
 
-  /// The record of an object, to look at or to change a member between renderings.
+  /// The record of an object.
   const std::uint8_t *record(RtslRef object) const;
   const ClassInfo &classOf(RtslRef object) const;
+  /// What a program can be bound to. Records stay where they are until something is added.
+  SceneFacts facts() const;
   const std::string &nameOf(RtslRef object) const;
 
   const std::vector<Warning> &warnings() const;

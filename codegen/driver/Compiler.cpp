@@ -10,6 +10,7 @@
 #include "codegen/emit/NativeImage.h"
 #include "codegen/emit/Ptx.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/link/BindScene.h"
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
@@ -192,6 +193,7 @@ std::vector<std::string> entries(const runtime::Program &program, const CompileO
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
+    names.push_back(intersectSymbol(info.name));
   }
   return names;
 }
@@ -215,6 +217,7 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
   for (runtime::ClassInfo &info : program.classes) {
     find(jit, initializeSymbol(info.name), info.initialize);
     find(jit, constructSymbol(info.name), info.construct);
+    find(jit, intersectSymbol(info.name), info.intersect);
   }
 }
 
@@ -428,13 +431,89 @@ std::optional<std::string> explainSceneStates(const typed::Module &module, const
   return write(report, format);
 }
 
+namespace {
+
+/// Linked level 1 as a program in this process: the parts of it that are exported.
+void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
+  const bool isMegakernel = options.target == Target::HostMegakernel;
+  runToSsa(ir, isMegakernel ? TraceMode::Split : options.trace);
+  if (options.restructure) {
+    expectSuccess(ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
+    run(ir, codegen::buildSsaPipeline);
+  }
+
+  LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true));
+  defineFacts(code, program);
+  std::vector<codegen::HostSymbol> symbols = {{"rtsl_print", reinterpret_cast<void *>(&rtsl_print)}};
+  if (isMegakernel) {
+    linkDeviceCode(code, megakernelCode(/*forGpu=*/false), entries(program, options));
+  } else {
+    linkDeviceCode(code, runtime::deviceBitcode(), entries(program, options));
+    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
+    symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
+  }
+  codegen::optimize(*code.module, *code.machine, code.options);
+  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
+                                                                std::move(code.machine), symbols));
+  fillEntries(program, *jit, options);
+  program.code = jit;
+}
+
+/// What makes the objects of a scene, and can do nothing else. It runs once.
+void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
+  std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
+  for (const runtime::ClassInfo &info : program.classes) {
+    names.push_back(initializeSymbol(info.name));
+    names.push_back(constructSymbol(info.name));
+  }
+  runToSsa(ir, TraceMode::Recurse);
+  codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
+  machine.optimization = std::min(machine.optimization, 1u);
+  LlvmCode code = translate(ir, machine);
+  defineFacts(code, program);
+  linkDeviceCode(code, runtime::deviceBitcode(), names);
+  codegen::optimize(*code.module, *code.machine, code.options);
+  std::shared_ptr<codegen::Jit> jit =
+      take(codegen::Jit::create(std::move(code.context), std::move(code.module), std::move(code.machine),
+                                {{"rtsl_print", reinterpret_cast<void *>(&rtsl_print)}}));
+  fillEntries(program, *jit, options);
+  program.code = jit;
+}
+
+/// Makes the objects of a scene, and leaves in `ir` what renders that scene.
+void bindToScene(mlir::ModuleOp ir, const CompileOptions &options, const MakeObjects &makeObjects,
+                 const runtime::Program &program) {
+  const mlir::OwningOpRef<mlir::ModuleOp> copy = ir.clone();
+  keepConstructors(*copy);
+  auto constructors = std::make_shared<runtime::Program>(program);
+  compileConstructors(*copy, options, *constructors);
+  bindScene(ir, makeObjects(constructors));
+}
+
+} // namespace
+
+std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
+                                                       const CompileOptions &options, Diagnostics &diagnostics,
+                                                       const MakeObjects &makeObjects) {
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  auto program = std::make_shared<runtime::Program>();
+  const auto ir = linkScene(module, request, options, diagnostics, *context, *program);
+  if (!ir)
+    return nullptr;
+  if (makeObjects)
+    bindToScene(*ir, options, makeObjects, *program);
+  compileLinked(*ir, options, *program);
+  return program;
+}
+
 bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
-                    Diagnostics &diagnostics, runtime::Package &package) {
+                    Diagnostics &diagnostics, const MakeObjects &makeObjects, runtime::Package &package) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
   auto ir = linkScene(module, request, options, diagnostics, *context, program);
   if (!ir)
     return false;
+  bindToScene(*ir, options, makeObjects, program);
   const SplitReport report = runToSsa(*ir, TraceMode::Split);
   package.frameBytes = report.frameSize();
   package.stateCount = 0;
@@ -457,39 +536,6 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
   codegen::NativeImage image = take(codegen::makeNativeImage(*host.module, *host.machine, entries));
   package.host = {std::move(image.bytes), image.entries[0], image.entries[1]};
   return true;
-}
-
-std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
-                                                       const CompileOptions &options, Diagnostics &diagnostics) {
-  const bool isMegakernel = options.target == Target::HostMegakernel;
-  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
-  auto program = std::make_shared<runtime::Program>();
-  const TraceMode trace = isMegakernel ? TraceMode::Split : options.trace;
-  const auto ir = linkScene(module, request, options, diagnostics, *context, *program);
-  if (!ir)
-    return nullptr;
-  runToSsa(*ir, trace);
-  if (options.restructure) {
-    expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)) && mlir::succeeded(mlir::verify(*ir)); });
-    run(*ir, codegen::buildSsaPipeline);
-  }
-
-  LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/true));
-  defineFacts(code, *program);
-  std::vector<codegen::HostSymbol> symbols = {{"rtsl_print", reinterpret_cast<void *>(&rtsl_print)}};
-  if (isMegakernel) {
-    linkDeviceCode(code, megakernelCode(/*forGpu=*/false), entries(*program, options));
-  } else {
-    linkDeviceCode(code, runtime::deviceBitcode(), entries(*program, options));
-    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
-    symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
-  }
-  codegen::optimize(*code.module, *code.machine, code.options);
-  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
-                                                                std::move(code.machine), symbols));
-  fillEntries(*program, *jit, options);
-  program->code = jit;
-  return program;
 }
 
 } // namespace rtsl

@@ -11,6 +11,7 @@
 #include "runtime/package/Package.h"
 #include "sema/TypedAst.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -94,13 +95,18 @@ void checkLiveState(const typed::Module &module, const CompileOptions &options, 
 /// Half of the registers that a GPU thread of a ray tracer has: 32 of 64.
 constexpr std::uint32_t largeLiveState = 128;
 
-/// What a package needs of a program (runtime/package/Package.h): everything but the scene and its options. False if there
-/// were errors.
-bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
-                    Diagnostics &diagnostics, runtime::Package &package);
+/// Makes the objects of a scene by a program that has what this takes, constructors, defaults and bounds, and nothing else.
+using MakeObjects = std::function<runtime::SceneFacts(std::shared_ptr<const runtime::Program>)>;
 
-/// Compiles and links the module for a scene, in this process. Null if there were errors.
+/// Compiles and links the module for scenes, in this process. Null if there were errors. With `makeObjects` it is bound to
+/// the scene that this makes (codegen/link/BindScene.h), and renders no other. SceneProgram.h puts both together.
 std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
-                                                       const CompileOptions &options, Diagnostics &diagnostics);
+                                                       const CompileOptions &options, Diagnostics &diagnostics,
+                                                       const MakeObjects &makeObjects = nullptr);
+
+/// What a package needs of a program bound to a scene (runtime/package/Package.h): everything but the scene and its
+/// options. False if there were errors.
+bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+                    Diagnostics &diagnostics, const MakeObjects &makeObjects, runtime::Package &package);
 
 } // namespace rtsl

@@ -1,7 +1,8 @@
 //===- FindNeeds.cpp - what of a hit is read ------------------------------===//
 //
 // Texture coordinates, derivatives and transforms cost time at every hit. What no function of the program reads is not
-// computed at all; what the methods of a material cannot reach is not computed where that material was hit.
+// computed at all; what neither the methods of a material nor those of the objects behind it read is not computed where
+// that material was hit. Which objects these are the scene knows (Scene.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -35,22 +36,36 @@ std::uint32_t needsOf(mlir::func::FuncOp function) {
   return needs;
 }
 
-/// What a function and all that it calls read.
-std::uint32_t needsReachedFrom(mlir::func::FuncOp root, mlir::ModuleOp ir) {
+/// What functions and all that they call read. With `onItself`, calls through references are left out.
+std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, mlir::ModuleOp ir, bool onItself) {
   std::uint32_t needs = 0;
-  std::set<mlir::Operation *> seen = {root};
-  std::vector<mlir::func::FuncOp> pending = {root};
+  std::set<mlir::Operation *> seen(pending.begin(), pending.end());
   while (!pending.empty()) {
     mlir::func::FuncOp function = pending.back();
     pending.pop_back();
     needs |= needsOf(function);
     function.walk([&](mlir::func::CallOp call) {
+      if (onItself && call.getCallee().starts_with(dispatchPrefix))
+        return;
       auto callee = ir.lookupSymbol<mlir::func::FuncOp>(call.getCallee());
       if (callee && seen.insert(callee).second)
         pending.push_back(callee);
     });
   }
   return needs;
+}
+
+/// The methods of a material that run where it was hit.
+std::vector<mlir::func::FuncOp> methodsAtHits(const LinkContext &context, const LinkedClass &material) {
+  std::vector<std::string> names = {"shade"};
+  for (const RayType &type : context.rayTypes)
+    for (const char *method : {"closestHit.", "anyHit."})
+      names.push_back(method + type.name());
+  std::vector<mlir::func::FuncOp> methods;
+  for (const std::string &name : names)
+    if (mlir::func::FuncOp method = findMethod(context, material, name))
+      methods.push_back(method);
+  return methods;
 }
 
 } // namespace
@@ -62,21 +77,21 @@ std::uint32_t findNeeds(mlir::ModuleOp ir) {
   return needs;
 }
 
-std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &material) {
-  std::uint32_t needs = 0;
-  for (const RayType &type : context.rayTypes)
-    for (const char *method : {"closestHit.", "anyHit."})
-      if (mlir::func::FuncOp program = findMethod(context, material, method + type.name()))
-        needs |= needsReachedFrom(program, context.ir);
-  mlir::func::FuncOp shade = findMethod(context, material, "shade");
-  if (!shade)
-    return needs;
-  needs |= needsReachedFrom(shade, context.ir);
+std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked) {
+  if (linked.info->root != "rt_Material") {
+    std::vector<mlir::func::FuncOp> methods;
+    for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
+      if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"); owner && owner == linked.info->name)
+        methods.push_back(function);
+    return needsReachedFrom(std::move(methods), context.ir, /*onItself=*/true);
+  }
+  std::uint32_t needs = needsReachedFrom(methodsAtHits(context, linked), context.ir, /*onItself=*/true);
   // `illuminance` runs the lights on the material's own state.
-  for (const LinkedClass &light : context.classes)
-    if (light.info->root == "rt_Light")
-      if (mlir::func::FuncOp illumination = findMethod(context, light, "illumination"))
-        needs |= needsReachedFrom(illumination, context.ir);
+  if (findMethod(context, linked, "shade"))
+    for (const LinkedClass &light : context.classes)
+      if (light.info->root == "rt_Light")
+        if (mlir::func::FuncOp illumination = findMethod(context, light, "illumination"))
+          needs |= needsReachedFrom({illumination}, context.ir, /*onItself=*/false);
   return needs;
 }
 

@@ -10,6 +10,7 @@ namespace rtsl {
 
 std::string initializeSymbol(const std::string &className) { return className + ".initialize"; }
 std::string constructSymbol(const std::string &className) { return className + ".construct"; }
+std::string intersectSymbol(const std::string &className) { return className + ".intersect"; }
 
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program) {
@@ -27,10 +28,9 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   for (const linking::LinkedClass &linked : context.classes) {
     runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
     info.id = linked.id;
-    if (info.root == "rt_Material") {
-      info.needs = linking::findNeeds(context, linked);
+    info.needs = linking::findNeeds(context, linked);
+    if (info.root == "rt_Material")
       info.anyHit = linking::anyHitTypes(context, linked);
-    }
     program.classes.push_back(std::move(info));
   }
   program.engine = request.engine;

@@ -32,5 +32,6 @@ void declareSlots(mlir::ModuleOp ir);
 /// The symbols under which code of a linked program is found.
 std::string initializeSymbol(const std::string &className); // member defaults
 std::string constructSymbol(const std::string &className);  // constructor on packed arguments
+std::string intersectSymbol(const std::string &className);  // `intersect` of a primitive
 
 } // namespace rtsl

@@ -1,7 +1,7 @@
 //===- MakeEntries.cpp - the ways into a program --------------------------===//
 //
-// The runtime calls a program in three ways: a slot of Slots.def on an object, the defaults of a class on a new record,
-// and the constructor of a class on packed arguments:
+// The runtime calls a program in four ways: a slot of Slots.def on an object, the `intersect` of a class that it knows,
+// the defaults of a class on a new record, and the constructor of a class on packed arguments:
 //
 //   func.func @Glass.construct(%self: !rtsl.ref<"Glass">, %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
 //
@@ -92,6 +92,9 @@ void makeEntries(LinkContext &context) {
   makeFeatures(context);
   for (LinkedClass &linked : context.classes) {
     makeConstruct(context, linked);
+    if (linked.info->root == "rt_Primitive") // whoever knows the class need not ask the slot
+      if (mlir::func::FuncOp intersect = findMethod(context, linked, "intersect"))
+        exportFunction(intersect);
     if (auto initialize = context.ir.lookupSymbol<mlir::func::FuncOp>(initializeSymbol(linked.info->name)))
       exportFunction(initialize);
   }

@@ -84,7 +84,7 @@ void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, m
   for (ir::CallMethodOp call : calls) {
     const SlotCall slot = {mlir::cast<ir::RefType>(call.getObject().getType()).getClassName().str(),
                            call.getMethod().str()};
-    const std::string name = "dispatch." + slot.base + "." + slot.method;
+    const std::string name = dispatchPrefix.str() + slot.base + "." + slot.method;
     llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
     llvm::append_range(arguments, call.getArguments());
     auto function = ir.lookupSymbol<mlir::func::FuncOp>(name);

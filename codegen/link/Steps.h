@@ -43,6 +43,9 @@ void dropUnusedClasses(LinkContext &context);
 /// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody reads.
 void placeAttributes(LinkContext &context);
 
+/// How the functions begin that a call through a reference becomes: `@dispatch.rt_Texture.lookup`.
+constexpr llvm::StringLiteral dispatchPrefix = "dispatch.";
+
 /// A method that is called through a reference.
 struct SlotCall {
   std::string base; // the class of the reference: "rt_Texture" or one of the user's
@@ -82,8 +85,8 @@ void makeEntries(LinkContext &context);
 
 /// RTSL_NEEDS_*: what some function of the program reads, so that the runtime computes nothing else.
 std::uint32_t findNeeds(mlir::ModuleOp ir);
-/// The same for what the methods of a material read that run at a hit, themselves or through what they call.
-std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &material);
+/// ClassInfo::needs.
+std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked);
 
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);

@@ -2,6 +2,7 @@
 #include "codegen/passes/Pipeline.h"
 
 #include "codegen/ir/RtslDialect.h"
+#include "codegen/passes/BindMembers.h"
 #include "codegen/passes/ExpandCopies.h"
 #include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/InlineFunctions.h"
@@ -30,6 +31,7 @@ static void addPromotion(mlir::OpPassManager &function) {
 void buildSsaPipeline(mlir::OpPassManager &module) {
   // Each function by itself first, so that what is inlined is small.
   auto &functions = module.nest<mlir::func::FuncOp>();
+  functions.addPass(createBindMembersPass());
   functions.addPass(createToControlFlowPass());
   addPromotion(functions);
 
@@ -39,6 +41,7 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   addPromotion(inlined);
   inlined.addPass(mlir::createSCCPPass());
   inlined.addPass(createExpandCopiesPass());
+  inlined.addPass(createBindMembersPass()); // what copies have hidden
   inlined.addPass(createSimplifyPass());
 
   module.addPass(mlir::createSymbolDCEPass());
@@ -50,6 +53,7 @@ void registerPassDependencies(mlir::DialectRegistry &registry) {
 }
 
 void registerPasses() {
+  mlir::registerPass(createBindMembersPass);
   mlir::registerPass(createToControlFlowPass);
   mlir::registerPass(createHoistVariablesPass);
   mlir::registerPass(createExpandCopiesPass);

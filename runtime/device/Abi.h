@@ -128,6 +128,7 @@ typedef struct RtslState {
   uint32_t candidateInstance, candidatePrimitive;
   float u, v;                             // barycentrics of vertices 1 and 2 of a triangle hit
   float hitPointError;                    // bound of the distance of HitPoint from the surface that was hit
+  uint32_t isEasy;                        // 1: who made the ray knows that every traversal can take it (Spawn.h)
 
   // What the ray carries (docs/language.md, "Tracing and light").
   void *payload;      // the struct of the ray's type; means nothing where rayType is 0

@@ -46,8 +46,9 @@ inline bool isBlack(const float *color, uint32_t components) {
 }
 
 /// Makes state's ray start: nothing hit yet, seen from `epsilon` to `distance` in units of the
-/// direction.
-inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon, float distance) {
+/// direction. `isEasy` as in RtslState.
+inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon, float distance,
+                   uint32_t isEasy) {
   store(state.RayOrigin, origin);
   store(state.RayDirection, direction);
   if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
@@ -55,6 +56,7 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon,
               1.0f / direction.z);
   state.Epsilon = epsilon;
   state.HitDistance = distance;
+  state.isEasy = isEasy;
   state.instance = RTSL_NO_HIT;
   state.primitive = RTSL_NO_HIT;
 }
@@ -157,7 +159,9 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
                   Vec3 direction) {
   descend(child, parent, dimension);
   child.rayType = 0;
-  setRay(child, origin, direction, spawnEpsilon(parent, origin, direction), infinity);
+  uint32_t isEasy;
+  float epsilon = spawnEpsilon(parent, origin, direction, &isEasy);
+  setRay(child, origin, direction, epsilon, infinity, isEasy);
 }
 
 /// `trace(origin, direction)`. Deeper than the launch allows nothing is seen: color 0.
@@ -180,7 +184,8 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   RtslState state;
   inherit(state, shading);
   state.Depth = shading.Depth + 1;
-  float epsilon = spawnEpsilon(shading, point, direction);
+  uint32_t isEasy;
+  float epsilon = spawnEpsilon(shading, point, direction, &isEasy);
   // The light's own surface, if it has one, lies at the end: keep as clear of it as of where the
   // ray starts.
   float distance = shading.LightDistance;
@@ -190,7 +195,7 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   state.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
   state.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
   state.dimension = 0;
-  setRay(state, point, direction, epsilon, distance);
+  setRay(state, point, direction, epsilon, distance, isEasy);
   if (!(epsilon < distance))
     return false;
   uint32_t found = rtsl_traverse(&state, RTSL_FIRST_HIT);
@@ -283,7 +288,7 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   setVector(state.RayOrigin, 0, 0, 0); // what the camera leaves out
   setVector(state.RayDirection, 0, 0, 0);
   rtsl_rt_Camera_generateRay(&state, launch.camera);
-  setRay(state, load(state.RayOrigin), load(state.RayDirection), 0, infinity);
+  setRay(state, load(state.RayOrigin), load(state.RayDirection), 0, infinity, 0);
 }
 
 /// One sample of one pixel: the color that comes along its ray.

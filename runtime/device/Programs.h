@@ -35,8 +35,11 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
   child.rayType = ray.rayType;
   child.rayMask = ray.mask;
   child.rayRoot = ray.root;
-  float error = spawnEpsilon(parent, ray.origin, ray.direction);
-  setRay(child, ray.origin, ray.direction, ray.tmin < error ? error : ray.tmin, ray.tmax);
+  uint32_t isEasy;
+  float error = spawnEpsilon(parent, ray.origin, ray.direction, &isEasy);
+  if (!(ray.tmin == ray.tmin && ray.tmax == ray.tmax)) // one of them is no number
+    isEasy = 0;
+  setRay(child, ray.origin, ray.direction, ray.tmin < error ? error : ray.tmin, ray.tmax, isEasy);
 }
 
 /// Finds what state's ray meets and describes it, for its payload's programs.

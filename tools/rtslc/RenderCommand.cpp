@@ -4,7 +4,7 @@
 #include "PictureSize.h"
 #include "Progress.h"
 #include "SceneShaders.h"
-#include "codegen/driver/Compiler.h"
+#include "codegen/driver/SceneProgram.h"
 #include "runtime/FlatScene.h"
 #include "runtime/HostMegakernel.h"
 #include "runtime/MachineStack.h"
@@ -145,15 +145,17 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
     return;
   LinkRequest request = linkRequest(description);
   request.features |= (options.prints ? RTSL_FEATURE_PRINT : 0) | (options.exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
-  const std::shared_ptr<const runtime::Program> program =
-      compileProgram(*module, request, options.common.compile, messages.diagnostics);
-  if (!program)
+  const std::optional<runtime::Scene> compiled =
+      compileScene(*module, request, options.common.compile, messages.diagnostics, [&](const auto &program) {
+        const Clock::time_point begin = Clock::now();
+        runtime::Scene scene = scene::buildScene(description, program);
+        times.scene = secondsSince(begin);
+        return scene;
+      });
+  if (!compiled)
     return;
-  times.compile = secondsSince(start);
-
-  start = Clock::now();
-  const runtime::Scene scene = scene::buildScene(description, program);
-  times.scene = secondsSince(start);
+  times.compile = secondsSince(start) - times.scene;
+  const runtime::Scene &scene = *compiled;
   for (const runtime::Warning &warning : scene.warnings())
     messages.report(warning);
 
@@ -166,7 +168,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
                                    ? renderFlat(scene, render, statistics)
                                    : runtime::render(scene, render, &statistics);
   progress.finish();
-  const std::vector<std::string> printed = runtime::takePrintLog().texts(program->prints);
+  const std::vector<std::string> printed = runtime::takePrintLog().texts(scene.program().prints);
   if (!options.json) // there the lines are part of the document
     for (const std::string &line : printed)
       fmt::print("{}\n", line);

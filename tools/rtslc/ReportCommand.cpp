@@ -8,7 +8,7 @@
 #include "PictureSize.h"
 #include "Progress.h"
 #include "SceneShaders.h"
-#include "codegen/driver/Compiler.h"
+#include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Versions.h"
 #include "report/ErrorMap.h"
 #include "report/ErrorMetrics.h"
@@ -70,7 +70,6 @@ struct LoadedScene {
 
 /// One scene for each program, which the subjects that differ in traversal share.
 struct Build {
-  std::shared_ptr<const runtime::Program> program;
   std::shared_ptr<const runtime::Scene> scene;
   double compileSeconds = 0;
 };
@@ -79,11 +78,19 @@ struct Build {
 std::optional<Build> build(const LoadedScene &loaded, const CompileOptions &options, Messages &messages) {
   Build result;
   const Clock::time_point start = Clock::now();
-  result.program = compileProgram(*loaded.module, linkRequest(loaded.description), options, messages.diagnostics);
-  if (!result.program)
+  Clock::duration building{};
+  std::optional<runtime::Scene> scene = compileScene(*loaded.module, linkRequest(loaded.description), options,
+                                                     messages.diagnostics, [&](const auto &program) {
+                                                       const Clock::time_point begin = Clock::now();
+                                                       runtime::Scene made =
+                                                           scene::buildScene(loaded.description, program);
+                                                       building = Clock::now() - begin;
+                                                       return made;
+                                                     });
+  if (!scene)
     return std::nullopt;
-  result.compileSeconds = std::chrono::duration<double>(Clock::now() - start).count();
-  result.scene = std::make_shared<const runtime::Scene>(scene::buildScene(loaded.description, result.program));
+  result.compileSeconds = std::chrono::duration<double>(Clock::now() - start - building).count();
+  result.scene = std::make_shared<const runtime::Scene>(std::move(*scene));
   return result;
 }
 

@@ -65,15 +65,22 @@ inline Double2 accuratePower(double x, double y) {
   return roundToFloat(accuratePower(x, y));
 }
 
-/// x^y for finite x > 0 and finite y.
-inline float positivePower(double x, double y) {
-  double exponent = exponentOfPower(x, y);
+/// x^y for finite x > 0 and finite y; `exponent` is y ln(x). On the host a function of its own:
+/// without it `pow` is small enough to be inlined where x is a constant, and its logarithm then too.
+#ifndef __NVPTX__
+[[gnu::noinline]]
+#endif
+inline float powerOfExponent(double x, double y, double exponent) {
   if (exponent > 89.0) // e^89 > 2^128
     return infinity();
   if (exponent < -87.0) // e^-87 > 2^-126
     return carefulPower(x, y, exponent);
   double power = plainExponential(exponent);
   return roundsSafely(power) ? float(power) : carefulPower(x, y, exponent);
+}
+
+[[gnu::always_inline]] inline float positivePower(double x, double y) {
+  return powerOfExponent(x, y, exponentOfPower(x, y));
 }
 
 enum class Parity { fraction, even, odd };
@@ -113,7 +120,7 @@ inline Parity parityOf(float y) {
 
 /// x^y, with the special cases of C99 (F.9.4.4): x^0 and 1^y are 1 even for a NaN, a negative x may
 /// have an integer power, and (-1)^(+-infinity) is 1.
-inline float pow(float x, float y) {
+[[gnu::always_inline]] inline float pow(float x, float y) {
   using namespace detail;
   if (x > 0.0f && x < infinity() && absolute(y) < infinity())
     return positivePower(x, y);

@@ -27,13 +27,13 @@ static CompileOptions fast(CompileOptions compile) {
 const std::vector<Configuration> &configurations() {
   using runtime::Traversal;
   static const std::vector<Configuration> table = {
-      {"recurse_O2", options(TraceMode::Recurse, 2)},
+      {"recurse_O2_bound", options(TraceMode::Recurse, 2), Traversal::Embree, true},
       {"recurse_O0", options(TraceMode::Recurse, 0)},
       {"split_O2_mono", options(TraceMode::Split, 2, 1), Traversal::Device},
       {"split_O0_spectral4", options(TraceMode::Split, 0, 4)},
       {"recurse_O1_spectral16_unchecked", options(TraceMode::Recurse, 1, 16, false)},
-      {"split_O2_unchecked", options(TraceMode::Split, 2, 3, false)},
-      {"host_megakernel_O1", megakernel(1)},
+      {"split_O2_unchecked_bound", options(TraceMode::Split, 2, 3, false), Traversal::Embree, true},
+      {"host_megakernel_O1_bound", megakernel(1), Traversal::Embree, true},
   };
   return table;
 }

@@ -15,6 +15,7 @@ struct Configuration {
   std::string name;
   CompileOptions compile;
   runtime::Traversal traversal = runtime::Traversal::Embree;
+  bool bindsScene = false; // the code knows the scene's objects
 };
 
 /// The strict ones: all compute the same.

@@ -1,6 +1,7 @@
 //===- Program.cpp - RTSL programs that say what they should compute ------===//
 #include "Program.h"
 
+#include "codegen/driver/SceneProgram.h"
 #include "frontend/Parser.h"
 #include "runtime/Error.h"
 #include "runtime/HostMegakernel.h"
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <regex>
 #include <sstream>
 
@@ -72,6 +74,8 @@ private:
   void read(const ProgramFile &file);
   std::string frameText() const;
   std::string sceneText() const;
+  std::optional<runtime::Scene> compile(const typed::Module &module, const scene::SceneDescription &description,
+                                        Diagnostics &diagnostics) const;
   std::string judge(const runtime::Image &image) const;
 
   const Configuration &configuration;
@@ -163,6 +167,17 @@ std::string Builder::judge(const runtime::Image &image) const {
   return wrong;
 }
 
+/// Nothing if there were errors.
+std::optional<runtime::Scene> Builder::compile(const typed::Module &module, const scene::SceneDescription &description,
+                                               Diagnostics &diagnostics) const {
+  const BuildScene build = [&](const auto &program) { return scene::buildScene(description, program); };
+  const LinkRequest request = linkRequest(description);
+  if (configuration.bindsScene)
+    return compileScene(module, request, configuration.compile, diagnostics, build);
+  const auto program = compileProgram(module, request, configuration.compile, diagnostics);
+  return program ? std::optional(build(program)) : std::nullopt;
+}
+
 std::string Builder::run() {
   SourceManager sources;
   Diagnostics diagnostics(sources);
@@ -181,11 +196,10 @@ std::string Builder::run() {
 
   try {
     const scene::SceneDescription description = scene::parseScene(sceneText(), "the scene");
-    const std::shared_ptr<const runtime::Program> program =
-        compileProgram(*module, linkRequest(description), configuration.compile, diagnostics);
-    if (!program)
+    const std::optional<runtime::Scene> compiled = compile(*module, description, diagnostics);
+    if (!compiled)
       return renderText(diagnostics, false);
-    const runtime::Scene scene = scene::buildScene(description, program);
+    const runtime::Scene &scene = *compiled;
     runtime::RenderOptions render;
     render.width = static_cast<std::uint32_t>(count());
     render.height = 1;

@@ -62,7 +62,8 @@ TEST(Link, OnlyEntriesAreVisible) {
   ASSERT_TRUE(linked.succeeded);
   for (auto function : linked.ir->getOps<mlir::func::FuncOp>()) {
     const llvm::StringRef name = function.getSymName();
-    const bool isEntry = name.starts_with("rtsl_") || name.ends_with(".construct") || name.ends_with(".initialize");
+    const bool isEntry = name.starts_with("rtsl_") || name.ends_with(".construct") || name.ends_with(".initialize") ||
+                         name.ends_with(".intersect");
     EXPECT_EQ(function.isPublic(), isEntry) << name.str();
   }
 }
@@ -72,10 +73,11 @@ TEST(Link, NeedsAreWhatIsRead) {
   EXPECT_EQ(Linked(textures, {{"Stripes", "Matte"}, {}}).program.needs, RTSL_NEEDS_TEXTURE_COORDINATES);
 }
 
-TEST(Link, AMaterialNeedsWhatItReaches) {
+TEST(Link, AClassNeedsWhatItReadsItself) {
   Linked linked(textures, {{"Stripes", "Matte", "Shiny"}, {}});
   ASSERT_TRUE(linked.succeeded);
-  EXPECT_EQ(linked.classInfo("Matte").needs, RTSL_NEEDS_TEXTURE_COORDINATES);
+  EXPECT_EQ(linked.classInfo("Matte").needs, 0u); // a scene knows what its `albedo` refers to
+  EXPECT_EQ(linked.classInfo("Stripes").needs, RTSL_NEEDS_TEXTURE_COORDINATES);
   EXPECT_EQ(linked.classInfo("Shiny").needs, 0u);
 }
 

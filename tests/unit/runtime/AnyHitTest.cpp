@@ -94,6 +94,7 @@ RtslState ray(const RtslLaunch &launch, Vec3 o, Vec3 d, float distance) {
   rtsl::device::store(state.RayDirection, d);
   state.Epsilon = 0;
   state.HitDistance = distance;
+  state.isEasy = 0;
   state.instance = state.primitive = RTSL_NO_HIT;
   return state;
 }

@@ -55,6 +55,28 @@ RenderOptions small() {
 
 } // namespace
 
+TEST(Scene, AnInstanceNeedsWhatTheObjectsBehindItsMaterialNeed) {
+  std::shared_ptr<Program> program = fakeProgram();
+  for (ClassInfo &info : program->classes)
+    info.needs = info.name == "Mirror"  ? RTSL_NEEDS_TEXTURE_COORDINATES
+                 : info.name == "Noise" ? RTSL_NEEDS_DERIVATIVES
+                                        : 0;
+  Scene scene(program);
+  const RtslRef mirror = scene.addObject("Mirror", members({})), noise = scene.addObject("Noise", members({}));
+  const RtslRef ball = scene.addObject("Sphere", {vector(0, 0, 0), 1.0});
+  const RtslRef first = scene.addObject("Everything", members({{"other", Value::reference(mirror)}}));
+  const RtslRef second = scene.addObject("Everything", members({{"other", Value::reference(first)}}));
+  const RtslRef third = scene.addObject("Everything", members({{"other", Value::reference(noise)}}));
+  for (RtslRef material : {mirror, first, second, third})
+    scene.addPrimitive(ball, material);
+  scene.setCamera(addCamera(scene));
+  const RtslInstance *instances = scene.launch().instances;
+  EXPECT_EQ(instances[0].needs, RTSL_NEEDS_TEXTURE_COORDINATES);
+  EXPECT_EQ(instances[1].needs, RTSL_NEEDS_TEXTURE_COORDINATES);
+  EXPECT_EQ(instances[2].needs, RTSL_NEEDS_TEXTURE_COORDINATES); // two steps away
+  EXPECT_EQ(instances[3].needs, RTSL_NEEDS_DERIVATIVES);
+}
+
 TEST(Renderer, EmbreeAndDeviceTraversalSeeTheSame) {
   Scene scene = room();
   RenderOptions options = small();

@@ -60,6 +60,7 @@ RtslState makeState(const RtslLaunch &launch, Vec3 o, Vec3 d, float epsilon = 0,
   rtsl::device::store(state.RayDirection, d);
   state.Epsilon = epsilon;
   state.HitDistance = distance;
+  state.isEasy = 0;
   state.instance = state.primitive = RTSL_NO_HIT;
   return state;
 }

@@ -1,0 +1,16 @@
+//===- BindScene.h - what the objects of a scene say of a program ---------===//
+#pragma once
+
+#include "mlir/IR/BuiltinOps.h"
+#include "runtime/Program.h"
+
+namespace rtsl {
+
+/// Keeps of a linked program what makes the objects of a scene: constructors, member defaults and bounds.
+void keepConstructors(mlir::ModuleOp ir);
+
+/// Notes in a linked program what is the same in all objects of its scene, and takes out what made them. The pass
+/// `rtsl-bind-members` makes constants of the notes. The objects must have been made with the same linked program.
+void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene);
+
+} // namespace rtsl

@@ -1,0 +1,125 @@
+//===- BindMembers.cpp - members that are the same in all objects ---------===//
+#include "codegen/passes/BindMembers.h"
+
+#include "codegen/ir/Layout.h"
+#include "codegen/ir/RtslOps.h"
+
+#include "mlir/Dialect/Arith/IR/Arith.h"
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/IR/BuiltinOps.h"
+#include "mlir/Pass/Pass.h"
+
+#include <cstring>
+#include <optional>
+
+namespace rtsl::codegen {
+
+using mlir::OpBuilder;
+using mlir::Value;
+
+namespace {
+
+using Words = llvm::ArrayRef<int32_t>;
+
+/// One scalar of a value from its word; null for a reference, which no constant stands for.
+mlir::TypedAttr scalarOf(mlir::Type type, int32_t word) {
+  if (type.isF32()) {
+    float value;
+    std::memcpy(&value, &word, sizeof value);
+    return mlir::FloatAttr::get(type, llvm::APFloat(value));
+  }
+  if (type.isInteger(1))
+    return mlir::IntegerAttr::get(type, word != 0 ? 1 : 0);
+  if (type.isInteger(32))
+    return mlir::IntegerAttr::get(type, word);
+  return nullptr;
+}
+
+/// A value from its words. As MLIR keeps NaNs as they are, so does this.
+mlir::TypedAttr valueOf(mlir::Type type, Words words) {
+  auto vector = llvm::dyn_cast<mlir::VectorType>(type);
+  if (!vector)
+    return scalarOf(type, words.front());
+  llvm::SmallVector<mlir::Attribute> elements;
+  for (int32_t word : words.take_front(static_cast<size_t>(vector.getNumElements()))) {
+    mlir::TypedAttr element = scalarOf(vector.getElementType(), word);
+    if (!element)
+      return nullptr;
+    elements.push_back(element);
+  }
+  return mlir::DenseElementsAttr::get(vector, elements);
+}
+
+/// What is known to lie at `address`, from there to the end of the member; nothing if that is open.
+std::optional<Words> wordsAt(Value address) {
+  mlir::Operation *op = address.getDefiningOp();
+  if (auto member = llvm::dyn_cast_or_null<ir::MemberOp>(op)) {
+    llvm::StringRef className =
+        llvm::cast<ir::RefType>(member.getObject().getType()).getClassName();
+    ir::MemberDeclOp declaration = ir::findClass(op, className).findMember(member.getMember());
+    auto words = declaration->getAttrOfType<mlir::DenseI32ArrayAttr>(boundWords);
+    return words ? std::optional(words.asArrayRef()) : std::nullopt;
+  }
+  uint32_t bytes = 0;
+  if (auto field = llvm::dyn_cast_or_null<ir::FieldOp>(op)) {
+    auto type =
+        llvm::cast<ir::StructType>(llvm::cast<ir::PtrType>(field.getBase().getType()).getPointee());
+    bytes = ir::fieldOffset(type, *type.fieldIndex(field.getField()));
+  } else if (auto element = llvm::dyn_cast_or_null<ir::ElementOp>(op)) {
+    std::optional<int32_t> index = element.constantIndex();
+    mlir::Type type = llvm::cast<ir::PtrType>(element.getType()).getPointee();
+    if (!index || *index < 0)
+      return std::nullopt;
+    bytes = static_cast<uint32_t>(*index) * ir::sizeInBytes(type);
+  } else {
+    return std::nullopt;
+  }
+  std::optional<Words> base = wordsAt(op->getOperand(0));
+  mlir::Type type = llvm::cast<ir::PtrType>(address.getType()).getPointee();
+  // An index out of range stands in code that never runs.
+  if (!base || bytes / 4 + ir::sizeInBytes(type) / 4 > base->size())
+    return std::nullopt;
+  return base->drop_front(bytes / 4);
+}
+
+struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::func::FuncOp>> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(BindMembers)
+  llvm::StringRef getArgument() const override { return "rtsl-bind-members"; }
+  llvm::StringRef getDescription() const override {
+    return "members that are the same in all objects become constants";
+  }
+
+  void runOnOperation() override {
+    auto module = getOperation()->getParentOfType<mlir::ModuleOp>();
+    auto lights = module->getAttrOfType<mlir::IntegerAttr>(boundLightCount);
+    auto ambient = module->getAttrOfType<mlir::DenseF32ArrayAttr>(boundAmbient);
+    getOperation().walk([&](mlir::Operation *op) {
+      if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
+        if (std::optional<Words> words = wordsAt(load.getAddress()))
+          replace(op, valueOf(load.getType(), *words));
+      } else if (llvm::isa<ir::LightCountOp>(op)) {
+        replace(op, lights);
+      } else if (llvm::isa<ir::AmbientOp>(op) && ambient) {
+        replace(op, mlir::DenseElementsAttr::get(
+                        llvm::cast<mlir::VectorType>(op->getResult(0).getType()),
+                        ambient.asArrayRef()));
+      }
+    });
+  }
+
+  static void replace(mlir::Operation *op, mlir::TypedAttr value) {
+    if (!value)
+      return;
+    OpBuilder builder(op);
+    op->replaceAllUsesWith(mlir::arith::ConstantOp::create(builder, op->getLoc(), value));
+    op->erase();
+  }
+};
+
+} // namespace
+
+std::unique_ptr<mlir::Pass> createBindMembersPass() {
+  return std::make_unique<BindMembers>();
+}
+
+} // namespace rtsl::codegen

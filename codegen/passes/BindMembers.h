@@ -1,0 +1,33 @@
+//===- BindMembers.h - members that are the same in all objects -----------===//
+//
+// When the objects of a scene are known, linking notes on each member that has one value in all of
+// them what lies in their records there, and on the module what else it knows of the scene:
+//
+//   rtsl.member_decl @index : f32 access "private" {rtsl.bound = array<i32: 1069547520>}   // 1.5
+//   module attributes {rtsl.light_count = 2 : i32, rtsl.ambient = array<f32: 0.1, 0.1, 0.2>}
+//
+// Here the loads of such members become constants, so that what is computed from them folds.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "llvm/ADT/StringRef.h"
+
+#include <memory>
+
+namespace mlir {
+class Pass;
+} // namespace mlir
+
+namespace rtsl::codegen {
+
+/// On `rtsl.member_decl`: the words of the member in the record of every object that has it.
+constexpr llvm::StringLiteral boundWords = "rtsl.bound";
+/// On the module: what `rtsl.light_count` and `rtsl.ambient` give.
+constexpr llvm::StringLiteral boundLightCount = "rtsl.light_count";
+constexpr llvm::StringLiteral boundAmbient = "rtsl.ambient";
+
+/// `rtsl-bind-members`, on a function. It must not run on constructors.
+std::unique_ptr<mlir::Pass> createBindMembersPass();
+
+} // namespace rtsl::codegen

@@ -1,0 +1,123 @@
+//===- BindTest.cpp - linked programs that know their scene's objects -----===//
+#include "Linked.h"
+
+#include "codegen/link/BindScene.h"
+#include "codegen/passes/BindMembers.h"
+
+#include <cstring>
+
+namespace rtsl {
+namespace {
+
+const std::string lenses = R"(
+class Lens : rt_Material {
+  public float index = 1.5;
+  private vec3 axis;
+  public rt_Texture coat;
+  void constructor(vec3 a) { axis = normalize(a); }
+  void shade() { rt_SampleColor = color(index * axis.x); }
+};
+class Thick : Lens {
+  public float depth;
+  void shade() { rt_SampleColor = color(index + depth); }
+};
+class Ball : rt_Primitive {
+  void intersect() { hit(1.0); }
+  void computeBounds() { rt_BoundMin = vec3(-1.0); rt_BoundMax = vec3(1.0); }
+};
+)";
+
+/// Records of objects as a runtime would have them: class id, index, axis, coat and, of Thick, depth.
+struct Records {
+  std::vector<std::vector<float>> words;
+  runtime::SceneFacts facts;
+
+  void add(const std::string &className, std::vector<float> values) {
+    values.insert(values.begin(), 0.0f); // the class id, which nobody asks for
+    words.push_back(std::move(values));
+    facts.objects.push_back({className, reinterpret_cast<const std::uint8_t *>(words.back().data())});
+  }
+};
+
+/// The words noted on a member; nothing if it is not bound.
+std::vector<float> boundTo(Linked &linked, const std::string &className, const std::string &member) {
+  auto declaration = linked.ir->lookupSymbol<ir::ClassOp>(className).findMember(member);
+  auto words = declaration->getAttrOfType<mlir::DenseI32ArrayAttr>(codegen::boundWords);
+  std::vector<float> values(words ? static_cast<std::size_t>(words.size()) : 0);
+  if (words)
+    std::memcpy(values.data(), words.asArrayRef().data(), values.size() * sizeof(float));
+  return values;
+}
+
+TEST(Bind, AMemberOfOneObjectIsWhatItIs) {
+  Linked linked(lenses, {{"Lens"}, {}});
+  Records records;
+  records.add("Lens", {1.25f, 0, 0, 1, 0});
+  bindScene(*linked.ir, records.facts);
+  EXPECT_EQ(boundTo(linked, "Lens", "index"), std::vector<float>{1.25f});
+  EXPECT_EQ(boundTo(linked, "Lens", "axis"), (std::vector<float>{0, 0, 1}));
+}
+
+TEST(Bind, WhereObjectsDifferNothingIsBound) {
+  Linked linked(lenses, {{"Lens"}, {}});
+  Records records;
+  records.add("Lens", {1.25f, 0, 0, 1, 0});
+  records.add("Lens", {1.25f, 0, 1, 0, 0});
+  records.add("Lens", {1.25f, 0, 0, 1, 0});
+  bindScene(*linked.ir, records.facts);
+  EXPECT_EQ(boundTo(linked, "Lens", "index"), std::vector<float>{1.25f});
+  EXPECT_TRUE(boundTo(linked, "Lens", "axis").empty());
+}
+
+TEST(Bind, BitsDecideNotValues) {
+  Linked linked(lenses, {{"Lens"}, {}});
+  Records records;
+  records.add("Lens", {0.0f, 0, 0, 1, 0});
+  records.add("Lens", {-0.0f, 0, 0, 1, 0});
+  bindScene(*linked.ir, records.facts);
+  EXPECT_TRUE(boundTo(linked, "Lens", "index").empty());
+}
+
+TEST(Bind, AReferenceToABaseMayLeadBelowIt) {
+  Linked linked(lenses, {{"Lens", "Thick"}, {}});
+  Records records;
+  records.add("Lens", {1.25f, 0, 0, 1, 0});
+  records.add("Thick", {1.5f, 0, 0, 1, 0, 7});
+  bindScene(*linked.ir, records.facts);
+  EXPECT_TRUE(boundTo(linked, "Lens", "index").empty());
+  EXPECT_EQ(boundTo(linked, "Lens", "axis"), (std::vector<float>{0, 0, 1}));
+  EXPECT_EQ(boundTo(linked, "Thick", "index"), std::vector<float>{1.5f});
+  EXPECT_EQ(boundTo(linked, "Thick", "depth"), std::vector<float>{7});
+}
+
+TEST(Bind, ABaseWithoutObjectsIsBoundByThoseBelow) {
+  Linked linked(lenses, {{"Thick"}, {}});
+  Records records;
+  records.add("Thick", {1.5f, 0, 0, 1, 0, 7});
+  bindScene(*linked.ir, records.facts);
+  EXPECT_EQ(boundTo(linked, "Lens", "index"), std::vector<float>{1.5f});
+}
+
+TEST(Bind, WhatMakesObjectsAndWhatRendersArePartedFromEachOther) {
+  Linked linked(lenses, {{"Lens", "Ball"}, {}});
+  const mlir::OwningOpRef<mlir::ModuleOp> constructors = linked.ir->clone();
+  keepConstructors(*constructors);
+  Records records;
+  records.add("Lens", {1.25f, 0, 0, 1, 0});
+  bindScene(*linked.ir, records.facts);
+  const auto isPublic = [](mlir::ModuleOp ir, const char *name) {
+    auto function = ir.lookupSymbol<mlir::func::FuncOp>(name);
+    return function && function.isPublic();
+  };
+  for (const char *name : {"Lens.initialize", "Lens.construct", "rtsl_rt_Primitive_computeBounds"}) {
+    EXPECT_TRUE(isPublic(*constructors, name)) << name;
+    EXPECT_FALSE(isPublic(*linked.ir, name)) << name;
+  }
+  for (const char *name : {"rtsl_rt_Material_shade", "rtsl_rt_Primitive_intersect", "Ball.intersect"}) {
+    EXPECT_FALSE(isPublic(*constructors, name)) << name;
+    EXPECT_TRUE(isPublic(*linked.ir, name)) << name;
+  }
+}
+
+} // namespace
+} // namespace rtsl
