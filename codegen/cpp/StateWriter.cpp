@@ -71,7 +71,7 @@ void StateWriter::unsupported(mlir::Operation &op) {
     return;
   hasRefused = true;
   std::string what = op.getName().stripDialect().str();
-  if (llvm::isa<ir::VarOp, ir::FrameObjectOp, ir::ElementOp, ir::FieldOp>(op))
+  if (llvm::isa<ir::VarOp, ir::FrameObjectOp, ir::ElementOp, ir::FieldOp, ir::TableOp>(op))
     what = "an array or a struct";
   const unsigned line = lineOf(op.getLoc());
   module.unsupported(machine.method->range,
