@@ -1,7 +1,6 @@
 //===- Color.cpp - colors of as many components as the target chooses -----===//
 #include "codegen/lower/Color.h"
 
-#include "codegen/lower/Library.h"
 #include "runtime/ColorBasis.h"
 
 namespace rtsl::lowering {
@@ -42,7 +41,11 @@ Num luminance(Num color) {
       weights[i] += luminanceWeights[j] * basis.toRgb[j][i];
   if (color.count() == 1)
     return color[0]; // the one component is it
-  return dot(color, constantVector(color.at(), weights));
+  Num products = color * constantVector(color.at(), weights);
+  Num sum = products[0];
+  for (unsigned i = 1; i < color.count(); ++i)
+    sum = sum + products[i];
+  return sum;
 }
 
 } // namespace rtsl::lowering

@@ -82,7 +82,7 @@ Num maximum(Num x, Num y); // x < y ? y : x
 Num minimumUnsigned(Num x, Num y);
 Num maximumUnsigned(Num x, Num y);
 Num clamp(Num x, Num low, Num high); // min(max(x, low), high)
-Num mix(Num a, Num b, Num t);        // fma(b, t, a*(1-t))
+Num mix(Num a, Num b, Num t);        // a*(1-t) + b*t
 Num step(Num edge, Num x);           // x < edge ? 0 : 1
 Num smoothstep(Num edge0, Num edge1, Num x);
 Num sign(Num x);             // of zero: itself; of NaN: NaN

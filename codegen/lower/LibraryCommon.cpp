@@ -24,7 +24,7 @@ Num clamp(Num x, Num low, Num high) {
   return minimum(maximum(x, low), high);
 }
 Num mix(Num a, Num b, Num t) {
-  return fma(b, t, a * (1.0 - t));
+  return a * (1.0 - t) + b * t;
 }
 
 Num step(Num edge, Num x) {

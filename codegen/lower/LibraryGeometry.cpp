@@ -5,11 +5,11 @@
 
 namespace rtsl::lowering {
 
-// Each term is fused with the sum so far: one rounding a term, and one operation.
 Num dot(Num a, Num b) {
-  Num sum = a[0] * b[0];
-  for (unsigned i = 1; i < a.count(); ++i)
-    sum = fma(a[i], b[i], sum);
+  Num products = a * b;
+  Num sum = products[0];
+  for (unsigned i = 1; i < products.count(); ++i)
+    sum = sum + products[i];
   return sum;
 }
 
@@ -29,7 +29,7 @@ Num faceforward(Num n, Num i, Num reference) {
 }
 
 Num reflect(Num i, Num n) {
-  return fma(-2.0 * dot(n, i), n, i);
+  return i - (2.0 * dot(n, i)) * n;
 }
 
 //===----------------------------------------------------------------------===//
@@ -111,7 +111,7 @@ Num Library::refract(Num incident, Num normal, Num eta) {
                    Num sinSquared = fma(-d, d, d.like(1));
                    Num k = fma(-(eta * eta), sinSquared, d.like(1));
                    // The root of a negative k is NaN and not chosen.
-                   Num refracted = fma(-fma(eta, d, sqrt(k)), n, eta * i);
+                   Num refracted = eta * i - (eta * d + sqrt(k)) * n;
                    return select(less(k, 0.0), 0.0, refracted);
                  });
 }

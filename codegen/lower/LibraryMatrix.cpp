@@ -25,7 +25,7 @@ Columns outerProduct(Num column, Num row) {
 Num multiply(const Columns &m, Num v) {
   Num sum = m[0] * v[0];
   for (unsigned i = 1; i < m.size(); ++i)
-    sum = fma(m[i], v[i], sum);
+    sum = sum + m[i] * v[i];
   return sum;
 }
 

@@ -211,11 +211,10 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
 void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
   const auto number = static_cast<std::uint32_t>(instances.size());
   instance.mask = number % 3 == 2 ? 0xaaaaaaaau : ~0u;
+  instance.needs = code.needs; // what single objects read, behind their materials too, is Scene.cpp's to find
   for (const Object &object : objects)
-    if (object.reference == instance.material) {
-      instance.needs = code.needs & object.info->needs;
+    if (object.reference == instance.material)
       instance.anyHit = object.info->anyHit;
-    }
   instances.push_back(instance);
   for (std::uint32_t primitive = 0; primitive != primitives; ++primitive)
     items.push_back({number, primitive});

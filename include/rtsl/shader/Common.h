@@ -68,10 +68,10 @@ constexpr auto clamp(const X &x, const Low &low, const High &high) {
   return rtsl::min(rtsl::max(x, low), high);
 }
 
-/// x (1 - a) + y a, where the second product is fused with the sum
+/// x (1 - a) + y a
 template <typename X, typename Y, typename A>
 constexpr auto mix(const X &x, const Y &y, const A &a) {
-  return each([](float p, float q, float t) { return std::fma(q, t, p * (1.0f - t)); }, x, y, a);
+  return each([](float p, float q, float t) { return p * (1.0f - t) + q * t; }, x, y, a);
 }
 /// y where `choice` is true, otherwise x.
 template <typename X, typename B>

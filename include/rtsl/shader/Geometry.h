@@ -1,6 +1,6 @@
 //===- Geometry.h - dot, length, normalize, refract, ... ------------------===//
 //
-// Sums run from the first term to the last, each fused with the sum so far. Where a difference could cancel, products are taken as
+// Sums run from the first term to the last. Where a difference could cancel, products are taken as
 // Kahan does it; where squares would leave the range of a float, vectors are scaled first.
 //
 //===----------------------------------------------------------------------===//
@@ -21,12 +21,12 @@ inline float differenceOfProducts(float a, float b, float c, float d) {
 }
 
 inline float dot(float a, float b) { return a * b; }
-inline float dot(const glm::vec2 &a, const glm::vec2 &b) { return std::fma(a.y, b.y, a.x * b.x); }
+inline float dot(const glm::vec2 &a, const glm::vec2 &b) { return a.x * b.x + a.y * b.y; }
 inline float dot(const glm::vec3 &a, const glm::vec3 &b) {
-  return std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x));
+  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 inline float dot(const glm::vec4 &a, const glm::vec4 &b) {
-  return std::fma(a.w, b.w, std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x)));
+  return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
 }
 
 inline glm::vec3 cross(const glm::vec3 &a, const glm::vec3 &b) {
@@ -39,12 +39,6 @@ namespace detail {
 // overflowed.
 inline bool isGoodSquare(float square) {
   return 0x1p-96f <= square && square <= std::numeric_limits<float>::max();
-}
-
-/// a b + c by component, each rounded once.
-template <typename A, typename B, typename C>
-inline auto fma(const A &a, const B &b, const C &c) {
-  return each([](float x, float y, float z) { return std::fma(x, y, z); }, a, b, c);
 }
 } // namespace detail
 
@@ -88,7 +82,7 @@ inline T faceforward(const T &n, const T &i, const T &reference) {
 }
 template <typename T>
 inline T reflect(const T &i, const T &n) {
-  return detail::fma(-2.0f * rtsl::dot(n, i), n, i);
+  return i - (2.0f * rtsl::dot(n, i)) * n;
 }
 /// As GLSL defines it; 1 - d^2 is rounded once, so that it keeps its digits at normal incidence
 /// and at grazing.
@@ -99,7 +93,7 @@ inline T refract(const T &i, const T &n, float eta) {
   const float k = std::fma(-(eta * eta), sinSquared, 1.0f);
   if (k < 0.0f)
     return T(0.0f);
-  return detail::fma(-std::fma(eta, d, std::sqrt(k)), n, eta * i);
+  return eta * i - (eta * d + std::sqrt(k)) * n;
 }
 
 /// Of the component of largest magnitude; the lowest on a tie.

@@ -12,12 +12,12 @@ namespace rtsl {
 template <int C, int R>
 using Matrix = glm::mat<C, R, float, glm::defaultp>;
 
-/// Matrix times vector; sums from the first column on, each fused with the sum so far.
+/// Matrix times vector; sums from the first column on.
 template <int C, int R>
 inline glm::vec<R, float> mul(const Matrix<C, R> &m, const glm::vec<C, float> &v) {
   glm::vec<R, float> sum = m[0] * v[0];
   for (int i = 1; i < C; ++i)
-    sum = detail::fma(m[i], v[i], sum);
+    sum = sum + m[i] * v[i];
   return sum;
 }
 /// Row vector times matrix.

@@ -10,7 +10,6 @@
 #include "runtime/device/Abi.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -246,7 +245,7 @@ inline float luminance(const Color<N> &color) {
     }();
     float sum = color.components[0] * weights.elements[0];
     for (int i = 1; i < N; ++i)
-      sum = std::fma(color.components[i], weights.elements[i], sum);
+      sum = sum + color.components[i] * weights.elements[i];
     return sum;
   }
 }
