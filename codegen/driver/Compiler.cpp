@@ -522,10 +522,12 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
 
   const mlir::OwningOpRef<mlir::ModuleOp> forGpu = ir->clone();
   LlvmCode gpu = translate(*forGpu, gpuOptions(options));
+  defineFacts(gpu, program);
   linkDeviceCode(gpu, megakernelCode(/*forGpu=*/true), {"rtsl_render"});
   package.ptx = toPtx(std::move(gpu));
 
   LlvmCode host = translate(*ir, machineOptions(options, /*hostCpu=*/false));
+  defineFacts(host, program);
   const std::vector<std::string> entries = {"rtsl_lane_bytes", "rtsl_run_lane"};
   std::vector<std::string> kept = {"memcpy", "memmove", "memset"};
   kept.insert(kept.end(), entries.begin(), entries.end());

@@ -6,7 +6,7 @@ import os
 import subprocess
 import unittest
 
-from harness import DIAGNOSED, FINE, SECONDS, USAGE, Case
+from harness import DIAGNOSED, EXAMPLES, FINE, SECONDS, USAGE, Case
 
 RTSL_RUN = os.environ["RTSL_RUN"]
 INTERNAL = 3
@@ -44,6 +44,15 @@ class Packages(Case):
         self.run_package("--target=host", *SMALL, "--threads", "1", "--compare", "a.exr")
         _, error = self.run_package("--target=host", *SMALL, "--seed", "5", "--compare", "a.exr", status=DIAGNOSED)
         self.assertIn("pixels differ from `a.exr`", error)
+
+    def test_every_example_can_be_packed(self):
+        scenes = sorted(EXAMPLES.glob("*/scene.json"))
+        self.assertGreaterEqual(len(scenes), 2)
+        for scene in scenes:
+            self.run_rtslc("render", str(scene), "-o", "a.exr", "--target=host-megakernel", *SMALL)
+            self.run_rtslc("pack", str(scene), "-o", "example.rtslpkg", "--quiet")
+            content = (self.folder / "example.rtslpkg").read_bytes()
+            self.run_package("--target=host", *SMALL, "--compare", "a.exr", content=content)
 
     def test_packing_gives_the_same_bytes_on_every_run(self):
         self.glass_scene()
