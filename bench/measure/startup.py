@@ -53,7 +53,6 @@ def commands(build, folder):
         ("rtslc compile --emit=cpp", [rtslc, "compile", str(MATERIAL), "--emit=cpp", "-o", "-"], 0.025),
         ("rtslc compile --emit=llvm", [rtslc, "compile", str(MATERIAL), "--emit=llvm", "-o", "-"], None),
         ("rtslc compile --emit=ptx", [rtslc, "compile", str(MATERIAL), "--emit=ptx", "-o", "-"], 0.040),
-        ("rtslc compile --emit=cpp", [rtslc, "compile", str(MATERIAL), "--emit=cpp", "-o", "-"], 0.025),
         ("--emit=ssa, 500 lines", [rtslc, "compile", str(long_file), "--emit=ssa", "-o", "-"], None),
         ("--emit=split, 500 lines", [rtslc, "compile", str(long_file), "--emit=split", "-o", "-"], None),
     ] + other_compilers(folder)
