@@ -433,6 +433,17 @@ std::optional<std::string> explainSceneStates(const typed::Module &module, const
 
 namespace {
 
+/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into the program.
+void load(LlvmCode code, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
+          runtime::Program &program) {
+  symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
+  codegen::optimize(*code.module, *code.machine, code.options);
+  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
+                                                                std::move(code.machine), symbols));
+  fillEntries(program, *jit, options);
+  program.code = jit;
+}
+
 /// Linked level 1 as a program in this process: the parts of it that are exported.
 void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
   const bool isMegakernel = options.target == Target::HostMegakernel;
@@ -444,7 +455,7 @@ void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Pr
 
   LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true));
   defineFacts(code, program);
-  std::vector<codegen::HostSymbol> symbols = {{"rtsl_print", reinterpret_cast<void *>(&rtsl_print)}};
+  std::vector<codegen::HostSymbol> symbols;
   if (isMegakernel) {
     linkDeviceCode(code, megakernelCode(/*forGpu=*/false), entries(program, options));
   } else {
@@ -452,11 +463,7 @@ void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Pr
     symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
     symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
   }
-  codegen::optimize(*code.module, *code.machine, code.options);
-  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
-                                                                std::move(code.machine), symbols));
-  fillEntries(program, *jit, options);
-  program.code = jit;
+  load(std::move(code), symbols, options, program);
 }
 
 /// What makes the objects of a scene, and can do nothing else. It runs once.
@@ -472,12 +479,7 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runti
   LlvmCode code = translate(ir, machine);
   defineFacts(code, program);
   linkDeviceCode(code, runtime::deviceBitcode(), names);
-  codegen::optimize(*code.module, *code.machine, code.options);
-  std::shared_ptr<codegen::Jit> jit =
-      take(codegen::Jit::create(std::move(code.context), std::move(code.module), std::move(code.machine),
-                                {{"rtsl_print", reinterpret_cast<void *>(&rtsl_print)}}));
-  fillEntries(program, *jit, options);
-  program.code = jit;
+  load(std::move(code), {}, options, program);
 }
 
 /// Makes the objects of a scene, and leaves in `ir` what renders that scene.
