@@ -48,16 +48,21 @@ std::string valueText(const PrintItem &item, const std::uint32_t *words) {
   return text + ")";
 }
 
-std::string lineText(const PrintedLine &line, const PrintFormat &format) {
-  std::string text = line.sample == PrintedLine::noSample
-                         ? "scene:"
-                         : fmt::format("pixel {},{} sample {}:", line.x, line.y, line.sample);
-  const std::uint32_t *words = line.words.data();
+/// Each item with a space before it.
+std::string itemsText(const PrintFormat &format, const std::uint32_t *words) {
+  std::string text;
   for (const PrintItem &item : format) {
     text += " " + (item.words == 0 ? item.text : valueText(item, words));
     words += item.words;
   }
   return text;
+}
+
+std::string lineText(const PrintedLine &line, const std::vector<PrintFormat> &formats) {
+  const std::string where = line.sample == PrintedLine::noSample
+                                ? "scene:"
+                                : fmt::format("pixel {},{} sample {}:", line.x, line.y, line.sample);
+  return where + (line.text.empty() ? itemsText(formats.at(line.format), line.words.data()) : line.text);
 }
 
 } // namespace
@@ -81,7 +86,7 @@ std::vector<std::string> PrintLog::texts(const std::vector<PrintFormat> &formats
   std::sort(lines.begin(), lines.end(), comesFirst);
   std::vector<std::string> texts;
   for (const PrintedLine &line : lines)
-    texts.push_back(lineText(line, formats.at(line.format)));
+    texts.push_back(lineText(line, formats));
   if (total > lines.size())
     texts.push_back(fmt::format("... and {} more lines", total - lines.size()));
   return texts;
@@ -108,10 +113,20 @@ PrintLog takePrintLog() {
 }
 
 /// Whoever prints waits for the others; nobody prints for speed.
-static void print(PrintedLine line) {
+static void add(const RtslState &state, PrintedLine line) {
+  if (RtslEvents *events = state.events) {
+    line.x = events->x;
+    line.y = events->y;
+    line.sample = events->sample;
+    line.order = events->printed++;
+  }
   SharedLog &shared = sharedLog();
   std::lock_guard<std::mutex> lock(shared.mutex);
   shared.log.add(std::move(line));
+}
+
+void print(RtslState *state, const PrintFormat &format, const std::vector<std::uint32_t> &words) {
+  add(*state, {0, 0, PrintedLine::noSample, 0, 0, {}, itemsText(format, words.data())});
 }
 
 } // namespace rtsl::runtime
@@ -119,12 +134,5 @@ static void print(PrintedLine line) {
 extern "C" void rtsl_print(RtslState *state, std::uint32_t format, const std::uint32_t *words,
                            std::uint32_t count) {
   using rtsl::runtime::PrintedLine;
-  PrintedLine line{0, 0, PrintedLine::noSample, 0, format, {words, words + count}};
-  if (RtslEvents *events = state->events) {
-    line.x = events->x;
-    line.y = events->y;
-    line.sample = events->sample;
-    line.order = events->printed++;
-  }
-  rtsl::runtime::print(std::move(line));
+  rtsl::runtime::add(*state, {0, 0, PrintedLine::noSample, 0, format, {words, words + count}});
 }

@@ -20,6 +20,7 @@ struct PrintedLine {
   std::uint32_t order;        // of what the sample printed
   std::uint32_t format;       // index into Program::prints
   std::vector<std::uint32_t> words;
+  std::string text = {}; // of shaders in C++: what it prints; they have no formats
 
   static constexpr std::uint32_t noSample = ~0u;
 };
@@ -41,6 +42,9 @@ private:
   std::vector<PrintedLine> lines;
   std::uint64_t total = 0;
 };
+
+/// `print` of shaders in C++.
+void print(RtslState *state, const PrintFormat &format, const std::vector<std::uint32_t> &words);
 
 /// Takes what was printed since the last time, by any thread of the process.
 PrintLog takePrintLog();

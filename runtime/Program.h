@@ -82,8 +82,8 @@ struct SceneFacts {
   std::vector<float> ambient; // a number for each component of a color
 };
 
-/// Where a sample begins: with the camera's ray, or with `generate`.
-enum class Engine : std::uint8_t { Classic, Programs };
+/// Where a sample begins: with the camera's ray, or with `generate`. Either: with `generate` if the scene has a ray generation.
+enum class Engine : std::uint8_t { Classic, Programs, Either };
 
 /// Code that renders a flat scene and needs nobody else (device/Megakernel.h); null if there is none.
 struct MegakernelCode {
@@ -110,6 +110,8 @@ struct Program {
       std::int32_t frameSize = 0;                  // bytes of the largest frame
       std::int32_t shadeFirst = 0, missFirst = 0; // the states in which the methods begin; 0: there is none
     } states;
+
+    std::uint32_t features = 0; // of shaders in C++: what rtsl_features says, RTSL_FEATURE_*
   } slots;
 
   /// RTSL_NEEDS_*: what the methods of the program's classes read.

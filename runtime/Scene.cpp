@@ -624,8 +624,10 @@ const std::vector<Warning> &Scene::warnings() const {
 RtslLaunch Scene::launch() const {
   if (self->isClassic() && self->camera == 0)
     throw Error(ErrorCode::IncompleteScene, "the scene has no camera");
-  if (!self->isClassic() && self->rayGeneration == 0)
+  if (self->program->engine == Engine::Programs && self->rayGeneration == 0)
     throw Error(ErrorCode::IncompleteScene, "the scene has no ray generation");
+  if (self->program->engine == Engine::Either && self->camera == 0 && self->rayGeneration == 0)
+    throw Error(ErrorCode::IncompleteScene, "the scene has neither a ray generation nor a camera");
   return self->tables();
 }
 

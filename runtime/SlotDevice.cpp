@@ -8,8 +8,10 @@
 //===----------------------------------------------------------------------===//
 #include "runtime/HostScene.h"
 
+#define RTSL_DEVICE_OF_SLOTS
 #include "runtime/device/Device.cpp"
 #include "runtime/device/Machine.cpp"
+#include "runtime/device/Programs.cpp"
 
 namespace {
 
@@ -25,8 +27,18 @@ const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) {
     if (auto *code = slotsOf(state).base##_##method)                                               \
       code(state, object);                                                                         \
   }
+#define RTSL_PAYLOAD_SLOT(base, method)                                                            \
+  void rtsl_##base##_##method##_payload(RtslState *state, RtslRef object) {                        \
+    if (auto *code = slotsOf(state).base##_##method##_payload)                                     \
+      code(state, object);                                                                         \
+  }
 extern "C" {
+#include "runtime/device/PayloadSlots.def"
 #include "runtime/device/Slots.def"
+
+uint32_t rtsl_features(RtslState *state) {
+  return state->launch->host ? slotsOf(state).features : 0; // while a scene is built there is no host
+}
 
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {
   return slotsOf(state).states.run(state, number, object, frame);
@@ -50,7 +62,7 @@ int32_t rtsl_rays_sent(RtslState *, int32_t) {
 int32_t rtsl_rays_sent_last(RtslState *, int32_t) {
   return 1;
 }
-// C++ has no rays with a payload, and so no `generate`.
+// States of methods with a payload, and of `generate`, are not printed as C++.
 int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *) {
   return 0;
 }
@@ -66,7 +78,7 @@ void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_
                        float *color) {
   const auto &states = static_cast<const rtsl::runtime::HostScene *>(launch->host)->programSlots().states;
   if (!states.run)
-    return rtsl_sample(launch, x, y, sample, color);
+    return launch->rayGeneration ? rtsl_generate(launch, x, y, sample, color) : rtsl_sample(launch, x, y, sample, color);
   const uint64_t levels = uint64_t(launch->maxDepth) + 1;
   void *stack = rtsl_machine_stack(levels * device::levelSize(uint64_t(states.frameSize)));
   if (stack)

@@ -32,7 +32,7 @@ public:
 
   Scene build() {
     attempt([&] {
-      if (program.engine == runtime::Engine::Classic)
+      if (description.render.engine == runtime::Engine::Classic)
         scene.setCamera(add(description.camera.value(), "camera"));
       else
         scene.setRayGeneration(add(description.rayGeneration.value(), "rayGeneration"));

@@ -61,6 +61,52 @@ Code FunctionPrinter::withOutputs(const std::string &callee, const typed::Builti
   return {value};
 }
 
+Code FunctionPrinter::print(const typed::BuiltinExpr &expr) {
+  std::vector<const typed::Expr *> values;
+  for (const typed::ExprPtr &arg : expr.args)
+    values.push_back(arg.get());
+  return {"rtsl::print(rt, " + join(operands(values, Binding::Assignment), ", ") + ")"};
+}
+
+// The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax, payload, root...)`. The
+// ray may write it in its place, for nobody looks at it meanwhile, unless what stands behind it changes it first.
+Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
+  if (module.hasStates())
+    module.unsupported(expr.range, "`trace` with a payload in states in C++ (--trace=recurse keeps it as a call)");
+  constexpr std::size_t at = 4;
+  const typed::Expr &payload = *expr.args[at];
+  const Effects indices = indexEffects(payload);
+  bool isChanged = false;
+  std::vector<const typed::Expr *> inputs;
+  for (std::size_t i = 0; i < expr.args.size(); ++i) {
+    if (i == at)
+      continue;
+    inputs.push_back(expr.args[i].get());
+    const Effects effects = module.effects.expression(*expr.args[i]);
+    isChanged |= conflicts(effects, indices) || (i > at && conflicts(effects, module.effects.expression(payload)));
+  }
+  if (!isChanged) {
+    std::vector<std::string> texts = operands(inputs, Binding::Assignment);
+    texts.insert(texts.begin() + at, place(payload, !indices.isPure()).text);
+    return {"rtsl::trace(rt, " + join(texts, ", ") + ")"};
+  }
+  // One after the other, each in a variable.
+  std::vector<std::string> texts;
+  std::string where;
+  for (std::size_t i = 0; i < expr.args.size(); ++i) {
+    if (i != at) {
+      texts.push_back(hoist(expr.args[i]->type, "argument", argument(*expr.args[i])));
+      continue;
+    }
+    where = place(payload, true).text;
+    texts.push_back(temporaryName("payload"));
+    before->push_back(fmt::format("{} {} = {};", module.type(payload.type), texts.back(), where));
+  }
+  before->push_back("rtsl::trace(rt, " + join(texts, ", ") + ");");
+  before->push_back(where + " = " + texts[at] + ";");
+  return {};
+}
+
 Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   const std::string callee = "rtsl::" + nameInCpp(expr.builtin);
   auto withState = [&](const std::string &more = "") {
@@ -79,12 +125,13 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::Hit:
     return withState(function && module.takesScratch(*function) ? "scratch" : "");
   case Builtin::TracePayload:
-    module.unsupported(expr.range, "`trace` with a payload in C++");
-    return {"0"};
+    return tracePayload(expr);
   case Builtin::IgnoreIntersection:
   case Builtin::TerminateRay:
-  case Builtin::VisitChild:
+    return endOfAnyHit(expr);
   case Builtin::Print:
+    return module.options.prints ? print(expr) : Code{};
+  case Builtin::VisitChild:
     module.unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "` in C++");
     return {"0"};
   case Builtin::Modf:

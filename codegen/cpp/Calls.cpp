@@ -113,7 +113,8 @@ Code FunctionPrinter::callWith(const std::string &callee, std::vector<std::strin
   }
 
   const std::string call = callee + "(" + join(texts, ", ") + ")";
-  if (after.empty())
+  const bool mayEnd = mayEndAnyHit() && mayAnswerHit(module.module, target);
+  if (after.empty() && !mayEnd)
     return {call};
   std::string value;
   if (result->is(TypeKind::Void))
@@ -121,6 +122,8 @@ Code FunctionPrinter::callWith(const std::string &callee, std::vector<std::strin
   else
     value = hoist(result, target.name, call);
   before->insert(before->end(), after.begin(), after.end());
+  if (mayEnd)
+    leaveIfAnswered();
   return {value};
 }
 

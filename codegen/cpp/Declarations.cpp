@@ -14,7 +14,8 @@ namespace rtsl::cpp {
 
 ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
                              const StateProgram *states)
-    : module(module), options(options), names(module), effects(module), notes(diagnostics.sources()), states(states),
+    : module(module), options(options), names(module),
+      effects(module, options.prints, options.exceptions && options.checkIndices), notes(diagnostics.sources()), states(states),
       diagnostics(diagnostics) {}
 
 void ModulePrinter::unsupported(SourceRange range, const std::string &what) {
@@ -119,12 +120,23 @@ std::string declarator(const std::string &type, const std::string &name, const s
 // Signatures
 //===----------------------------------------------------------------------===//
 
+/// The method that this one overrides, at the top: what one of them takes, all take.
+const typed::Function &ModulePrinter::overridden(const typed::Function &function) const {
+  const typed::Function *top = &function;
+  if (function.owner && !function.isConstructor && !function.isStateMethod)
+    for (const typed::Class *base = function.owner->base; base; base = base->base)
+      for (const auto &method : base->functions)
+        if (method->name == function.name && lowering::sameParameters(*method, function))
+          top = method.get();
+  return *top;
+}
+
 bool ModulePrinter::takesState(const typed::Function &function) {
-  return function.isStateMethod || effects.function(function).usesRay;
+  return function.isStateMethod || effects.function(overridden(function)).usesRay;
 }
 
 bool ModulePrinter::takesScratch(const typed::Function &function) {
-  const Effects &inside = effects.function(function);
+  const Effects &inside = effects.function(overridden(function));
   if (!function.owner)
     return inside.reportsHit;
   if (!hasScratch(*function.owner))
@@ -147,7 +159,7 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
     const Effects own = effects.statement(*function.body);
     mentionsRay = own.usesRay;
     mentionsScratch = own.usesScratch || own.reportsHit;
-    forEachExpr(*function.body, [&](const typed::Expr &expr) {
+    effects.forEachEvaluated(*function.body, [&](const typed::Expr &expr) {
       if (auto *assign = dynCast<typed::AssignExpr>(&expr))
         onlyWritten.insert(assign->target.get());
       if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
@@ -168,7 +180,7 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
   if (takesState(function))
     parameters.push_back(mentionsRay ? "State &rt" : "State &");
   if (takesScratch(function)) {
-    const Effects &inside = effects.function(function);
+    const Effects &inside = effects.function(overridden(function));
     const bool writes = inside.writesScratch || inside.reportsHit || function.name == "intersect";
     const std::string scratch = function.owner ? "Scratch" : "rtsl::Scratch";
     parameters.push_back(std::string(writes ? "" : "const ") + scratch + (mentionsScratch ? " &scratch" : " &"));
@@ -191,7 +203,7 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
 
   std::string text = type(function.returnType) + " " + names.of(&function) + "(" + join(parameters, ", ") + ")";
   if (isMethod) {
-    if (!function.isConstructor && !effects.function(function).writesMembers)
+    if (!function.isConstructor && !effects.function(overridden(function)).writesMembers)
       text += " const";
     if (overrides(function))
       text += " override";
@@ -238,7 +250,7 @@ std::string ModulePrinter::function(const typed::Function &function, bool isMeth
 //===----------------------------------------------------------------------===//
 
 std::string ModulePrinter::structure(const typed::Struct &structure) {
-  std::string text = commentText(structure.comment) + "struct " + names.of(&structure) + " {\n";
+  std::string text = commentText(structure.comment) + "struct " + names.of(&structure) + " {\n" + rayType(structure);
   for (std::size_t i = 0; i < structure.fields.size(); ++i) {
     const typed::Field &field = structure.fields[i];
     if (i > 0 && notes.followsEmptyLine(field.range, structure.fields[i - 1].range))
@@ -365,6 +377,7 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
 
 std::string ModulePrinter::run() {
   placeAttributes();
+  numberRayTypes();
   // From the inside out: what functions ask for is known when they have been printed.
   std::string constants;
   for (const auto &constant : module.constants)
@@ -381,7 +394,10 @@ std::string ModulePrinter::run() {
   const std::string references = this->references();
 
   std::string text = "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math it computes what rtslc's own\n"
-                     "// machine code computes, to the last bit.\n#include <rtsl/shader.h>\n\n";
+                     "// machine code computes, to the last bit.\n";
+  if (!options.checkIndices)
+    text += "#define RTSL_UNCHECKED // indices are trusted (--unchecked)\n";
+  text += "#include <rtsl/shader.h>\n\n";
   text += "namespace " + options.name + " {\n\n";
   text += fmt::format("using State = rtsl::State<{0}>;\nusing Color = rtsl::Color<{0}>;\n",
                       options.colorComponents);

@@ -38,7 +38,13 @@ const void *EffectsOf::place(typed::StateVariable variable) {
   return places + static_cast<std::size_t>(variable);
 }
 
-EffectsOf::EffectsOf(const typed::Module &module) : module(module) {
+bool EffectsOf::isSilent(const typed::Expr &expr) const {
+  auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+  return !prints && builtin && builtin->builtin == Builtin::Print;
+}
+
+EffectsOf::EffectsOf(const typed::Module &module, bool prints, bool raises)
+    : module(module), prints(prints), raises(raises) {
   // Textures call one another, so what they do is found before any `lookup` is asked about.
   for (const auto &definition : module.classes)
     if (definition->root == "rt_Texture")
@@ -106,7 +112,7 @@ static const typed::Expr *rootOf(const typed::Expr &place) {
 template <typename Tree>
 void EffectsOf::collectAll(const Tree &tree, Effects &effects) {
   std::set<const typed::Expr *> onlyWritten; // outer expressions come first
-  forEachExpr(tree, [&](const typed::Expr &inner) {
+  forEachEvaluated(tree, [&](const typed::Expr &inner) {
     if (auto *assign = dynCast<typed::AssignExpr>(&inner); assign && !assign->compound)
       onlyWritten.insert(rootOf(*assign->target));
     if (!onlyWritten.count(&inner))
@@ -200,6 +206,9 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     effects.reads.insert(place(cast<typed::StateExpr>(expr).variable));
     effects.usesRay = true;
     break;
+  case ExprKind::Index:
+    effects.usesRay |= raises && cast<typed::IndexExpr>(expr).index->kind != ExprKind::Literal;
+    break;
   case ExprKind::IncDec:
     collectWrite(*cast<typed::IncDecExpr>(expr).target, effects);
     break;
@@ -229,8 +238,11 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     case Builtin::Rand:
       effects.usesRay = effects.random = true;
       break;
-    case Builtin::Trace:
     case Builtin::TracePayload:
+      collectWrite(*builtin.args[4], effects);
+      effects.usesRay = effects.random = effects.traces = true;
+      break;
+    case Builtin::Trace:
       effects.usesRay = effects.random = effects.traces = true;
       break;
     case Builtin::Hit:
@@ -246,7 +258,7 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
       effects.usesRay = effects.hasOutput = true;
       break;
     case Builtin::Print:
-      effects.hasOutput = true;
+      effects.usesRay = effects.hasOutput = true;
       break;
     case Builtin::Modf:
     case Builtin::Frexp:

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "sema/TypedAst.h"
+#include "sema/Walk.h"
 
 #include <map>
 #include <set>
@@ -36,7 +37,24 @@ bool conflicts(const Effects &first, const Effects &second);
 
 class EffectsOf {
 public:
-  explicit EffectsOf(const typed::Module &module);
+  /// `prints`: does `print` print? `raises`: does an index ask the state whether it is in range?
+  explicit EffectsOf(const typed::Module &module, bool prints = false, bool raises = false);
+
+  /// All expressions that are evaluated: not what a `print` would print that prints nothing.
+  template <typename Tree, typename Visit>
+  void forEachEvaluated(const Tree &tree, const Visit &visit) const {
+    std::set<const typed::Expr *> silent;
+    forEachExpr(tree, [&](const typed::Expr &expr) {
+      if (silent.count(&expr))
+        return;
+      if (isSilent(expr))
+        forEachExpr(expr, [&](const typed::Expr &inner) { silent.insert(&inner); });
+      else
+        visit(expr);
+    });
+  }
+  /// A `print` that does nothing.
+  bool isSilent(const typed::Expr &expr) const;
 
   /// What a call does beside reading its arguments and writing its results: on members, the state
   /// and random numbers. Of a method that others override, what any of them does.
@@ -56,6 +74,7 @@ private:
   void collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args, Effects &effects);
 
   const typed::Module &module;
+  bool prints, raises;
   std::map<const typed::Function *, Effects> known;
   bool texturesDraw = false; // some texture's `lookup` draws random numbers
 };

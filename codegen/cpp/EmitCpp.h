@@ -19,6 +19,9 @@ struct Options {
   std::string name = "shaders";      // of the namespace, and of the exported `<name>_shaders`
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool lineDirectives = false;       // #line before what stands in the author's files
+  bool prints = false;               // `print` prints; otherwise it is left out
+  bool exceptions = false;           // samples end at what docs/language.md calls an exception
+  bool checkIndices = true;
 };
 
 struct StateProgram;

@@ -199,7 +199,7 @@ std::string ModulePrinter::slots() {
                           "State &rt = rtsl::stateOf<{}>(ray);\n{}}}\n",
                           slot.method, options.colorComponents, body);
   }
-  return text + runState() + "\n} // namespace slots\n";
+  return text + payloadSlots() + runState() + "\n} // namespace slots\n";
 }
 
 //===----------------------------------------------------------------------===//
@@ -221,6 +221,9 @@ std::string ModulePrinter::needs(const Effects &facts) const {
                                  StateVariable::dtdu, StateVariable::dtdv});
   ask("RTSL_NEEDS_TRANSFORMS", {StateVariable::ObjectToWorld, StateVariable::WorldToObject});
   ask("RTSL_NEEDS_INVERSE_DIRECTION", {StateVariable::InverseRayDirection});
+  ask("RTSL_NEEDS_TIME", {StateVariable::Time, StateVariable::TimeSeed});
+  ask("RTSL_NEEDS_LAUNCH", {StateVariable::LaunchIndex, StateVariable::LaunchSize});
+  ask("RTSL_NEEDS_LENS", {StateVariable::LensCoord});
   ask("RTSL_NEEDS_SAMPLING", {StateVariable::EmissionColor, StateVariable::BSDFValue, StateVariable::BSDFSeed,
                               StateVariable::PDF, StateVariable::du, StateVariable::dv});
   return words.empty() ? "" : join(words, " | ");
@@ -302,12 +305,24 @@ std::string ModulePrinter::description() {
     std::set<std::string> methods;
     for (const typed::Class *at = definition.get(); at; at = at->base)
       for (const auto &function : at->functions)
-        methods.insert("\"" + function->name + "\"");
+        methods.insert(lowering::takesPayload(*function)
+                           ? fmt::format("\"{}({})\"", function->name, toString(function->parameters.front()->type))
+                           : "\"" + function->name + "\"");
     if (!methods.empty())
       text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
+    Effects atHits;
     if (const typed::Function *shade = slotMethod(*definition, "shade"))
-      if (const std::string words = needs(complete(effects.function(*shade))); !words.empty())
-        text += ".needs(" + words + ")";
+      atHits.add(complete(effects.function(*shade)));
+    for (const char *method : {"closestHit", "anyHit"})
+      for (const typed::Function *program : payloadMethods(*definition, method))
+        atHits.add(complete(effects.function(*program)));
+    if (const std::string words = needs(atHits); !words.empty())
+      text += ".needs(" + words + ")";
+    std::vector<std::string> asked;
+    for (const typed::Function *anyHit : payloadMethods(*definition, "anyHit"))
+      asked.push_back(names.of(anyHit->parameters.front()->type->structure));
+    if (!asked.empty())
+      text += fmt::format(".asks<{}>()", fmt::join(asked, ", "));
     text += ";\n";
   }
   if (const std::string words = needs(everything); !words.empty())
@@ -318,7 +333,19 @@ std::string ModulePrinter::description() {
         text += fmt::format("program.slots().{}_{} = &slots::{};\n", slot.base, slot.method, slot.method);
         break;
       }
-  return text + describeStates() + "return program.finish();\n}\n";
+  std::vector<std::string> features;
+  if (options.exceptions)
+    features.emplace_back("RTSL_FEATURE_EXCEPTIONS");
+  if (options.prints)
+    features.emplace_back("RTSL_FEATURE_PRINT");
+  if (!features.empty())
+    text += "program.features(" + join(features, " | ") + ");\n";
+  for (const typed::Class *definition : classesBelow("rt_RayGeneration"))
+    if (slotMethod(*definition, "generate")) {
+      text += "program.engine(rtsl::runtime::Engine::Either);\n";
+      break;
+    }
+  return text + describePayloads() + describeStates() + "return program.finish();\n}\n";
 }
 
 } // namespace rtsl::cpp

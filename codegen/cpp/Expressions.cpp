@@ -123,12 +123,33 @@ Code FunctionPrinter::expr(const typed::Expr &expr) {
     return lowered(expr);
   // Nothing can go before this expression: what must, goes into a function that is called at once.
   std::vector<std::string> statements;
+  const bool outer = isInLambda;
   before = &statements;
+  isInLambda = true;
   Code code = lowered(expr);
   before = nullptr;
+  isInLambda = outer;
   if (statements.empty())
     return code;
+  if (code.text.empty()) // of type void
+    return {fmt::format("[&] {{ {} }}()", join(statements, " "))};
   return {fmt::format("[&] {{ {} return {}; }}()", join(statements, " "), code.text)};
+}
+
+static std::string quoted(const std::string &text) {
+  std::string literal = "\"";
+  for (char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      literal += std::string("\\") + c;
+    else if (c == '\n')
+      literal += "\\n";
+    else if (byte < 0x20 || byte == 0x7f)
+      literal += fmt::format("\\{:03o}", byte);
+    else
+      literal += c;
+  }
+  return literal + "\"";
 }
 
 Code FunctionPrinter::lowered(const typed::Expr &expr) {
@@ -186,8 +207,7 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
   case ExprKind::MethodCall:
     return methodCall(cast<typed::MethodCallExpr>(expr));
   case ExprKind::String:
-    module.unsupported(expr.range, "a string");
-    return {"\"\""};
+    return {quoted(cast<typed::StringExpr>(expr).value)};
   }
   return {};
 }

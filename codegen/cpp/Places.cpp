@@ -130,7 +130,15 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
 
 std::string FunctionPrinter::index(const typed::IndexExpr &expr, bool storeIndices) {
   std::string text = argument(*expr.index);
-  return storeIndices && expr.index->kind != ExprKind::Literal ? hoist(expr.index->type, "index", text) : text;
+  if (storeIndices && expr.index->kind != ExprKind::Literal)
+    text = hoist(expr.index->type, "index", text);
+  return checked(text, std::to_string(expr.base->type->count));
+}
+
+// Outside of functions there is no sample that could end.
+std::string FunctionPrinter::checked(const std::string &index, const std::string &count) const {
+  const bool raises = function && module.options.exceptions && module.options.checkIndices;
+  return raises ? fmt::format("rtsl::checked(rt, {}, {})", index, count) : index;
 }
 
 Code FunctionPrinter::element(const typed::IndexExpr &expr, const std::string &base, bool storeIndices) {
@@ -157,8 +165,10 @@ Code FunctionPrinter::bufferElement(const typed::IndexExpr &expr) {
     module.unsupported(expr.range, "a part of a buffer that is not an element");
     return {module.type(expr.type) + "()"};
   }
-  const std::vector<std::string> texts = operands(indices, Binding::Assignment);
+  std::vector<std::string> texts = operands(indices, Binding::Assignment);
   const std::string buffer = place(*base).text;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    texts[i] = checked(texts[i], texts.size() == 1 ? buffer + ".length()" : fmt::format("{}.length({})", buffer, i));
   if (texts.size() == 1)
     return {buffer + "[" + texts.front() + "]"};
   return {buffer + ".at(" + join(texts, ", ") + ")"};

@@ -59,6 +59,7 @@ public:
   ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
                 const StateProgram *states);
   std::string run();
+  bool hasStates() const { return states != nullptr; }
 
   /// `inMemory`: as it lies in a record, a struct or an array, where a bool has 32 bits.
   std::string type(const Type *type, bool inMemory = false);
@@ -89,6 +90,7 @@ public:
   SourceNotes notes;
   bool failed = false;
   std::set<const Type *> comparedStructs; // that need an operator ==
+  bool throwsFromAnyHit = false;          // some answer stands where no `return` can
 
 private:
   // Declarations.cpp
@@ -101,6 +103,7 @@ private:
   std::string member(const typed::Member &member);
   std::string scratchStructure(const typed::Class &definition);
   bool isOverridden(const typed::Function &function) const;
+  const typed::Function &overridden(const typed::Function &function) const;
   bool overrides(const typed::Function &function) const;
 
   // Attributes.cpp
@@ -120,6 +123,14 @@ private:
   std::string runState();
   std::string describeStates() const;
   bool isRunBySteps(const std::string &slot) const; // "shade" and "miss", if anything traces
+
+  // Payloads.cpp
+  void numberRayTypes();
+  std::string rayType(const typed::Struct &structure) const;
+  std::vector<const typed::Function *> payloadMethods(const typed::Class &definition, const std::string &name) const;
+  bool orderShows(const std::vector<const typed::Function *> &anyHits, bool hasClosestHit);
+  std::string payloadSlots();
+  std::string describePayloads();
 
   // Entries.cpp
   std::string references();
@@ -142,6 +153,13 @@ private:
   std::vector<Step> steps;
   std::map<std::pair<const typed::Class *, std::string>, std::string> firstCalls; // by class and method
   std::vector<std::string> frames;                                                 // the structs
+
+  struct RayType {
+    const typed::Struct *payload;
+    unsigned number; // from 1
+    std::vector<std::string> search;
+  };
+  std::vector<RayType> rayTypes;
 
   const StateProgram *states;
   Diagnostics &diagnostics;
@@ -219,6 +237,8 @@ private:
   // Places.cpp
   Code place(const typed::Expr &expr, bool storeIndices = false);
   std::string index(const typed::IndexExpr &expr, bool storeIndices);
+  /// With --exceptions: the index, after the state was asked to note that it is out of range.
+  std::string checked(const std::string &index, const std::string &count) const;
   Code element(const typed::IndexExpr &expr, const std::string &base, bool storeIndices);
   Code bufferElement(const typed::IndexExpr &expr);
   Code length(const typed::LengthExpr &expr);
@@ -238,11 +258,22 @@ private:
   // Builtins.cpp
   Code builtin(const typed::BuiltinExpr &expr);
   Code withOutputs(const std::string &callee, const typed::BuiltinExpr &expr, std::size_t firstOutput);
+  Code print(const typed::BuiltinExpr &expr);
+  Code tracePayload(const typed::BuiltinExpr &expr);
+
+  // Payloads.cpp
+  /// `ignoreIntersection();` or `terminateRay();` as a statement; empty if the expression is neither.
+  std::string hitAnswer(const typed::Expr &expr);
+  Code endOfAnyHit(const typed::BuiltinExpr &expr);
+  /// Behind a call of what may end `anyHit`: nothing more happens.
+  void leaveIfAnswered();
+  bool mayEndAnyHit() const;
 
   ModulePrinter &module;
   const typed::Function *function;
   const typed::Class *owner;
   std::vector<std::string> *before = nullptr; // statements that go before the one being printed
+  bool isInLambda = false;                    // these are not the function's own
   std::set<std::string> usedNames;
   std::set<const typed::Variable *> readVariables, mentionedVariables, hoistedDeclarations;
   std::map<const typed::Variable *, Interval> counters;
@@ -255,6 +286,8 @@ private:
 
 /// `text` in parentheses if it binds less tightly than `atLeast`.
 std::string bind(const Code &code, Binding atLeast);
+/// May a call of the function, or of one that overrides it, end `anyHit`?
+bool mayAnswerHit(const typed::Module &module, const typed::Function &function);
 std::string join(const std::vector<std::string> &parts, const char *between);
 /// `name = value`; `name{...}` where the value begins with the type that stands before the name.
 std::string declarator(const std::string &type, const std::string &name, const std::string &value);

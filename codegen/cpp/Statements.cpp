@@ -23,7 +23,7 @@ std::string FunctionPrinter::body() {
   const auto &statements = cast<typed::CompoundStmt>(*function->body).body;
   // Which variables does anybody read? Compilers complain of the others.
   std::set<const typed::Expr *> onlyWritten;
-  forEachExpr(*function->body, [&](const typed::Expr &expr) {
+  module.effects.forEachEvaluated(*function->body, [&](const typed::Expr &expr) {
     auto skip = [&](const typed::Expr *place) {
       while (auto *swizzle = dynCast<typed::SwizzleExpr>(place))
         place = swizzle->base.get();
@@ -228,11 +228,13 @@ std::string FunctionPrinter::expressionStatement(const typed::Expr &expr) {
     std::string right = expressionStatement(*comma->right);
     before = outer;
     return left + (statements.empty() ? "" : join(statements, "\n") + "\n") + right;
+  } else if (std::string answer = hitAnswer(expr); !answer.empty()) {
+    return answer;
   } else {
     code = this->expr(expr);
     const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall || expr.kind == ExprKind::Builtin;
     if (!code.text.empty() && !expr.type->is(TypeKind::Void) &&
-        (!isCall || module.effects.expression(expr).isPure()))
+        (!isCall || code.text.find('(') == std::string::npos || module.effects.expression(expr).isPure()))
       code.text = "static_cast<void>(" + code.text + ")";
   }
   return code.text.empty() ? "" : code.text + ";\n";

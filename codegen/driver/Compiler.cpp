@@ -289,7 +289,8 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
   LowerOptions lowering;
   lowering.diagnostics = &diagnostics;
   lowering.colorComponents = options.colorComponents;
-  lowering.checkIndices = false; // C++ clamps where it takes an index
+  lowering.checkIndices = false; // C++ looks at an index where it takes it
+  lowering.prints = printing.prints;
   lowering.source = &source;
   const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, *context);
   if (!ir)
@@ -314,9 +315,12 @@ bool mayTrace(const typed::Module &module) {
 } // namespace
 
 std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
-                                   std::optional<TraceMode> trace, const CompileOptions &options,
-                                   Diagnostics &diagnostics) {
+                                   std::optional<TraceMode> trace, std::uint32_t features,
+                                   const CompileOptions &options, Diagnostics &diagnostics) {
   cpp::Options printing;
+  printing.prints = features & RTSL_FEATURE_PRINT;
+  printing.exceptions = features & RTSL_FEATURE_EXCEPTIONS;
+  printing.checkIndices = options.checkIndices;
   printing.name = name;
   printing.colorComponents = options.colorComponents;
   printing.lineDirectives = lineDirectives;

@@ -70,10 +70,10 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
 /// `<name>_shaders` what it exports. Nothing if there were errors.
 ///
 /// `trace`: what becomes of a method that traces: its states, or a call where it traces. Without it states, or calls
-/// if something in such a method cannot be printed as states.
+/// if something in such a method cannot be printed as states. `features`: RTSL_FEATURE_* of the program.
 std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
-                                   std::optional<TraceMode> trace, const CompileOptions &options,
-                                   Diagnostics &diagnostics);
+                                   std::optional<TraceMode> trace, std::uint32_t features,
+                                   const CompileOptions &options, Diagnostics &diagnostics);
 
 /// How a report is written: for people, for programs, for Graphviz, or drawn.
 enum class ReportFormat : std::uint8_t { Text, Json, Dot, Svg };

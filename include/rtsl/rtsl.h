@@ -50,6 +50,10 @@ int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t verte
 
 int rtslSceneAddLight(RtslScene *scene, RtslObject light);
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
+/* In place of a camera: its `generate` makes the samples. */
+int rtslSceneSetRayGeneration(RtslScene *scene, RtslObject rayGeneration);
+/* What samples are that meet an exception, in shaders printed with --exceptions. */
+int rtslSceneSetException(RtslScene *scene, RtslObject exception);
 int rtslSceneSetBackground(RtslScene *scene, RtslObject miss);
 int rtslSceneSetBackgroundColor(RtslScene *scene, const float *color, size_t count);
 int rtslSceneSetAmbient(RtslScene *scene, const float *color, size_t count);
@@ -71,6 +75,9 @@ int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float
 uint32_t rtslSceneChannels(const RtslScene *scene);
 /* Renders and writes an .exr or .png. */
 int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path);
+
+/* Gives `take` each line that shaders (printed with --print) have printed since the last time, in the order of pixels. */
+int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context), void *context);
 
 #ifdef __cplusplus
 }

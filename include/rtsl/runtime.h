@@ -10,5 +10,6 @@
 #include "runtime/Error.h"
 #include "runtime/Image.h"
 #include "runtime/Mesh.h"
+#include "runtime/PrintLog.h"
 #include "runtime/Renderer.h"
 #include "runtime/Scene.h"

@@ -19,6 +19,8 @@
 #include "rtsl/shader/Integers.h"
 #include "rtsl/shader/Matrices.h"
 #include "rtsl/shader/Packing.h"
+#include "rtsl/shader/Payloads.h"
+#include "rtsl/shader/Print.h"
 #include "rtsl/shader/Rays.h"
 #include "rtsl/shader/State.h"
 #include "rtsl/shader/Types.h"

@@ -156,6 +156,20 @@ int rtslSceneSetCamera(RtslScene *scene, RtslObject camera) {
   });
 }
 
+int rtslSceneSetRayGeneration(RtslScene *scene, RtslObject rayGeneration) {
+  return guarded(0, [&] {
+    scene->scene.setRayGeneration(rayGeneration);
+    return 1;
+  });
+}
+
+int rtslSceneSetException(RtslScene *scene, RtslObject exception) {
+  return guarded(0, [&] {
+    scene->scene.setException(exception);
+    return 1;
+  });
+}
+
 int rtslSceneSetBackground(RtslScene *scene, RtslObject miss) {
   return guarded(0, [&] {
     scene->scene.setBackground(miss);
@@ -196,6 +210,14 @@ int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings,
   return guarded(0, [&] {
     runtime::checkWritable(path);
     runtime::writeImage(path, runtime::render(scene->scene, optionsOf(settings)));
+    return 1;
+  });
+}
+
+int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context), void *context) {
+  return guarded(0, [&] {
+    for (const std::string &line : runtime::takePrintLog().texts(scene->scene.program().prints))
+      take(line.c_str(), context);
     return 1;
   });
 }

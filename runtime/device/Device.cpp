@@ -34,10 +34,12 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
   return device::illuminate(*state, index, {px, py, pz}, {nx, ny, nz}, cosAngle);
 }
 
+#ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp asks the program
 /// What programs say otherwise that have more.
 __attribute__((weak)) uint32_t rtsl_features(RtslState *) {
   return 0;
 }
+#endif
 
 void rtsl_raise(RtslState *state, uint32_t exception) {
   device::raise(*state, exception);

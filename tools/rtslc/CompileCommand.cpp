@@ -36,8 +36,14 @@ struct CompileCommandOptions {
   std::vector<std::string> overrides;
   std::string output = "-";
   bool lineDirectives = false;
+  bool prints = false, exceptions = false;
   std::optional<TraceMode> trace; // if it was given
 };
+
+/// RTSL_FEATURE_* of the program.
+std::uint32_t features(const CompileCommandOptions &options) {
+  return (options.prints ? RTSL_FEATURE_PRINT : 0) | (options.exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
+}
 
 /// The text of the asked stage of a whole scene; nothing if there were errors.
 std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages,
@@ -46,7 +52,9 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options, 
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return std::nullopt;
-  return emitScene(*module, linkRequest(description), *options.stage, options.common.compile, messages.diagnostics);
+  LinkRequest request = linkRequest(description);
+  request.features |= features(options);
+  return emitScene(*module, request, *options.stage, options.common.compile, messages.diagnostics);
 }
 
 /// The text of a stage that a checked module has.
@@ -60,8 +68,8 @@ std::optional<std::string> translate(const CompileCommandOptions &options, const
     return emitReflection(module, options.common.compile, messages.diagnostics);
   if (*options.stage == Stage::Cpp) {
     const std::string &named = options.output == "-" ? options.files.front() : options.output;
-    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace, options.common.compile,
-                   messages.diagnostics);
+    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace, features(options),
+                   options.common.compile, messages.diagnostics);
   }
   return emit(module, *options.stage, options.common.compile, messages.diagnostics);
 }
@@ -108,6 +116,8 @@ void checkInputs(const CompileCommandOptions &options) {
                                          "builds one");
   if (options.stage == Stage::Cpp && options.common.compile.floatingPoint != FloatingPoint::Strict)
     throw CLI::ValidationError("--fp", "C++ is strict; what is fast is machine code");
+  if (scenes == 0 && options.stage != Stage::Cpp && features(options) != 0)
+    throw CLI::ValidationError(options.prints ? "--print" : "--exceptions", "is for C++ and for scenes");
   if (scenes == 0 && !options.overrides.empty())
     throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
 }
@@ -146,6 +156,9 @@ void addCompileCommand(CLI::App &app, Action &action) {
       ->allow_extra_args(false);
   command->add_flag("--line-directives", options->lineDirectives,
                     "with --emit=cpp: #line, so that messages and debuggers show the RTSL files");
+  command->add_flag("--print", options->prints, "of C++ or a scene: `print` prints; without, it is left out");
+  command->add_flag("--exceptions", options->exceptions,
+                    "of C++ or a scene: samples end that send a bad ray, one too deep, or use an index out of range");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);

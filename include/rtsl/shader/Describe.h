@@ -274,6 +274,12 @@ public:
     info.needs = what;
     return *this;
   }
+  /// Has `anyHit` for rays with these payloads.
+  template <typename... Payload>
+  ClassDescription &asks() {
+    info.anyHit = (rtslRayTypeBit(Payload::rayType.number) | ...);
+    return *this;
+  }
 
 private:
   runtime::ClassInfo &info;
@@ -330,6 +336,9 @@ public:
     result->slots.states = {run, static_cast<std::int32_t>((size + 3) / 4 * 4), shade, miss};
   }
   void needs(std::uint32_t what) { result->needs = what; }
+  /// RTSL_FEATURE_*: what samples do beside colors.
+  void features(std::uint32_t what) { result->slots.features = what; }
+  void engine(runtime::Engine engine) { result->engine = engine; }
   RtslShaders finish() { return {std::move(result)}; }
 
 private:

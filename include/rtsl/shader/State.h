@@ -63,6 +63,14 @@ inline RtslState *rawState(State<N> &rt) {
   return reinterpret_cast<RtslState *>(&rt);
 }
 
+/// An index, clamped; one that is out of range ends the sample (`rtslc compile --exceptions`).
+template <int N, typename Index, typename Count>
+inline uint checked(State<N> &rt, Index index, Count count) {
+  if (static_cast<uint>(index) >= static_cast<uint>(count))
+    rtsl_raise(rawState(rt), RTSL_EXCEPTION_INDEX);
+  return clampIndex(index, static_cast<uint>(count));
+}
+
 //===----------------------------------------------------------------------===//
 // Objects of the scene
 //===----------------------------------------------------------------------===//

@@ -39,6 +39,22 @@ constexpr uint clampIndex(uint index, uint count) {
   return count == 0 ? 0u : std::min(index, count - 1);
 }
 
+// With RTSL_UNCHECKED the elements of arrays, vectors, matrices and buffers are taken as they are asked for. The namespace
+// keeps files with and without it apart.
+#ifdef RTSL_UNCHECKED
+inline namespace unchecked {
+template <typename Index>
+constexpr Index elementIndex(Index index, uint) {
+  return index;
+}
+#else
+inline namespace checkedIndices {
+template <typename Index>
+constexpr uint elementIndex(Index index, uint count) {
+  return clampIndex(index, count);
+}
+#endif
+
 /// `T[N]`, as a value.
 template <typename T, uint N>
 struct array {
@@ -46,11 +62,11 @@ struct array {
 
   template <typename Index>
   constexpr T &operator[](Index index) {
-    return elements[clampIndex(index, N)];
+    return elements[elementIndex(index, N)];
   }
   template <typename Index>
   constexpr const T &operator[](Index index) const {
-    return elements[clampIndex(index, N)];
+    return elements[elementIndex(index, N)];
   }
   friend constexpr bool operator==(const array &a, const array &b) {
     for (uint i = 0; i < N; ++i)
@@ -60,6 +76,8 @@ struct array {
   }
   friend constexpr bool operator!=(const array &a, const array &b) { return !(a == b); }
 };
+
+} // namespace
 
 /// A color of N components: opaque, with the operations of RTSL.
 template <int N>
@@ -267,23 +285,31 @@ constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, T value) {
   return vector;
 }
 
+#ifdef RTSL_UNCHECKED
+inline namespace unchecked {
+#else
+inline namespace checkedIndices {
+#endif
+
 /// Component or column `index`, clamped into what there is.
 template <int L, typename T, glm::qualifier Q, typename Index>
 constexpr T &at(glm::vec<L, T, Q> &vector, Index index) {
-  return vector[static_cast<int>(clampIndex(index, uint(L)))];
+  return vector[static_cast<int>(elementIndex(index, uint(L)))];
 }
 template <int L, typename T, glm::qualifier Q, typename Index>
 constexpr T at(const glm::vec<L, T, Q> &vector, Index index) {
-  return vector[static_cast<int>(clampIndex(index, uint(L)))];
+  return vector[static_cast<int>(elementIndex(index, uint(L)))];
 }
 template <int C, int R, typename T, glm::qualifier Q, typename Index>
 constexpr glm::vec<R, T, Q> &at(glm::mat<C, R, T, Q> &matrix, Index index) {
-  return matrix[static_cast<int>(clampIndex(index, uint(C)))];
+  return matrix[static_cast<int>(elementIndex(index, uint(C)))];
 }
 template <int C, int R, typename T, glm::qualifier Q, typename Index>
 constexpr glm::vec<R, T, Q> at(const glm::mat<C, R, T, Q> &matrix, Index index) {
-  return matrix[static_cast<int>(clampIndex(index, uint(C)))];
+  return matrix[static_cast<int>(elementIndex(index, uint(C)))];
 }
+
+} // namespace
 
 //===----------------------------------------------------------------------===//
 // References and buffers
@@ -299,6 +325,12 @@ struct Reference {
   friend constexpr bool operator==(Reference a, Reference b) { return a.object == b.object; }
   friend constexpr bool operator!=(Reference a, Reference b) { return a.object != b.object; }
 };
+
+#ifdef RTSL_UNCHECKED
+inline namespace unchecked {
+#else
+inline namespace checkedIndices {
+#endif
 
 /// `T name[]`, `[][]` or `[][][]`: what a scene gives. An index is clamped; an element of an empty
 /// buffer is zero.
@@ -317,7 +349,7 @@ public:
     auto enter = [&](auto index) {
       const uint count = buffer.size[dimension++];
       exists = exists && count != 0;
-      element = element * count + clampIndex(index, count);
+      element = element * count + static_cast<std::size_t>(elementIndex(index, count));
     };
     (enter(indices), ...);
     const auto address = static_cast<std::uintptr_t>(buffer.addressHigh) << 32 | buffer.addressLow;
@@ -331,5 +363,7 @@ public:
 private:
   RtslBuffer buffer = {};
 };
+
+} // namespace
 
 } // namespace rtsl

@@ -1,0 +1,229 @@
+//===- Payloads.cpp - rays that carry a struct ----------------------------===//
+//
+// A struct that rays carry gets a number, and says how hits of its rays are searched for, as linking does for machine code
+// (codegen/link/RayTypes.cpp). Methods that take a payload are reached through slots that ask which it is.
+//
+// `ignoreIntersection()` and `terminateRay()` end `anyHit` at once, from functions that it calls too: in C++ each `return`s,
+// and so does who called it. Where C++ has no `return`, in the middle of an expression, an exception ends them all.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/cpp/Printer.h"
+
+#include "codegen/lower/Analysis.h"
+#include "sema/Casting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::cpp {
+
+using typed::Builtin;
+
+//===----------------------------------------------------------------------===//
+// Types of rays
+//===----------------------------------------------------------------------===//
+
+static bool isPayloadMethod(const typed::Function &function) {
+  return lowering::takesPayload(function);
+}
+
+static const typed::Struct *payloadOf(const typed::Function &method) { return method.parameters.front()->type->structure; }
+
+std::vector<const typed::Function *> ModulePrinter::payloadMethods(const typed::Class &definition,
+                                                                   const std::string &name) const {
+  std::vector<const typed::Function *> methods;
+  for (const typed::Class *at = &definition; at; at = at->base)
+    for (const auto &function : at->functions)
+      if (isPayloadMethod(*function) && function->name == name && function->body &&
+          std::none_of(methods.begin(), methods.end(),
+                       [&](const auto *known) { return payloadOf(*known) == payloadOf(*function); }))
+        methods.push_back(function.get());
+  return methods;
+}
+
+/// Does anybody see in which order materials are asked? Where it cannot be ruled out quickly, yes.
+bool ModulePrinter::orderShows(const std::vector<const typed::Function *> &anyHits, bool hasClosestHit) {
+  for (const typed::Function *method : anyHits) {
+    const Effects inside = effects.statement(*method->body);
+    if (inside.random || inside.writes.count(method->parameters.front().get()))
+      return true;
+    bool shows = false;
+    std::set<const typed::Function *> visited;
+    std::function<void(const typed::Function &)> look = [&](const typed::Function &function) {
+      if (!function.body || !visited.insert(&function).second)
+        return;
+      effects.forEachEvaluated(*function.body, [&](const typed::Expr &expr) {
+        if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
+          shows |= builtin->builtin == Builtin::Print || (hasClosestHit && builtin->builtin == Builtin::TerminateRay);
+        shows |= expr.kind == typed::ExprKind::MethodCall;
+        if (auto *call = dynCast<typed::CallExpr>(&expr)) {
+          look(*call->function);
+          for (const auto &definition : module.classes)
+            if (const typed::Function *other = call->function->owner ? findMethod(*definition, *call->function) : nullptr)
+              look(*other);
+        }
+      });
+    };
+    look(*method);
+    if (shows)
+      return true;
+  }
+  return false;
+}
+
+void ModulePrinter::numberRayTypes() {
+  auto add = [&](const typed::Struct *payload) {
+    for (const RayType &known : rayTypes)
+      if (known.payload == payload)
+        return;
+    rayTypes.push_back({payload, static_cast<unsigned>(rayTypes.size()) + 1, {}});
+  };
+  auto lookInto = [&](const typed::Function &function) {
+    if (isPayloadMethod(function))
+      add(payloadOf(function));
+    if (function.body)
+      forEachExpr(*function.body, [&](const typed::Expr &expr) {
+        if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr); builtin && builtin->builtin == Builtin::TracePayload)
+          add(builtin->args[4]->type->structure);
+      });
+  };
+  for (const auto &function : module.functions)
+    lookInto(*function);
+  for (const auto &definition : module.classes)
+    for (const auto &function : definition->functions)
+      lookInto(*function);
+
+  for (RayType &type : rayTypes) {
+    auto programs = [&](const char *name) {
+      std::vector<const typed::Function *> found;
+      for (const auto &definition : module.classes)
+        for (const auto &function : definition->functions)
+          if (isPayloadMethod(*function) && function->name == name && payloadOf(*function) == type.payload)
+            found.push_back(function.get());
+      return found;
+    };
+    const bool hasClosestHit = !programs("closestHit").empty();
+    const std::vector<const typed::Function *> anyHits = programs("anyHit");
+    if (!hasClosestHit)
+      type.search.emplace_back("rtsl::firstHit");
+    if (!anyHits.empty())
+      type.search.emplace_back("rtsl::askAnyHit");
+    if (!anyHits.empty() && orderShows(anyHits, hasClosestHit))
+      type.search.emplace_back("rtsl::inOrder");
+  }
+}
+
+std::string ModulePrinter::rayType(const typed::Struct &structure) const {
+  for (const RayType &type : rayTypes)
+    if (type.payload == &structure)
+      return fmt::format("// The type of the rays that carry it.\nstatic constexpr rtsl::RayType rayType{{{}{}}};\n\n", type.number,
+                         type.search.empty() ? "" : ", " + join(type.search, " | "));
+  return {};
+}
+
+//===----------------------------------------------------------------------===//
+// Entries
+//===----------------------------------------------------------------------===//
+
+namespace {
+struct PayloadSlot {
+  const char *base;
+  const char *method;
+};
+constexpr PayloadSlot payloadSlotTable[] = {
+#define RTSL_PAYLOAD_SLOT(base, method) {#base, #method},
+#include "runtime/device/PayloadSlots.def"
+};
+} // namespace
+
+std::string ModulePrinter::payloadSlots() {
+  std::string text;
+  for (const PayloadSlot &slot : payloadSlotTable) {
+    std::string arms;
+    const std::vector<const typed::Class *> classes = classesBelow(slot.base);
+    for (const RayType &type : rayTypes) {
+      const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
+        for (const typed::Function *method : payloadMethods(definition, slot.method))
+          if (payloadOf(*method) == type.payload) {
+            std::vector<std::string> arguments = {"rt"};
+            if (takesScratch(*method))
+              arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+            arguments.push_back("payload");
+            return fmt::format("rtsl::object<{}>(rt, object).{}({})", names.of(&definition), names.of(method),
+                               join(arguments, ", "));
+          }
+        return {};
+      });
+      if (!body.empty())
+        arms += fmt::format("{0}if (rtsl::carries<{1}>(ray)) {{\nauto &payload = rtsl::payloadOf<{1}>(ray);\n{2}}}\n",
+                            arms.empty() ? "" : "else ", names.of(type.payload), body);
+    }
+    if (arms.empty())
+      continue;
+    const bool isCaught = throwsFromAnyHit && std::string(slot.method) == "anyHit";
+    text += fmt::format("\ninline void {}WithPayload(RtslState *ray, RtslRef object) {}{{\nState &rt = "
+                        "rtsl::stateOf<{}>(ray);\n{}}}{}\n",
+                        slot.method, isCaught ? "try " : "", options.colorComponents, arms,
+                        isCaught ? " catch (const rtsl::EndOfAnyHit &) {\n}" : "");
+  }
+  return text;
+}
+
+std::string ModulePrinter::describePayloads() {
+  std::string text;
+  for (const PayloadSlot &slot : payloadSlotTable)
+    for (const typed::Class *definition : classesBelow(slot.base))
+      if (!payloadMethods(*definition, slot.method).empty()) {
+        text += fmt::format("program.slots().{0}_{1}_payload = &slots::{1}WithPayload;\n", slot.base, slot.method);
+        break;
+      }
+  return text;
+}
+
+//===----------------------------------------------------------------------===//
+// Answers of anyHit
+//===----------------------------------------------------------------------===//
+
+bool mayAnswerHit(const typed::Module &module, const typed::Function &function) {
+  if (lowering::mayAnswerHit(function, function.owner))
+    return true;
+  return function.owner && std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
+           return definition->derivesFrom(function.owner) &&
+                  lowering::mayAnswerHit(lowering::resolve(function, definition.get()), definition.get());
+         });
+}
+
+bool FunctionPrinter::mayEndAnyHit() const {
+  return function && (!function->isStateMethod || function->name == "anyHit") && mayAnswerHit(module.module, *function);
+}
+
+static bool isAnswer(const typed::Expr &expr) {
+  auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+  return builtin && (builtin->builtin == Builtin::IgnoreIntersection || builtin->builtin == Builtin::TerminateRay);
+}
+
+std::string FunctionPrinter::hitAnswer(const typed::Expr &expr) {
+  if (!isAnswer(expr))
+    return {};
+  const std::string answer = fmt::format("rtsl::{}(rt)", typed::name(cast<typed::BuiltinExpr>(expr).builtin));
+  return function->returnType->is(TypeKind::Void) ? "return " + answer + ";\n" : answer + ";\nreturn {};\n";
+}
+
+Code FunctionPrinter::endOfAnyHit(const typed::BuiltinExpr &expr) {
+  before->push_back(fmt::format("rtsl::{}(rt);", typed::name(expr.builtin)));
+  leaveIfAnswered();
+  return {};
+}
+
+void FunctionPrinter::leaveIfAnswered() {
+  if (isInLambda) {
+    module.throwsFromAnyHit = true;
+    before->emplace_back("rtsl::endIfAnswered(rt);");
+  } else {
+    before->push_back(std::string("if (rtsl::isAnswered(rt))\nreturn") +
+                      (function->returnType->is(TypeKind::Void) ? ";" : " {};"));
+  }
+}
+
+} // namespace rtsl::cpp

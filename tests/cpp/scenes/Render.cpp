@@ -1,0 +1,34 @@
+// Renders a scene file with shaders that were compiled to C++ ahead: cpp-render SHADERS.so SCENE.json PICTURE.exr. What they
+// print, and what samples met, goes to standard output as JSON.
+#include "scene/SceneFile.h"
+
+#include <rtsl/runtime.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <dlfcn.h>
+
+using namespace rtsl;
+
+int main(int argc, char **argv) try {
+  if (argc != 4)
+    return std::fprintf(stderr, "usage: %s SHADERS.so SCENE.json PICTURE.exr\n", argv[0]), 2;
+  void *library = dlopen(argv[1], RTLD_NOW);
+  auto *shaders = library ? reinterpret_cast<const RtslShaders *(*)()>(dlsym(library, "shaders_shaders")) : nullptr;
+  if (!shaders)
+    return std::fprintf(stderr, "%s\n", dlerror()), 1;
+  const scene::SceneDescription description = scene::readSceneFile(argv[2]);
+  const runtime::Scene built = scene::buildScene(description, rtsl::program(shaders()));
+  runtime::RenderStatistics statistics;
+  const runtime::RenderOptions options = scene::renderOptions(description.render);
+  runtime::writeImage(argv[3], runtime::render(built, options, &statistics));
+  nlohmann::ordered_json said = {{"printed", runtime::takePrintLog().texts(built.program().prints)}};
+  const char *names[RTSL_EXCEPTIONS] = {"", "stackOverflow", "badRay", "index"};
+  for (unsigned i = 1; i < RTSL_EXCEPTIONS; ++i)
+    if (statistics.exceptions[i])
+      said["exceptions"][names[i]] = statistics.exceptions[i];
+  std::printf("%s\n", said.dump().c_str());
+} catch (const runtime::Error &error) {
+  return std::fprintf(stderr, "%s\n", error.what()), 1;
+}
