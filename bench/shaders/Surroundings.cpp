@@ -7,11 +7,12 @@
 namespace byhand {
 
 const glm::vec3 ambient(0.05f, 0.06f, 0.07f);
+const int lightCount = 2;
 
 namespace {
 
 std::uint32_t drawn;
-const glm::vec3 lights[lightCount] = {{4, 6, 3}, {-5, 3, 2}};
+const glm::vec3 lights[] = {{4, 6, 3}, {-5, 3, 2}};
 
 } // namespace
 

@@ -25,7 +25,7 @@ glm::vec3 trace(const glm::vec3 &origin, const glm::vec3 &direction);
 /// Uniform in [0, 1); the sequence begins anew with each shader call.
 float random();
 
-constexpr int lightCount = 2;
+extern const int lightCount; // a scene's own: shaders are compiled without it
 
 /// Whether a light reaches a point, from within `cosine` of the normal; `direction` is not unit.
 bool light(int index, const glm::vec3 &point, const glm::vec3 &normal, float cosine, glm::vec3 &direction,

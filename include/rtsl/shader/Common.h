@@ -8,6 +8,9 @@
 #include "rtsl/shader/Types.h"
 
 #include <cmath>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 #include <cstring>
 #include <limits>
 
@@ -22,6 +25,30 @@ inline To bitsAs(From from) {
   To to;
   std::memcpy(&to, &from, 4);
   return to;
+}
+
+/// For a choice whose other side is rare.
+constexpr bool isLikely(bool choice) {
+#if defined(__GNUC__)
+  return __builtin_expect(choice, true);
+#else
+  return choice;
+#endif
+}
+
+/// The IEEE square root: one instruction. std::sqrt also asks each time whether errno is to be set,
+/// and with the intrinsic g++ clears the register's other lanes first.
+inline float squareRoot(float x) {
+#if defined(__AVX__) && defined(__GNUC__) && !defined(__clang__)
+  if (!__builtin_constant_p(x)) {
+    float root;
+    asm("vsqrtss %1, %1, %0" : "=x"(root) : "x"(x));
+    return root;
+  }
+#elif defined(__SSE2__)
+  return _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x)));
+#endif
+  return std::sqrt(x);
 }
 
 //===----------------------------------------------------------------------===//

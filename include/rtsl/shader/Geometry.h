@@ -8,8 +8,6 @@
 
 #include "rtsl/shader/Common.h"
 
-#include <limits>
-
 namespace rtsl {
 
 /// a b - c d within 1.5 ulp, and exactly 0 for a b == c d (Jeannerod, Louvet, Muller, "Further
@@ -38,7 +36,9 @@ namespace detail {
 // Below, squares that are subnormal could reach the last digits of the sum; above, the sum has
 // overflowed.
 inline bool isGoodSquare(float square) {
-  return 0x1p-96f <= square && square <= std::numeric_limits<float>::max();
+  // Their bits are in order as those of a sum of squares are, and with a NaN above all.
+  constexpr uint least = 0x0f800000u, infinite = 0x7f800000u; // 2^-96
+  return isLikely(bitsAs<uint>(square) - least < infinite - least);
 }
 } // namespace detail
 
@@ -50,10 +50,10 @@ inline float length(const T &v) {
   } else {
     const float square = rtsl::dot(v, v);
     if (detail::isGoodSquare(square))
-      return std::sqrt(square);
+      return rtsl::squareRoot(square);
     const bool isLarge = 1.0f < square;
     const T scaled = v * (isLarge ? 0x1p-70f : 0x1p100f);
-    return std::sqrt(rtsl::dot(scaled, scaled)) * (isLarge ? 0x1p70f : 0x1p-100f);
+    return rtsl::squareRoot(rtsl::dot(scaled, scaled)) * (isLarge ? 0x1p70f : 0x1p-100f);
   }
 }
 
@@ -65,10 +65,10 @@ inline T normalize(const T &v) {
   } else {
     const float square = rtsl::dot(v, v);
     if (detail::isGoodSquare(square))
-      return v / std::sqrt(square);
+      return v / rtsl::squareRoot(square);
     const T scaled = v * (1.0f < square ? 0x1p-70f : 0x1p100f);
     const float scaledSquare = rtsl::dot(scaled, scaled);
-    return scaledSquare == 0.0f ? scaled : scaled / std::sqrt(scaledSquare);
+    return scaledSquare == 0.0f ? scaled : scaled / rtsl::squareRoot(scaledSquare);
   }
 }
 
@@ -93,7 +93,7 @@ inline T refract(const T &i, const T &n, float eta) {
   const float k = std::fma(-(eta * eta), sinSquared, 1.0f);
   if (k < 0.0f)
     return T(0.0f);
-  return eta * i - (eta * d + std::sqrt(k)) * n;
+  return eta * i - (eta * d + rtsl::squareRoot(k)) * n;
 }
 
 /// Of the component of largest magnitude; the lowest on a tie.

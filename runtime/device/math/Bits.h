@@ -59,6 +59,12 @@ inline float canonicalNaN() {
   return floatOf(0x7fc00000u);
 }
 
+/// Whether x is positive, normal and finite.
+inline bool isPositiveNormal(float x) {
+  constexpr uint32_t least = 0x00800000u;
+  return bitsOf(x) - least < floatInfinityBits - least;
+}
+
 inline bool isNaN(float x) {
   return x != x;
 }
@@ -79,17 +85,17 @@ inline double powerOfTwo(int exponent) {
   return doubleOf(uint64_t(exponent + 1023) << 52);
 }
 
+/// Adding it leaves no bits behind the binary point and puts the integer into the low bits of the sum.
+inline constexpr double integerShifter = 0x1.8p52;
+
 /// The integer nearest to x (ties to even), for |x| < 2^31, both as a double and as an int.
 struct NearestInteger {
   double asDouble;
   int asInt;
 };
 inline NearestInteger nearestInteger(double x) {
-  // Adding 1.5 * 2^52 leaves no bits behind the binary point and puts the integer into the low bits
-  // of the sum.
-  constexpr double shifter = 0x1.8p52;
-  double shifted = x + shifter;
-  return {shifted - shifter, int(uint32_t(bitsOf(shifted)))};
+  double shifted = x + integerShifter;
+  return {shifted - integerShifter, int(uint32_t(bitsOf(shifted)))};
 }
 
 } // namespace rtsl::device::detail

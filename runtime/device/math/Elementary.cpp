@@ -1,6 +1,10 @@
 // The elementary functions under C names, for compiled shaders to call.
 #include "runtime/device/math/Elementary.h"
 
+#if defined(__AVX2__) && defined(__FMA__)
+#include "runtime/device/math/PowerLanes.h"
+#endif
+
 #define RTSL_EXPORT_UNARY(name)                                                                    \
   float rtsl_##name(float x) {                                                                     \
     return rtsl::device::name(x);                                                                  \
@@ -44,5 +48,11 @@ RTSL_EXPORT_UNARY(sqrt)
 RTSL_EXPORT_UNARY(inversesqrt)
 RTSL_EXPORT_BINARY(pow)
 RTSL_EXPORT_BINARY(atan2) // (y, x)
+
+#if defined(__AVX2__) && defined(__FMA__)
+__m128 rtsl_pow4(__m128 x, __m128 y) {
+  return rtsl::device::pow(x, y);
+}
+#endif
 
 } // extern "C"

@@ -12,6 +12,9 @@
 
 namespace rtsl::device::detail {
 
+inline constexpr double exponentialStepsPerUnit = exponentialTableSize * inverseLn2.hi;
+inline constexpr double exponentialStepSize = ln2.hi / exponentialTableSize; // ln(2)/64 to 2^-54
+
 /// x = step * ln(2)/64 + remainder, with |remainder| <= ln(2)/128 (a little more after rounding).
 struct ExponentialReduction {
   int step;
@@ -20,8 +23,7 @@ struct ExponentialReduction {
 
 /// For |x| < 700. The remainder's relative error is below 2^-52.
 inline ExponentialReduction reduceExponential(double x) {
-  constexpr double stepsPerUnit = exponentialTableSize * inverseLn2.hi;
-  NearestInteger step = nearestInteger(x * stepsPerUnit);
+  NearestInteger step = nearestInteger(x * exponentialStepsPerUnit);
   double remainder = fma(-step.asDouble, exponentialStep[0],
                          x); // exact: the product is, and then Sterbenz's lemma
   return {step.asInt, fma(-step.asDouble, exponentialStep[1], remainder)};
@@ -36,10 +38,12 @@ inline double exponentialCurvature(double r) {
   return square * q;
 }
 
-/// e^r - 1 in plain double for |r| <= 0.0055. What is left out is below r^6/720 < 2^-54.
-inline double plainExponentialTail(double r) {
-  double square = r * r;
-  double q = fma(square, fma(r, 1.0 / 120, 1.0 / 24), fma(r, 1.0 / 6, 0.5));
+/// e^r - 1 in plain double for |r| <= 0.0055. What is left out is below r^6/720 < 2^-54. `Real` is
+/// double or DoubleLanes.
+template <typename Real>
+inline Real plainExponentialTail(Real r) {
+  Real square = r * r;
+  Real q = fma(square, fma(r, 1.0 / 120, 1.0 / 24), fma(r, 1.0 / 6, 0.5));
   return fma(square, q, r);
 }
 
@@ -49,14 +53,12 @@ inline double plainScaledExponential(int step, double tail) {
   return powerOfTwo(step >> 6) * fma(entry, tail, entry);
 }
 
-/// e^x in plain double for |x| < 104: ln(2)/64 is good to 2^-54, so that the remainder's error, and
+/// e^x in plain double for |x| < 104: the step's size is good to 2^-54, so that the remainder's error, and
 /// the relative one of the result, is below 2^-47.
 inline double plainExponential(double x) {
-  constexpr double stepsPerUnit = exponentialTableSize * inverseLn2.hi;
-  constexpr double stepSize = ln2.hi / exponentialTableSize;
-  NearestInteger step = nearestInteger(x * stepsPerUnit);
+  NearestInteger step = nearestInteger(x * exponentialStepsPerUnit);
   return plainScaledExponential(step.asInt,
-                                plainExponentialTail(fma(-step.asDouble, stepSize, x)));
+                                plainExponentialTail(fma(-step.asDouble, exponentialStepSize, x)));
 }
 
 /// e^r - 1.

@@ -9,16 +9,16 @@ namespace rtsl::device {
 namespace detail {
 
 /// A logarithm of zero, infinity, what is negative and NaN.
-[[gnu::cold, gnu::noinline]] inline float specialLogarithm(float x) {
+inline float specialLogarithm(float x) {
   return x == 0.0f ? -infinity() : x > 0.0f ? x : canonicalNaN();
 }
 
-/// Where plain double does not decide.
+/// Where x is not normal, or plain double does not decide.
 [[gnu::cold, gnu::noinline]] inline float carefulNaturalLogarithm(float x) {
-  return roundToFloat(naturalLogarithm({x, 0.0}));
+  return x > 0.0f && x < infinity() ? roundToFloat(naturalLogarithm({x, 0.0})) : specialLogarithm(x);
 }
 [[gnu::cold, gnu::noinline]] inline float carefulBinaryLogarithm(float x) {
-  return roundToFloat(binaryLogarithm(x));
+  return x > 0.0f && x < infinity() ? roundToFloat(binaryLogarithm(x)) : specialLogarithm(x);
 }
 
 } // namespace detail
@@ -26,21 +26,25 @@ namespace detail {
 /// Natural logarithm. -infinity at both zeros, NaN below.
 inline float log(float x) {
   using namespace detail;
-  if (!(x > 0.0f && x < infinity()))
-    return specialLogarithm(x);
-  LogarithmReduction reduced = reduceLogarithm({x, 0.0});
-  double y = plainLogarithm(reduced, reduced.exponent);
-  return roundsSafely(y) ? float(y) : carefulNaturalLogarithm(x);
+  if (isPositiveNormal(x)) {
+    LogarithmReduction reduced = reduceLogarithmOfNormal(x);
+    double y = plainLogarithm(reduced, reduced.exponent);
+    if (roundsSafely(y))
+      return float(y);
+  }
+  return carefulNaturalLogarithm(x);
 }
 
 /// Logarithm to base 2. Exact for powers of two.
 inline float log2(float x) {
   using namespace detail;
-  if (!(x > 0.0f && x < infinity()))
-    return specialLogarithm(x);
-  LogarithmReduction reduced = reduceLogarithm({x, 0.0});
-  double y = fma(plainLogarithm(reduced, 0.0), inverseLn2.hi, double(reduced.exponent));
-  return roundsSafely(y) ? float(y) : carefulBinaryLogarithm(x);
+  if (isPositiveNormal(x)) {
+    LogarithmReduction reduced = reduceLogarithmOfNormal(x);
+    double y = fma(plainLogarithm(reduced, 0.0), inverseLn2.hi, double(reduced.exponent));
+    if (roundsSafely(y))
+      return float(y);
+  }
+  return carefulBinaryLogarithm(x);
 }
 
 /// ln(1 + x), accurate near zero. -infinity at -1, NaN below.

@@ -51,13 +51,31 @@ inline Double2 logarithm(const LogarithmReduction &x, int exponent) {
   return {sum.hi, sum.lo + low};
 }
 
-/// The same in plain double, without rLow: relative error below 2^-51.3. The series leaves out less
-/// than 2^-52 |r|.
+/// The reduction of a positive normal float by its own bits, which a shader waits for less long than
+/// for those of a double; rLow is 0.
+inline LogarithmReduction reduceLogarithmOfNormal(float x) {
+  uint32_t distance = bitsOf(x) - bitsOf(0.6875f);
+  LogarithmEntry entry = logarithmTable[(distance >> 16) & 127];
+  double mantissa = floatOf(bitsOf(x) - (distance >> 23 << 23));
+  return {int(distance) >> 23, entry, fma(mantissa, entry.inverse, -1.0), 0.0};
+}
+
+/// exponent * ln(2) + (hi + lo) + ln(1 + r) in plain double, relative error below 2^-51.3. The series
+/// leaves out less than 2^-52 |r|; its terms are summed so that few wait for each other. `Real` is
+/// double or DoubleLanes.
+template <typename Real>
+inline Real plainLogarithm(Real exponent, Real hi, Real lo, Real r) {
+  Real head = fma(exponent, ln2Parts[0], hi); // exact
+  Real low = fma(exponent, ln2Parts[1], lo);
+  Real square = r * r;
+  Real first = fma(square, fma(r, 1.0 / 3, -1.0 / 2), low);
+  Real rest = fma(square, fma(r, 1.0 / 7, -1.0 / 6), fma(r, 1.0 / 5, -1.0 / 4));
+  return head + (r + fma(square * square, rest, first));
+}
+
+/// The same for a reduced number, without rLow.
 inline double plainLogarithm(const LogarithmReduction &x, double exponent) {
-  double head = fma(exponent, ln2Parts[0], x.entry.hi); // exact
-  double low = fma(exponent, ln2Parts[1], x.entry.lo);
-  double square = x.r * x.r, rest = fma(x.r, 1.0 / 7, -1.0 / 6);
-  return head + (x.r + fma(square, logarithmCurvature(x.r, square, rest), low));
+  return plainLogarithm<double>(exponent, x.entry.hi, x.entry.lo, x.r);
 }
 
 /// ln(x) for positive x = hi + lo.

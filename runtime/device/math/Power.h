@@ -18,8 +18,9 @@ namespace rtsl::device {
 namespace detail {
 
 /// y ln(x) for a positive float x, relative error below 2^-50.9.
-inline double exponentOfPower(double x, double y) {
-  LogarithmReduction reduced = reduceLogarithm({x, 0.0});
+inline double exponentOfPower(float x, double y) {
+  LogarithmReduction reduced =
+      isPositiveNormal(x) ? reduceLogarithmOfNormal(x) : reduceLogarithm({x, 0.0});
   return y * plainLogarithm(reduced, reduced.exponent);
 }
 
@@ -79,7 +80,7 @@ inline float powerOfExponent(double x, double y, double exponent) {
   return roundsSafely(power) ? float(power) : carefulPower(x, y, exponent);
 }
 
-[[gnu::always_inline]] inline float positivePower(double x, double y) {
+[[gnu::always_inline]] inline float positivePower(float x, float y) {
   return powerOfExponent(x, y, exponentOfPower(x, y));
 }
 
@@ -95,7 +96,7 @@ inline Parity parityOf(float y) {
   return (truncated & 1) != 0 ? Parity::odd : Parity::even;
 }
 
-/// pow() of what is zero, negative, infinite or not a number.
+/// pow() of what is zero, subnormal, negative, infinite or not a number.
 [[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
   if (y == 0.0f || x == 1.0f)
     return 1.0f;
@@ -122,7 +123,7 @@ inline Parity parityOf(float y) {
 /// have an integer power, and (-1)^(+-infinity) is 1.
 [[gnu::always_inline]] inline float pow(float x, float y) {
   using namespace detail;
-  if (x > 0.0f && x < infinity() && absolute(y) < infinity())
+  if (isPositiveNormal(x) && absolute(y) < infinity())
     return positivePower(x, y);
   return specialPower(x, y);
 }

@@ -47,14 +47,18 @@ inline bool roundsSafely(Double2 y, float &result) {
 
 /// The relative error that roundsSafely(double) bears.
 inline constexpr double plainBound = 0x1p-44;
+/// Twice that in last places of a double, at most, so that roundings of it do not count.
+inline constexpr uint64_t plainMargin = uint64_t(1) << 10;
+
+/// The last 29 bits of a double midway between two floats.
+inline constexpr uint64_t roundingMidpoint = uint64_t(1) << 28;
 
 /// Whether a number within plainBound of y rounds to float(y), for a y that is zero or normal as a
-/// float, or exact. It does unless y is near a midpoint between floats, whose last 29 bits are 1
-/// and 28 zeros, as about one number in 2^18 is. The margin is twice the bound, so that roundings
-/// of y do not count.
+/// float, or exact. It does unless y is near a midpoint between floats, as about one number in 2^18
+/// is.
 inline bool roundsSafely(double y) {
-  constexpr uint64_t midpoint = uint64_t(1) << 28, margin = uint64_t(1) << 10;
-  return ((bitsOf(y) - (midpoint - margin)) & (2 * midpoint - 1)) > 2 * margin;
+  uint64_t distance = bitsOf(y) - (roundingMidpoint - plainMargin);
+  return (distance & (2 * roundingMidpoint - 1)) > 2 * plainMargin;
 }
 
 } // namespace rtsl::device::detail

@@ -186,8 +186,8 @@ const std::vector<float> &hardArguments(std::string_view function) {
 
 Pair argumentPair(std::string_view function, std::uint64_t index) {
   Random random(index);
-  return function == "pow" || function == "fast.pow" ? powerArguments(random)
-                                                     : angleArguments(random);
+  bool isPower = function.find("pow") != std::string_view::npos; // fast.pow and pow4, too
+  return isPower ? powerArguments(random) : angleArguments(random);
 }
 
 } // namespace rtsl::elementary

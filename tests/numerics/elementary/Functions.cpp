@@ -2,8 +2,10 @@
 
 #include "runtime/device/math/Elementary.h"
 #include "runtime/device/math/Fast.h"
+#include "runtime/device/math/PowerLanes.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace rtsl::elementary {
@@ -15,6 +17,18 @@ float systemInverseSquareRoot(float x) {
 }
 double systemInverseSquareRootDouble(double x) {
   return 1.0 / std::sqrt(x);
+}
+
+float powerInLane(float x, float y) {
+  std::uint32_t hash = (device::detail::bitsOf(x) ^ device::detail::bitsOf(y)) * 0x9e3779b9u;
+  alignas(16) float bases[4] = {0.3f, 0.97f, 7.0f, 1.0f}, exponents[4] = {2.5f, 11.0f, -0.5f, 1.0f};
+  if (hash >> 30 == 0) // all lanes go the careful way
+    bases[hash >> 26 & 3] = hash >> 25 & 1 ? 0.0f : -2.0f;
+  std::uint32_t lane = hash >> 28 & 3;
+  bases[lane] = x;
+  exponents[lane] = y;
+  _mm_store_ps(bases, device::pow(_mm_load_ps(bases), _mm_load_ps(exponents)));
+  return bases[lane];
 }
 
 double boundOfFastPower(float x, float y) {
@@ -64,6 +78,13 @@ const std::vector<Binary> &binaryFunctions() {
   static const std::vector<Binary> functions = {
       {"pow", device::pow, ::powf, ::pow, mpfr_pow, 0.0f, 8.0f},
       {"atan2", device::atan2, ::atan2f, ::atan2, mpfr_atan2, -8.0f, 8.0f},
+  };
+  return functions;
+}
+
+const std::vector<Binary> &laneFunctions() {
+  static const std::vector<Binary> functions = {
+      {"pow4", powerInLane, ::powf, ::pow, mpfr_pow, 0.0f, 8.0f},
   };
   return functions;
 }

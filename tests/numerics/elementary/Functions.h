@@ -33,6 +33,9 @@ struct Binary {
 const std::vector<Unary> &unaryFunctions();
 const std::vector<Binary> &binaryFunctions();
 
+/// pow with the pair in one of four lanes, beside others of which now and then one is special.
+const std::vector<Binary> &laneFunctions();
+
 /// The approximations of Fast.h, named `fast.sin` and so on.
 const std::vector<Unary> &fastUnaryFunctions();
 const std::vector<Binary> &fastBinaryFunctions();

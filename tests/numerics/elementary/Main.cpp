@@ -151,7 +151,7 @@ bool runAll(const Options &options, bool &right) {
     for (const Unary &function : *functions)
       if (wanted(function.name) && options.bounds == 0)
         run(function);
-  for (const auto *functions : {&binaryFunctions(), &fastBinaryFunctions()})
+  for (const auto *functions : {&binaryFunctions(), &laneFunctions(), &fastBinaryFunctions()})
     for (const Binary &function : *functions)
       if (wanted(function.name) && options.bounds == 0)
         run(function);
