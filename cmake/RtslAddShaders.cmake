@@ -1,9 +1,9 @@
-# rtsl_add_shaders(target NAME name SHADERS files... [TRACE split|recurse]): compiles RTSL files to C++ when the target is built, again when one of
+# rtsl_add_shaders(target NAME name SHADERS files... [TRACE split|recurse] [FP strict|fast]): compiles RTSL files to C++ when the target is built, again when one of
 # them or what they import changes, and adds it to the target. The target then has `const RtslShaders *name_shaders()`
 # (declare it with RTSL_DECLARE_SHADERS(name)) and links rtsl::runtime. TRACE says what becomes of methods that trace:
-# their states, or calls.
+# their states, or calls. FP fast lets the C++ compiler change the last digits for speed (docs/fast.md).
 function(rtsl_add_shaders target)
-  cmake_parse_arguments(ARG "" "NAME;TRACE" "SHADERS" ${ARGN})
+  cmake_parse_arguments(ARG "" "NAME;TRACE;FP" "SHADERS" ${ARGN})
   if(NOT ARG_NAME OR NOT ARG_SHADERS)
     message(FATAL_ERROR "rtsl_add_shaders: give a NAME and SHADERS")
   endif()
@@ -12,13 +12,16 @@ function(rtsl_add_shaders target)
     get_filename_component(file "${file}" ABSOLUTE)
     list(APPEND files "${file}")
   endforeach()
-  set(trace)
+  set(options)
   if(ARG_TRACE)
-    set(trace "--trace=${ARG_TRACE}")
+    list(APPEND options "--trace=${ARG_TRACE}")
+  endif()
+  if(ARG_FP)
+    list(APPEND options "--fp=${ARG_FP}")
   endif()
   set(generated "${CMAKE_CURRENT_BINARY_DIR}/${ARG_NAME}.cpp")
   add_custom_command(OUTPUT "${generated}"
-    COMMAND rtsl::rtslc compile ${files} --emit=cpp ${trace} -o "${generated}" -MD -MF "${generated}.d"
+    COMMAND rtsl::rtslc compile ${files} --emit=cpp ${options} -o "${generated}" -MD -MF "${generated}.d"
     DEPENDS ${files} rtsl::rtslc DEPFILE "${generated}.d"
     COMMENT "Compiling the shaders of ${ARG_NAME} to C++" VERBATIM)
   target_sources(${target} PRIVATE "${generated}")

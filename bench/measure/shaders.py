@@ -14,67 +14,84 @@ BY_HAND = ROOT / "bench" / "shaders"
 SHADERS = ("NoiseTexture", "Ggx", "Julia", "Dielectric")
 COMPILERS = ("g++", "clang++-22")
 FLAGS = ("-std=c++17", "-O3", "-march=x86-64-v3")
+# Arithmetic of the printed code, the flags of that by hand beside it, and what they are called.
+PAIRINGS = (
+    ("strict", ("-ffp-contract=off",), "strict, by hand without contraction"),
+    ("fast", (), "--fp=fast, by hand as compilers have it"),
+    ("strict", (), "strict, by hand as compilers have it"),
+)
 
 
-def compile_all(compiler, sources, folder, library):
-    """One program of generated code and code by hand, compiled with the same flags. Contraction is the compiler's
-    default by hand; generated code switches it off for itself."""
-    objects = []
-    for source in sources:
-        target = folder / f"{compiler}-{source.parent.name}-{source.stem}.o"
-        command = [compiler, *FLAGS, "-I", str(ROOT), "-I", str(ROOT / "include"), "-c", str(source), "-o", str(target)]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            raise process.Failed(f"{compiler} refuses {source}:\n{done.stderr}")
-        objects.append(str(target))
-    program = folder / f"shaders-{compiler}"
-    subprocess.run([compiler, *objects, "-o", str(program), "-L", str(library), "-lrtsl", f"-Wl,-rpath,{library}"], check=True)
-    return program
+def compile_file(compiler, source, target, flags):
+    command = [compiler, *FLAGS, *flags, "-I", str(ROOT), "-I", str(ROOT / "include"), "-c", str(source), "-o", str(target)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise process.Failed(f"{compiler} refuses {source}:\n{done.stderr}")
+    return str(target)
+
+
+def build_programs(compiler, printed, folder, library):
+    """A program a pairing; `printed` has the files of each arithmetic. What both sides call is the same object file."""
+    shared = [compile_file(compiler, BY_HAND / f"{name}.cpp", folder / f"{name}.o", ()) for name in ("Main", "Surroundings")]
+    objects = {}
+    for arithmetic, sources in printed.items():
+        objects[arithmetic] = [compile_file(compiler, source, source.with_suffix(".o"), ()) for source in sources]
+    programs = []
+    for number, (arithmetic, flags, _) in enumerate(PAIRINGS):
+        by_hand = [compile_file(compiler, BY_HAND / f"{shader}.cpp", folder / f"{shader}.{number}.o", flags)
+                   for shader in SHADERS]
+        programs.append(folder / f"shaders{number}")
+        subprocess.run([compiler, *shared, *objects[arithmetic], *by_hand, "-o", str(programs[-1]), "-L", str(library), "-lrtsl",
+                        f"-Wl,-rpath,{library}"], check=True)
+    return programs
 
 
 def measure(build, rounds):
     results = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        generated = folder / "generated"
-        generated.mkdir()
-        for shader in SHADERS:
-            process.run([str(build / "bin" / "rtslc"), "compile", str(ROOT / "docs" / "cpp-output" / f"{shader}.rtsl"),
-                         "--emit=cpp", "--trace=recurse", "-o", str(generated / f"{shader}.cpp")])
-        sources = sorted(generated.glob("*.cpp")) + sorted(BY_HAND.glob("*.cpp"))
+        printed = {"strict": [], "fast": []}
+        for arithmetic, sources in printed.items():
+            (folder / arithmetic).mkdir()
+            for shader in SHADERS:
+                sources.append(folder / arithmetic / f"{shader}.cpp")
+                process.run([str(build / "bin" / "rtslc"), "compile", str(ROOT / "docs" / "cpp-output" / f"{shader}.rtsl"),
+                             "--emit=cpp", "--trace=recurse", f"--fp={arithmetic}", "-o", str(sources[-1])])
         for compiler in COMPILERS:
             if not shutil.which(compiler):
                 results.append({"compiler": compiler, "failed": "not installed"})
                 continue
-            program = compile_all(compiler, sources, folder, build / "lib")
-            for line in process.run([str(program), str(rounds)]).output.splitlines():
-                run = json.loads(line)
-                ratios = [hand / ours for hand, ours in zip(run["byHand"], run["generated"])]
-                results.append(
-                    {
-                        "compiler": compiler,
-                        "shader": run["shader"],
-                        "difference": run["difference"],
-                        "byHand": summarise(run["byHand"]).as_json(),
-                        "generated": summarise(run["generated"]).as_json(),
-                        "ratio": summarise(ratios).as_json(),
-                    }
-                )
+            for (_, _, pairing), program in zip(PAIRINGS, build_programs(compiler, printed, folder, build / "lib")):
+                for line in process.run([str(program), str(rounds)]).output.splitlines():
+                    run = json.loads(line)
+                    ratios = [hand / ours for hand, ours in zip(run["byHand"], run["generated"])]
+                    results.append(
+                        {
+                            "compiler": compiler,
+                            "pairing": pairing,
+                            "shader": run["shader"],
+                            "difference": run["difference"],
+                            "byHand": summarise(run["byHand"]).as_json(),
+                            "generated": summarise(run["generated"]).as_json(),
+                            "ratio": summarise(ratios).as_json(),
+                        }
+                    )
     return {"flags": " ".join(FLAGS), "rounds": rounds, "results": results}
 
 
 def show(report):
     print(f"printed C++ beside C++ by hand, {report['flags']}; nanoseconds of processor time a call, medians of "
           f"{report['rounds']} rounds")
-    print(f"{'':32}{'by hand':>9}{'printed':>9}{'speed':>8}  {'interval':16}{'answers differ by':>18}")
+    title = None
     for result in report["results"]:
         if "failed" in result:
-            print(f"{result['compiler']:12}{result['failed']}")
+            print(f"{result['compiler']}: {result['failed']}")
             continue
+        if title != (title := f"{result['compiler']}: {result['pairing']}"):
+            print(f"\n{title:48}{'by hand':>9}{'printed':>9}{'speed':>8}  {'interval':14}{'answers differ by':>18}")
         low, high = result["ratio"]["interval"]
-        print(f"{result['compiler']:12}{result['shader']:20}{result['byHand']['median']:9.1f}"
-              f"{result['generated']['median']:9.1f}{result['ratio']['median']:8.2f}  {low:.2f} to {high:.2f}"
-              f"{result['difference']:22.1e}")
+        print(f"  {result['shader']:46}{result['byHand']['median']:9.1f}{result['generated']['median']:9.1f}"
+              f"{result['ratio']['median']:8.2f}  {f'{low:.2f} to {high:.2f}':14}{result['difference']:18.1e}")
 
 
 def add(subcommands, common):

@@ -393,7 +393,10 @@ std::string ModulePrinter::run() {
   const std::string methods = referenceMethods();
   const std::string references = this->references();
 
-  std::string text = "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math it computes what rtslc's own\n"
+  std::string text =
+      options.fast ? "// Made by rtslc --emit=cpp --fp=fast: what it computes differs in the last digits with the compiler\n"
+                     "// and its options.\n#define RTSL_FAST\n"
+                   : "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math it computes what rtslc's own\n"
                      "// machine code computes, to the last bit.\n";
   if (!options.checkIndices)
     text += "#define RTSL_UNCHECKED // indices are trusted (--unchecked)\n";

@@ -321,6 +321,7 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   printing.prints = features & RTSL_FEATURE_PRINT;
   printing.exceptions = features & RTSL_FEATURE_EXCEPTIONS;
   printing.checkIndices = options.checkIndices;
+  printing.fast = options.floatingPoint == FloatingPoint::Fast;
   printing.name = name;
   printing.colorComponents = options.colorComponents;
   printing.lineDirectives = lineDirectives;

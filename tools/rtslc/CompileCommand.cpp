@@ -114,8 +114,6 @@ void checkInputs(const CompileCommandOptions &options) {
   if (options.stage == Stage::Cpp && scenes > 0)
     throw CLI::ValidationError("--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
                                          "builds one");
-  if (options.stage == Stage::Cpp && options.common.compile.floatingPoint != FloatingPoint::Strict)
-    throw CLI::ValidationError("--fp", "C++ is strict; what is fast is machine code");
   if (scenes == 0 && options.stage != Stage::Cpp && features(options) != 0)
     throw CLI::ValidationError(options.prints ? "--print" : "--exceptions", "is for C++ and for scenes");
   if (scenes == 0 && !options.overrides.empty())

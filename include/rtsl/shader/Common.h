@@ -15,6 +15,7 @@
 #include <limits>
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -329,4 +330,5 @@ inline auto ldexp(const T &value, const E &exponents) {
       value, exponents);
 }
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

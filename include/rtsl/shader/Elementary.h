@@ -1,22 +1,23 @@
 //===- Elementary.h - sin, pow, sqrt and the like -------------------------===//
 //
 // Correctly rounded: the runtime library holds them, compiled from the source that the compiler's
-// own machine code uses (runtime/device/math).
+// own machine code uses (runtime/device/math). With RTSL_FAST they are those of the C library.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "rtsl/shader/Common.h"
 
-/// X(name) for each function of one number.
+/// X(name) for each function of one number that C has, too.
 #define RTSL_ELEMENTARY_FUNCTIONS(X)                                                               \
   X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(asinh)                    \
-  X(acosh) X(atanh) X(exp) X(exp2) X(log) X(log2) X(inversesqrt)
+  X(acosh) X(atanh) X(exp) X(exp2) X(log) X(log2)
 
 extern "C" {
 #define RTSL_DECLARE(name) float rtsl_##name(float x);
 RTSL_ELEMENTARY_FUNCTIONS(RTSL_DECLARE)
 #undef RTSL_DECLARE
+float rtsl_inversesqrt(float x);
 float rtsl_atan2(float y, float x);
 float rtsl_pow(float x, float y);
 #if defined(__SSE2__)
@@ -25,19 +26,33 @@ __m128 rtsl_pow4(__m128 x, __m128 y); // of each lane; the same bits in less tim
 }
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
+#if defined(RTSL_FAST)
+#define RTSL_ELEMENTARY(name) std::name
+#else
+#define RTSL_ELEMENTARY(name) rtsl_##name
+#endif
 #define RTSL_DEFINE(name)                                                                          \
   template <typename T>                                                                            \
   inline auto name(const T &value) {                                                               \
-    return each([](float x) { return rtsl_##name(x); }, value);                                    \
+    return each([](float x) { return RTSL_ELEMENTARY(name)(x); }, value);                          \
   }
 RTSL_ELEMENTARY_FUNCTIONS(RTSL_DEFINE)
 #undef RTSL_DEFINE
 #undef RTSL_ELEMENTARY_FUNCTIONS
 
+template <typename T>
+inline auto inversesqrt(const T &value) {
+#if defined(RTSL_FAST)
+  return each([](float x) { return 1.0f / squareRoot(x); }, value);
+#else
+  return each([](float x) { return rtsl_inversesqrt(x); }, value);
+#endif
+}
 template <typename Y, typename X>
 inline auto atan(const Y &a, const X &b) {
-  return each([](float y, float x) { return rtsl_atan2(y, x); }, a, b);
+  return each([](float y, float x) { return RTSL_ELEMENTARY(atan2)(y, x); }, a, b);
 }
 
 namespace detail {
@@ -86,8 +101,9 @@ inline auto pow(const X &base, const Y &exponent) {
     return power;
   } else
 #endif
-    return each([](float x, float y) { return rtsl_pow(x, y); }, base, exponent);
+    return each([](float x, float y) { return RTSL_ELEMENTARY(pow)(x, y); }, base, exponent);
 }
+#undef RTSL_ELEMENTARY
 
 /// By squaring, from the lowest bit of |exponent| on; a negative exponent takes the reciprocal at
 /// the end. Each step rounds, so the error is below |exponent| ulp.
@@ -123,4 +139,5 @@ inline auto degrees(const T &radians) {
               radians);
 }
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

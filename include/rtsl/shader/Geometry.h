@@ -1,7 +1,9 @@
 //===- Geometry.h - dot, length, normalize, refract, ... ------------------===//
 //
 // Sums run from the first term to the last. Where a difference could cancel, products are taken as
-// Kahan does it; where squares would leave the range of a float, vectors are scaled first.
+// Kahan does it; where squares would leave the range of a float, vectors are scaled first. With
+// RTSL_FAST compilers may fuse, a division is a multiplication by the reciprocal, and lengths above
+// 2^64 are infinite.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -9,13 +11,18 @@
 #include "rtsl/shader/Common.h"
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 /// a b - c d within 1.5 ulp, and exactly 0 for a b == c d (Jeannerod, Louvet, Muller, "Further
 /// analysis of Kahan's algorithm for the accurate computation of 2 x 2 determinants", 2013).
 inline float differenceOfProducts(float a, float b, float c, float d) {
+#if defined(RTSL_FAST)
+  return a * b - c * d;
+#else
   const float product = c * d;
   const float error = std::fma(-c, d, product); // exact
   return std::fma(a, b, -product) + error;
+#endif
 }
 
 inline float dot(float a, float b) { return a * b; }
@@ -36,9 +43,30 @@ namespace detail {
 // Below, squares that are subnormal could reach the last digits of the sum; above, the sum has
 // overflowed.
 inline bool isGoodSquare(float square) {
+#if defined(RTSL_FAST)
+  return isLikely(0x1p-96f <= square);
+#else
   // Their bits are in order as those of a sum of squares are, and with a NaN above all.
   constexpr uint least = 0x0f800000u, infinite = 0x7f800000u; // 2^-96
   return isLikely(bitsAs<uint>(square) - least < infinite - least);
+#endif
+}
+/// What a vector is multiplied with, exactly, so that its squares stay in the range of a float.
+inline float scaleOfBadSquare([[maybe_unused]] float square) {
+#if defined(RTSL_FAST)
+  return 0x1p100f;
+#else
+  return 1.0f < square ? 0x1p-70f : 0x1p100f;
+#endif
+}
+/// v / root.
+template <typename T>
+inline T quotient(const T &v, float root) {
+#if defined(RTSL_FAST)
+  return v * (1.0f / root);
+#else
+  return v / root;
+#endif
 }
 } // namespace detail
 
@@ -51,9 +79,9 @@ inline float length(const T &v) {
     const float square = rtsl::dot(v, v);
     if (detail::isGoodSquare(square))
       return rtsl::squareRoot(square);
-    const bool isLarge = 1.0f < square;
-    const T scaled = v * (isLarge ? 0x1p-70f : 0x1p100f);
-    return rtsl::squareRoot(rtsl::dot(scaled, scaled)) * (isLarge ? 0x1p70f : 0x1p-100f);
+    const float scale = detail::scaleOfBadSquare(square);
+    const T scaled = v * scale;
+    return rtsl::squareRoot(rtsl::dot(scaled, scaled)) / scale;
   }
 }
 
@@ -65,8 +93,8 @@ inline T normalize(const T &v) {
   } else {
     const float square = rtsl::dot(v, v);
     if (detail::isGoodSquare(square))
-      return v / rtsl::squareRoot(square);
-    const T scaled = v * (1.0f < square ? 0x1p-70f : 0x1p100f);
+      return detail::quotient(v, rtsl::squareRoot(square));
+    const T scaled = v * detail::scaleOfBadSquare(square);
     const float scaledSquare = rtsl::dot(scaled, scaled);
     return scaledSquare == 0.0f ? scaled : scaled / rtsl::squareRoot(scaledSquare);
   }
@@ -117,4 +145,5 @@ inline glm::vec3 perpendicularTo(const glm::vec3 &v) {
   return across == glm::vec3(0.0f) ? glm::vec3(1.0f, 0.0f, 0.0f) : across;
 }
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

@@ -8,6 +8,7 @@
 #include "rtsl/shader/Geometry.h"
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 template <int C, int R>
 using Matrix = glm::mat<C, R, float, glm::defaultp>;
@@ -226,4 +227,5 @@ inline Matrix<N, N> inverse(Matrix<N, N> m) {
   return result;
 }
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

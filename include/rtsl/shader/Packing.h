@@ -9,6 +9,7 @@
 #include "rtsl/shader/Integers.h"
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 namespace detail {
 
@@ -94,4 +95,5 @@ inline glm::vec2 unpackHalf2x16(uint word) {
   return {detail::floatFromHalf(halves.x), detail::floatFromHalf(halves.y)};
 }
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

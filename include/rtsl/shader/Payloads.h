@@ -10,6 +10,7 @@
 #include "rtsl/shader/State.h"
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 // How hits are searched for; 0: the nearest counts, and nobody is asked.
 inline constexpr std::uint32_t firstHit = RTSL_FIRST_HIT;    // no `closestHit` wants to know which
@@ -83,4 +84,5 @@ inline void endIfAnswered(State<N> &rt) {
     throw EndOfAnyHit();
 }
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

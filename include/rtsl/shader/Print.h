@@ -5,6 +5,7 @@
 #include "runtime/PrintLog.h"
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 namespace detail {
 
@@ -36,4 +37,5 @@ inline void print(State<N> &rt, const Item &...items) {
   runtime::print(rawState(rt), format, words);
 }
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

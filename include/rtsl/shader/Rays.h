@@ -5,6 +5,7 @@
 #include "rtsl/shader/State.h"
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 /// What arrives at `origin` from `direction`.
 template <int N>
@@ -130,4 +131,5 @@ private:
   int index = 0;
 };
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl

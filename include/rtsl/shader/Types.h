@@ -15,6 +15,7 @@
 #include <utility>
 
 namespace rtsl {
+inline namespace RTSL_ARITHMETIC {
 
 using uint = std::uint32_t;
 
@@ -366,4 +367,5 @@ private:
 
 } // namespace
 
+} // namespace RTSL_ARITHMETIC
 } // namespace rtsl
