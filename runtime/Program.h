@@ -116,6 +116,8 @@ struct Program {
 
   /// RTSL_NEEDS_*: what the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
+  /// Keep normals and texture coordinates of meshes though `needs` has no use for them.
+  bool keepsMeshes = true;
   /// The program's rtsl_sample, or rtsl_generate.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                  float *color) = nullptr;

@@ -70,6 +70,7 @@ struct Scene::Implementation {
   RtslRef camera = 0, rayGeneration = 0, background = 0, exception = 0;
   float backgroundColor[RTSL_MAX_COLOR] = {}, ambient[RTSL_MAX_COLOR] = {};
   std::vector<Warning> warnings;
+  std::vector<MeshAttribute> meshAttributes;
 
   const ObjectInfo &info(RtslRef object) const {
     auto found =
@@ -165,6 +166,7 @@ struct Scene::Implementation {
   /// RtslInstance::needs of whatever has this material: what it reads, and the objects behind it.
   std::uint32_t needsAt(RtslRef material) const;
   bool isClassic() const { return program->engine == Engine::Classic; }
+  void dropMeshAttributes();
   /// What an object needs that only the classic engine counts on.
   std::vector<std::string> ifClassic(const char *method) const {
     return isClassic() ? std::vector<std::string>{method} : std::vector<std::string>{};
@@ -251,6 +253,36 @@ void Scene::useProgram(std::shared_ptr<const Program> program) {
   self->program = std::move(program);
   for (RtslInstance &instance : self->instances)
     instance.needs = self->needsAt(instance.material);
+  self->dropMeshAttributes();
+}
+
+void Scene::Implementation::dropMeshAttributes() {
+  meshAttributes.clear();
+  std::vector<std::uint32_t> needs(meshes.size(), 0);
+  for (const RtslInstance &instance : instances)
+    if (instance.primitive == 0)
+      needs[instance.mesh] |= instance.needs;
+  const auto look = [&](std::size_t i, const char *name, std::uint32_t need,
+                        std::vector<float> &values, const float *&inTable) {
+    if (values.empty())
+      return;
+    bool isNeeded = (needs[i] & need) != 0;
+    meshAttributes.push_back({meshes[i]->name, name, values.size() * sizeof(float), isNeeded});
+    if (isNeeded || program->keepsMeshes)
+      return;
+    values = {};
+    inTable = nullptr;
+  };
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    Mesh &mesh = meshes[i]->mesh;
+    look(i, "normals", RTSL_NEEDS_NORMALS, mesh.normals, meshTable[i].normals);
+    look(i, "texture coordinates", RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES,
+         mesh.uvs, meshTable[i].uvs);
+  }
+}
+
+const std::vector<Scene::MeshAttribute> &Scene::meshAttributes() const {
+  return self->meshAttributes;
 }
 
 //===----------------------------------------------------------------------===//

@@ -42,8 +42,18 @@ public:
   const Program &program() const;
 
   /// Exchanges the program for one that was linked from the same classes, and may be bound to the
-  /// objects that the scene has: nothing can be added any more.
+  /// objects that the scene has: nothing can be added any more. What of meshes no material reads
+  /// that meets them is dropped.
   void useProgram(std::shared_ptr<const Program> program);
+
+  /// Normals or texture coordinates of a mesh, as useProgram found them.
+  struct MeshAttribute {
+    std::string mesh; // its name
+    const char *name; // "normals"
+    std::size_t bytes = 0;
+    bool isNeeded = false; // by the material of some instance
+  };
+  const std::vector<MeshAttribute> &meshAttributes() const;
 
   /// Adds an object of class `className`: defaults, then the constructor, then the public members.
   /// `name` is for messages; empty: the class's name. Throws UnknownClass, UnknownMember,

@@ -17,7 +17,10 @@
 #include "codegen/passes/continuation/Split.h"
 #include "codegen/passes/continuation/StateGraph.h"
 #include "codegen/passes/restructure/Restructure.h"
+#include "frontend/Expansion.h"
 #include "runtime/DeviceBitcode.h"
+#include "sema/Casting.h"
+#include "sema/Walk.h"
 
 #include "mlir/IR/MLIRContext.h"
 #include "mlir/IR/Verifier.h"
@@ -63,7 +66,8 @@ mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const
   lowering.checkIndices = options.checkIndices;
   lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
   lowering.prints = request.features & RTSL_FEATURE_PRINT;
-  lowering.classes = {request.classes.begin(), request.classes.end()};
+  if (!request.keep.has(Item::Classes))
+    lowering.classes = {request.classes.begin(), request.classes.end()};
   return lower(module, lowering, context);
 }
 
@@ -121,12 +125,14 @@ struct LlvmCode {
   std::unique_ptr<llvm::TargetMachine> machine;
   std::unique_ptr<llvm::Module> module;
   codegen::MachineOptions options;
+  std::vector<std::string> kept; // functions that nothing calls and that stay
 };
 
 /// Level 2 as LLVM IR that is not linked with device code yet.
 LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
-  run(ir, codegen::buildLlvmPipeline);
   LlvmCode code;
+  code.kept = keptFunctions(ir);
+  run(ir, codegen::buildLlvmPipeline);
   code.options = options;
   code.machine = take(codegen::createTargetMachine(options));
   code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
@@ -135,7 +141,8 @@ LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
   return code;
 }
 
-void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, llvm::ArrayRef<std::string> exports) {
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports) {
+  exports.insert(exports.end(), code.kept.begin(), code.kept.end());
   if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
     fail(llvm::toString(std::move(error)));
 }
@@ -372,9 +379,10 @@ namespace {
 /// A linked scene on level 1; null if there were errors.
 mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const LinkRequest &request,
                                             const CompileOptions &options, Diagnostics &diagnostics,
-                                            mlir::MLIRContext &context, runtime::Program &program) {
+                                            mlir::MLIRContext &context, runtime::Program &program,
+                                            Findings *findings = nullptr) {
   mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, request, diagnostics, context);
-  if (!ir || !link(*ir, module, request, options.colorComponents, diagnostics, program))
+  if (!ir || !link(*ir, module, request, options.colorComponents, diagnostics, program, findings))
     return nullptr;
   return ir;
 }
@@ -392,16 +400,56 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu) {
   return forGpu ? gpu : host;
 }
 
+/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into the program.
+void load(LlvmCode code, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
+          runtime::Program &program) {
+  symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
+  codegen::optimize(*code.module, *code.machine, code.options);
+  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
+                                                                std::move(code.machine), symbols));
+  fillEntries(program, *jit, options);
+  program.code = jit;
+}
+
+/// What makes the objects of a scene, and can do nothing else. It runs once.
+void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
+  std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
+  for (const runtime::ClassInfo &info : program.classes) {
+    names.push_back(initializeSymbol(info.name));
+    names.push_back(constructSymbol(info.name));
+  }
+  runToSsa(ir, TraceMode::Recurse);
+  codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
+  machine.optimization = std::min(machine.optimization, 1u);
+  LlvmCode code = translate(ir, machine);
+  defineFacts(code, program);
+  linkDeviceCode(code, runtime::deviceBitcode(), names);
+  load(std::move(code), {}, options, program);
+}
+
+/// Makes the objects of a scene, and leaves in `ir` what renders that scene.
+void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOptions &options, const MakeObjects &makeObjects,
+                 const runtime::Program &program, Findings *findings = nullptr) {
+  const mlir::OwningOpRef<mlir::ModuleOp> copy = ir.clone();
+  keepConstructors(*copy);
+  auto constructors = std::make_shared<runtime::Program>(program);
+  compileConstructors(*copy, options, *constructors);
+  bindScene(ir, makeObjects(constructors), request.keep, findings);
+}
+
 } // namespace
 
 std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
-                                     const CompileOptions &options, Diagnostics &diagnostics) {
+                                     const CompileOptions &options, Diagnostics &diagnostics,
+                                     const MakeObjects &makeObjects) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
   const bool isSplit = stage != Stage::Ir && stage != Stage::Ssa;
   const auto ir = linkScene(module, request, options, diagnostics, *context, program);
   if (!ir)
     return std::nullopt;
+  if (makeObjects)
+    bindToScene(*ir, request, options, makeObjects, program);
   if (stage == Stage::Ir)
     return print(*ir);
   runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/!isLookedAtSplit(stage));
@@ -423,6 +471,118 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
   return codegen::printLlvm(*code.module);
 }
 
+namespace {
+
+/// The first `print` of the classes that the scene uses.
+SourceRange firstPrint(const typed::Module &module, const LinkRequest &request) {
+  SourceRange range;
+  for (const auto &one : module.classes)
+    for (const auto &function : one->functions)
+      if (function->body && std::count(request.classes.begin(), request.classes.end(), one->name))
+        forEachExpr(*function->body, [&](const typed::Expr &expr) {
+          const auto *call = dynCast<typed::BuiltinExpr>(&expr);
+          if (call && call->builtin == typed::Builtin::Print && !range.isValid())
+            range = call->range;
+        });
+  return range;
+}
+
+void describeEvents(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+                    const SourceManager &sources, Findings &findings) {
+  const bool hasExceptions = (request.features & RTSL_FEATURE_EXCEPTIONS) && !(request.features & RTSL_FEATURE_UNHEEDED);
+  Finding exceptions = {Item::Events, "exceptions", hasExceptions, {}, {}};
+  exceptions.reason = hasExceptions ? "asked for, by the scene's `exception` or --exceptions"
+                                    : "the scene has no `exception`, and --exceptions is not given";
+  findings.push_back(std::move(exceptions));
+
+  const bool prints = request.features & RTSL_FEATURE_PRINT;
+  const SourceRange print = firstPrint(module, request);
+  Finding printing = {Item::Events, "print", prints, prints ? "--print" : "no shader prints", {}};
+  if (print.isValid()) {
+    const SourceRange written = sources.written(print).range;
+    const ShownPlace place = sources.shown(written.file, written.begin);
+    printing.place = {std::string(place.file), place.at.line, place.at.column};
+    if (!prints)
+      printing.reason = "--print is not given";
+  }
+  findings.push_back(std::move(printing));
+
+  findings.push_back({Item::Events, "index checks", options.checkIndices,
+                      options.checkIndices ? "an index that is not constant is kept in range" : "--unchecked", {}});
+}
+
+/// What a bound program takes on a GPU. `ir` is used up.
+ProgramSize measure(mlir::ModuleOp ir, const CompileOptions &options, const runtime::Program &program) {
+  ProgramSize size;
+  const SplitReport report = runToSsa(ir, TraceMode::Split);
+  size.frameBytes = report.frameSize();
+  for (const FunctionReport &function : report.functions)
+    size.states += static_cast<std::uint32_t>(function.states.size());
+  LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/false));
+  defineFacts(code, program);
+  linkDeviceCode(code, megakernelCode(/*forGpu=*/false), {"rtsl_lane_bytes", "rtsl_run_lane"});
+  codegen::optimize(*code.module, *code.machine, code.options);
+  for (const llvm::Function &function : *code.module)
+    size.instructions += function.getInstructionCount();
+  for (const llvm::GlobalVariable &global : code.module->globals())
+    if (global.isConstant() && global.hasInitializer())
+      size.constantBytes += code.module->getDataLayout().getTypeAllocSize(global.getValueType());
+  return size;
+}
+
+} // namespace
+
+std::optional<SceneExplanation> explainScene(const typed::Module &module, const LinkRequest &request,
+                                             const CompileOptions &options, Diagnostics &diagnostics,
+                                             const MakeObjects &makeObjects) {
+  SceneExplanation explanation;
+  runtime::SceneFacts facts; // made once: what a program leaves out changes no object
+  {
+    const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+    auto program = std::make_shared<runtime::Program>();
+    const auto ir = linkScene(module, request, options, diagnostics, *context, *program, &explanation.findings);
+    if (!ir)
+      return std::nullopt;
+    bindToScene(*ir, request, options, [&](const auto &constructors) { return facts = makeObjects(constructors); }, *program,
+                &explanation.findings);
+    describeEvents(module, request, options, diagnostics.sources(), explanation.findings);
+    explanation.size = measure(*ir, options, *program);
+    explanation.program = program;
+  }
+  for (Item item : allItems) {
+    if (request.keep.has(item))
+      continue;
+    const bool leavesOut = std::any_of(explanation.findings.begin(), explanation.findings.end(), [&](const Finding &finding) {
+      return finding.item == item && !finding.isNeeded;
+    });
+    if (!leavesOut || item == Item::Meshes) { // nothing changes in the program
+      explanation.sizeKeeping[item] = explanation.size;
+      continue;
+    }
+    LinkRequest keeping = request;
+    CompileOptions keepingOptions = options;
+    keep(ItemSet::only(item), keeping, keepingOptions);
+    Diagnostics unheard(diagnostics.sources());
+    const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+    runtime::Program program;
+    const auto ir = linkScene(module, keeping, keepingOptions, unheard, *context, program);
+    if (!ir)
+      continue; // the item cannot be kept: a class that the scene does not use may be incomplete
+    bindScene(*ir, facts, keeping.keep);
+    explanation.sizeKeeping[item] = measure(*ir, keepingOptions, program);
+  }
+  return explanation;
+}
+
+void keep(ItemSet items, LinkRequest &request, CompileOptions &options) {
+  request.keep.add(items);
+  if (!items.has(Item::Events))
+    return;
+  options.checkIndices = true;
+  if (!(request.features & RTSL_FEATURE_EXCEPTIONS))
+    request.features |= RTSL_FEATURE_EXCEPTIONS | RTSL_FEATURE_UNHEEDED;
+}
+
 std::optional<std::string> explainSceneStates(const typed::Module &module, const LinkRequest &request, std::uint32_t maxDepth,
                                               const CompileOptions &options, ReportFormat format,
                                               Diagnostics &diagnostics) {
@@ -437,17 +597,6 @@ std::optional<std::string> explainSceneStates(const typed::Module &module, const
 }
 
 namespace {
-
-/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into the program.
-void load(LlvmCode code, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
-          runtime::Program &program) {
-  symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
-  codegen::optimize(*code.module, *code.machine, code.options);
-  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
-                                                                std::move(code.machine), symbols));
-  fillEntries(program, *jit, options);
-  program.code = jit;
-}
 
 /// Linked level 1 as a program in this process: the parts of it that are exported.
 void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
@@ -471,32 +620,6 @@ void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Pr
   load(std::move(code), symbols, options, program);
 }
 
-/// What makes the objects of a scene, and can do nothing else. It runs once.
-void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
-  std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
-  for (const runtime::ClassInfo &info : program.classes) {
-    names.push_back(initializeSymbol(info.name));
-    names.push_back(constructSymbol(info.name));
-  }
-  runToSsa(ir, TraceMode::Recurse);
-  codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
-  machine.optimization = std::min(machine.optimization, 1u);
-  LlvmCode code = translate(ir, machine);
-  defineFacts(code, program);
-  linkDeviceCode(code, runtime::deviceBitcode(), names);
-  load(std::move(code), {}, options, program);
-}
-
-/// Makes the objects of a scene, and leaves in `ir` what renders that scene.
-void bindToScene(mlir::ModuleOp ir, const CompileOptions &options, const MakeObjects &makeObjects,
-                 const runtime::Program &program) {
-  const mlir::OwningOpRef<mlir::ModuleOp> copy = ir.clone();
-  keepConstructors(*copy);
-  auto constructors = std::make_shared<runtime::Program>(program);
-  compileConstructors(*copy, options, *constructors);
-  bindScene(ir, makeObjects(constructors));
-}
-
 } // namespace
 
 std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
@@ -508,7 +631,7 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   if (!ir)
     return nullptr;
   if (makeObjects)
-    bindToScene(*ir, options, makeObjects, *program);
+    bindToScene(*ir, request, options, makeObjects, *program);
   compileLinked(*ir, options, *program);
   return program;
 }
@@ -520,7 +643,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
   auto ir = linkScene(module, request, options, diagnostics, *context, program);
   if (!ir)
     return false;
-  bindToScene(*ir, options, makeObjects, program);
+  bindToScene(*ir, request, options, makeObjects, program);
   const SplitReport report = runToSsa(*ir, TraceMode::Split);
   package.frameBytes = report.frameSize();
   package.stateCount = 0;

@@ -6,12 +6,14 @@
 #pragma once
 
 #include "codegen/emit/FloatingPoint.h"
+#include "codegen/link/Items.h"
 #include "frontend/Diagnostics.h"
 #include "runtime/Program.h"
 #include "runtime/package/Package.h"
 #include "sema/TypedAst.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,7 +55,17 @@ struct LinkRequest {
   std::vector<std::pair<std::string, std::string>> surfaces;
   runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints
+  /// What stays in the program although the scene does not need it.
+  ItemSet keep = {};
+  /// Where the scene first mentions a class.
+  std::map<std::string, ir::SourcePlace> places = {};
 };
+
+/// Makes objects of a scene by a program that has what this takes, constructors, defaults and bounds, and nothing else.
+using MakeObjects = std::function<runtime::SceneFacts(std::shared_ptr<const runtime::Program>)>;
+
+/// Asks for `items` to be kept. Of Item::Events that are checks of indices, and exceptions that are noted and end no sample.
+void keep(ItemSet items, LinkRequest &request, CompileOptions &options);
 
 /// The text of `stage` (Ir and what follows) for a module without a scene: what is called through references stays a
 /// declared slot. Nothing if there were errors.
@@ -62,9 +74,10 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
 
 /// The same for the linked program of a scene. From Split on it is what GPUs run: without recursion, with the traversal of
 /// runtime/device. Its PTX has one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/Abi.h); its LLVM IR is that
-/// of Target::HostMegakernel.
+/// of Target::HostMegakernel. With `makeObjects` it is bound to the scene that this makes, as a package is.
 std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
-                                     const CompileOptions &options, Diagnostics &diagnostics);
+                                     const CompileOptions &options, Diagnostics &diagnostics,
+                                     const MakeObjects &makeObjects = nullptr);
 
 /// The module as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md). `name` becomes its namespace, and
 /// `<name>_shaders` what it exports. Nothing if there were errors.
@@ -88,15 +101,34 @@ std::optional<std::string> explainSceneStates(const typed::Module &module, const
                                               const CompileOptions &options, ReportFormat format,
                                               Diagnostics &diagnostics);
 
+/// What a program of a scene takes.
+struct ProgramSize {
+  std::uint64_t instructions = 0;  // of the GPU's whole program, as optimised LLVM IR
+  std::uint64_t constantBytes = 0; // tables beside the code
+  std::uint32_t frameBytes = 0;    // of the largest frame, saved over a `trace`
+  std::uint32_t states = 0;        // that shaders were cut into
+};
+
+/// What the program of a scene has, what it does without, and what that saves.
+struct SceneExplanation {
+  Findings findings;
+  ProgramSize size;
+  std::map<Item, ProgramSize> sizeKeeping; // if this one item were kept
+  /// The linked program without code: what a scene needs to be told what to keep.
+  std::shared_ptr<const runtime::Program> program;
+};
+
+/// Compiles a scene's program, and once more for each item with that item kept. Nothing if there were errors.
+std::optional<SceneExplanation> explainScene(const typed::Module &module, const LinkRequest &request,
+                                             const CompileOptions &options, Diagnostics &diagnostics,
+                                             const MakeObjects &makeObjects);
+
 /// Splits the module at `trace` and warns where more than `largeLiveState` bytes are saved: -Wlive-state. Does nothing
 /// if that warning is off, or if the module cannot be lowered.
 void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics);
 
 /// Half of the registers that a GPU thread of a ray tracer has: 32 of 64.
 constexpr std::uint32_t largeLiveState = 128;
-
-/// Makes the objects of a scene by a program that has what this takes, constructors, defaults and bounds, and nothing else.
-using MakeObjects = std::function<runtime::SceneFacts(std::shared_ptr<const runtime::Program>)>;
 
 /// Compiles and links the module for scenes, in this process. Null if there were errors. With `makeObjects` it is bound to
 /// the scene that this makes (codegen/link/BindScene.h), and renders no other. SceneProgram.h puts both together.

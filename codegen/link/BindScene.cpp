@@ -12,7 +12,11 @@
 #include "codegen/passes/BindMembers.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 
+#include "codegen/link/Steps.h"
 #include "llvm/ADT/STLExtras.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstring>
 #include <map>
@@ -68,6 +72,81 @@ std::vector<std::int32_t> commonWords(const mlir::SymbolTable &symbols, ir::Memb
   return common;
 }
 
+/// The first place that reads a member, by class and name.
+using Readers = std::map<std::pair<std::string, std::string>, std::pair<std::string, ir::SourcePlace>>;
+
+Readers findReaders(mlir::ModuleOp ir) {
+  Readers readers;
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    function.walk([&](ir::MemberOp op) {
+      const auto object = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
+      readers.try_emplace({object.str(), op.getMember().str()},
+                          std::pair(linking::shownName(function), ir::placeOf(op.getLoc())));
+    });
+  return readers;
+}
+
+/// "1.5" or "(0, 1, 0)"; empty if it is long or means nothing to a person.
+std::string valueText(mlir::Type type, const std::vector<std::int32_t> &words) {
+  const mlir::Type scalar = mlir::getElementTypeOrSelf(type);
+  if (words.size() > 4 || !(scalar.isF32() || scalar.isInteger(32) || scalar.isInteger(1)))
+    return {};
+  std::string text;
+  for (const std::int32_t word : words) {
+    float number;
+    std::memcpy(&number, &word, sizeof number);
+    text += text.empty() ? "" : ", ";
+    text += scalar.isF32() ? fmt::format("{:.6g}", number) : scalar.isInteger(1) ? (word ? "true" : "false") : fmt::format("{}", word);
+  }
+  return words.size() == 1 ? text : "(" + text + ")";
+}
+
+Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t objects, const std::vector<std::int32_t> &words,
+                 const Readers &readers) {
+  const std::string className = record.getSymName().str();
+  Finding finding = {Item::Parameters, className + "." + member.getSymName().str(), false, {}, {}};
+  const auto reader = readers.find({className, member.getSymName().str()});
+  if (reader == readers.end()) {
+    finding.reason = "no code that renders reads it";
+    return finding;
+  }
+  finding.place = reader->second.second;
+  if (const mlir::Type type = member.getType(); llvm::isa<ir::RefType, ir::BufferType>(type)) {
+    finding.isNeeded = true;
+    finding.reason = llvm::isa<ir::BufferType>(type) ? "read from the record: a buffer" : "read from the record: a reference";
+    return finding;
+  }
+  const std::string value = words.empty() ? std::string() : valueText(member.getType(), words);
+  if (words.empty())
+    finding.reason = fmt::format("read from the record: {} differ", objects == 2 ? "both objects" : fmt::format("the {} objects", objects));
+  else if (objects == 1)
+    finding.reason = fmt::format("in the code{}: one object has it", value.empty() ? "" : " as " + value);
+  else
+    finding.reason = fmt::format("in the code{}: the same in {}", value.empty() ? "" : " as " + value,
+                                 objects == 2 ? "both objects" : fmt::format("all {} objects", objects));
+  finding.isNeeded = words.empty();
+  return finding;
+}
+
+void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Findings &findings) {
+  Finding loops = {Item::Lights, "illuminance", false, "no shader asks for lights", {}};
+  Finding ambient = {Item::Lights, "ambient light", false, "no shader asks for it", {}};
+  ir.walk([&](mlir::Operation *op) {
+    if (llvm::isa<ir::IlluminanceOp>(op) && !loops.place.isKnown()) {
+      loops.isNeeded = scene.lightCount != 0;
+      loops.reason = scene.lightCount == 0 ? "the scene has no lights: the loop is gone"
+                                           : fmt::format("{} light{}, a number in the code", scene.lightCount,
+                                                         scene.lightCount == 1 ? "" : "s");
+      loops.place = ir::placeOf(op->getLoc());
+    } else if (llvm::isa<ir::AmbientOp>(op) && !ambient.place.isKnown()) {
+      ambient.reason = fmt::format("in the code as ({:.6g})", fmt::join(scene.ambient, ", "));
+      ambient.place = ir::placeOf(op->getLoc());
+    }
+  });
+  findings.push_back(loops);
+  findings.push_back(ambient);
+}
+
 } // namespace
 
 void keepConstructors(mlir::ModuleOp ir) {
@@ -76,20 +155,35 @@ void keepConstructors(mlir::ModuleOp ir) {
       hide(function);
 }
 
-void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene) {
+void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, ItemSet keep, Findings *findings) {
   for (auto function : llvm::make_early_inc_range(ir.getOps<mlir::func::FuncOp>()))
     if (isForBuilding(function))
       function.erase(); // nobody calls them but the runtime
 
   mlir::Builder builder(ir.getContext());
   const mlir::SymbolTable symbols(ir);
-  for (const auto &[record, objects] : objectsByClass(symbols, scene))
-    for (auto member : mlir::cast<ir::ClassOp>(record).getBody().getOps<ir::MemberDeclOp>())
-      if (!member.isScratch())
-        if (const std::vector<std::int32_t> words = commonWords(symbols, member, objects); !words.empty())
-          member->setAttr(codegen::boundWords, builder.getDenseI32ArrayAttr(words));
-  ir->setAttr(codegen::boundLightCount, builder.getI32IntegerAttr(static_cast<std::int32_t>(scene.lightCount)));
-  ir->setAttr(codegen::boundAmbient, builder.getDenseF32ArrayAttr(scene.ambient));
+  const Readers readers = findReaders(ir);
+  const std::map<mlir::Operation *, Objects> byClass = objectsByClass(symbols, scene);
+  for (auto record : ir.getOps<ir::ClassOp>()) {
+    const auto objects = byClass.find(record);
+    if (objects == byClass.end())
+      continue;
+    for (auto member : record.getBody().getOps<ir::MemberDeclOp>()) {
+      if (member.isScratch())
+        continue;
+      const std::vector<std::int32_t> words = commonWords(symbols, member, objects->second);
+      if (findings)
+        findings->push_back(describe(record, member, objects->second.size(), words, readers));
+      if (!words.empty() && !keep.has(Item::Parameters))
+        member->setAttr(codegen::boundWords, builder.getDenseI32ArrayAttr(words));
+    }
+  }
+  if (findings)
+    describeLights(ir, scene, *findings);
+  if (!keep.has(Item::Lights)) {
+    ir->setAttr(codegen::boundLightCount, builder.getI32IntegerAttr(static_cast<std::int32_t>(scene.lightCount)));
+    ir->setAttr(codegen::boundAmbient, builder.getDenseF32ArrayAttr(scene.ambient));
+  }
 }
 
 } // namespace rtsl

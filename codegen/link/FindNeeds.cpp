@@ -1,6 +1,6 @@
 //===- FindNeeds.cpp - what of a hit is read ------------------------------===//
 //
-// Texture coordinates, derivatives and transforms cost time at every hit. What no function of the program reads is not
+// Normals, texture coordinates, derivatives and transforms cost time at every hit. What no function of the program reads is not
 // computed at all; what neither the methods of a material nor those of the objects behind it read is not computed where
 // that material was hit. Which objects these are the scene knows (Scene.cpp).
 //
@@ -15,24 +15,32 @@ namespace rtsl::linking {
 
 namespace {
 
+std::uint32_t needsOf(llvm::StringRef state) {
+  return llvm::StringSwitch<std::uint32_t>(state)
+      .Cases({"TextureUV", "TextureUVW"}, RTSL_NEEDS_TEXTURE_COORDINATES)
+      .Cases({"dPdu", "dPdv", "dsdu", "dsdv", "dtdu", "dtdv"}, RTSL_NEEDS_DERIVATIVES)
+      .Cases({"ObjectToWorld", "WorldToObject"}, RTSL_NEEDS_TRANSFORMS)
+      .Case("InverseRayDirection", RTSL_NEEDS_INVERSE_DIRECTION)
+      .Cases({"EmissionColor", "BSDFValue", "BSDFSeed", "PDF", "du", "dv"}, RTSL_NEEDS_SAMPLING)
+      .Cases({"Time", "TimeSeed"}, RTSL_NEEDS_TIME)
+      .Cases({"LaunchIndex", "LaunchSize"}, RTSL_NEEDS_LAUNCH)
+      .Case("LensCoord", RTSL_NEEDS_LENS)
+      .Cases({"GeometricNormal", "ShadingNormal"}, RTSL_NEEDS_NORMALS)
+      .Default(0);
+}
+
+/// Whether rays that the function sends may begin where something was hit. How far from there they begin to see rests
+/// on the normal (runtime/device/Spawn.h).
+bool mayStartAtHits(mlir::func::FuncOp function) {
+  const auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
+  auto owner = name ? mlir::SymbolTable::lookupNearestSymbolFrom<ir::ClassOp>(function, name) : ir::ClassOp();
+  return !owner || owner.getRoot() == "rt_Material";
+}
+
 /// What one function reads itself.
 std::uint32_t needsOf(mlir::func::FuncOp function) {
   std::uint32_t needs = 0;
-  function.walk([&](ir::StateOp state) {
-    const bool isRead =
-        llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
-    if (isRead)
-      needs |= llvm::StringSwitch<std::uint32_t>(state.getName())
-                   .Cases({"TextureUV", "TextureUVW"}, RTSL_NEEDS_TEXTURE_COORDINATES)
-                   .Cases({"dPdu", "dPdv", "dsdu", "dsdv", "dtdu", "dtdv"}, RTSL_NEEDS_DERIVATIVES)
-                   .Cases({"ObjectToWorld", "WorldToObject"}, RTSL_NEEDS_TRANSFORMS)
-                   .Case("InverseRayDirection", RTSL_NEEDS_INVERSE_DIRECTION)
-                   .Cases({"EmissionColor", "BSDFValue", "BSDFSeed", "PDF", "du", "dv"}, RTSL_NEEDS_SAMPLING)
-                   .Cases({"Time", "TimeSeed"}, RTSL_NEEDS_TIME)
-                   .Cases({"LaunchIndex", "LaunchSize"}, RTSL_NEEDS_LAUNCH)
-                   .Case("LensCoord", RTSL_NEEDS_LENS)
-                   .Default(0);
-  });
+  function.walk([&](mlir::Operation *op) { needs |= linking::needsOf(function, op); });
   return needs;
 }
 
@@ -55,20 +63,17 @@ std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, mlir::Mo
   return needs;
 }
 
-/// The methods of a material that run where it was hit.
-std::vector<mlir::func::FuncOp> methodsAtHits(const LinkContext &context, const LinkedClass &material) {
-  std::vector<std::string> names = {"shade"};
-  for (const RayType &type : context.rayTypes)
-    for (const char *method : {"closestHit.", "anyHit."})
-      names.push_back(method + type.name());
-  std::vector<mlir::func::FuncOp> methods;
-  for (const std::string &name : names)
-    if (mlir::func::FuncOp method = findMethod(context, material, name))
-      methods.push_back(method);
-  return methods;
-}
-
 } // namespace
+
+std::uint32_t needsOf(mlir::func::FuncOp function, mlir::Operation *op) {
+  if (auto state = llvm::dyn_cast<ir::StateOp>(op)) {
+    const bool isRead =
+        llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
+    return isRead ? needsOf(state.getName()) : 0;
+  }
+  const bool sendsRay = llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp>(op);
+  return sendsRay && mayStartAtHits(function) ? RTSL_NEEDS_NORMALS : 0;
+}
 
 std::uint32_t findNeeds(mlir::ModuleOp ir) {
   std::uint32_t needs = 0;
@@ -77,21 +82,45 @@ std::uint32_t findNeeds(mlir::ModuleOp ir) {
   return needs;
 }
 
-std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked) {
-  if (linked.info->root != "rt_Material") {
-    std::vector<mlir::func::FuncOp> methods;
-    for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
-      if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"); owner && owner == linked.info->name)
-        methods.push_back(function);
-    return needsReachedFrom(std::move(methods), context.ir, /*onItself=*/true);
-  }
-  std::uint32_t needs = needsReachedFrom(methodsAtHits(context, linked), context.ir, /*onItself=*/true);
+namespace {
+
+/// What the class's own methods read.
+std::uint32_t ownNeeds(const LinkContext &context, const LinkedClass &linked) {
+  std::vector<mlir::func::FuncOp> methods;
+  for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
+    if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"); owner && owner == linked.info->name)
+      methods.push_back(function);
+  std::uint32_t needs = needsReachedFrom(std::move(methods), context.ir, /*onItself=*/true);
   // `illuminance` runs the lights on the material's own state.
-  if (findMethod(context, linked, "shade"))
+  if (linked.info->root == "rt_Material" && findMethod(context, linked, "shade"))
     for (const LinkedClass &light : context.classes)
       if (light.info->root == "rt_Light")
         if (mlir::func::FuncOp illumination = findMethod(context, light, "illumination"))
           needs |= needsReachedFrom({illumination}, context.ir, /*onItself=*/false);
+  return needs;
+}
+
+/// What a method of some primitive reads.
+std::uint32_t needsOfPrimitives(const LinkContext &context, const std::string &method) {
+  std::uint32_t needs = 0;
+  for (const LinkedClass &primitive : context.classes)
+    if (primitive.info->root == "rt_Primitive")
+      if (mlir::func::FuncOp function = findMethod(context, primitive, method))
+        needs |= needsReachedFrom({function}, context.ir, /*onItself=*/false);
+  return needs;
+}
+
+} // namespace
+
+std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked) {
+  if (context.request.keep.has(Item::Outputs))
+    return RTSL_NEEDS_ALL;
+  std::uint32_t needs = ownNeeds(context, linked);
+  // Whoever computes one of these may read another.
+  if (needs & RTSL_NEEDS_DERIVATIVES)
+    needs |= needsOfPrimitives(context, "computeDerivatives");
+  if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
+    needs |= needsOfPrimitives(context, "computeTextureCoordinates");
   return needs;
 }
 

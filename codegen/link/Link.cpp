@@ -13,11 +13,14 @@ std::string constructSymbol(const std::string &className) { return className + "
 std::string intersectSymbol(const std::string &className) { return className + ".intersect"; }
 
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, runtime::Program &program) {
-  linking::LinkContext context{ir, module, request, diagnostics, {}, {}};
+          Diagnostics &diagnostics, runtime::Program &program, Findings *findings) {
+  Findings unasked;
+  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked, {}, {}};
   linking::dropUnusedClasses(context);
-  linking::placeAttributes(context);
   linking::resolveSlots(context);
+  linking::dropUnreached(context);
+  linking::dropUnreadOutputs(context);
+  linking::placeAttributes(context);
   linking::resolveRayTypes(context);
   linking::warnOfEndlessRays(context);
   if (diagnostics.hasErrors())
@@ -36,8 +39,17 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.engine = request.engine;
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
-  program.needs = linking::findNeeds(ir);
+  program.needs = request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : linking::findNeeds(ir);
+  program.keepsMeshes = request.keep.has(Item::Meshes);
   return true;
+}
+
+std::vector<std::string> keptFunctions(mlir::ModuleOp ir) {
+  std::vector<std::string> names;
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (function->hasAttr(linking::keptMethod))
+      names.push_back(function.getSymName().str());
+  return names;
 }
 
 } // namespace rtsl

@@ -3,12 +3,14 @@
 // Lowering leaves classes beside each other: a method called through a reference is a declared slot, an attribute has no
 // place yet. Linking knows which classes a scene uses. In order, it
 //   1. drops the classes that the scene has no objects of (DropUnusedClasses.cpp),
-//   2. gives each attribute its place, matched by name and type between primitives and materials (PlaceAttributes.cpp),
-//   3. resolves each slot to a switch over the classes that are there, or a direct call if there is one
+//   2. resolves each slot to a switch over the classes that are there, or a direct call if there is one
 //      (ResolveSlots.cpp),
-//   4. numbers the types of rays that carry a payload, and finds out how their hits are searched for (RayTypes.cpp),
-//   5. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp),
-//   6. finds out what of a hit anybody reads (FindNeeds.cpp).
+//   3. drops the methods that nothing runs (DropUnreached.cpp) and the results that nobody reads (Outputs.cpp),
+//   4. gives each attribute its place, matched by name and type between primitives and materials (PlaceAttributes.cpp),
+//   5. numbers the types of rays that carry a payload, and finds out how their hits are searched for (RayTypes.cpp),
+//   6. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp),
+//   7. finds out what of a hit anybody reads (FindNeeds.cpp).
+// What LinkRequest::keep names stays although the scene does not need it. Each step notes what it left out, and why.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -22,9 +24,12 @@
 namespace rtsl {
 
 /// Links level 1 IR in place. Reports through `diagnostics` and returns false on errors. Fills `classes` and `needs` of
-/// `program` (without code addresses). `colorComponents` is what the module was lowered with.
+/// `program` (without code addresses). `colorComponents` is what the module was lowered with. Adds to `findings`, if given.
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, runtime::Program &program);
+          Diagnostics &diagnostics, runtime::Program &program, Findings *findings = nullptr);
+
+/// The functions of a linked program that nothing runs and that were to be kept.
+std::vector<std::string> keptFunctions(mlir::ModuleOp ir);
 
 /// For a unit without a scene: slots become declared functions, attributes get provisional places.
 void declareSlots(mlir::ModuleOp ir);

@@ -32,6 +32,11 @@ void makeSlot(LinkContext &context, const Slot &slot) {
   for (const LinkedClass &linked : context.classes)
     if (linked.info->root == slot.base)
       classes.push_back(&linked);
+  const std::string subject = std::string(slot.base) + "." + slot.method;
+  const bool isNoted = llvm::any_of(context.findings, [&](const Finding &finding) { return finding.subject == subject; });
+  const auto hasMethod = [&](const LinkedClass *linked) { return findMethod(context, *linked, slot.method); };
+  if (!isNoted && llvm::any_of(classes, hasMethod))
+    noteDispatch(context, subject, classes, {});
 
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
   const mlir::Type object = ir::RefType::get(builder.getContext(), slot.base);
@@ -84,8 +89,11 @@ void makeConstruct(LinkContext &context, LinkedClass &linked) {
 } // namespace
 
 void makeEntries(LinkContext &context) {
-  for (auto function : context.ir.getOps<mlir::func::FuncOp>())
+  for (auto function : context.ir.getOps<mlir::func::FuncOp>()) {
     function.setPrivate();
+    if (function->hasAttr(keptMethod))
+      exportFunction(function);
+  }
   for (const Slot &slot : slots)
     makeSlot(context, slot);
   makePayloadSlots(context);

@@ -93,6 +93,16 @@ std::vector<Attribute> collect(mlir::ModuleOp ir) {
   return attributes;
 }
 
+void note(LinkContext &context, const Attribute &attribute) {
+  ir::AttributeOp use = *std::find_if(attribute.uses.begin(), attribute.uses.end(),
+                                      [&](ir::AttributeOp op) { return isRead(op) == attribute.isRead; });
+  const std::string function = shownName(use->getParentOfType<mlir::func::FuncOp>());
+  context.findings.push_back({Item::Attributes, attribute.name, attribute.isRead,
+                              attribute.isRead ? fmt::format("{} bytes of the hit, read by `{}`", 4 * attribute.words, function)
+                                               : fmt::format("`{}` writes it and nobody reads it", function),
+                              ir::placeOf(use.getLoc())});
+}
+
 bool shareAPrimitive(const Attribute &a, const Attribute &b) {
   return std::any_of(a.primitives.begin(), a.primitives.end(),
                      [&](const std::string &name) { return b.primitives.count(name) != 0; });
@@ -133,11 +143,16 @@ void placeAttributes(LinkContext &context) {
   std::vector<const Attribute *> placed;
   std::uint32_t words = 0;
   for (Attribute &attribute : attributes) {
-    if (!attribute.isRead) {
-      eraseStores(attribute);
-      continue;
-    }
+    note(context, attribute);
     attribute.offset = firstFit(attribute, placed);
+    if (!attribute.isRead) {
+      // Nobody asked for more than there is room for: what is kept only for its own sake gives way.
+      const bool fits = attribute.offset + attribute.words <= RTSL_MAX_ATTRIBUTE_WORDS;
+      if (!context.request.keep.has(Item::Attributes) || !fits) {
+        eraseStores(attribute);
+        continue;
+      }
+    }
     placed.push_back(&attribute);
     words = std::max(words, attribute.offset + attribute.words);
     for (ir::AttributeOp op : attribute.uses)

@@ -44,6 +44,18 @@ void buildZeroReturn(mlir::OpBuilder &builder, mlir::func::FuncOp function) {
 
 } // namespace
 
+void noteDispatch(LinkContext &context, const std::string &subject, const std::vector<const LinkedClass *> &classes,
+                  const ir::SourcePlace &place) {
+  if (classes.empty())
+    return;
+  std::string names;
+  for (const LinkedClass *linked : classes)
+    names += (names.empty() ? "`" : ", `") + linked->info->name + "`";
+  const bool isNeeded = classes.size() > 1;
+  context.findings.push_back({Item::Dispatch, subject, isNeeded,
+                              isNeeded ? "one of " + names : "always " + names + ", called directly", place});
+}
+
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method) {
   mlir::ModuleOp ir = context.ir; // lookups are not const in MLIR
   return ir.lookupSymbol<mlir::func::FuncOp>(linked.info->name + "." + method);
@@ -59,7 +71,7 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
   mlir::Block *entry = function.addEntryBlock();
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(entry);
   const bool oneForAll = targets.size() == 1 && classes.size() == 1;
-  if (oneForAll) {
+  if (oneForAll && !context.request.keep.has(Item::Dispatch)) {
     buildCall(builder, *targets.front().first, targets.front().second, function);
     return;
   }
@@ -109,9 +121,10 @@ void resolveSlots(LinkContext &context) {
       if (!derivesFrom(*linked.info, slot.base))
         continue;
       classes.push_back(&linked);
-      if (!findMethod(context, linked, slot.method))
+      if (linked.hasObjects && !findMethod(context, linked, slot.method))
         context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method, linked.info->name);
     }
+    noteDispatch(context, slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()));
     buildDispatch(context, function, classes, slot.method);
   });
 }

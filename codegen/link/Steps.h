@@ -2,6 +2,8 @@
 #pragma once
 
 #include "codegen/ir/Rtsl.h"
+#include "codegen/ir/SourcePlace.h"
+#include "codegen/link/Items.h"
 #include "codegen/link/Link.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 
@@ -15,6 +17,7 @@ namespace rtsl::linking {
 /// A class that objects of the program have.
 struct LinkedClass {
   const typed::Class *info = nullptr;
+  bool hasObjects = true; // without, it is there because somebody asked to keep it
   ir::ClassOp record;
   std::uint32_t id = 0; // from 1, in the order of the module
   ir::StructType parameters; // packed arguments of the constructor; null: it has none
@@ -33,12 +36,25 @@ struct LinkContext {
   const typed::Module &module;
   const LinkRequest &request;
   Diagnostics &diagnostics;
+  Findings &findings; // what the steps leave out, and what not
   std::vector<LinkedClass> classes;
   std::vector<RayType> rayTypes;
 };
 
 /// Keeps the classes that are asked for: fills `context.classes` and erases the functions of the others.
 void dropUnusedClasses(LinkContext &context);
+
+/// Erases the methods that nothing runs. Slots have been resolved.
+void dropUnreached(LinkContext &context);
+
+/// On functions that nothing runs and that are compiled all the same.
+constexpr llvm::StringLiteral keptMethod = "rtsl.kept";
+
+/// A function as an author would name it: "Painted.closestHit(Radiance)".
+std::string shownName(mlir::func::FuncOp function);
+
+/// Erases stores of state that nobody reads, and notes what is computed of hits and samples, for whom.
+void dropUnreadOutputs(LinkContext &context);
 
 /// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody reads.
 void placeAttributes(LinkContext &context);
@@ -83,13 +99,19 @@ std::vector<runtime::PrintFormat> numberPrints(mlir::ModuleOp ir);
 /// Adds the entries of runtime/device/Slots.def and those that make objects; everything else becomes private.
 void makeEntries(LinkContext &context);
 
-/// RTSL_NEEDS_*: what some function of the program reads, so that the runtime computes nothing else.
+/// RTSL_NEEDS_*: what an operation of this function reads.
+std::uint32_t needsOf(mlir::func::FuncOp function, mlir::Operation *op);
+/// What some function of the program reads, so that the runtime computes nothing else.
 std::uint32_t findNeeds(mlir::ModuleOp ir);
 /// ClassInfo::needs.
 std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked);
 
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);
+
+/// Notes between which classes a call through a reference or from the runtime chooses.
+void noteDispatch(LinkContext &context, const std::string &subject, const std::vector<const LinkedClass *> &classes,
+                  const ir::SourcePlace &place);
 
 /// Fills the empty `function`, whose first argument is an object of class or base `base`: it calls `method` of whatever
 /// class the object has, with the remaining arguments. A class in `classes` that does not define the method does

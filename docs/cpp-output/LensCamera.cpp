@@ -74,6 +74,7 @@ static RtslShaders describe() {
       .member("extent", &LensCamera::extent, rtsl::Access::Private)
       .constructor<&LensCamera::constructor>({"eye_", "target", "up", "fieldOfView", "aspect"})
       .methods({"constructor", "generateRay", "onDisk"});
+  program.needs(RTSL_NEEDS_LENS);
   program.slots().rt_Camera_generateRay = &slots::generateRay;
   return program.finish();
 }

@@ -180,7 +180,8 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType 
 #define RTSL_NEEDS_TIME 32u               // Time TimeSeed
 #define RTSL_NEEDS_LAUNCH 64u             // LaunchIndex LaunchSize
 #define RTSL_NEEDS_LENS 128u              // LensCoord
-#define RTSL_NEEDS_ALL 255u
+#define RTSL_NEEDS_NORMALS 256u           // GeometricNormal ShadingNormal; whoever sends rays from hits needs them too
+#define RTSL_NEEDS_ALL 511u
 
 // What rtsl_traverse answers.
 #define RTSL_MISS 0u
@@ -205,6 +206,7 @@ extern "C" {
 // What programs can do if they were compiled so. The rest costs nothing.
 #define RTSL_FEATURE_EXCEPTIONS 1u
 #define RTSL_FEATURE_PRINT 2u
+#define RTSL_FEATURE_UNHEEDED 4u // exceptions are noted, and no sample ends by them
 
 /// A set of RTSL_FEATURE_*; a constant.
 uint32_t rtsl_features(RtslState *state);

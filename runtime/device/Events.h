@@ -34,9 +34,10 @@ inline void raise(RtslState &state, uint32_t exception) {
     state.events->exception = exception;
 }
 
-/// Has the sample met an exception?
+/// Has the sample met an exception that ends it?
 inline bool isAbandoned(const RtslState &state) {
-  return hasExceptions(state) && state.events->exception != RTSL_EXCEPTION_NONE;
+  bool heeds = !(rtsl_features(const_cast<RtslState *>(&state)) & RTSL_FEATURE_UNHEEDED);
+  return hasExceptions(state) && heeds && state.events->exception != RTSL_EXCEPTION_NONE;
 }
 
 /// The color of a sample that met an exception which no program answers: red, yellow or magenta;

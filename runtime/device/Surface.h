@@ -45,16 +45,10 @@ inline float interpolated(float a, float b, float c, double u, double v) {
   return float(__builtin_fma(double(c), v, __builtin_fma(double(b), u, double(a) * ((1 - u) - v))));
 }
 
-/// Point, normals and texture coordinates of a mesh at state's hit.
-inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t needs) {
-  const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
-  TriangleVertices p = triangleVertices(mesh, state.primitive);
+/// The geometric normal of a triangle, and the one that its mesh gives for shading.
+inline void triangleNormals(RtslState &state, const RtslMesh &mesh, const TriangleVertices &p,
+                            const uint32_t *index) {
   float u = state.u, v = state.v, w = (1.0f - u) - v;
-  store(state.HitPoint,
-        {interpolated(p.v0.x, p.v1.x, p.v2.x, u, v), interpolated(p.v0.y, p.v1.y, p.v2.y, u, v),
-         interpolated(p.v0.z, p.v1.z, p.v2.z, u, v)});
-  state.hitPointError = trianglePointError(p.v0, p.v1, p.v2);
-
   Vec3 geometric = normalized(cross(p.v1 - p.v0, p.v2 - p.v0));
   Vec3 shading = geometric;
   if (mesh.normals) {
@@ -70,6 +64,20 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t ne
   }
   store(state.GeometricNormal, geometric);
   store(state.ShadingNormal, shading);
+}
+
+/// Point, normals and texture coordinates of a mesh at state's hit.
+inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t needs) {
+  const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
+  TriangleVertices p = triangleVertices(mesh, state.primitive);
+  float u = state.u, v = state.v, w = (1.0f - u) - v;
+  store(state.HitPoint,
+        {interpolated(p.v0.x, p.v1.x, p.v2.x, u, v), interpolated(p.v0.y, p.v1.y, p.v2.y, u, v),
+         interpolated(p.v0.z, p.v1.z, p.v2.z, u, v)});
+  state.hitPointError = trianglePointError(p.v0, p.v1, p.v2);
+
+  if (needs & RTSL_NEEDS_NORMALS)
+    triangleNormals(state, mesh, p, index);
 
   if (needs & (RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES)) {
     // Without texture coordinates a triangle is its own unit triangle.
@@ -95,14 +103,16 @@ void describePrimitive(RtslState &state, RtslRef primitive, uint32_t needs, cons
   store(state.HitPoint, {fused(t, direction.x, origin.x), fused(t, direction.y, origin.y),
                          fused(t, direction.z, origin.z)});
   state.hitPointError = primitivePointError(origin, direction, t);
-  setVector(state.GeometricNormal, 0, 0, 0);
-  setVector(state.ShadingNormal, 0, 0, 0);
-  slots.rt_Primitive_computeNormal(&state, primitive);
-  // A normal that the author leaves out equals the other one.
-  if (isZero(load(state.ShadingNormal)))
-    store(state.ShadingNormal, load(state.GeometricNormal));
-  else if (isZero(load(state.GeometricNormal)))
-    store(state.GeometricNormal, load(state.ShadingNormal));
+  if (needs & RTSL_NEEDS_NORMALS) {
+    setVector(state.GeometricNormal, 0, 0, 0);
+    setVector(state.ShadingNormal, 0, 0, 0);
+    slots.rt_Primitive_computeNormal(&state, primitive);
+    // A normal that the author leaves out equals the other one.
+    if (isZero(load(state.ShadingNormal)))
+      store(state.ShadingNormal, load(state.GeometricNormal));
+    else if (isZero(load(state.GeometricNormal)))
+      store(state.GeometricNormal, load(state.ShadingNormal));
+  }
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
     slots.rt_Primitive_computeTextureCoordinates(&state, primitive);
   if (needs & RTSL_NEEDS_DERIVATIVES)

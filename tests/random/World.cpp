@@ -19,13 +19,16 @@ using rtsl::runtime::ValueType;
 // What compiled programs ask of the host
 //===----------------------------------------------------------------------===//
 
-/// All that was printed, as one number.
+/// All that was printed, as one number, and what is running now.
 static std::uint32_t printed = 0;
+static const rtsl::runtime::Program *running = nullptr;
 static std::uint32_t raysThatHit = 0;
 
 extern "C" void rtsl_print(RtslState *, std::uint32_t format, const std::uint32_t *words, std::uint32_t count) {
   auto add = [](std::uint32_t word) { printed = (printed ^ word) * 16777619u ^ printed >> 15; };
-  add(format);
+  for (const rtsl::runtime::PrintItem &item : running->prints[format]) // its number depends on what else there is
+    for (char c : item.text)
+      add(static_cast<unsigned char>(c));
   for (std::uint32_t i = 0; i != count; ++i)
     add(words[i]);
 }
@@ -295,6 +298,28 @@ World::World(const runtime::Program &code, const Program &program) : code(code),
   launch.host = &code.slots;
 }
 
+World::World(const runtime::Program &bound, const World &made)
+    : code(bound), program(made.program), instances(made.instances), mesh(made.mesh), launch(made.launch) {
+  for (RtslInstance &instance : instances) {
+    instance.needs = bound.needs;
+    for (const Object &object : made.objects)
+      if (object.reference == instance.material)
+        instance.anyHit = bound.find(object.info->name)->anyHit;
+  }
+  launch.instances = instances.data();
+  launch.needs = bound.needs;
+  launch.host = &bound.slots;
+}
+
+runtime::SceneFacts World::facts() const {
+  runtime::SceneFacts facts;
+  for (const Object &object : objects)
+    facts.objects.push_back({object.info->name, launch.records + object.reference});
+  facts.lightCount = launch.lightCount;
+  facts.ambient.assign(launch.ambient, launch.ambient + code.colorComponents);
+  return facts;
+}
+
 std::vector<std::pair<std::string, std::string>> World::surfaces(const Program &program) {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const std::string &primitive : program.primitives)
@@ -311,6 +336,7 @@ bool World::hitSomething() const {
 
 std::vector<std::uint32_t> World::run() {
   printed = raysThatHit = 0;
+  running = &code;
   std::vector<std::uint32_t> words;
   for (std::uint32_t depth : {0u, 2u}) {
     launch.maxDepth = depth;

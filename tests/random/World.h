@@ -16,6 +16,12 @@ namespace rtsl::random {
 class World {
 public:
   World(const runtime::Program &code, const Program &program);
+  /// The world that `made` is, with a program that is bound to it. `made` stays, for its objects are used.
+  World(const runtime::Program &bound, const World &made);
+  World(const World &) = delete;
+
+  /// What a program can be bound to.
+  runtime::SceneFacts facts() const;
 
   /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
   /// are one), and what was printed until then.

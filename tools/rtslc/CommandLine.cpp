@@ -82,6 +82,28 @@ void addMessageOptions(CLI::App &command, CommonOptions &options) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void addKeepOption(CLI::App &command, CommonOptions &options) {
+  std::string names = "all";
+  for (Item item : allItems)
+    names += std::string("|") + nameOf(item);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--keep",
+          [&options, names](const std::vector<std::string> &texts) {
+            for (const std::string &text : texts) {
+              const std::optional<Item> item = itemNamed(text);
+              if (text != "all" && !item)
+                throw CLI::ValidationError("--keep", "`" + text + "` is none of " + names);
+              options.keep.add(item ? ItemSet::only(*item) : ItemSet::all());
+            }
+          },
+          "leave this in the program although the scene does not need it; the picture is the same")
+      ->type_name(names)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void addCompileOptions(CLI::App &command, CommonOptions &options) {
   command
       .add_option_function<std::string>(

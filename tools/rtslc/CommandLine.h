@@ -8,7 +8,15 @@
 #include <CLI/CLI.hpp>
 
 #include <functional>
+#include <memory>
 #include <string>
+
+namespace rtsl::runtime {
+class Scene;
+} // namespace rtsl::runtime
+namespace rtsl::scene {
+struct SceneDescription;
+} // namespace rtsl::scene
 
 namespace rtsl::tool {
 
@@ -29,10 +37,13 @@ struct CommonOptions {
   CompileOptions compile;
   PreprocessorOptions preprocessor;
   DependencyOptions dependencies;
+  ItemSet keep; // of programs of scenes
 };
 
 /// Adds --diagnostics, --ansi, --error-limit and -W.
 void addMessageOptions(CLI::App &command, CommonOptions &options);
+/// Adds --keep.
+void addKeepOption(CLI::App &command, CommonOptions &options);
 /// Adds --color, --fp, --unchecked, --trace, --gpu-arch and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);
 
@@ -49,9 +60,12 @@ constexpr Summary compareSummary = {"compare", "say how far two pictures are apa
 /// What a command does once the arguments are read; gives the exit status.
 using Action = std::function<int()>;
 
+/// Makes a scene's objects: scene::buildScene. Null in rtslc, which hands over whatever binds a program to a scene.
+using SceneBuilder = runtime::Scene (*)(const scene::SceneDescription &, std::shared_ptr<const runtime::Program>);
+
 void addCheckCommand(CLI::App &app, Action &action);
-void addCompileCommand(CLI::App &app, Action &action);
-void addExplainCommand(CLI::App &app, Action &action);
+void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addRenderCommand(CLI::App &app, Action &action);
 void addReportCommand(CLI::App &app, Action &action);
 void addPackCommand(CLI::App &app, Action &action);

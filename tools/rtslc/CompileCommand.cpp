@@ -46,15 +46,26 @@ std::uint32_t features(const CompileCommandOptions &options) {
 }
 
 /// The text of the asked stage of a whole scene; nothing if there were errors.
-std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages,
+std::optional<std::string> translateScene(const CompileCommandOptions &options, SceneBuilder buildScene, Messages &messages,
                                           std::vector<std::string> &filesRead) {
   const scene::SceneDescription description = scene::readSceneFile(options.files.front(), options.overrides);
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return std::nullopt;
+  CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
   request.features |= features(options);
-  return emitScene(*module, request, *options.stage, options.common.compile, messages.diagnostics);
+  keep(options.common.keep, request, compile);
+  std::optional<runtime::Scene> scene;
+  const std::optional<std::string> text =
+      emitScene(*module, request, *options.stage, compile, messages.diagnostics, [&](const auto &constructors) {
+        scene = buildScene(description, constructors);
+        return scene->facts();
+      });
+  if (scene)
+    for (const runtime::Warning &warning : scene->warnings())
+      messages.report(warning);
+  return text;
 }
 
 /// The text of a stage that a checked module has.
@@ -118,15 +129,17 @@ void checkInputs(const CompileCommandOptions &options) {
     throw CLI::ValidationError(options.prints ? "--print" : "--exceptions", "is for C++ and for scenes");
   if (scenes == 0 && !options.overrides.empty())
     throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
+  if (scenes == 0 && !options.common.keep.isEmpty())
+    throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
 }
 
-int compile(const CompileCommandOptions &options) {
+int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
   Messages messages(options.common);
   try {
     checkOutput(options.output);
     std::vector<std::string> filesRead;
     const std::optional<std::string> text = isScene(options.files.front())
-                                                ? translateScene(options, messages, filesRead)
+                                                ? translateScene(options, buildScene, messages, filesRead)
                                                 : translate(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       writeOutput(options.output, *text);
@@ -140,7 +153,7 @@ int compile(const CompileCommandOptions &options) {
 
 } // namespace
 
-void addCompileCommand(CLI::App &app, Action &action) {
+void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   auto options = std::make_shared<CompileCommandOptions>();
   CLI::App *command = app.add_subcommand("compile", "translate RTSL files, and show any stage on the way");
   command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
@@ -160,16 +173,17 @@ void addCompileCommand(CLI::App &app, Action &action) {
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
+  addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("examples:\n"
                   "  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir\n"
                   "  rtslc compile Glass.rtsl --emit=cpp -o glass.cpp\n"
                   "  rtslc compile scene.json --emit=ptx --gpu-arch=sm_90 -o scene.ptx");
-  command->callback([options, command, &action] {
+  command->callback([options, command, buildScene, &action] {
     if (command->count("--trace") > 0)
       options->trace = options->common.compile.trace;
     checkInputs(*options);
-    action = [options] { return compile(*options); };
+    action = [options, buildScene] { return compile(*options, buildScene); };
   });
 }
 

@@ -1,5 +1,6 @@
 //===- ExplainCommand.cpp - rtslc explain ---------------------------------===//
 #include "CommandLine.h"
+#include "Explanation.h"
 #include "Messages.h"
 #include "Output.h"
 #include "SceneShaders.h"
@@ -32,23 +33,60 @@ std::optional<std::string> explainFiles(const ExplainOptions &options, Messages 
   return explainStates(*module, options.common.compile, options.format, messages.diagnostics);
 }
 
-std::optional<std::string> explainScene(const ExplainOptions &options, Messages &messages,
-                                        std::vector<std::string> &filesRead) {
-  const scene::SceneDescription description = scene::readSceneFile(options.files.front(), options.overrides);
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
-  if (!module)
-    return std::nullopt;
-  return explainSceneStates(*module, linkRequest(description), scene::renderOptions(description.render).maxDepth,
-                            options.common.compile, options.format, messages.diagnostics);
+/// A scene, its shaders, and how to make its objects.
+struct LoadedScene {
+  LoadedScene(const ExplainOptions &options, SceneBuilder buildScene, Messages &messages, std::vector<std::string> &filesRead)
+      : description(scene::readSceneFile(options.files.front(), options.overrides)),
+        module(loadShaders(description, options.common, messages, &filesRead)), request(linkRequest(description)),
+        compile(options.common.compile), makeObjects([this, buildScene](const auto &constructors) {
+          scene = buildScene(description, constructors);
+          return scene->facts();
+        }) {
+    keep(options.common.keep, request, compile);
+  }
+  LoadedScene(const LoadedScene &) = delete;
+
+  scene::SceneDescription description;
+  std::unique_ptr<typed::Module> module; // null if there were errors
+  LinkRequest request;
+  CompileOptions compile;
+  std::optional<runtime::Scene> scene; // once makeObjects was called
+  MakeObjects makeObjects;
+};
+
+std::optional<std::string> explainStates(const ExplainOptions &options, LoadedScene &loaded, Messages &messages) {
+  return explainSceneStates(*loaded.module, loaded.request, scene::renderOptions(loaded.description.render).maxDepth,
+                            loaded.compile, options.format, messages.diagnostics);
 }
 
-int explain(const ExplainOptions &options) {
+std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedScene &loaded, Messages &messages) {
+  const std::optional<SceneExplanation> explanation =
+      explainScene(*loaded.module, loaded.request, loaded.compile, messages.diagnostics, loaded.makeObjects);
+  if (!explanation)
+    return std::nullopt;
+  for (const runtime::Warning &warning : loaded.scene->warnings())
+    messages.report(warning);
+  loaded.scene->useProgram(explanation->program);
+  const Explanation whole(loaded.description.file, *explanation, loaded.scene->meshAttributes());
+  return options.format == ReportFormat::Json ? whole.json() : whole.text();
+}
+
+std::optional<std::string> explainScene(const ExplainOptions &options, SceneBuilder buildScene, Messages &messages,
+                                        std::vector<std::string> &filesRead) {
+  LoadedScene loaded(options, buildScene, messages, filesRead);
+  if (!loaded.module)
+    return std::nullopt;
+  return options.states ? explainStates(options, loaded, messages) : explainNeeds(options, loaded, messages);
+}
+
+int explain(const ExplainOptions &options, SceneBuilder buildScene) {
   Messages messages(options.common);
   try {
     checkOutput(options.output);
     std::vector<std::string> filesRead;
-    const std::optional<std::string> text = isScene(options.files.front()) ? explainScene(options, messages, filesRead)
-                                                                           : explainFiles(options, messages, filesRead);
+    const std::optional<std::string> text = isScene(options.files.front())
+                                                ? explainScene(options, buildScene, messages, filesRead)
+                                                : explainFiles(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       writeOutput(options.output, *text);
       writeDependencies(options.common.dependencies, options.output, options.files, filesRead);
@@ -61,15 +99,17 @@ int explain(const ExplainOptions &options) {
 
 } // namespace
 
-void addExplainCommand(CLI::App &app, Action &action) {
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App *command = app.add_subcommand("explain", "say what the compiler made of a shader, and why");
-  command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json), the program that runs")->required();
-  command->add_flag("--states", options->states,
-                    "where shaders that trace are cut: their states, and what each trace saves and recomputes")
-      ->required();
   command
-      ->add_option("--format", options->format, "text; json; dot, for Graphviz; svg, a picture")
+      ->add_option("FILE", options->files,
+                   "a scene (.json): what its program holds and does without; with --states RTSL files, too; - is standard input")
+      ->required();
+  command->add_flag("--states", options->states,
+                    "where shaders that trace are cut: their states, and what each trace saves and recomputes");
+  command
+      ->add_option("--format", options->format, "text; json; of --states also dot, for Graphviz, and svg, a picture")
       ->transform(CLI::CheckedTransformer(std::map<std::string, ReportFormat>{{"text", ReportFormat::Text},
                                                                               {"json", ReportFormat::Json},
                                                                               {"dot", ReportFormat::Dot},
@@ -84,15 +124,22 @@ void addExplainCommand(CLI::App &app, Action &action) {
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
+  addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
-  command->footer("examples:\n  rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc explain --states --format=svg Glass.rtsl -o states.svg");
-  command->callback([options, &action] {
+  command->footer("examples:\n  rtslc explain scene.json\n  rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc explain --states --format=svg Glass.rtsl -o states.svg");
+  command->callback([options, buildScene, &action] {
     const auto scenes = std::count_if(options->files.begin(), options->files.end(), isScene);
     if (scenes > 0 && options->files.size() > 1)
       throw CLI::ValidationError("FILE", "give RTSL files or one scene");
     if (scenes == 0 && !options->overrides.empty())
       throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
-    action = [options] { return explain(*options); };
+    if (scenes == 0 && !options->states)
+      throw CLI::ValidationError("FILE", "what is needed is a matter of a scene; give one, or --states");
+    if (scenes == 0 && !options->common.keep.isEmpty())
+      throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
+    if (!options->states && (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
+      throw CLI::ValidationError("--format", "only --states has pictures");
+    action = [options, buildScene] { return explain(*options, buildScene); };
   });
 }
 

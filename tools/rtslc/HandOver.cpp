@@ -2,12 +2,15 @@
 #include "HandOver.h"
 
 #include "CommandLine.h"
+#include "SceneShaders.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <stdexcept>
 #include <unistd.h>
 
@@ -24,11 +27,21 @@ void addHandedOverCommands(CLI::App &app) {
     app.add_subcommand(summary.command, summary.text);
 }
 
+/// A command of rtslc whose program is bound to a scene: the runtime makes its objects.
+static bool bindsScene(std::string_view command, char **arguments) {
+  if (command != "compile" && command != "explain")
+    return false;
+  for (; *arguments; ++arguments)
+    if (isScene(*arguments))
+      return true;
+  return false;
+}
+
 void handOver(char **argv) {
   const std::string_view command = argv[0] && argv[1] ? argv[1] : "";
-  for (const Summary &summary : handedOver) {
-    if (command != summary.command)
-      continue;
+  const bool isHandedOver = std::any_of(std::begin(handedOver), std::end(handedOver),
+                                        [&](const Summary &summary) { return command == summary.command; });
+  if (isHandedOver || bindsScene(command, argv + 1)) {
     std::error_code error;
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
     const std::filesystem::path program = self.parent_path() / "rtslc-render";

@@ -21,8 +21,8 @@ int main(int argc, char **argv) {
              "3 a fault of rtslc itself.");
   Action action;
   addCheckCommand(app, action);
-  addCompileCommand(app, action);
-  addExplainCommand(app, action);
+  addCompileCommand(app, action, nullptr);
+  addExplainCommand(app, action, nullptr);
   addHandedOverCommands(app);
 
   return run(app, action, argc, argv, [argv] { handOver(argv); });

@@ -31,7 +31,9 @@ void packScene(const PackOptions &options, Messages &messages) {
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
-  const LinkRequest request = linkRequest(description);
+  CompileOptions compile = options.common.compile;
+  LinkRequest request = linkRequest(description);
+  keep(options.common.keep, request, compile);
   runtime::Package package;
   package.compiler = "rtslc " RTSL_VERSION;
   package.options = scene::renderOptions(description.render);
@@ -41,7 +43,7 @@ void packScene(const PackOptions &options, Messages &messages) {
     scene = scene::buildScene(description, constructors);
     return scene->facts();
   };
-  if (!compilePackage(*module, request, options.common.compile, messages.diagnostics, makeObjects, package))
+  if (!compilePackage(*module, request, compile, messages.diagnostics, makeObjects, package))
     return;
   for (const runtime::Warning &warning : scene->warnings())
     messages.report(warning);
@@ -84,6 +86,7 @@ void addPackCommand(CLI::App &app, Action &action) {
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
+  addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run glass.rtslpkg -o glass.png --target=gpu");
   command->callback([options, &action] { action = [options] { return pack(*options); }; });

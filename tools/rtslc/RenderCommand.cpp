@@ -143,10 +143,14 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
+  CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
   request.features |= (options.prints ? RTSL_FEATURE_PRINT : 0) | (options.exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
+  keep(options.common.keep, request, compile);
+  if (options.common.keep.has(Item::Events)) // the lines are thrown away
+    request.features |= RTSL_FEATURE_PRINT;
   const std::optional<runtime::Scene> compiled =
-      compileScene(*module, request, options.common.compile, messages.diagnostics, [&](const auto &program) {
+      compileScene(*module, request, compile, messages.diagnostics, [&](const auto &program) {
         const Clock::time_point begin = Clock::now();
         runtime::Scene scene = scene::buildScene(description, program);
         times.scene = secondsSince(begin);
@@ -169,7 +173,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
                                    : runtime::render(scene, render, &statistics);
   progress.finish();
   const std::vector<std::string> printed = runtime::takePrintLog().texts(scene.program().prints);
-  if (!options.json) // there the lines are part of the document
+  if (options.prints && !options.json) // there the lines are part of the document
     for (const std::string &line : printed)
       fmt::print("{}\n", line);
   std::uint64_t stackBytes = 0;
@@ -236,6 +240,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
+  addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");
   command->callback([options, &action] { action = [options] { return render(*options); }; });

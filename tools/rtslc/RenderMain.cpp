@@ -4,13 +4,17 @@
 //
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
+#include "scene/SceneFile.h"
 
+using namespace rtsl;
 using namespace rtsl::tool;
 
 int main(int argc, char **argv) {
   CLI::App app("renders with RTSL, compares pictures and reports what they cost", "rtslc");
   app.require_subcommand(1);
   Action action;
+  addCompileCommand(app, action, &scene::buildScene);
+  addExplainCommand(app, action, &scene::buildScene);
   addRenderCommand(app, action);
   addReportCommand(app, action);
   addPackCommand(app, action);

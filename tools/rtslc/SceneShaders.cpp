@@ -72,6 +72,9 @@ std::vector<std::string> withMeshes(const scene::SceneDescription &description, 
 LinkRequest linkRequest(const scene::SceneDescription &description) {
   LinkRequest request;
   request.classes = scene::classesUsed(description);
+  for (const scene::LocatedName &mention : scene::classMentions(description))
+    request.places.try_emplace(mention.text,
+                               ir::SourcePlace{mention.place.file, mention.place.line, mention.place.column});
   request.engine = description.render.engine;
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;

@@ -12,13 +12,6 @@
 
 namespace rtsl {
 
-std::string TracePlace::text() const {
-  if (file.empty())
-    return {};
-  return (llvm::sys::path::filename(file) + ":" + llvm::Twine(line) + ":" + llvm::Twine(column))
-      .str();
-}
-
 std::uint32_t SplitReport::frameSize() const {
   std::uint32_t size = 0;
   for (const FunctionReport &function : functions)

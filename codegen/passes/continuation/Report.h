@@ -1,6 +1,7 @@
 //===- Report.h - what splitting cost and saved ---------------------------===//
 #pragma once
 
+#include "codegen/ir/SourcePlace.h"
 #include "codegen/passes/continuation/RayGraph.h"
 #include "codegen/passes/continuation/Steps.h"
 
@@ -11,12 +12,7 @@
 namespace rtsl {
 
 /// Where a trace stands.
-struct TracePlace {
-  std::string file; // as messages name it; empty: unknown
-  std::uint32_t line = 0, column = 0;
-  /// "glass.rtsl:40:20", or empty.
-  std::string text() const;
-};
+using TracePlace = ir::SourcePlace;
 
 /// One trace of a function, in the order in which they stand.
 struct TraceReport {

@@ -15,22 +15,6 @@ using namespace continuation;
 
 namespace {
 
-TracePlace placeOf(mlir::Location location) {
-  if (auto file = llvm::dyn_cast<mlir::FileLineColLoc>(location))
-    return {file.getFilename().str(), file.getLine(), file.getColumn()};
-  if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
-    return placeOf(name.getChildLoc());
-  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location)) {
-    TracePlace place = placeOf(call.getCallee());
-    return place.file.empty() ? placeOf(call.getCaller()) : place;
-  }
-  if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location))
-    for (mlir::Location part : fused.getLocations())
-      if (TracePlace place = placeOf(part); !place.file.empty())
-        return place;
-  return {};
-}
-
 /// Names and bytes of what would be or is saved at a trace.
 void describe(llvm::ArrayRef<mlir::Value> values, UniqueNames &uniqueNames,
               std::vector<std::string> &names, std::uint32_t &bytes,
@@ -86,7 +70,7 @@ mlir::LogicalResult FunctionSplitter::reportPlainLiveness() {
     return mlir::failure();
   for (const SuspendPlan &plan : *plans) {
     TraceReport trace;
-    trace.place = placeOf(ir::SuspendOp(plan.suspend).getLoc());
+    trace.place = ir::placeOf(ir::SuspendOp(plan.suspend).getLoc());
     trace.onlyScalesAndAdds = onlyScalesAndAdds(plan.suspend);
     trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
     describe(plan.saved, plainNames, trace.live, trace.liveBytes);
@@ -154,7 +138,7 @@ mlir::LogicalResult FunctionSplitter::run() {
 
   insertSuspends(function);
   for (mlir::Location last : endAtLastTraces(function))
-    report.lastTraces.push_back(placeOf(last));
+    report.lastTraces.push_back(ir::placeOf(last));
   moveVariablesToFrame(function);
   if (mlir::failed(check("suspend")) || mlir::failed(reportPlainLiveness()))
     return mlir::failure();

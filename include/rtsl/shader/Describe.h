@@ -272,7 +272,7 @@ public:
   }
   /// RTSL_NEEDS_*: what of a hit the class's methods read.
   ClassDescription &needs(std::uint32_t what) {
-    info.needs = what;
+    info.needs = what | RTSL_NEEDS_NORMALS; // who sends rays from where was not asked
     return *this;
   }
   /// Has `anyHit` for rays with these payloads.
@@ -315,7 +315,7 @@ public:
     selfTest<N>();
     result->colorComponents = N;
     result->sample = &rtsl_sample_slots;
-    result->needs = 0;
+    result->needs = RTSL_NEEDS_NORMALS;
   }
 
   /// A class of shaders; numbers count from 1. The description holds until the next class.
@@ -326,7 +326,7 @@ public:
     info.name = name;
     info.base = base;
     info.root = root;
-    info.needs = 0;
+    info.needs = RTSL_NEEDS_NORMALS;
     return ClassDescription<Class>(info);
   }
 
@@ -338,7 +338,7 @@ public:
     ((size = std::max(size, sizeof(Frames))), ...);
     result->slots.states = {run, static_cast<std::int32_t>((size + 3) / 4 * 4), shade, miss};
   }
-  void needs(std::uint32_t what) { result->needs = what; }
+  void needs(std::uint32_t what) { result->needs = what | RTSL_NEEDS_NORMALS; }
   /// RTSL_FEATURE_*: what samples do beside colors.
   void features(std::uint32_t what) { result->slots.features = what; }
   void engine(runtime::Engine engine) { result->engine = engine; }

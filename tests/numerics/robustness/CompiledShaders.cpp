@@ -40,6 +40,8 @@ LinkRequest requestFor(std::vector<std::string> classes, std::vector<std::pair<s
   LinkRequest request;
   request.classes = std::move(classes);
   request.surfaces = std::move(surfaces);
+  for (Item item : {Item::Methods, Item::States, Item::Outputs}) // rows call methods that no ray of a scene would start
+    request.keep.add(item);
   return request;
 }
 

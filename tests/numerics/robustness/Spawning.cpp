@@ -67,7 +67,7 @@ bool hitFrom(Random &random, const Target &target, RtslState &state) {
   state.u = hit.u;
   state.v = hit.v;
   state.instance = state.primitive = 0;
-  device::describeTriangle(state, target.mesh(), 0);
+  device::describeTriangle(state, target.mesh(), RTSL_NEEDS_NORMALS);
   return true;
 }
 

@@ -52,7 +52,7 @@ public:
     shaders.slots().rt_Primitive_intersect(&state, object);
     return state.instance != RTSL_NO_HIT;
   }
-  void describe(RtslState &state) const { device::describePrimitive(state, object, 0, shaders.slots()); }
+  void describe(RtslState &state) const { device::describePrimitive(state, object, RTSL_NEEDS_NORMALS, shaders.slots()); }
 
   std::string show(Vec3 origin, Vec3 direction) const {
     return fmt::format("center {}, radius {:a}, origin {}, direction {}", numerics::show(center), radius, numerics::show(origin), numerics::show(direction));

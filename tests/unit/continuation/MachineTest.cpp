@@ -135,12 +135,14 @@ public:
       instances[i].primitive = 40;
       instances[i].material = 16 + 8 * i;
       instances[i].firstPrimitive = i;
+      instances[i].needs = RTSL_NEEDS_NORMALS; // rays leave from hits
     }
     RtslLaunch launch = {};
     launch.records = reinterpret_cast<uint8_t *>(&memory);
     launch.instances = instances;
     launch.instanceCount = 2;
     launch.background = 32;
+    launch.needs = RTSL_NEEDS_NORMALS;
     launch.colorComponents = 3;
     launch.maxDepth = maxDepth;
     launch.width = launch.height = 4;

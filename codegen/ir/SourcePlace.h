@@ -1,0 +1,25 @@
+//===- SourcePlace.h - where in the author's files something stands -------===//
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace mlir {
+class Location;
+} // namespace mlir
+
+namespace rtsl::ir {
+
+struct SourcePlace {
+  std::string file; // as messages name it; empty: unknown
+  std::uint32_t line = 0, column = 0;
+
+  bool isKnown() const { return !file.empty(); }
+  /// "glass.rtsl:40:20" without the folders of the file, or empty.
+  std::string text() const;
+};
+
+/// Of what was inlined the place where it was written, not the call.
+SourcePlace placeOf(mlir::Location location);
+
+} // namespace rtsl::ir

@@ -1,0 +1,169 @@
+//===- DropUnreached.cpp - keep the methods that something runs -----------===//
+//
+// What runs a method is another one that calls it, a ray that some method sends, the engine, or somebody who reads what it
+// computes of a hit. Beginning with what every sample runs, this follows all of these; the rest is erased. What is
+// computed of a program after this (types of rays, attributes, needs) rests on what is left.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/link/Steps.h"
+
+#include "llvm/ADT/MapVector.h"
+
+#include <algorithm>
+
+namespace rtsl::linking {
+
+namespace {
+
+using mlir::func::FuncOp;
+
+/// What runs a method.
+struct Cause {
+  std::string reason;
+  ir::SourcePlace place;
+};
+
+class Reach {
+public:
+  explicit Reach(LinkContext &context) : context(context) {}
+
+  /// All functions that are reached, with the first cause that was found.
+  const llvm::MapVector<mlir::Operation *, Cause> &run() {
+    addRoots();
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+      const auto function = llvm::cast<FuncOp>((reached.begin() + next)->first);
+      look(function);
+    }
+    return reached;
+  }
+
+private:
+  void add(FuncOp function, Cause cause) {
+    if (function)
+      reached.insert({function, std::move(cause)});
+  }
+
+  /// The methods of this name that classes below `root` have.
+  void addMethods(llvm::StringRef root, const std::string &method, const Cause &cause) {
+    for (const LinkedClass &linked : context.classes)
+      if (linked.info->root == root)
+        add(findMethod(context, linked, method), cause);
+  }
+
+  void addRoots() {
+    for (auto function : context.ir.getOps<FuncOp>())
+      if (function->hasAttr("rtsl.constructor"))
+        add(function, {"makes the object", {}});
+    if (context.request.engine == runtime::Engine::Classic) {
+      addMethods("rt_Camera", "generateRay", {"begins every sample", {}});
+      addClassicRays({"for the camera's rays", {}});
+    } else {
+      addMethods("rt_RayGeneration", "generate", {"begins every sample", {}});
+    }
+    addMethods("rt_Primitive", "intersect", {"finds hits", {}});
+    addMethods("rt_Primitive", "computeBounds", {"says where the tree has it", {}});
+    if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
+      addMethods("rt_Exception", "exception", {"for samples that meet an exception", {}});
+  }
+
+  void addClassicRays(const Cause &cause) {
+    addMethods("rt_Material", "shade", cause);
+    addMethods("rt_Miss", "miss", cause);
+  }
+
+  void look(FuncOp function) {
+    const std::string name = shownName(function);
+    function.walk([&](mlir::Operation *op) {
+      const auto by = [&](const char *does) { return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())}; };
+      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
+        const bool isDispatch = function.getSymName().starts_with(dispatchPrefix); // stands for those that call it
+        add(context.ir.lookupSymbol<FuncOp>(call.getCallee()), isDispatch ? reached.lookup(function) : by("called by"));
+      } else if (llvm::isa<ir::TraceOp>(op)) {
+        addClassicRays(by("for rays of"));
+      } else if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op)) {
+        const auto payload = llvm::cast<ir::PtrType>(trace.getPayload().getType()).getPointee();
+        const std::string type = llvm::cast<ir::StructType>(payload).getName().str();
+        addMethods("rt_Material", "closestHit." + type, by("for rays of"));
+        addMethods("rt_Material", "anyHit." + type, by("for rays of"));
+        addMethods("rt_Miss", "miss." + type, by("for rays of"));
+      } else if (llvm::isa<ir::IlluminanceOp>(op)) {
+        addMethods("rt_Light", "illumination", by("for `illuminance` in"));
+      }
+      if (const std::uint32_t needs = needsOf(function, op))
+        addComputations(needs, by(llvm::isa<ir::StateOp>(op) ? "read by" : "for rays of"));
+    });
+  }
+
+  void addComputations(std::uint32_t needs, const Cause &cause) {
+    if (needs & RTSL_NEEDS_NORMALS)
+      addMethods("rt_Primitive", "computeNormal", cause);
+    if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
+      addMethods("rt_Primitive", "computeTextureCoordinates", cause);
+    if (needs & RTSL_NEEDS_DERIVATIVES)
+      addMethods("rt_Primitive", "computeDerivatives", cause);
+  }
+
+  LinkContext &context;
+  llvm::MapVector<mlir::Operation *, Cause> reached;
+};
+
+/// "closestHit.Radiance" begins for a ray; "lookup" does not.
+bool isStartedByRays(llvm::StringRef method) {
+  const llvm::StringRef name = method.split('.').first;
+  return name == "shade" || name == "miss" || name == "closestHit" || name == "anyHit";
+}
+
+bool traces(FuncOp function) {
+  return function
+      .walk([](mlir::Operation *op) {
+        const bool isTrace = llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp>(op);
+        return isTrace ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+      })
+      .wasInterrupted();
+}
+
+} // namespace
+
+std::string shownName(FuncOp function) {
+  auto [owner, method] = function.getSymName().split('.');
+  if (const auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.method")) {
+    const auto [plain, payload] = name.getValue().split('.');
+    return owner.str() + "." + plain.str() + (payload.empty() ? "" : "(" + payload.str() + ")");
+  }
+  return function.getSymName().str();
+}
+
+void dropUnreached(LinkContext &context) {
+  const llvm::MapVector<mlir::Operation *, Cause> reached = Reach(context).run();
+  for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
+    const auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    const auto found = reached.find(function);
+    if (method) {
+      Finding finding;
+      finding.item = isStartedByRays(method.getValue()) ? Item::States : Item::Methods;
+      finding.subject = shownName(function);
+      finding.isNeeded = found != reached.end();
+      if (finding.isNeeded) {
+        finding.reason = found->second.reason;
+        finding.place = found->second.place;
+      } else {
+        finding.reason = finding.item == Item::States ? "no ray of this scene starts it" : "nothing in this scene runs it";
+      }
+      if (!finding.place.isKnown())
+        finding.place = ir::placeOf(function.getLoc());
+      const Item item = finding.item;
+      context.findings.push_back(std::move(finding));
+      if (found == reached.end() && context.request.keep.has(item)) {
+        // What no entry leads to must be one itself. What traces cannot be: only rays start it.
+        if (item == Item::Methods && !traces(function))
+          function->setAttr(keptMethod, mlir::UnitAttr::get(function.getContext()));
+        continue;
+      }
+    }
+    const bool mayBeCalledByKept = !context.request.keep.isEmpty() && !method;
+    if (found == reached.end() && !mayBeCalledByKept)
+      function.erase();
+  }
+}
+
+} // namespace rtsl::linking

@@ -1,0 +1,159 @@
+"""rtslc explain SCENE: what is left out and why; and that --keep changes no picture."""
+
+import json
+import os
+import subprocess
+import unittest
+
+from harness import EXAMPLES, SECONDS, USAGE, Case
+
+SMALL = ("--size", "32x18", "--spp", "2", "-q")
+
+# A scene in which much is left out: a class without objects, a method that nothing runs, results that nobody reads, a scratch member
+# that nobody reads, a material that reads no normal, a ray that nobody sends, no lights, one class everywhere.
+SHADERS = """
+class Eye : rt_Camera {
+  public vec3 position;
+  void generateRay() { rt_RayOrigin = position; rt_RayDirection = vec3(rt_ScreenCoord - 0.5, -1.0); }
+};
+class Ball : rt_Primitive {
+  public float radius = 1.0;
+  scratch float depth;
+  void intersect() {
+    vec3 d = rt_RayDirection;
+    float b = dot(rt_RayOrigin, d), a = dot(d, d), q = b * b - a * (dot(rt_RayOrigin, rt_RayOrigin) - radius * radius);
+    depth = q;
+    if (q > 0.0)
+      hit((-b - sqrt(q)) / a);
+  }
+  void computeBounds() { rt_BoundMin = vec3(-radius); rt_BoundMax = vec3(radius); }
+  void computeNormal() { rt_GeometricNormal = rt_HitPoint; }
+  void computeTextureCoordinates() { rt_TextureUV = rt_HitPoint.xy; rt_TextureUVW = rt_HitPoint; }
+};
+class Paint : rt_Material {
+  public color tint;
+  color unusedHelper() { return tint + tint; }
+  void shade() {
+    rt_SampleColor = tint * rt_TextureUV.x;
+    illuminance (rt_HitPoint) { rt_SampleColor += rt_LightColor; }
+  }
+};
+class Unlit : rt_Material {
+  public color tint;
+  void shade() { rt_SampleColor = tint * rt_TextureUV.x; }
+};
+struct Probe { float distance; };
+class Answering : Unlit {
+  void closestHit(inout Probe probe) { probe.distance = rt_HitDistance; }
+};
+"""
+SCENE = {
+    "rtsl": 1,
+    "import": ["all.rtsl"],
+    "camera": {"class": "Eye", "position": [0, 0, 4]},
+    "materials": {"red": {"class": "Answering", "tint": [1, 0.2, 0.1]}},
+    "objects": [{"primitive": {"class": "Ball"}, "material": "red"}],
+    "render": {"size": [16, 16], "spp": 2},
+}
+
+
+class Explain(Case):
+    def write_scene(self, **changes):
+        self.write("all.rtsl", SHADERS)
+        self.write("scene.json", json.dumps({**SCENE, **changes}, indent=1))
+
+    def entries(self, *arguments):
+        """{item: {subject: (needed, reason, line)}} of the scene."""
+        out, _ = self.run_rtslc("explain", "scene.json", "--json", *arguments)
+        self.document = json.loads(out)
+        return {item["item"]: {e["subject"]: (e["needed"], e["reason"], e.get("place", {}).get("line")) for e in item["entries"]}
+                for item in self.document["items"]}
+
+    def line(self, text):
+        return 1 + next(i for i, line in enumerate(SHADERS.split("\n")) if text in line)
+
+    def test_each_item_says_what_is_needed_and_by_which_line(self):
+        self.write_scene()
+        items = self.entries()
+        needed = {(item, subject) for item, entries in items.items() for subject, entry in entries.items() if entry[0]}
+        left_out = {(item, subject) for item, entries in items.items() for subject, entry in entries.items() if not entry[0]}
+        for one in (("classes", "Ball"), ("methods", "Ball.intersect"), ("states", "Answering.shade"),
+                    ("methods", "Ball.computeTextureCoordinates"), ("outputs", "computeTextureCoordinates")):
+            self.assertIn(one, needed)
+        for one in (("classes", "Paint"), ("methods", "Ball.computeNormal"), ("states", "Answering.closestHit(Probe)"),
+                    ("outputs", "computeNormal"), ("outputs", "computeDerivatives"), ("attributes", "depth"),
+                    ("outputs", "rt_TextureUVW of Ball.computeTextureCoordinates"), ("parameters", "Ball.radius"),
+                    ("dispatch", "rt_Primitive.intersect"), ("lights", "illuminance"), ("events", "print"),
+                    ("events", "exceptions")):
+            self.assertIn(one, left_out)
+        self.assertEqual(items["methods"]["Ball.computeTextureCoordinates"][1:],
+                         ("read by `Answering.shade`", self.line("void shade() { rt_SampleColor = tint * rt_TextureUV.x; }")))
+        self.assertEqual(items["classes"]["Paint"][2], self.line("class Paint"))
+        self.assertIn("(0, 0, 4)", items["parameters"]["Eye.position"][1])
+        saved = {item["item"]: item["saved"] for item in self.document["items"]}
+        self.assertGreater(saved["parameters"]["instructions"], 0)
+        self.assertGreater(saved["dispatch"]["instructions"], 0)
+        self.assertEqual(saved["meshes"]["memoryBytes"], 0)
+
+    def test_what_a_scene_adds_is_needed(self):
+        self.write_scene(materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}})
+        items = self.entries()
+        self.assertEqual(items["lights"]["illuminance"][:2], (False, "the scene has no lights: the loop is gone"))
+        self.assertTrue(items["outputs"]["computeNormal"][0]) # a shadow ray would leave the hit
+        self.assertFalse(items["methods"]["Paint.unusedHelper"][0])
+
+    def test_meshes_lose_what_no_material_reads(self):
+        self.write("triangle.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n")
+        self.write_scene(objects=[{"mesh": "triangle.obj", "material": "red"}])
+        meshes = self.entries()["meshes"]
+        self.assertEqual([meshes[name][0] for name in ("normals of triangle.obj", "texture coordinates of triangle.obj")],
+                         [False, True])
+        self.assertEqual(self.document["items"][-1]["saved"]["memoryBytes"], 3 * 3 * 4)
+
+    def test_text_names_every_left_out_thing_with_its_line(self):
+        self.write_scene()
+        text, _ = self.run_rtslc("explain", "scene.json")
+        self.assertRegex(text, r"left out +Paint +all\.rtsl:\d+ +no object has it")
+        self.assertRegex(text, r"needed +Ball\.computeTextureCoordinates +all\.rtsl:\d+ +read by `Answering\.shade`")
+        kept, _ = self.run_rtslc("explain", "scene.json", "--keep=dispatch,meshes")
+        self.assertRegex(kept, r"Choices between classes +\S+ +\S+ +kept")
+
+    def test_keeping_changes_no_picture(self):
+        self.write_scene()
+        scenes = [self.folder / "scene.json", EXAMPLES / "glass" / "scene.json", EXAMPLES / "whitted-programs" / "scene.json"]
+        for scene in scenes:
+            for trace in ("recurse", "split"):
+                self.run_rtslc("render", scene, "-o", "a.exr", *SMALL, f"--trace={trace}")
+                self.run_rtslc("render", scene, "-o", "b.exr", *SMALL, f"--trace={trace}", "--keep=all")
+                self.assertEqual((self.folder / "a.exr").read_bytes(), (self.folder / "b.exr").read_bytes(), f"{scene} {trace}")
+
+    def test_a_package_that_keeps_everything_renders_the_same(self):
+        self.write_scene()
+        pictures = []
+        for kept in ([], ["--keep=all"]):
+            self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q", *kept)
+            subprocess.run([os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "x.exr", "--target=host"], cwd=self.folder, check=True,
+                           timeout=SECONDS, capture_output=True)
+            pictures.append((self.folder / "x.exr").read_bytes())
+        self.assertEqual(*pictures)
+
+    def test_ptx_of_a_scene_is_bound_to_it(self):
+        self.write_scene()
+        bound, _ = self.run_rtslc("compile", "scene.json", "--emit=ssa")
+        self.assertRegex(bound, r"@radius : f32 .*rtsl\.bound")
+        kept, _ = self.run_rtslc("compile", "scene.json", "--emit=ssa", "--keep=parameters")
+        self.assertNotIn("rtsl.bound", kept)
+
+    def test_usage(self):
+        self.write_scene()
+        for arguments, text in ((("explain", "all.rtsl"), "give one, or --states"),
+                                (("explain", "scene.json", "--format=svg"), "only --states has pictures"),
+                                (("render", "scene.json", "-o", "a.exr", "--keep=everything"), "`everything` is none of all|classes"),
+                                (("compile", "all.rtsl", "--emit=ir", "--keep=all"), "a file alone keeps everything")):
+            with self.subTest(arguments):
+                _, error = self.run_rtslc(*arguments, status=USAGE)
+                self.assertIn(text, error)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,42 @@
+//===- Explanation.h - what a scene's program holds, told -----------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+#include "runtime/Scene.h"
+
+#include <string>
+#include <vector>
+
+namespace rtsl::tool {
+
+/// `rtslc explain SCENE` (docs/explain.md).
+class Explanation {
+public:
+  Explanation(std::string scene, const SceneExplanation &program, const std::vector<runtime::Scene::MeshAttribute> &meshes);
+
+  /// For people: a table of what each item saves, and then what is needed and what is left out, line by line.
+  std::string text() const;
+  /// For programs: {"version": 1, "program": {...}, "items": [...]}.
+  std::string json() const;
+
+private:
+  /// What leaving an item out saves; negative if it costs.
+  struct Saved {
+    std::int64_t instructions = 0, constantBytes = 0, frameBytes = 0, states = 0, memoryBytes = 0;
+  };
+  struct Entries {
+    Item item;
+    std::vector<const Finding *> leftOut, needed;
+    bool isKept = false; // somebody asked for it
+    Saved saved;
+  };
+  std::string table() const;
+  std::string entriesText(const Entries &entries) const;
+
+  std::string scene;
+  ProgramSize size;
+  Findings findings;
+  std::vector<Entries> items;
+};
+
+} // namespace rtsl::tool
