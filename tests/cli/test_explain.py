@@ -118,6 +118,18 @@ class Explain(Case):
         kept, _ = self.run_rtslc("explain", "scene.json", "--keep=dispatch,meshes")
         self.assertRegex(kept, r"Choices between classes +\S+ +\S+ +kept")
 
+    def test_measure_renders_each_item_in_pairs(self):
+        self.write_scene()
+        self.entries("--measure", "--size", "16x9", "--pairs", "10")
+        measured = {one["kept"]: one for one in self.document["measurements"]}
+        self.assertLessEqual({"classes", "dispatch", "outputs", "parameters", "all"}, set(measured))
+        for name, one in measured.items():
+            self.assertTrue(one["sameImage"], name)
+            self.assertEqual(one["pairs"], 10)
+            self.assertGreater(one["seconds"], 0)
+            self.assertLessEqual(one["slower"]["low"], one["slower"]["median"])
+            self.assertLessEqual(one["slower"]["median"], one["slower"]["high"])
+
     def test_keeping_changes_no_picture(self):
         self.write_scene()
         scenes = [self.folder / "scene.json", EXAMPLES / "glass" / "scene.json", EXAMPLES / "whitted-programs" / "scene.json"]
@@ -147,6 +159,8 @@ class Explain(Case):
     def test_usage(self):
         self.write_scene()
         for arguments, text in ((("explain", "all.rtsl"), "give one, or --states"),
+                                (("explain", "scene.json", "--measure", "--pairs=9"), "--pairs"),
+                                (("explain", "scene.json", "--measure", "--states"), "renders scenes"),
                                 (("explain", "scene.json", "--format=svg"), "only --states has pictures"),
                                 (("render", "scene.json", "-o", "a.exr", "--keep=everything"), "`everything` is none of all|classes"),
                                 (("compile", "all.rtsl", "--emit=ir", "--keep=all"), "a file alone keeps everything")):

@@ -9,7 +9,9 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace rtsl::runtime {
 class Scene;
@@ -63,9 +65,14 @@ using Action = std::function<int()>;
 /// Makes a scene's objects: scene::buildScene. Null in rtslc, which hands over whatever binds a program to a scene.
 using SceneBuilder = runtime::Scene (*)(const scene::SceneDescription &, std::shared_ptr<const runtime::Program>);
 
+/// Renders with items left out and kept: measureItems. Null in rtslc, too.
+struct MeasureRequest;
+struct ItemMeasurement;
+using ItemMeasurer = std::optional<std::vector<ItemMeasurement>> (*)(const MeasureRequest &, Diagnostics &);
+
 void addCheckCommand(CLI::App &app, Action &action);
 void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure);
 void addRenderCommand(CLI::App &app, Action &action);
 void addReportCommand(CLI::App &app, Action &action);
 void addPackCommand(CLI::App &app, Action &action);

@@ -1,8 +1,11 @@
 //===- ExplainCommand.cpp - rtslc explain ---------------------------------===//
 #include "CommandLine.h"
 #include "Explanation.h"
+#include "MeasureItems.h"
 #include "Messages.h"
 #include "Output.h"
+#include "PictureSize.h"
+#include "Progress.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
 #include "scene/SceneFile.h"
@@ -19,7 +22,10 @@ struct ExplainOptions {
   CommonOptions common;
   std::vector<std::string> files, overrides;
   std::string output = "-";
-  bool states = false;
+  bool states = false, measure = false;
+  unsigned pairs = 11;
+  std::optional<PictureSize> size; // of pictures that are measured
+  std::uint32_t samples = 1;
   ReportFormat format = ReportFormat::Text;
 };
 
@@ -59,7 +65,35 @@ std::optional<std::string> explainStates(const ExplainOptions &options, LoadedSc
                             loaded.compile, options.format, messages.diagnostics);
 }
 
-std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedScene &loaded, Messages &messages) {
+/// Renders the scene with each item kept that something was left out for, and with everything kept.
+std::optional<std::vector<ItemMeasurement>> measureScene(const ExplainOptions &options, const SceneExplanation &explanation,
+                                                         LoadedScene &loaded, SceneBuilder buildScene, ItemMeasurer measure,
+                                                         Messages &messages) {
+  const BuildScene build = [&](const auto &program) { return buildScene(loaded.description, program); };
+  MeasureRequest what{*loaded.module, loaded.request, loaded.compile, build, scene::renderOptions(loaded.description.render),
+                      {}, {}, options.pairs, {}};
+  what.render.width = options.size ? options.size->width : 320;
+  what.render.height = options.size ? options.size->height : 180;
+  what.render.samplesPerPixel = options.samples;
+  what.render.threads = 1;
+  for (Item item : allItems) {
+    const auto isLeftOut = [&](const Finding &finding) { return finding.item == item && !finding.isNeeded; };
+    const bool inMeshes = item == Item::Meshes && !loaded.scene->meshAttributes().empty();
+    if (loaded.request.keep.has(item) ||
+        (!inMeshes && std::none_of(explanation.findings.begin(), explanation.findings.end(), isLeftOut)))
+      continue;
+    what.kept.push_back(ItemSet::only(item));
+    what.names.push_back(nameOf(item));
+  }
+  what.kept.push_back(ItemSet::all());
+  what.names.push_back("all");
+  Progress progress("measuring");
+  what.progress = [&](double share) { progress.update(share); };
+  return measure(what, messages.diagnostics);
+}
+
+std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedScene &loaded, SceneBuilder buildScene,
+                                        ItemMeasurer measure, Messages &messages) {
   const std::optional<SceneExplanation> explanation =
       explainScene(*loaded.module, loaded.request, loaded.compile, messages.diagnostics, loaded.makeObjects);
   if (!explanation)
@@ -67,25 +101,31 @@ std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedSce
   for (const runtime::Warning &warning : loaded.scene->warnings())
     messages.report(warning);
   loaded.scene->useProgram(explanation->program);
-  const Explanation whole(loaded.description.file, *explanation, loaded.scene->meshAttributes());
+  Explanation whole(loaded.description.file, *explanation, loaded.scene->meshAttributes());
+  if (options.measure) {
+    const auto measurements = measureScene(options, *explanation, loaded, buildScene, measure, messages);
+    if (!measurements)
+      return std::nullopt;
+    whole.add(*measurements);
+  }
   return options.format == ReportFormat::Json ? whole.json() : whole.text();
 }
 
-std::optional<std::string> explainScene(const ExplainOptions &options, SceneBuilder buildScene, Messages &messages,
-                                        std::vector<std::string> &filesRead) {
+std::optional<std::string> explainScene(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer measure,
+                                        Messages &messages, std::vector<std::string> &filesRead) {
   LoadedScene loaded(options, buildScene, messages, filesRead);
   if (!loaded.module)
     return std::nullopt;
-  return options.states ? explainStates(options, loaded, messages) : explainNeeds(options, loaded, messages);
+  return options.states ? explainStates(options, loaded, messages) : explainNeeds(options, loaded, buildScene, measure, messages);
 }
 
-int explain(const ExplainOptions &options, SceneBuilder buildScene) {
+int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer measure) {
   Messages messages(options.common);
   try {
     checkOutput(options.output);
     std::vector<std::string> filesRead;
     const std::optional<std::string> text = isScene(options.files.front())
-                                                ? explainScene(options, buildScene, messages, filesRead)
+                                                ? explainScene(options, buildScene, measure, messages, filesRead)
                                                 : explainFiles(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       writeOutput(options.output, *text);
@@ -99,7 +139,7 @@ int explain(const ExplainOptions &options, SceneBuilder buildScene) {
 
 } // namespace
 
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App *command = app.add_subcommand("explain", "say what the compiler made of a shader, and why");
   command
@@ -108,6 +148,15 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
       ->required();
   command->add_flag("--states", options->states,
                     "where shaders that trace are cut: their states, and what each trace saves and recomputes");
+  command->add_flag("--measure", options->measure,
+                    "render with each thing left out and kept, in turn: time, instructions, and whether the picture is the same");
+  command->add_option("--pairs", options->pairs, "with --measure: pairs of renderings an item; 11 if not given")
+      ->check(CLI::Range(10u, 10000u))
+      ->type_name("N");
+  addSizeOption(*command, options->size);
+  command->add_option("--spp", options->samples, "with --measure: samples per pixel; 1 if not given")
+      ->check(CLI::Range(1u, 0x7fffffffu))
+      ->type_name("N");
   command
       ->add_option("--format", options->format, "text; json; of --states also dot, for Graphviz, and svg, a picture")
       ->transform(CLI::CheckedTransformer(std::map<std::string, ReportFormat>{{"text", ReportFormat::Text},
@@ -126,8 +175,8 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   addCompileOptions(*command, options->common);
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
-  command->footer("examples:\n  rtslc explain scene.json\n  rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc explain --states --format=svg Glass.rtsl -o states.svg");
-  command->callback([options, buildScene, &action] {
+  command->footer("examples:\n  rtslc explain scene.json\n  rtslc explain scene.json --measure\n  rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc explain --states --format=svg Glass.rtsl -o states.svg");
+  command->callback([options, buildScene, measure, &action] {
     const auto scenes = std::count_if(options->files.begin(), options->files.end(), isScene);
     if (scenes > 0 && options->files.size() > 1)
       throw CLI::ValidationError("FILE", "give RTSL files or one scene");
@@ -137,9 +186,11 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
       throw CLI::ValidationError("FILE", "what is needed is a matter of a scene; give one, or --states");
     if (scenes == 0 && !options->common.keep.isEmpty())
       throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
+    if (options->states && options->measure)
+      throw CLI::ValidationError("--measure", "renders scenes, and says nothing of --states");
     if (!options->states && (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
       throw CLI::ValidationError("--format", "only --states has pictures");
-    action = [options, buildScene] { return explain(*options, buildScene); };
+    action = [options, buildScene, measure] { return explain(*options, buildScene, measure); };
   });
 }
 

@@ -98,12 +98,32 @@ std::string Explanation::entriesText(const Entries &entries) const {
   return text;
 }
 
+std::string Explanation::measurementsText() const {
+  if (measurements.empty())
+    return {};
+  std::string text = fmt::format("\nMeasured in {} pairs of renderings in turn, on one thread, in processor time: how much longer one takes that keeps "
+                                 "the item\n(median, and an interval that holds it with 95 %), and how many more instructions it runs.\n\n",
+                                 measurements.front().pairs);
+  text += fmt::format("  {:<12}{:>10}{:>12}{:>24}{:>16}   {}\n", "", "seconds", "longer", "95 %", "instructions", "picture");
+  for (const ItemMeasurement &one : measurements) {
+    const std::string interval = fmt::format("{:+.2f} to {:+.2f} %", 100 * one.slowerLow, 100 * one.slowerHigh);
+    const std::string instructions =
+        one.instructions && one.instructionsKept
+            ? fmt::format("{:+.2f} %", 100 * (static_cast<double>(*one.instructionsKept) / static_cast<double>(*one.instructions) - 1))
+            : "not counted";
+    text += fmt::format("  {:<12}{:>10.4f}{:>10.2f} %{:>24}{:>16}   {}\n", one.kept, one.seconds, 100 * one.slower, interval,
+                        instructions, one.isSameImage ? "the same" : "ANOTHER");
+  }
+  return text;
+}
+
 std::string Explanation::text() const {
   std::string text = fmt::format("{}: {} instructions, {} bytes of constants, {} states with frames of up to {} bytes\n\n",
                                  scene, grouped(static_cast<std::int64_t>(size.instructions)),
                                  grouped(static_cast<std::int64_t>(size.constantBytes)), size.states, size.frameBytes);
   text += "What its program needs, and what it saves to leave the rest out (bytes, but for instructions and states):\n\n";
   text += table();
+  text += measurementsText();
   for (const Entries &entries : items)
     text += entriesText(entries);
   return text;
@@ -136,6 +156,18 @@ std::string Explanation::json() const {
         item["entries"].push_back(std::move(entry));
       }
     document["items"].push_back(std::move(item));
+  }
+  for (const ItemMeasurement &one : measurements) {
+    nlohmann::ordered_json measurement = {{"kept", one.kept},
+                                          {"pairs", one.pairs},
+                                          {"seconds", one.seconds},
+                                          {"slower", {{"median", one.slower}, {"low", one.slowerLow}, {"high", one.slowerHigh}}},
+                                          {"sameImage", one.isSameImage}};
+    if (one.instructions && one.instructionsKept) {
+      measurement["instructions"] = *one.instructions;
+      measurement["instructionsKept"] = *one.instructionsKept;
+    }
+    document["measurements"].push_back(std::move(measurement));
   }
   return document.dump(2) + "\n";
 }

@@ -1,6 +1,7 @@
 //===- Explanation.h - what a scene's program holds, told -----------------===//
 #pragma once
 
+#include "MeasureItems.h"
 #include "codegen/driver/Compiler.h"
 #include "runtime/Scene.h"
 
@@ -13,6 +14,9 @@ namespace rtsl::tool {
 class Explanation {
 public:
   Explanation(std::string scene, const SceneExplanation &program, const std::vector<runtime::Scene::MeshAttribute> &meshes);
+
+  /// Adds what `--measure` found.
+  void add(std::vector<ItemMeasurement> measured) { measurements = std::move(measured); }
 
   /// For people: a table of what each item saves, and then what is needed and what is left out, line by line.
   std::string text() const;
@@ -31,12 +35,14 @@ private:
     Saved saved;
   };
   std::string table() const;
+  std::string measurementsText() const;
   std::string entriesText(const Entries &entries) const;
 
   std::string scene;
   ProgramSize size;
   Findings findings;
   std::vector<Entries> items;
+  std::vector<ItemMeasurement> measurements;
 };
 
 } // namespace rtsl::tool

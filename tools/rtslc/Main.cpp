@@ -22,7 +22,7 @@ int main(int argc, char **argv) {
   Action action;
   addCheckCommand(app, action);
   addCompileCommand(app, action, nullptr);
-  addExplainCommand(app, action, nullptr);
+  addExplainCommand(app, action, nullptr, nullptr);
   addHandedOverCommands(app);
 
   return run(app, action, argc, argv, [argv] { handOver(argv); });

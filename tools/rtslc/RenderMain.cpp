@@ -4,6 +4,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
+#include "MeasureItems.h"
 #include "scene/SceneFile.h"
 
 using namespace rtsl;
@@ -14,7 +15,7 @@ int main(int argc, char **argv) {
   app.require_subcommand(1);
   Action action;
   addCompileCommand(app, action, &scene::buildScene);
-  addExplainCommand(app, action, &scene::buildScene);
+  addExplainCommand(app, action, &scene::buildScene, &measureItems);
   addRenderCommand(app, action);
   addReportCommand(app, action);
   addPackCommand(app, action);
