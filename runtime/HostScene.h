@@ -3,7 +3,7 @@
 
 #include "runtime/BvhBuilder.h"
 #include "runtime/EmbreeScene.h"
-#include "runtime/Program.h"
+#include "runtime/ProgramHost.h"
 
 #include <cstdint>
 #include <memory>
@@ -20,7 +20,7 @@ struct RayCounters {
 RayCounters &rayCounters();
 
 /// RtslLaunch::host points to one of these.
-class HostScene {
+class HostScene : public ProgramHost {
 public:
   HostScene(const Scene &scene, bool useEmbree, unsigned threads);
 
@@ -32,9 +32,6 @@ public:
   /// The same, inline in HostTraversal.cpp alone.
   std::uint32_t traverseFast(RtslState &state, std::uint32_t how) const;
 
-  /// The program's own code for each slot.
-  const Program::Slots &programSlots() const { return slots; }
-
 private:
   std::uint32_t traverseCarefully(RtslState &state, bool anyHit) const;
   std::uint32_t traverseOurselves(RtslState &state, std::uint32_t how) const;
@@ -43,7 +40,6 @@ private:
   std::uint32_t retrace(RtslState &state, bool anyHit, float distance) const;
 
   const Scene &scene;
-  Program::Slots slots;
   std::unique_ptr<EmbreeScene> embree; // null: our own traversal
   mutable std::once_flag built;
   mutable Bvh bvh;

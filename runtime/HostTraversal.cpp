@@ -12,7 +12,7 @@ RayCounters &rayCounters() {
 }
 
 HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads)
-    : scene(scene), slots(scene.program().slots) {
+    : ProgramHost{scene.program().slots}, scene(scene) {
   if (useEmbree)
     embree = std::make_unique<EmbreeScene>(scene, slots, threads);
   else

@@ -6,7 +6,7 @@
 // several.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/HostScene.h"
+#include "runtime/ProgramHost.h"
 
 #define RTSL_DEVICE_OF_SLOTS
 #include "runtime/device/Device.cpp"
@@ -17,7 +17,7 @@ namespace {
 
 /// What the slots of a ray's program are.
 const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) {
-  return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)->programSlots();
+  return static_cast<const rtsl::runtime::ProgramHost *>(state->launch->host)->slots;
 }
 
 } // namespace
@@ -76,7 +76,7 @@ int32_t rtsl_rt_RayGeneration_generate_first(RtslState *) {
 /// rtsl_sample of such a program, with calls or with the machine.
 void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
-  const auto &states = static_cast<const rtsl::runtime::HostScene *>(launch->host)->programSlots().states;
+  const auto &states = static_cast<const rtsl::runtime::ProgramHost *>(launch->host)->slots.states;
   if (!states.run)
     return launch->rayGeneration ? rtsl_generate(launch, x, y, sample, color) : rtsl_sample(launch, x, y, sample, color);
   const uint64_t levels = uint64_t(launch->maxDepth) + 1;

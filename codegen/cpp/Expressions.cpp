@@ -212,10 +212,27 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
   return {};
 }
 
+/// Does it lie in a record, a struct or an array, where bools have 32 bits?
+static bool isInMemory(const typed::Expr &expr) {
+  if (auto *swizzle = dynCast<typed::SwizzleExpr>(&expr))
+    return isInMemory(*swizzle->base);
+  if (auto *index = dynCast<typed::IndexExpr>(&expr))
+    return !index->base->type->isVector() || isInMemory(*index->base);
+  if (auto *assignment = dynCast<typed::AssignExpr>(&expr))
+    return isInMemory(*assignment->target);
+  return expr.kind == ExprKind::Member || expr.kind == ExprKind::Field;
+}
+
+// C++ asks both values to be of one type.
 Code FunctionPrinter::conditional(const typed::ConditionalExpr &expr) {
+  auto choice = [&](const typed::Expr &value) {
+    std::string text = apart(value, Binding::Assignment);
+    const bool isBools = value.type->isVector() && value.type->element->is(TypeKind::Bool);
+    return isBools && isInMemory(value) ? module.type(value.type) + "(" + text + ")" : text;
+  };
   std::string condition = operand(*expr.condition, Binding::Or);
-  std::string whenTrue = apart(*expr.whenTrue, Binding::Assignment);
-  std::string whenFalse = apart(*expr.whenFalse, Binding::Assignment);
+  std::string whenTrue = choice(*expr.whenTrue);
+  std::string whenFalse = choice(*expr.whenFalse);
   return {condition + " ? " + whenTrue + " : " + whenFalse, Binding::Assignment};
 }
 

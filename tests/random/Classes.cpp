@@ -440,7 +440,7 @@ void Generator::makeClasses() {
     const Type *type = smallType();
     words += type->is(TypeKind::Color) ? program.colorComponents : type->componentCount();
     if (words <= 28)
-      attributes.push_back({fresh("s"), type});
+      attributes.push_back({global("s"), type}); // programs that are compiled together share none
   }
   if (program.traces && likely(80))
     for (unsigned n = 1 + below(2); n-- > 0;)

@@ -71,9 +71,15 @@ int main(int argc, char **argv) {
   app.add_option("--batch", options.batch, "programs in one compilation")
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
-  app.add_option("--paths", options.paths, "compare the first path with these: " +
+  std::vector<std::string> &wanted = options.paths.wanted;
+  app.add_option("--paths", wanted, "compare the first path with these: " +
                                                fmt::format("{}", fmt::join(pathNames(), ", ")))
       ->delimiter(',');
+  app.add_option("--also", options.paths.also, "and with these, beside those that are taken if nobody asks")->delimiter(',');
+  app.add_option("--compiler", options.paths.cpp.compiler, "what makes programs of C++, with its options")
+      ->type_name("COMMAND")
+      ->capture_default_str();
+  app.add_option("--keep-cpp", options.paths.cpp.keep, "where to leave the last file of C++ that was compiled");
   app.add_option("--seconds", options.secondsLimit, "a batch that takes longer hangs")
       ->capture_default_str();
   app.add_flag("--shrink", makeSmaller, "make programs that fail smaller, print and write them");
@@ -84,11 +90,12 @@ int main(int argc, char **argv) {
     if (printed->count() + ranged->count() != 1)
       throw CLI::ValidationError("give a SEED to print, or --count to run programs");
     const std::vector<std::string> known = pathNames();
-    if (options.paths.size() == 1 && options.paths[0] == "all")
-      options.paths = known;
-    for (const std::string &path : options.paths)
-      if (std::find(known.begin(), known.end(), path) == known.end())
-        throw CLI::ValidationError("no path is named `" + path + "`");
+    if (wanted.size() == 1 && wanted[0] == "all")
+      wanted = known;
+    for (const std::vector<std::string> *names : {&wanted, &options.paths.also})
+      for (const std::string &path : *names)
+        if (std::find(known.begin(), known.end(), path) == known.end())
+          throw CLI::ValidationError("no path is named `" + path + "`");
   } catch (const CLI::ParseError &error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
@@ -108,6 +115,8 @@ int main(int argc, char **argv) {
   const std::vector<FailedSeed> &failed = results.failed;
   for (const FailedSeed &one : failed)
     fmt::print("seed {}: {}: {}\n", one.seed, name(one.finding.failure), one.finding.detail);
+  for (const auto &[reason, programs] : results.refused)
+    fmt::print("{} programs not run, {}\n", programs, reason);
   fmt::print("{} programs, {} failed, in {} a ray met something\n", count, failed.size(), results.hit);
   std::fflush(stdout);
   if (makeSmaller)

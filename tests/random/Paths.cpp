@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <numeric>
 
 namespace rtsl::random {
 
@@ -21,7 +22,7 @@ const char *name(Failure failure) {
 namespace {
 
 using Compile = std::function<std::shared_ptr<const runtime::Program>(
-    const typed::Module &, const LinkRequest &, unsigned colorComponents, Diagnostics &)>;
+    const typed::Module &, const LinkRequest &, unsigned colorComponents, const PathOptions &, Diagnostics &)>;
 
 /// One way from a checked module to a program that runs.
 struct Path {
@@ -29,11 +30,13 @@ struct Path {
   bool checked;    // indices out of range are defined
   bool forTracing; // says nothing new of programs that do not trace
   Compile compile;
+  bool isAsked = false; // only by name, for it takes long
+  bool renders = false; // whole pictures, and no single samples
 };
 
 Compile compileWith(const CompileOptions &options) {
   return [options](const typed::Module &module, const LinkRequest &request, unsigned colorComponents,
-                   Diagnostics &diagnostics) {
+                   const PathOptions &, Diagnostics &diagnostics) {
     CompileOptions ofColors = options;
     ofColors.colorComponents = colorComponents;
     return compileProgram(module, request, ofColors, diagnostics);
@@ -57,8 +60,23 @@ Compile structuredJit() {
   return compileWith(options);
 }
 
-/// The first is what the others are compared with; the last that can run a program is farthest from
-/// it, and the one that is taken when nobody asks for others.
+/// The GPU's whole program, traversal included.
+Compile megakernel(unsigned optimization) {
+  CompileOptions options;
+  options.optimization = optimization;
+  options.target = Target::HostMegakernel;
+  return compileWith(options);
+}
+
+Compile printed(bool checked, TraceMode trace) {
+  return [=](const typed::Module &module, const LinkRequest &, unsigned colorComponents, const PathOptions &options,
+                 Diagnostics &diagnostics) {
+    return compilePrinted(module, trace, checked, colorComponents, options.cpp, diagnostics);
+  };
+}
+
+/// The first is what the others are compared with; the last that can run a program and is not only asked for is farthest
+/// from it, and the one that is taken when nobody asks for others.
 const std::vector<Path> &allPaths() {
   constexpr TraceMode recurse = TraceMode::Recurse, split = TraceMode::Split;
   static const std::vector<Path> paths = {
@@ -70,23 +88,30 @@ const std::vector<Path> &allPaths() {
       {"jit-O2-unchecked", false, false, jit(2, false, recurse)},
       {"jit-O2-split", true, true, jit(2, true, split)},
       {"jit-O2-split-unchecked", false, true, jit(2, false, split)},
+      {"megakernel-O0", true, false, megakernel(0), /*isAsked=*/true, /*renders=*/true},
+      {"megakernel-O2", true, false, megakernel(2), /*isAsked=*/true, /*renders=*/true},
+      {"cpp-recurse", true, false, printed(true, recurse), /*isAsked=*/true},
+      {"cpp-recurse-unchecked", false, false, printed(false, recurse), /*isAsked=*/true},
+      {"cpp-split", true, true, printed(true, split), /*isAsked=*/true},
   };
   return paths;
 }
 
 /// The paths on which programs of this kind are run, the first one first.
-std::vector<const Path *> choosePaths(const std::vector<std::string> &wanted, bool inRange,
-                                      bool traces) {
+std::vector<const Path *> choosePaths(const PathOptions &options, bool inRange, bool traces) {
   std::vector<const Path *> possible;
   for (const Path &path : allPaths())
     if ((inRange || path.checked) && (traces || !path.forTracing))
       possible.push_back(&path);
-  if (wanted.empty())
-    return {possible.front(), possible.back()};
+  const Path *farthest =
+      *std::find_if(possible.rbegin(), possible.rend(), [](const Path *path) { return !path->isAsked; });
+  auto names = [](const std::vector<std::string> &list, const Path *path) {
+    return std::find(list.begin(), list.end(), path->name) != list.end();
+  };
   std::vector<const Path *> chosen = {possible.front()};
   for (const Path *path : possible)
-    if (path != chosen.front() &&
-        std::find(wanted.begin(), wanted.end(), path->name) != wanted.end())
+    if (path != chosen.front() && ((options.wanted.empty() && path == farthest) || names(options.wanted, path) ||
+                                   names(options.also, path)))
       chosen.push_back(path);
   return chosen;
 }
@@ -120,6 +145,18 @@ struct Checked {
     return text;
   }
 
+  /// The first error, if all there are say that something is not supported yet.
+  std::string refusal() const {
+    std::string first;
+    for (const Diagnostic &diagnostic : diagnostics.all())
+      if (diagnostic.severity == Severity::Error) {
+        if (diagnostic.code != Code::notSupportedYet)
+          return {};
+        first = first.empty() ? diagnostic.message : first;
+      }
+    return first;
+  }
+
   SourceManager sources;
   Diagnostics diagnostics{sources};
   std::unique_ptr<ast::TranslationUnit> unit;
@@ -131,10 +168,134 @@ using Words = std::vector<std::uint32_t>;
 
 /// The first difference, if there is one.
 std::string difference(const Words &expected, const Words &got) {
+  if (expected.size() != got.size())
+    return fmt::format("{} words, not {}", got.size(), expected.size());
   for (std::size_t i = 0; i != expected.size(); ++i)
     if (expected[i] != got[i])
       return fmt::format("word {} of {}: {:08x}, not {:08x}", i, expected.size(), got[i], expected[i]);
   return "";
+}
+
+/// Programs on their way through the paths.
+class Comparison {
+public:
+  Comparison(const std::vector<const Program *> &programs, const PathOptions &options)
+      : programs(programs), options(options), findings(programs.size()) {}
+
+  std::vector<Finding> run();
+
+private:
+  using Numbers = std::vector<std::size_t>; // of programs
+  using Code = std::shared_ptr<const runtime::Program>;
+
+  void runReference(const std::vector<const Path *> &paths, const Numbers &all);
+  void runPath(const Path &path, const Numbers &which);
+  /// Null if the programs cannot be compiled together.
+  Code compile(const Path &path, Checked &checked, const PathOptions &how) const;
+  /// Those of the programs that the path can take; the others say why it cannot.
+  Numbers takenBy(const Path &path, const Numbers &which);
+  void compare(const Path &path, const runtime::Program &code, std::size_t number);
+  void fail(const Numbers &which, Failure failure, const std::string &detail);
+  std::vector<const Program *> select(const Numbers &which) const;
+
+  const std::vector<const Program *> &programs;
+  const PathOptions &options;
+  std::vector<Finding> findings;
+  std::vector<Words> samples, pictures; // of the first path, one a program
+};
+
+std::vector<const Program *> Comparison::select(const Numbers &which) const {
+  std::vector<const Program *> selected;
+  for (std::size_t number : which)
+    selected.push_back(programs[number]);
+  return selected;
+}
+
+void Comparison::fail(const Numbers &which, Failure failure, const std::string &detail) {
+  for (std::size_t number : which)
+    if (findings[number].failure == Failure::None) {
+      findings[number].failure = failure;
+      findings[number].detail = detail;
+    }
+}
+
+Comparison::Code Comparison::compile(const Path &path, Checked &checked, const PathOptions &how) const {
+  if (checked.diagnostics.hasErrors())
+    return nullptr;
+  return path.compile(*checked.module, checked.request, programs.front()->colorComponents, how, checked.diagnostics);
+}
+
+Comparison::Numbers Comparison::takenBy(const Path &path, const Numbers &which) {
+  PathOptions withoutCompiler = options;
+  withoutCompiler.cpp.compiler.clear();
+  Numbers taken;
+  for (std::size_t number : which) {
+    Checked alone(select({number}));
+    compile(path, alone, withoutCompiler);
+    if (const std::string refusal = alone.refusal(); !refusal.empty())
+      findings[number].refused = fmt::format("{}: {}", path.name, refusal);
+    else
+      taken.push_back(number);
+  }
+  return taken;
+}
+
+void Comparison::compare(const Path &path, const runtime::Program &code, std::size_t number) {
+  World world(code, *programs[number]);
+  const Words words = path.renders ? world.render() : world.run();
+  if (const std::string what = difference((path.renders ? pictures : samples)[number], words); !what.empty())
+    fail({number}, Failure::Mismatch, fmt::format("{} against {}: {}", path.name, allPaths().front().name, what));
+}
+
+void Comparison::runPath(const Path &path, const Numbers &which) {
+  if (which.empty())
+    return;
+  try {
+    Checked checked(select(which));
+    if (const Code code = compile(path, checked, options)) {
+      for (std::size_t number : which)
+        compare(path, *code, number);
+      return;
+    }
+    const Numbers taken = checked.refusal().empty() ? which : takenBy(path, which);
+    if (taken.size() != which.size())
+      runPath(path, taken);
+    else
+      fail(which, Failure::Rejected, fmt::format("{}: {}", path.name, checked.errors()));
+  } catch (const CompilerRefuses &refuses) {
+    fail(which, Failure::Rejected, fmt::format("{} does not compile: {}", path.name, refuses.message));
+  }
+}
+
+void Comparison::runReference(const std::vector<const Path *> &paths, const Numbers &all) {
+  const bool renders = std::any_of(paths.begin(), paths.end(), [](const Path *path) { return path->renders; });
+  Checked checked(select(all));
+  const Code code = compile(*paths.front(), checked, options);
+  if (!code)
+    return fail(all, Failure::Rejected, checked.errors());
+  for (std::size_t number : all) {
+    World world(*code, *programs[number]);
+    samples.push_back(world.run());
+    findings[number].hit = world.hitSomething();
+    if (renders)
+      pictures.push_back(world.render());
+  }
+}
+
+std::vector<Finding> Comparison::run() {
+  Numbers all(programs.size());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  const std::vector<const Path *> paths = choosePaths(
+      options, std::all_of(programs.begin(), programs.end(), [](const Program *program) { return program->inRange; }),
+      std::any_of(programs.begin(), programs.end(), [](const Program *program) { return program->traces; }));
+  try {
+    runReference(paths, all);
+    for (std::size_t i = 1; i != paths.size() && samples.size() == all.size(); ++i)
+      runPath(*paths[i], all);
+  } catch (const std::exception &fault) {
+    fail(all, Failure::Fault, fault.what());
+  }
+  return std::move(findings);
 }
 
 } // namespace
@@ -146,48 +307,15 @@ std::vector<std::string> pathNames() {
   return names;
 }
 
-std::vector<Finding> compare(const std::vector<const Program *> &programs,
-                             const std::vector<std::string> &wanted) {
-  std::vector<Finding> findings(programs.size());
-  auto failAll = [&](Failure failure, const std::string &detail) {
-    for (Finding &finding : findings)
-      finding = {failure, detail, finding.hit};
-    return findings;
-  };
-  try {
-    Checked checked(programs);
-    if (checked.diagnostics.hasErrors())
-      return failAll(Failure::Rejected, checked.errors());
-    const bool inRange =
-        std::all_of(programs.begin(), programs.end(), [](const Program *p) { return p->inRange; });
-    const bool traces =
-        std::any_of(programs.begin(), programs.end(), [](const Program *p) { return p->traces; });
+std::vector<std::string> pathsOf(std::uint32_t seed, const PathOptions &options) {
+  std::vector<std::string> names;
+  for (const Path *path : choosePaths(options, isInRange(seed), hasTraces(seed)))
+    names.emplace_back(path->name);
+  return names;
+}
 
-    std::vector<Words> expected;
-    for (const Path *chosen : choosePaths(wanted, inRange, traces)) {
-      const Path &path = *chosen;
-      const bool isReference = expected.empty();
-      const auto code = path.compile(*checked.module, checked.request, programs.front()->colorComponents,
-                                     checked.diagnostics);
-      if (!code)
-        return failAll(Failure::Rejected, std::string(path.name) + ": " + checked.errors());
-      for (std::size_t i = 0; i != programs.size(); ++i) {
-        World world(*code, *programs[i]);
-        const Words words = world.run();
-        findings[i].hit |= world.hitSomething();
-        if (isReference)
-          expected.push_back(words);
-        else if (std::string what = difference(expected[i], words);
-                 !what.empty() && findings[i].failure == Failure::None)
-          findings[i] = {Failure::Mismatch,
-                         fmt::format("{} against {}: {}", path.name, allPaths().front().name, what),
-                         findings[i].hit};
-      }
-    }
-  } catch (const std::exception &fault) {
-    return failAll(Failure::Fault, fault.what());
-  }
-  return findings;
+std::vector<Finding> compare(const std::vector<const Program *> &programs, const PathOptions &options) {
+  return Comparison(programs, options).run();
 }
 
 } // namespace rtsl::random

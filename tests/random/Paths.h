@@ -1,6 +1,7 @@
 //===- Paths.h - the ways to run a program, which all agree ---------------===//
 #pragma once
 
+#include "PrintedCpp.h"
 #include "Program.h"
 
 #include <cstdint>
@@ -23,14 +24,23 @@ const char *name(Failure failure);
 struct Finding {
   Failure failure = Failure::None;
   std::string detail;
-  bool hit = false; // some ray met something, so that a material ran
+  bool hit = false;    // some ray met something, so that a material ran
+  std::string refused; // why a path could not take the program yet, though it is valid
 };
 
-/// Runs the programs, compiled together, on every path whose name is in `wanted` and that can run
-/// them, and compares with the first path. `wanted` empty: with the one that differs most. One
-/// finding a program; a Rejected or Fault of the whole stands at all of them.
-std::vector<Finding> compare(const std::vector<const Program *> &programs,
-                             const std::vector<std::string> &wanted);
+/// How programs are run.
+struct PathOptions {
+  std::vector<std::string> wanted; // names; empty: the path that differs most
+  std::vector<std::string> also;   // names of more
+  CppOptions cpp;
+};
+
+/// Runs the programs, compiled together, on every wanted path that can run them, and compares with the
+/// first path. One finding a program; a Rejected or Fault of the whole stands at all of them.
+std::vector<Finding> compare(const std::vector<const Program *> &programs, const PathOptions &options);
+
+/// The names of the paths on which the program of a seed runs: those that share them can be compiled together.
+std::vector<std::string> pathsOf(std::uint32_t seed, const PathOptions &options);
 
 std::vector<std::string> pathNames();
 

@@ -8,7 +8,6 @@
 #include <deque>
 #include <map>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include <csignal>
@@ -38,13 +37,16 @@ void write(int pipe, const std::string &text) {
   }
 }
 
-/// A finding is a letter for the failure, a large one if a ray met something, the text and a zero.
+/// A finding is a letter for the failure, a large one if a ray met something, and two texts with a zero behind each: the
+/// detail, and why a path refused the program.
 void report(int pipe, const std::vector<Finding> &findings) {
   std::string text;
   for (const Finding &finding : findings) {
     text += static_cast<char>((finding.hit ? 'A' : 'a') + static_cast<int>(finding.failure));
-    text += finding.detail.substr(0, 4000);
-    text += '\0';
+    for (const std::string &part : {finding.detail, finding.refused}) {
+      text += part.substr(0, 4000);
+      text += '\0';
+    }
   }
   write(pipe, text);
 }
@@ -76,17 +78,18 @@ std::vector<Finding> finish(Worker &worker, unsigned seconds) {
   waitpid(worker.process, &status, 0);
   if (WIFSIGNALED(status)) {
     if (WTERMSIG(status) == SIGALRM)
-      return {{Failure::Hang, "after " + std::to_string(seconds) + " s"}};
-    return {{Failure::Crash, strsignal(WTERMSIG(status))}};
+      return {{Failure::Hang, "after " + std::to_string(seconds) + " s", false, ""}};
+    return {{Failure::Crash, strsignal(WTERMSIG(status)), false, ""}};
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return {{Failure::Crash, "exit status " + std::to_string(WEXITSTATUS(status))}};
+    return {{Failure::Crash, "exit status " + std::to_string(WEXITSTATUS(status)), false, ""}};
   std::vector<Finding> findings;
   for (std::size_t at = 0; at < worker.text.size();) {
     const char *text = worker.text.c_str() + at;
     const bool hit = *text < 'a';
-    findings.push_back({static_cast<Failure>(*text - (hit ? 'A' : 'a')), text + 1, hit});
-    at += std::strlen(text) + 1;
+    const std::string detail = text + 1, refused = text + 1 + detail.size() + 1;
+    findings.push_back({static_cast<Failure>(*text - (hit ? 'A' : 'a')), detail, hit, refused});
+    at += 1 + detail.size() + 1 + refused.size() + 1;
   }
   return findings;
 }
@@ -101,26 +104,24 @@ bool read(Worker &worker) {
   return true;
 }
 
-std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds,
-                                  const std::vector<std::string> &paths) {
+std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds, const PathOptions &options) {
   std::vector<Program> programs;
   for (std::uint32_t seed : seeds)
     programs.push_back(generate(seed));
   std::vector<const Program *> pointers;
   for (const Program &program : programs)
     pointers.push_back(&program);
-  return compare(pointers, paths);
+  return compare(pointers, options);
 }
 
-/// Programs of a kind share a compilation: what may run unchecked, what traces, what a color is.
-std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count,
-                                                   unsigned size) {
+/// Programs of a kind share a compilation: those that run on the same paths, with the same colors.
+std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count, const RunOptions &options) {
   std::deque<std::vector<std::uint32_t>> batches;
-  std::map<std::tuple<bool, bool, unsigned>, std::vector<std::uint32_t>> kinds;
+  std::map<std::pair<std::vector<std::string>, unsigned>, std::vector<std::uint32_t>> kinds;
   for (std::uint32_t seed = first; seed != first + count; ++seed) {
-    std::vector<std::uint32_t> &batch = kinds[{isInRange(seed), hasTraces(seed), colorComponents(seed)}];
+    std::vector<std::uint32_t> &batch = kinds[{pathsOf(seed, options.paths), colorComponents(seed)}];
     batch.push_back(seed);
-    if (batch.size() == size)
+    if (batch.size() == options.batch)
       batches.push_back(std::exchange(batch, {}));
   }
   for (auto &[kind, batch] : kinds)
@@ -133,7 +134,7 @@ std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uin
 
 Results runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &options,
                  const std::function<void(std::size_t)> &progress) {
-  std::deque<std::vector<std::uint32_t>> waiting = makeBatches(first, count, options.batch);
+  std::deque<std::vector<std::uint32_t>> waiting = makeBatches(first, count, options);
   std::vector<Worker> running;
   Results results;
   std::vector<FailedSeed> &failed = results.failed;
@@ -142,10 +143,15 @@ Results runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &opt
     const std::vector<std::uint32_t> seeds = worker.seeds;
     std::vector<Finding> findings = finish(worker, options.secondsLimit);
     bool isOfAll = findings.size() != seeds.size();
-    if (!isOfAll && seeds.size() > 1)
-      isOfAll = std::all_of(findings.begin(), findings.end(), [](const Finding &finding) {
+    if (!isOfAll && seeds.size() > 1) {
+      auto isRejected = [](const Finding &finding) {
         return finding.failure == Failure::Rejected || finding.failure == Failure::Fault;
-      });
+      };
+      isOfAll = std::any_of(findings.begin(), findings.end(), isRejected) &&
+                std::all_of(findings.begin(), findings.end(), [&](const Finding &finding) {
+                  return isRejected(finding) || !finding.refused.empty();
+                });
+    }
     if (isOfAll && seeds.size() > 1) {
       const auto half = seeds.begin() + static_cast<std::ptrdiff_t>(seeds.size() / 2);
       waiting.emplace_front(seeds.begin(), half);
@@ -154,11 +160,14 @@ Results runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &opt
     }
     for (std::size_t i = 0; i != seeds.size(); ++i)
       if (i >= findings.size())
-        failed.push_back({seeds[i], {Failure::Crash, "no answer"}});
+        failed.push_back({seeds[i], {Failure::Crash, "no answer", false, ""}});
       else if (findings[i].failure != Failure::None)
         failed.push_back({seeds[i], findings[i]});
-    for (const Finding &finding : findings)
+    for (const Finding &finding : findings) {
       results.hit += finding.hit;
+      if (!finding.refused.empty())
+        ++results.refused[finding.refused];
+    }
     done += seeds.size();
     progress(done);
   };
@@ -191,7 +200,7 @@ Finding runAlone(const Program &program, const RunOptions &options) {
   while (read(worker))
     ;
   const std::vector<Finding> findings = finish(worker, options.secondsLimit);
-  return findings.empty() ? Finding{Failure::Crash, "no answer"} : findings.front();
+  return findings.empty() ? Finding{Failure::Crash, "no answer", false, ""} : findings.front();
 }
 
 } // namespace rtsl::random

@@ -4,6 +4,7 @@
 #include "Paths.h"
 
 #include <functional>
+#include <map>
 
 namespace rtsl::random {
 
@@ -11,7 +12,7 @@ struct RunOptions {
   unsigned processes = 1;
   unsigned batch = 20;       // programs in one compilation
   unsigned secondsLimit = 60; // for one batch
-  std::vector<std::string> paths;
+  PathOptions paths;
 };
 
 struct FailedSeed {
@@ -22,6 +23,7 @@ struct FailedSeed {
 struct Results {
   std::vector<FailedSeed> failed; // by seed
   std::size_t hit = 0;            // programs in which some ray met something
+  std::map<std::string, std::size_t> refused; // programs that a path could not take yet, by reason
 };
 
 /// Runs the programs of `count` seeds from `first` on. What crashes takes only its process along; a

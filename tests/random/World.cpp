@@ -1,6 +1,7 @@
 //===- World.cpp - a small scene that a random program runs in ------------===//
 #include "World.h"
 
+#include "runtime/PrintLog.h"
 #include "runtime/device/AnyHit.h"
 #include "runtime/device/Traverse.h"
 
@@ -19,22 +20,51 @@ using rtsl::runtime::ValueType;
 // What compiled programs ask of the host
 //===----------------------------------------------------------------------===//
 
-/// All that was printed, as one number, and what is running now.
+/// All that was printed, as one number.
 static std::uint32_t printed = 0;
-static const rtsl::runtime::Program *running = nullptr;
+static std::vector<std::uint32_t> formats; // of the program that runs, each as a number that every path gives it
 static std::uint32_t raysThatHit = 0;
 
-extern "C" void rtsl_print(RtslState *, std::uint32_t format, const std::uint32_t *words, std::uint32_t count) {
+static void note(std::uint32_t format, const std::uint32_t *words, std::size_t count) {
   auto add = [](std::uint32_t word) { printed = (printed ^ word) * 16777619u ^ printed >> 15; };
-  for (const rtsl::runtime::PrintItem &item : running->prints[format]) // its number depends on what else there is
-    for (char c : item.text)
-      add(static_cast<unsigned char>(c));
-  for (std::uint32_t i = 0; i != count; ++i)
+  add(format);
+  for (std::size_t i = 0; i != count; ++i)
     add(words[i]);
 }
 
+extern "C" void rtsl_print(RtslState *, std::uint32_t format, const std::uint32_t *words, std::uint32_t count) {
+  note(formats.at(format), words, count);
+}
+
+static std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t h = (a ^ b) * 0x9e3779b1u;
+  h = (h ^ h >> 15) * 0x85ebca6bu;
+  return h ^ h >> 13;
+}
+
+static std::uint32_t hashOf(const std::string &text) {
+  std::uint32_t h = 2166136261u;
+  for (char c : text)
+    h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
+  return h;
+}
+
+static std::uint32_t hashOf(const rtsl::runtime::PrintFormat &format) {
+  std::uint32_t sum = 0;
+  for (const rtsl::runtime::PrintItem &item : format)
+    sum = mix(mix(sum, hashOf(item.text)), 32 * static_cast<std::uint32_t>(item.kind) + item.words);
+  return sum;
+}
+
+namespace rtsl::runtime {
+/// `print` of shaders in C++, which have no numbers for their formats.
+void print(RtslState *, const PrintFormat &format, const std::vector<std::uint32_t> &words) {
+  note(hashOf(format), words.data(), words.size());
+}
+} // namespace rtsl::runtime
+
 extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
-  const auto &slots = *static_cast<const rtsl::runtime::Program::Slots *>(state->launch->host);
+  const auto &slots = static_cast<const rtsl::runtime::ProgramHost *>(state->launch->host)->slots;
   const std::uint32_t answer =
       how & RTSL_ASK_ANY_HIT
           ? rtsl::device::traverseAsking(*state, how, slots)
@@ -70,19 +100,6 @@ namespace rtsl::random {
 //===----------------------------------------------------------------------===//
 // Values
 //===----------------------------------------------------------------------===//
-
-static std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
-  std::uint32_t h = (a ^ b) * 0x9e3779b1u;
-  h = (h ^ h >> 15) * 0x85ebca6bu;
-  return h ^ h >> 13;
-}
-
-static std::uint32_t hashOf(const std::string &text) {
-  std::uint32_t h = 2166136261u;
-  for (char c : text)
-    h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
-  return h;
-}
 
 static std::uint32_t bitsOf(float value) {
   std::uint32_t bits;
@@ -237,7 +254,8 @@ static RtslMesh someMesh() {
   return mesh;
 }
 
-World::World(const runtime::Program &code, const Program &program) : code(code), program(program), mesh(someMesh()) {
+World::World(const runtime::Program &code, const Program &program)
+    : code(code), program(program), host{code.slots}, mesh(someMesh()) {
   std::size_t words = used;
   std::vector<std::string> all = {program.camera, program.miss};
   for (const auto *names : {&program.textures, &program.lights, &program.primitives, &program.materials})
@@ -295,11 +313,11 @@ World::World(const runtime::Program &code, const Program &program) : code(code),
   launch.rootIsLeaf = 1;
   launch.nodeCount = static_cast<std::uint32_t>(items.size());
   launch.needs = code.needs;
-  launch.host = &code.slots;
+  launch.host = &host;
 }
 
 World::World(const runtime::Program &bound, const World &made)
-    : code(bound), program(made.program), instances(made.instances), mesh(made.mesh), launch(made.launch) {
+    : code(bound), program(made.program), host{bound.slots}, instances(made.instances), mesh(made.mesh), launch(made.launch) {
   for (RtslInstance &instance : instances) {
     instance.needs = bound.needs;
     for (const Object &object : made.objects)
@@ -308,7 +326,7 @@ World::World(const runtime::Program &bound, const World &made)
   }
   launch.instances = instances.data();
   launch.needs = bound.needs;
-  launch.host = &bound.slots;
+  launch.host = &host;
 }
 
 runtime::SceneFacts World::facts() const {
@@ -334,9 +352,22 @@ bool World::hitSomething() const {
   return raysThatHit != 0;
 }
 
-std::vector<std::uint32_t> World::run() {
+//===----------------------------------------------------------------------===//
+// Running
+//===----------------------------------------------------------------------===//
+
+/// Nothing was printed yet, no ray has hit anything.
+static void begin(const runtime::Program &code) {
   printed = raysThatHit = 0;
-  running = &code;
+  formats.clear();
+  for (const runtime::PrintFormat &format : code.prints)
+    formats.push_back(hashOf(format));
+}
+
+static std::uint32_t wordOf(float component) { return std::isnan(component) ? 0x7fc00000u : bitsOf(component); }
+
+std::vector<std::uint32_t> World::run() {
+  begin(code);
   std::vector<std::uint32_t> words;
   for (std::uint32_t depth : {0u, 2u}) {
     launch.maxDepth = depth;
@@ -345,9 +376,53 @@ std::vector<std::uint32_t> World::run() {
       code.sample(&launch, pixel * 7 % 5, pixel % 3, pixel / 3, color);
       checkGuard();
       for (unsigned i = 0; i != code.colorComponents; ++i)
-        words.push_back(std::isnan(color[i]) ? 0x7fc00000u : bitsOf(color[i]));
+        words.push_back(wordOf(color[i]));
       words.push_back(printed);
     }
+  }
+  return words;
+}
+
+void World::renderByLane(std::vector<float> &pixels) {
+  RtslStatus status{};
+  launch.status = &status;
+  RtslJob job{};
+  job.launch = &launch;
+  job.status = &status;
+  job.laneBytes = (code.megakernel.laneBytes(launch.maxDepth) + 15) / 16 * 16;
+  job.lanes = static_cast<std::uint8_t *>(rtsl_machine_stack(job.laneBytes));
+  job.pixels = pixels.data();
+  job.samplesPerPixel = 1;
+  code.megakernel.runLane(&job, 0);
+  checkGuard();
+  launch.status = nullptr;
+}
+
+void World::renderBySample(std::vector<float> &pixels) {
+  for (std::uint32_t pixel = 0; pixel != launch.width * launch.height; ++pixel) {
+    float *color = &pixels[pixel * code.colorComponents];
+    code.sample(&launch, pixel % launch.width, pixel / launch.width, 0, color);
+    checkGuard();
+    if (!std::all_of(color, color + code.colorComponents, [](float component) { return std::isfinite(component); }))
+      std::fill_n(color, code.colorComponents, 0.0f);
+    for (unsigned i = 0; i != code.colorComponents; ++i)
+      color[i] += 0.0f; // of a sum of samples, which is never -0
+  }
+}
+
+std::vector<std::uint32_t> World::render() {
+  begin(code);
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t depth : {0u, 2u}) {
+    launch.maxDepth = depth;
+    std::vector<float> pixels(static_cast<std::size_t>(launch.width) * launch.height * code.colorComponents);
+    if (code.megakernel.runLane)
+      renderByLane(pixels);
+    else
+      renderBySample(pixels);
+    for (float component : pixels)
+      words.push_back(wordOf(component));
+    words.push_back(printed);
   }
   return words;
 }

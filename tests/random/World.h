@@ -3,7 +3,7 @@
 
 #include "Program.h"
 
-#include "runtime/Program.h"
+#include "runtime/ProgramHost.h"
 
 #include <cstdint>
 #include <deque>
@@ -26,6 +26,9 @@ public:
   /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
   /// are one), and what was printed until then.
   std::vector<std::uint32_t> run();
+  /// The colors of a picture as whoever renders it makes it of one sample a pixel: a color that is not
+  /// finite is black. With it, what was printed until its end. The program may be a megakernel.
+  std::vector<std::uint32_t> render();
   /// Has some ray met something, so that a material ran?
   bool hitSomething() const;
 
@@ -40,8 +43,12 @@ private:
   RtslRef choose(const std::string &className, std::uint32_t key) const;
   bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
 
+  void renderBySample(std::vector<float> &pixels);
+  void renderByLane(std::vector<float> &pixels);
+
   const runtime::Program &code;
   const Program &program;
+  runtime::ProgramHost host;
   struct Object {
     RtslRef reference;
     const runtime::ClassInfo *info;

@@ -102,8 +102,8 @@ constexpr auto mix(const X &x, const Y &y, const A &a) {
   return each([](float p, float q, float t) { return p * (1.0f - t) + q * t; }, x, y, a);
 }
 /// y where `choice` is true, otherwise x.
-template <typename X, typename B>
-constexpr auto mixSelect(const X &x, const X &y, const B &choice) {
+template <typename X, typename Y, typename B>
+constexpr auto mixSelect(const X &x, const Y &y, const B &choice) {
   return each([](auto p, auto q, auto second) { return second ? q : p; }, x, y, choice);
 }
 template <typename Edge, typename X>

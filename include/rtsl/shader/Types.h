@@ -19,11 +19,11 @@ inline namespace RTSL_ARITHMETIC {
 
 using uint = std::uint32_t;
 
-/// A bool in memory: 32 bits.
+/// A bool in memory: 32 bits. `{}` is false; without it there is no value, as GLM's vectors ask of what they hold.
 struct Bool {
-  std::uint32_t value = 0;
+  std::uint32_t value;
 
-  constexpr Bool() = default;
+  Bool() = default;
   constexpr explicit Bool(bool value) : value(value ? 1u : 0u) {}
   constexpr Bool &operator=(bool other) {
     value = other ? 1u : 0u;

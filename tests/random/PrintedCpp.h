@@ -1,0 +1,28 @@
+//===- PrintedCpp.h - a module as C++ that a compiler made a program of ---===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+
+#include <memory>
+#include <string>
+
+namespace rtsl::random {
+
+/// What becomes of programs that are printed.
+struct CppOptions {
+  std::string compiler = "g++ -O1"; // a command with its options; empty: they are only printed
+  std::string keep;                 // the file that is left of the last one that was compiled; empty: none is
+};
+
+/// Prints the module as one file of C++, has a compiler make a shared object of it and loads that. Null if it cannot be
+/// printed, which is reported; an empty program if there is no compiler. Throws CompilerRefuses.
+std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &module, TraceMode trace,
+                                                       bool checkIndices, unsigned colorComponents,
+                                                       const CppOptions &cpp, Diagnostics &diagnostics);
+
+/// What a compiler says of C++ that it does not take.
+struct CompilerRefuses {
+  std::string message;
+};
+
+} // namespace rtsl::random
