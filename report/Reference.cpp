@@ -23,8 +23,9 @@ std::string picturePath(const std::string &folder) { return folder + "/reference
 std::string factsPath(const std::string &folder) { return folder + "/reference.json"; }
 
 std::string describe(const Subject &subject, const Reference::OwnError &own) {
-  return fmt::format("the mean of {} runs with {} samples a pixel ({}), in {:.3g} s; its own RMSE is about {:.2g}, its relMSE {:.2g}",
-                     own.runs, own.samplesPerPixel, subject.name, own.seconds, own.rmse, own.relMse);
+  return fmt::format("the mean of {} runs with {} samples a pixel ({}), in {:.3g} s; its own RMSE is about {:.2g}, its relMSE {:.2g}; "
+                     "single precision moves a run by {:.2g} (RMSE)",
+                     own.runs, own.samplesPerPixel, subject.name, own.seconds, own.rmse, own.relMse, own.rounding);
 }
 
 std::optional<Reference> readEarlier(const Subject &subject, const std::string &folder) {
@@ -35,8 +36,9 @@ std::optional<Reference> readEarlier(const Subject &subject, const std::string &
     return std::nullopt;
   Reference reference;
   reference.image = runtime::readImage(picturePath(folder));
-  reference.ownError = Reference::OwnError{facts.value("rmse", 0.0), facts.value("relMse", 0.0), facts.value("runs", 0u),
-                                           facts.value("spp", 0u), facts.value("seconds", 0.0)};
+  reference.ownError = Reference::OwnError{facts.value("rmse", 0.0),     facts.value("relMse", 0.0),
+                                           facts.value("rounding", 0.0), facts.value("runs", 0u),
+                                           facts.value("spp", 0u),       facts.value("seconds", 0.0)};
   reference.origin = describe(subject, *reference.ownError);
   return reference;
 }
@@ -68,7 +70,7 @@ Reference readReference(const std::string &path, std::uint32_t width, std::uint3
   return reference;
 }
 
-Reference makeReference(const Subject &subject, const std::string &folder, std::uint32_t runs, double seconds,
+Reference makeReference(const Subject &subject, const Subject &single, const std::string &folder, std::uint32_t runs, double seconds,
                         const ProgressFunction &progress) {
   if (std::optional<Reference> earlier = readEarlier(subject, folder))
     return *std::move(earlier);
@@ -80,6 +82,8 @@ Reference makeReference(const Subject &subject, const std::string &folder, std::
     progress(double(run) / runs, "rendering the reference");
     const Picture picture = subject.render(own.samplesPerPixel, firstSeed + run);
     own.seconds += picture.statistics.renderSeconds;
+    if (run == 0)
+      own.rounding = measureError(picture.image, single.render(own.samplesPerPixel, firstSeed).image).rmse;
     spread.add(picture.image);
   }
   Reference reference;
@@ -92,7 +96,7 @@ Reference makeReference(const Subject &subject, const std::string &folder, std::
   const nlohmann::ordered_json facts = {{"version", 1},         {"subject", subject.name},
                                         {"runs", own.runs},     {"spp", own.samplesPerPixel},
                                         {"seconds", own.seconds}, {"rmse", own.rmse},
-                                        {"relMse", own.relMse}};
+                                        {"relMse", own.relMse},   {"rounding", own.rounding}};
   runtime::writeFileAtomically(factsPath(folder), facts.dump(2) + "\n");
   return reference;
 }

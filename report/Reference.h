@@ -11,9 +11,10 @@ namespace rtsl::report {
 struct Reference {
   runtime::Image image;
   std::string origin; // for people: where it comes from
-  /// How wrong the reference itself is, if it was rendered here: the standard error of its mean.
+  /// How wrong the reference itself is, if it was rendered here.
   struct OwnError {
-    double rmse = 0, relMse = 0;
+    double rmse = 0, relMse = 0; // the standard error of its mean
+    double rounding = 0;         // RMSE of a run in single precision from the run in double with the same samples
     std::uint32_t runs = 0, samplesPerPixel = 0; // of each run
     double seconds = 0;
   };
@@ -27,8 +28,9 @@ struct Reference {
 Reference readReference(const std::string &path, std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 
 /// Renders one as the mean of independent runs that take about `seconds` together, or takes the one that an earlier
-/// call left in `folder`. Its own error is estimated from the spread of the runs.
-Reference makeReference(const Subject &subject, const std::string &folder, std::uint32_t runs, double seconds,
+/// call left in `folder`. Its own error is estimated from the spread of the runs, and what rounding does from one run of
+/// `single`, which renders the same with less precision.
+Reference makeReference(const Subject &subject, const Subject &single, const std::string &folder, std::uint32_t runs, double seconds,
                         const ProgressFunction &progress);
 
 } // namespace rtsl::report

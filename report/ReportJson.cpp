@@ -66,6 +66,7 @@ std::string writeJson(const Context &context, const Summary &summary, const Refe
   if (reference.ownError)
     document["reference"]["ownError"] = {{"rmse", reference.ownError->rmse},
                                          {"relMse", reference.ownError->relMse},
+                                         {"rounding", reference.ownError->rounding},
                                          {"runs", reference.ownError->runs},
                                          {"spp", reference.ownError->samplesPerPixel}};
   document["problems"] = summary.problems;

@@ -4,6 +4,7 @@
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/States.h"
 #include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/DoublePrecision.h"
 #include "codegen/emit/FastMath.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
@@ -138,6 +139,8 @@ LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
   code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
   if (options.floatingPoint == FloatingPoint::Fast)
     codegen::relaxArithmetic(*code.module);
+  else if (options.floatingPoint == FloatingPoint::Double)
+    codegen::widenArithmetic(*code.module);
   return code;
 }
 
@@ -404,6 +407,8 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu) {
 void load(LlvmCode code, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
           runtime::Program &program) {
   symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
+  for (const codegen::HostSymbol &function : codegen::doubleFunctions())
+    symbols.push_back(function);
   codegen::optimize(*code.module, *code.machine, code.options);
   std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
                                                                 std::move(code.machine), symbols));

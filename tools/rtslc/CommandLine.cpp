@@ -116,11 +116,13 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
       ->type_name("rgb|mono|spectral:N|N");
   command
       .add_option("--fp", options.compile.floatingPoint,
-                  "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and reassociation")
+                  "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and reassociation; double, "
+                  "shaders compute in double on this machine")
       ->transform(CLI::CheckedTransformer(std::map<std::string, FloatingPoint>{{"strict", FloatingPoint::Strict},
-                                                                               {"fast", FloatingPoint::Fast}})
+                                                                               {"fast", FloatingPoint::Fast},
+                                                                               {"double", FloatingPoint::Double}})
                       .description(""))
-      ->type_name("strict|fast");
+      ->type_name("strict|fast|double");
   command.add_flag_callback(
       "--unchecked", [&options] { options.compile.checkIndices = false; },
       "trust array and buffer indices: one out of range is then undefined");

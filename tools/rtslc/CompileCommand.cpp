@@ -127,6 +127,8 @@ void checkInputs(const CompileCommandOptions &options) {
                                          "builds one");
   if (scenes == 0 && options.stage != Stage::Cpp && features(options) != 0)
     throw CLI::ValidationError(options.prints ? "--print" : "--exceptions", "is for C++ and for scenes");
+  if ((options.stage == Stage::Cpp || options.stage == Stage::Ptx) && options.common.compile.floatingPoint == FloatingPoint::Double)
+    throw CLI::ValidationError("--fp", "double is for machine code of this processor; give strict or fast");
   if (scenes == 0 && !options.overrides.empty())
     throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
   if (scenes == 0 && !options.common.keep.isEmpty())

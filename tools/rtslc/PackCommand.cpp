@@ -63,6 +63,8 @@ void packScene(const PackOptions &options, Messages &messages) {
 }
 
 int pack(const PackOptions &options) {
+  if (options.common.compile.floatingPoint == FloatingPoint::Double)
+    throw CLI::ValidationError("--fp", "a package is for GPUs, too, and has no double; give strict or fast");
   Messages messages(options.common);
   try {
     packScene(options, messages);

@@ -105,6 +105,30 @@ report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions o
   return picture;
 }
 
+std::function<report::Picture(std::uint32_t, std::uint32_t)> rendererOf(const Build &build, runtime::RenderOptions options,
+                                                                        runtime::Traversal traversal) {
+  options.traversal = traversal;
+  return [scene = build.scene, options](std::uint32_t samples, std::uint32_t seed) {
+    return renderOnce(*scene, options, samples, seed);
+  };
+}
+
+/// What a reference is rendered with, in the precision that is given: the shortest way.
+std::optional<report::Subject> referenceSubject(const LoadedScene &loaded, const ReportOptions &options, FloatingPoint precision,
+                                                Messages &messages) {
+  CompileOptions compile = options.common.compile;
+  compile.floatingPoint = precision;
+  compile.trace = TraceMode::Recurse;
+  const std::optional<Build> built = build(loaded, compile, messages);
+  if (!built)
+    return std::nullopt;
+  report::Subject subject;
+  subject.name = precision == FloatingPoint::Double ? "double embree recurse" : "strict embree recurse";
+  subject.compileSeconds = built->compileSeconds;
+  subject.render = rendererOf(*built, loaded.render, runtime::Traversal::Embree);
+  return subject;
+}
+
 /// Every way to render, the usual one first.
 std::vector<report::Subject> subjectsFor(const LoadedScene &loaded, const ReportOptions &options, Messages &messages) {
   const std::pair<FloatingPoint, const char *> precisions[] = {{FloatingPoint::Strict, "strict"}, {FloatingPoint::Fast, "fast"}};
@@ -134,11 +158,7 @@ std::vector<report::Subject> subjectsFor(const LoadedScene &loaded, const Report
           return {};
         subject.settings = {{"fp", precisionName}, {"traversal", traversalName}, {"trace", traceName}};
         subject.compileSeconds = shared->compileSeconds;
-        subject.render = [scene = shared->scene, render = loaded.render, traversal](std::uint32_t samples, std::uint32_t seed) {
-          runtime::RenderOptions options = render;
-          options.traversal = traversal;
-          return renderOnce(*scene, options, samples, seed);
-        };
+        subject.render = rendererOf(*shared, loaded.render, traversal);
         subjects.push_back(std::move(subject));
       }
     }
@@ -284,11 +304,18 @@ void makeReport(const ReportOptions &options, Messages &messages) {
   };
   constexpr double referenceShare = 4; // its time, in budgets
   const double total = referenceShare + double(subjects.size());
-  const report::Reference reference =
-      options.reference.empty()
-          ? report::makeReference(subjects.front(), options.folder, options.runs, referenceShare * options.budget,
-                                  [&](double share, const std::string &) { show(share * referenceShare / total); })
-          : report::readReference(options.reference, loaded->render.width, loaded->render.height, options.common.compile.colorComponents);
+  report::Reference reference;
+  if (options.reference.empty()) {
+    const std::optional<report::Subject> exact = referenceSubject(*loaded, options, FloatingPoint::Double, messages);
+    const std::optional<report::Subject> single = referenceSubject(*loaded, options, FloatingPoint::Strict, messages);
+    if (!exact || !single)
+      return;
+    reference = report::makeReference(*exact, *single, options.folder, options.runs, referenceShare * options.budget,
+                                      [&](double share, const std::string &) { show(share * referenceShare / total); });
+  } else {
+    reference = report::readReference(options.reference, loaded->render.width, loaded->render.height,
+                                      options.common.compile.colorComponents);
+  }
   report::StudyOptions study;
   study.folder = options.folder;
   study.runs = options.runs;

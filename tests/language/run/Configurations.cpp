@@ -19,6 +19,11 @@ static CompileOptions megakernel(unsigned optimization) {
   return compile;
 }
 
+static CompileOptions inDouble(CompileOptions compile) {
+  compile.floatingPoint = FloatingPoint::Double;
+  return compile;
+}
+
 static CompileOptions fast(CompileOptions compile) {
   compile.floatingPoint = FloatingPoint::Fast;
   return compile;
@@ -42,6 +47,8 @@ const std::vector<Configuration> &fastConfigurations() {
   static const std::vector<Configuration> table = {
       {"fast_recurse_O2", fast(options(TraceMode::Recurse, 2))},
       {"fast_host_megakernel_O2", fast(megakernel(2))},
+      {"double_recurse_O0", inDouble(options(TraceMode::Recurse, 0))},
+      {"double_split_O2", inDouble(options(TraceMode::Split, 2))},
   };
   return table;
 }

@@ -20,7 +20,7 @@ struct Configuration {
 
 /// The strict ones: all compute the same.
 const std::vector<Configuration> &configurations();
-/// What is left of the language with --fp=fast.
+/// What is left of the language with --fp=fast and --fp=double.
 const std::vector<Configuration> &fastConfigurations();
 
 /// What GoogleTest shows of one.

@@ -101,7 +101,9 @@ void Builder::read(const ProgramFile &file) {
     } else if (line == "// unchecked: no") {
       isLeftOut |= !configuration.compile.checkIndices;
     } else if (line == "// fast: no") {
-      isLeftOut |= configuration.compile.floatingPoint == FloatingPoint::Fast;
+      isLeftOut |= configuration.compile.floatingPoint != FloatingPoint::Strict;
+    } else if (line == "// double: no") {
+      isLeftOut |= configuration.compile.floatingPoint == FloatingPoint::Double;
     } else if (std::regex_match(line, match, directive)) {
       const std::string kind = match[1], name = match[2], json = match[3];
       if (kind == "texture")

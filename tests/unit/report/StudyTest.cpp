@@ -198,8 +198,16 @@ TEST_F(Studies, LeaveOutWhatTheReferenceCannotTell) {
 }
 
 TEST_F(Studies, MakeAReferenceWithItsOwnError) {
-  const Reference made = makeReference(noisy("strict", 0.2), folder.string(), 8, 0.8, [](double, const std::string &) {});
+  Subject single = noisy("single", 0.2);
+  single.render = [exact = single.render](std::uint32_t samples, std::uint32_t seed) {
+    Picture picture = exact(samples, seed);
+    for (float &value : picture.image.pixels)
+      value += 1e-3f;
+    return picture;
+  };
+  const Reference made = makeReference(noisy("double", 0.2), single, folder.string(), 8, 0.8, [](double, const std::string &) {});
   ASSERT_TRUE(made.ownError);
+  EXPECT_NEAR(made.ownError->rounding, 1e-3, 1e-6);
   const double expected = 0.2 / std::sqrt(double(made.ownError->samplesPerPixel) * 8);
   EXPECT_NEAR(made.ownError->rmse / expected, 1, 0.1);
   double squares = 0;
@@ -208,7 +216,7 @@ TEST_F(Studies, MakeAReferenceWithItsOwnError) {
   EXPECT_NEAR(std::sqrt(squares / double(made.image.pixels.size())) / made.ownError->rmse, 1, 0.15) << "it is as wrong as it says";
 
   unsigned calls = 0;
-  const Reference again = makeReference(noisy("strict", 0.2, 1, &calls), folder.string(), 8, 0.8, [](double, const std::string &) {});
+  const Reference again = makeReference(noisy("double", 0.2, 1, &calls), single, folder.string(), 8, 0.8, [](double, const std::string &) {});
   EXPECT_EQ(calls, 0u);
   EXPECT_EQ(again.image.pixels, made.image.pixels);
 }

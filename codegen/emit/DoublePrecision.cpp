@@ -1,0 +1,187 @@
+//===- DoublePrecision.cpp - what --fp=double changes ---------------------===//
+#include "codegen/emit/DoublePrecision.h"
+
+#include "llvm/Analysis/ConstantFolding.h"
+#include "llvm/IR/IRBuilder.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/Module.h"
+#include "llvm/ADT/SetVector.h"
+
+#include <cmath>
+
+namespace rtsl::codegen {
+
+namespace {
+
+double inverseSquareRoot(double x) { return 1.0 / std::sqrt(x); }
+
+using Unary = double (*)(double);
+using Binary = double (*)(double, double);
+
+#define UNARY(name)                                                                                \
+  { "rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Unary>(&std::name)) }
+#define BINARY(name)                                                                               \
+  { "rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Binary>(&std::name)) }
+
+const HostSymbol functions[] = {
+    UNARY(sin),    UNARY(cos),   UNARY(tan),   UNARY(asin),  UNARY(acos),
+    UNARY(atan),   UNARY(sinh),  UNARY(cosh),  UNARY(tanh),  UNARY(asinh),
+    UNARY(acosh),  UNARY(atanh), UNARY(exp),   UNARY(exp2),  UNARY(expm1),
+    UNARY(log),    UNARY(log2),  UNARY(log1p), BINARY(pow),  BINARY(atan2),
+    {"rtsl_double_inversesqrt", reinterpret_cast<void *>(&inverseSquareRoot)},
+};
+
+/// The name of the double function for an elementary one of the device code; empty for others.
+std::string doubleNameOf(const llvm::CallInst &call) {
+  const llvm::Function *callee = call.getCalledFunction();
+  llvm::StringRef name = callee ? callee->getName() : "";
+  if (!name.consume_front("rtsl_"))
+    return "";
+  std::string wide = "rtsl_double_" + name.str();
+  for (const HostSymbol &symbol : functions)
+    if (wide == symbol.name)
+      return wide;
+  return "";
+}
+
+bool isSingle(const llvm::Type *type) { return type->getScalarType()->isFloatTy(); }
+
+llvm::Type *doubled(llvm::Type *type) {
+  llvm::Type *scalar = llvm::Type::getDoubleTy(type->getContext());
+  auto *vector = llvm::dyn_cast<llvm::VectorType>(type);
+  return vector ? llvm::VectorType::get(scalar, vector->getElementCount()) : scalar;
+}
+
+/// Intrinsics that exist for double as for float, all of whose operands are of their own type.
+bool isArithmetic(llvm::Intrinsic::ID intrinsic) {
+  switch (intrinsic) {
+  case llvm::Intrinsic::ceil:
+  case llvm::Intrinsic::copysign:
+  case llvm::Intrinsic::fabs:
+  case llvm::Intrinsic::floor:
+  case llvm::Intrinsic::fma:
+  case llvm::Intrinsic::fmuladd:
+  case llvm::Intrinsic::maximum:
+  case llvm::Intrinsic::maxnum:
+  case llvm::Intrinsic::minimum:
+  case llvm::Intrinsic::minnum:
+  case llvm::Intrinsic::rint:
+  case llvm::Intrinsic::roundeven:
+  case llvm::Intrinsic::sqrt:
+  case llvm::Intrinsic::trunc:
+    return true;
+  default:
+    return false;
+  }
+}
+
+/// One function: its values that become double, and the same values single for whom else uses them.
+class Widening {
+public:
+  explicit Widening(llvm::Function &function) : function(function) {}
+
+  void run() {
+    for (llvm::Instruction &instruction : llvm::instructions(function))
+      if (computes(instruction))
+        computed.insert(&instruction);
+    // Types first: a loop uses values before their definition.
+    llvm::SmallVector<llvm::Instruction *> users;
+    for (llvm::Instruction &instruction : llvm::instructions(function))
+      users.push_back(&instruction);
+    for (llvm::Instruction *instruction : computed)
+      instruction->mutateType(doubled(instruction->getType()));
+    for (llvm::Instruction *user : users)
+      adapt(*user);
+  }
+
+private:
+  /// Whether the result is arithmetic, or chosen, taken apart or joined without being touched.
+  static bool computes(const llvm::Instruction &instruction) {
+    if (!isSingle(instruction.getType()))
+      return false;
+    if (const auto *call = llvm::dyn_cast<llvm::CallInst>(&instruction))
+      return isArithmetic(call->getIntrinsicID()) || !doubleNameOf(*call).empty();
+    return llvm::isa<llvm::BinaryOperator, llvm::UnaryOperator, llvm::SelectInst, llvm::PHINode, llvm::FreezeInst,
+                     llvm::ExtractElementInst, llvm::InsertElementInst, llvm::ShuffleVectorInst, llvm::SIToFPInst,
+                     llvm::UIToFPInst>(instruction);
+  }
+
+  /// Whether a user takes double operands though its own result is none.
+  static bool takesDouble(const llvm::Instruction &user) {
+    if (const auto *call = llvm::dyn_cast<llvm::CallInst>(&user))
+      return call->getIntrinsicID() == llvm::Intrinsic::fptosi_sat || call->getIntrinsicID() == llvm::Intrinsic::fptoui_sat;
+    return llvm::isa<llvm::FCmpInst, llvm::FPToSIInst, llvm::FPToUIInst>(user);
+  }
+
+  void adapt(llvm::Instruction &user) {
+    const bool isComputed = computed.contains(&user);
+    const bool isDouble = isComputed || takesDouble(user);
+    for (llvm::Use &use : user.operands())
+      if (isDouble && isSingle(use->getType()))
+        use.set(wide(use.get()));
+      else if (auto *operand = llvm::dyn_cast<llvm::Instruction>(use.get()); !isDouble && operand && computed.contains(operand))
+        use.set(narrow(*operand));
+    auto *call = llvm::dyn_cast<llvm::CallInst>(&user);
+    if (!call || !isDouble)
+      return;
+    llvm::Module &module = *function.getParent();
+    llvm::Type *type = call->getArgOperand(0)->getType();
+    if (const std::string name = doubleNameOf(*call); !name.empty()) {
+      llvm::SmallVector<llvm::Type *> operands(call->arg_size(), type);
+      llvm::FunctionCallee callee =
+          module.getOrInsertFunction(name, llvm::FunctionType::get(type, operands, false), call->getCalledFunction()->getAttributes());
+      call->setCalledFunction(callee);
+    } else if (isComputed) {
+      call->setCalledFunction(llvm::Intrinsic::getOrInsertDeclaration(&module, call->getIntrinsicID(), {type}));
+    } else {
+      call->setCalledFunction(
+          llvm::Intrinsic::getOrInsertDeclaration(&module, call->getIntrinsicID(), {call->getType(), type}));
+    }
+  }
+
+  /// A single value as double.
+  llvm::Value *wide(llvm::Value *value) {
+    if (auto *constant = llvm::dyn_cast<llvm::Constant>(value))
+      return llvm::ConstantFoldCastOperand(llvm::Instruction::FPExt, constant, doubled(value->getType()),
+                                           function.getParent()->getDataLayout());
+    llvm::Value *&result = widened[value];
+    if (!result) {
+      auto *instruction = llvm::dyn_cast<llvm::Instruction>(value);
+      llvm::IRBuilder<> builder(instruction ? instruction->getParent() : &function.getEntryBlock(),
+                                instruction ? *instruction->getInsertionPointAfterDef()
+                                            : function.getEntryBlock().getFirstInsertionPt());
+      result = builder.CreateFPExt(value, doubled(value->getType()));
+    }
+    return result;
+  }
+
+  /// A double value rounded to single.
+  llvm::Value *narrow(llvm::Instruction &value) {
+    llvm::Value *&result = narrowed[&value];
+    if (!result) {
+      llvm::Type *type = llvm::Type::getFloatTy(function.getContext());
+      if (auto *vector = llvm::dyn_cast<llvm::VectorType>(value.getType()))
+        type = llvm::VectorType::get(type, vector->getElementCount());
+      llvm::IRBuilder<> builder(value.getParent(), *value.getInsertionPointAfterDef());
+      result = builder.CreateFPTrunc(&value, type);
+    }
+    return result;
+  }
+
+  llvm::Function &function;
+  llvm::SetVector<llvm::Instruction *> computed;
+  llvm::DenseMap<llvm::Value *, llvm::Value *> widened, narrowed;
+};
+
+} // namespace
+
+void widenArithmetic(llvm::Module &module) {
+  for (llvm::Function &function : module)
+    if (!function.isDeclaration())
+      Widening(function).run();
+}
+
+llvm::ArrayRef<HostSymbol> doubleFunctions() { return functions; }
+
+} // namespace rtsl::codegen
