@@ -42,6 +42,14 @@ class Unlit : rt_Material {
   public color tint;
   void shade() { rt_SampleColor = tint * rt_TextureUV.x; }
 };
+class Lamp : rt_Light {
+  public vec3 position;
+  void illumination() {
+    rt_LightDirection = position - rt_HitPoint;
+    rt_LightDistance = 1.0;
+    rt_LightColor = color(1.0);
+  }
+};
 struct Probe { float distance; };
 class Answering : Unlit {
   void closestHit(inout Probe probe) { probe.distance = rt_HitDistance; }
@@ -131,8 +139,12 @@ class Explain(Case):
             self.assertLessEqual(one["slower"]["median"], one["slower"]["high"])
 
     def test_keeping_changes_no_picture(self):
+        # The second scene's material reads no normal, and sends shadow rays, for which the runtime does.
+        self.write_scene(materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}},
+                         lights=[{"class": "Lamp", "position": [3, 1, 2]}])
+        (self.folder / "scene.json").rename(self.folder / "lit.json")
         self.write_scene()
-        scenes = [self.folder / "scene.json", EXAMPLES / "glass" / "scene.json", EXAMPLES / "whitted-programs" / "scene.json"]
+        scenes = [self.folder / "scene.json", self.folder / "lit.json", EXAMPLES / "glass" / "scene.json", EXAMPLES / "whitted-programs" / "scene.json"]
         for scene in scenes:
             for trace in ("recurse", "split"):
                 self.run_rtslc("render", scene, "-o", "a.exr", *SMALL, f"--trace={trace}")
