@@ -108,7 +108,8 @@ struct Program {
     struct States {
       std::int32_t (*run)(RtslState *, std::int32_t number, RtslRef object, void *frame) = nullptr;
       std::int32_t frameSize = 0;                  // bytes of the largest frame
-      std::int32_t shadeFirst = 0, missFirst = 0; // the states in which the methods begin; 0: there is none
+      // The states in which methods begin; 0: there is none.
+      std::int32_t shadeFirst = 0, missFirst = 0, closestHitFirst = 0, missWithPayloadFirst = 0, generateFirst = 0;
     } states;
 
     std::uint32_t features = 0; // of shaders in C++: what rtsl_features says, RTSL_FEATURE_*

@@ -62,15 +62,15 @@ int32_t rtsl_rays_sent(RtslState *, int32_t) {
 int32_t rtsl_rays_sent_last(RtslState *, int32_t) {
   return 1;
 }
-// States of methods with a payload, and of `generate`, are not printed as C++.
-int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *) {
-  return 0;
+int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *state) {
+  return slotsOf(state).states.closestHitFirst;
 }
-int32_t rtsl_rt_Miss_miss_payload_first(RtslState *) {
-  return 0;
+int32_t rtsl_rt_Miss_miss_payload_first(RtslState *state) {
+  return slotsOf(state).states.missWithPayloadFirst;
 }
-int32_t rtsl_rt_RayGeneration_generate_first(RtslState *) {
-  return 0;
+// `generate` is asked for before its ray has a state.
+int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state) {
+  return slotsOf(state).states.generateFirst;
 }
 
 /// rtsl_sample of such a program, with calls or with the machine.
@@ -79,7 +79,7 @@ void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_
   const auto &states = static_cast<const rtsl::runtime::ProgramHost *>(launch->host)->slots.states;
   if (!states.run)
     return launch->rayGeneration ? rtsl_generate(launch, x, y, sample, color) : rtsl_sample(launch, x, y, sample, color);
-  const uint64_t levels = uint64_t(launch->maxDepth) + 1;
+  const uint64_t levels = uint64_t(launch->maxDepth) + (launch->rayGeneration ? 2 : 1);
   void *stack = rtsl_machine_stack(levels * device::levelSize(uint64_t(states.frameSize)));
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);

@@ -71,8 +71,6 @@ Code FunctionPrinter::print(const typed::BuiltinExpr &expr) {
 // The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax, payload, root...)`. The
 // ray may write it in its place, for nobody looks at it meanwhile, unless what stands behind it changes it first.
 Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
-  if (module.hasStates())
-    module.unsupported(expr.range, "`trace` with a payload in states in C++ (--trace=recurse keeps it as a call)");
   constexpr std::size_t at = 4;
   const typed::Expr &payload = *expr.args[at];
   const Effects indices = indexEffects(payload);

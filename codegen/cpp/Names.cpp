@@ -55,7 +55,10 @@ void Names::give(const void *entity, const std::string &name, const std::string 
                  const std::set<std::string> &avoid, const std::set<std::string> &all) {
   std::string result = cleaned(name);
   if (isReserved(result) || avoid.count(result) || (result != name && all.count(result))) {
-    const std::string base = result.back() == '_' ? result : result + "_";
+    std::string base = result.back() == '_' ? result : result + "_";
+    for (const char *prefix : {"GLM_", "RTSL_", "rtsl_"}) // no name begins so, whatever stands behind it
+      if (const std::size_t length = std::string(prefix).size(); base.compare(0, length, prefix) == 0)
+        base.erase(length - 1, 1);
     result = base;
     for (unsigned i = 2; avoid.count(result) || all.count(result) || isReserved(result); ++i)
       result = base + std::to_string(i);

@@ -140,6 +140,8 @@ constexpr PayloadSlot payloadSlotTable[] = {
 std::string ModulePrinter::payloadSlots() {
   std::string text;
   for (const PayloadSlot &slot : payloadSlotTable) {
+    if (!firstCalls.empty() && std::string(slot.method) != "anyHit")
+      continue; // runState has them
     std::string arms;
     const std::vector<const typed::Class *> classes = classesBelow(slot.base);
     for (const RayType &type : rayTypes) {
@@ -174,7 +176,7 @@ std::string ModulePrinter::describePayloads() {
   std::string text;
   for (const PayloadSlot &slot : payloadSlotTable)
     for (const typed::Class *definition : classesBelow(slot.base))
-      if (!payloadMethods(*definition, slot.method).empty()) {
+      if ((firstCalls.empty() || std::string(slot.method) == "anyHit") && !payloadMethods(*definition, slot.method).empty()) {
         text += fmt::format("program.slots().{0}_{1}_payload = &slots::{1}WithPayload;\n", slot.base, slot.method);
         break;
       }

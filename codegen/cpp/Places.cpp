@@ -76,6 +76,8 @@ Effects FunctionPrinter::indexEffects(const typed::Expr &place) {
 }
 
 Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
+  if (auto found = replaced.find(&expr); found != replaced.end())
+    return found->second;
   switch (expr.kind) {
   case ExprKind::Variable:
     return {module.names.of(cast<typed::VariableExpr>(expr).variable)};

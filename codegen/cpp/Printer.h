@@ -59,7 +59,6 @@ public:
   ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
                 const StateProgram *states);
   std::string run();
-  bool hasStates() const { return states != nullptr; }
 
   /// `inMemory`: as it lies in a record, a struct or an array, where a bool has 32 bits.
   std::string type(const Type *type, bool inMemory = false);

@@ -311,9 +311,17 @@ std::string StateWriter::body(mlir::func::FuncOp state) {
     if (!stmt.comment.empty())
       comments[module.notes.line(stmt.range)] = stmt.comment;
   });
+  elementIndices.clear();
+  constants.clear();
   Statements statements;
   block(state.getBody().front(), statements);
-  return text(statements);
+  std::string declared;
+  for (const typed::Variable *constant : constants) {
+    const std::string type = module.type(constant->type), &name = module.names.of(constant);
+    declared += (printer.isTable(*constant->init) ? "static constexpr " : "const ") + type + " " +
+                declarator(type, name, printer.initialiser(*constant->init)) + ";\n";
+  }
+  return declared + text(statements);
 }
 
 } // namespace rtsl::cpp

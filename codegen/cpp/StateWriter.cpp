@@ -71,7 +71,7 @@ void StateWriter::unsupported(mlir::Operation &op) {
     return;
   hasRefused = true;
   std::string what = op.getName().stripDialect().str();
-  if (llvm::isa<ir::VarOp, ir::FrameObjectOp, ir::ElementOp, ir::FieldOp, ir::TableOp>(op))
+  if (llvm::isa<ir::VarOp, ir::TableOp>(op))
     what = "an array or a struct";
   const unsigned line = lineOf(op.getLoc());
   module.unsupported(machine.method->range,
@@ -123,6 +123,15 @@ const std::string &StateWriter::nameOf(ir::VarOp variable) {
   return name;
 }
 
+/// Does the text have the word?
+static bool mentions(const std::string &text, const std::string &word) {
+  auto isPart = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    if ((at == 0 || !isPart(text[at - 1])) && (at + word.size() == text.size() || !isPart(text[at + word.size()])))
+      return true;
+  return false;
+}
+
 static std::string scalarType(mlir::Type type) {
   if (type.isF32())
     return "float";
@@ -146,10 +155,32 @@ static std::string stateType(llvm::StringRef name) {
   return word == "float" || word == "int" ? word : "glm::" + word;
 }
 
+const Type *StateWriter::declaredType(mlir::Value address) {
+  mlir::Operation *op = address.getDefiningOp();
+  if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
+    return machine.method->parameters.front()->type;
+  if (auto field = llvm::dyn_cast_or_null<ir::FieldOp>(op)) {
+    const Type *base = declaredType(field.getBase());
+    if (base && base->is(TypeKind::Struct))
+      for (const typed::Field &part : base->structure->fields)
+        if (part.name == field.getField())
+          return part.type;
+    return nullptr;
+  }
+  if (auto element = llvm::dyn_cast_or_null<ir::ElementOp>(op)) {
+    const Type *base = declaredType(element.getBase());
+    return base && base->is(TypeKind::Array) ? base->element : nullptr;
+  }
+  auto number = op ? op->getAttrOfType<mlir::IntegerAttr>("rtsl.declared") : mlir::IntegerAttr();
+  return number ? source.types[static_cast<std::size_t>(number.getInt())] : nullptr;
+}
+
 std::string StateWriter::varType(ir::VarOp variable) {
   auto [at, isNew] = variableTypes.try_emplace(variable);
   if (!isNew)
     return at->second;
+  if (const Type *declared = declaredType(variable))
+    return variableTypes[variable] = module.type(declared);
   std::string type;
   for (mlir::Operation *user : variable->getUsers())
     if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty())
@@ -163,6 +194,10 @@ std::string StateWriter::typeOf(mlir::Value value) {
   mlir::Operation *op = value.getDefiningOp();
   if (!op)
     return {};
+  if (llvm::isa<ir::PtrType>(value.getType())) {
+    const Type *declared = declaredType(value);
+    return declared ? module.type(declared) : std::string();
+  }
   return llvm::TypeSwitch<mlir::Operation *, std::string>(op)
       .Case([&](ir::ExpressionOp expression) {
         const SourceTable::Entry &entry = source.entries[expression.getSource()];
@@ -174,11 +209,13 @@ std::string StateWriter::typeOf(mlir::Value value) {
           return varType(variable);
         if (auto state = load.getAddress().getDefiningOp<ir::StateOp>())
           return stateType(state.getName());
+        if (const Type *declared = declaredType(load.getAddress()))
+          return module.type(declared);
         return scalarType(value.getType());
       })
       .Case([&](ir::FrameLoadOp load) {
         for (const FrameField &field : machine.frame)
-          if (field.slot == load.getName())
+          if (!field.isObject && field.slot == load.getName())
             return field.type;
         return std::string();
       })
@@ -197,11 +234,26 @@ std::string StateWriter::typeOf(mlir::Value value) {
 
 std::string StateWriter::keyOf(mlir::Value address) {
   mlir::Operation *op = address.getDefiningOp();
+  while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(op))
+    op = op->getOperand(0).getDefiningOp();
+  if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
+    return "object " + object.getName().str();
+  if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
+    return "payload";
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
     return "state " + state.getName().str();
   if (llvm::isa_and_nonnull<ir::VarOp>(op))
     return fmt::format("var {}", static_cast<const void *>(op));
   return {};
+}
+
+void StateWriter::note(mlir::Value address, Touches &touches, bool isWritten) {
+  (isWritten ? touches.writes : touches.reads).insert(keyOf(address));
+}
+
+static bool changes(ir::EvaluateOp op, std::size_t operand) {
+  auto changed = op->getAttrOfType<mlir::DenseI32ArrayAttr>("rtsl.changes");
+  return changed && llvm::is_contained(changed.asArrayRef(), static_cast<std::int32_t>(operand));
 }
 
 StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
@@ -217,10 +269,23 @@ StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
       touches.writes.insert("frame " + frameStore.getName().str());
     else if (llvm::isa<ir::RandOp>(inner))
       touches.writes.insert("random");
-    else if (auto call = llvm::dyn_cast<ir::EvaluateOp>(inner)) {
-      touches.readsAny = true;
-      touches.writes.insert("random");
-      touches.writesAny = !call.getWrites();
+    else if (auto clear = llvm::dyn_cast<ir::ClearOp>(inner))
+      note(clear.getAddress(), touches, true);
+    else if (auto copy = llvm::dyn_cast<ir::CopyOp>(inner)) {
+      note(copy.getSource(), touches, false);
+      note(copy.getTarget(), touches, true);
+    } else if (auto call = llvm::dyn_cast<ir::EvaluateOp>(inner)) {
+      for (auto [index, operand] : llvm::enumerate(call.getOperands()))
+        if (llvm::isa<ir::PtrType>(operand.getType())) {
+          note(operand, touches, false);
+          if (changes(call, index))
+            note(operand, touches, true);
+        }
+      if (!call->hasAttr("rtsl.plain")) {
+        touches.readsAny = true;
+        touches.writes.insert("random");
+        touches.writesAny = !call.getWrites();
+      }
       if (call.getWrites())
         for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
           touches.writes.insert("state " + name.getValue().str());
@@ -357,6 +422,19 @@ Code StateWriter::place(mlir::Value address) {
     mentioned.insert(variable);
     return {nameOf(variable)};
   }
+  if (auto object = address.getDefiningOp<ir::FrameObjectOp>())
+    for (const FrameField &field : machine.frame)
+      if (field.isObject && field.slot == object.getName())
+        return {machine.frameName + "." + field.name};
+  if (address.getDefiningOp<ir::PayloadOp>())
+    return {module.names.of(machine.method->parameters.front().get())};
+  if (auto field = address.getDefiningOp<ir::FieldOp>())
+    if (const Type *base = declaredType(field.getBase()); base && base->is(TypeKind::Struct))
+      for (const typed::Field &part : base->structure->fields)
+        if (part.name == field.getField())
+          return {place(field.getBase()).text + "." + module.names.of(&part)};
+  if (auto element = address.getDefiningOp<ir::ElementOp>())
+    return {place(element.getBase()).text + "[" + elementIndices[element] + "]"};
   unsupported(*address.getDefiningOp());
   return {"0"};
 }
@@ -365,10 +443,16 @@ Code StateWriter::place(mlir::Value address) {
 Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound) {
   isCompound = false;
   printer.replaced.clear();
-  for (auto [leaf, operand] : llvm::zip(entry.leaves, operands))
-    printer.replaced[leaf] = use(operand, module.type(leaf->type));
+  for (auto [leaf, operand] : llvm::zip(entry.leaves, operands)) {
+    if (!leaf)
+      continue;
+    const Code code = llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, module.type(leaf->type));
+    printer.replaced[leaf] = code;
+  }
+  nameConstants(*entry.expr);
   switch (entry.kind) {
   case SourceTable::Kind::Value:
+  case SourceTable::Kind::Into:
     return printer.expr(*entry.expr);
   case SourceTable::Kind::AngleCosine:
     return {"rtsl::cosOfAngle(" + printer.argument(*entry.expr) + ")"};
@@ -434,7 +518,7 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
       })
       .Case([&](ir::FrameLoadOp load) {
         for (const FrameField &field : machine.frame)
-          if (field.slot == load.getName()) {
+          if (!field.isObject && field.slot == load.getName()) {
             Touches touches;
             touches.reads.insert("frame " + field.slot);
             define(op, {machine.frameName + "." + field.name}, touches, true, out);
@@ -446,19 +530,15 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
         usesScratch |= module.effects.expression(*source.entries[whole.getSource()].expr).usesScratch;
         pure(code);
       })
-      .Case([&](ir::EvaluateOp call) {
-        bool isCompound;
-        const SourceTable::Entry &entry = source.entries[call.getSource()];
-        Code code = expression(entry, op.getOperands(), isCompound);
-        usesScratch |= module.effects.expression(*entry.expr).usesScratch;
-        Touches touches = touchesOf(&op);
-        flush(touches, out);
-        touches.add(consumed);
-        if (op.getNumResults() == 0)
-          emit(out, code.text + ";");
-        else
-          define(op, code, touches, false, out);
+      .Case([&](ir::EvaluateOp inner) { evaluate(inner, out); })
+      .Case([&](ir::ClearOp inner) { clear(inner, out); })
+      .Case([&](ir::CopyOp copy) {
+        const std::string from = place(copy.getSource()).text, to = place(copy.getTarget()).text;
+        flush(touchesOf(&op), out);
+        if (from != to)
+          emit(out, to + " = " + from + ";");
       })
+      .Case([&](ir::SpawnPayloadOp spawn) { spawnPayload(spawn); })
       .Case([&](ir::RandOp) {
         Touches touches = touchesOf(&op);
         flush(touches, out);
@@ -478,7 +558,7 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
       .Case([&](ir::StoreOp stored) { store(stored, out); })
       .Case([&](ir::FrameStoreOp stored) {
         for (const FrameField &field : machine.frame)
-          if (field.slot == stored.getName()) {
+          if (!field.isObject && field.slot == stored.getName()) {
             const std::string value = bind(use(stored.getValue(), field.type), Binding::Assignment);
             flush(touchesOf(&op), out);
             if (value != machine.frameName + "." + field.name)
@@ -533,8 +613,127 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
               Binding::Assignment});
       })
       .Case<arith::ConstantOp, ir::NullRefOp, ir::NextOp, ir::StateOp, ir::YieldOp, ir::ConditionOp,
-            ir::TraceReturnedOp>([](auto) {})
+            ir::TraceReturnedOp, ir::FrameObjectOp, ir::PayloadOp, ir::FieldOp, ir::TableOp>([](auto) {})
+      .Case([&](ir::ElementOp element) { elementIndices[element] = bind(use(element.getIndex()), Binding::Assignment); })
       .Default([&](mlir::Operation *) { unsupported(op); });
+}
+
+/// Constant arrays and structs of a function are declared where a state names them.
+void StateWriter::nameConstants(const typed::Expr &expr) {
+  std::set<const typed::Expr *> elsewhere;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    if (printer.replaced.count(&inner))
+      forEachExpr(inner, [&](const typed::Expr &part) { elsewhere.insert(&part); });
+  });
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    auto *named = dynCast<typed::VariableExpr>(&inner);
+    if (named && named->variable->isConst && named->variable->kind != typed::Variable::Kind::Global &&
+        !elsewhere.count(&inner) && std::find(constants.begin(), constants.end(), named->variable) == constants.end())
+      constants.push_back(named->variable);
+  });
+}
+
+bool writesTo(mlir::Operation *op, mlir::Value address) {
+  if (auto store = llvm::dyn_cast<ir::StoreOp>(op))
+    return store.getAddress() == address;
+  if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
+    return clear.getAddress() == address;
+  if (auto copy = llvm::dyn_cast<ir::CopyOp>(op))
+    return copy.getTarget() == address;
+  if (auto spawn = llvm::dyn_cast<ir::SpawnPayloadOp>(op))
+    return spawn.getPayload() == address;
+  if (auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op))
+    for (auto [index, operand] : llvm::enumerate(evaluation.getOperands()))
+      if (operand == address && changes(evaluation, index))
+        return true;
+  return llvm::isa<ir::FieldOp, ir::ElementOp>(op) &&
+         llvm::any_of(op->getUsers(), [&](mlir::Operation *user) { return writesTo(user, op->getResult(0)); });
+}
+
+/// Variables that stay whole are read and written where they lie, by the author's expression.
+void StateWriter::evaluate(ir::EvaluateOp op, Statements &out) {
+  const SourceTable::Entry &entry = source.entries[op.getSource()];
+  usesScratch |= module.effects.expression(*entry.expr).usesScratch;
+  bool isCompound;
+  const bool isWrite = entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec;
+  std::vector<std::string> before;
+  printer.before = &before;
+  Code code;
+  if (isWrite) {
+    printer.replaced.clear();
+    for (auto [leaf, operand] : llvm::zip(entry.leaves, op.getOperands()))
+      printer.replaced[leaf] = llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, module.type(leaf->type));
+    nameConstants(*entry.expr);
+    code = {printer.expressionStatement(*entry.expr)};
+    while (!code.text.empty() && (code.text.back() == '\n' || code.text.back() == ';'))
+      code.text.pop_back();
+  } else {
+    code = expression(entry, op.getOperands(), isCompound);
+  }
+  printer.before = nullptr;
+  Touches touches = touchesOf(op);
+  if (entry.kind == SourceTable::Kind::Into) {
+    auto variable = op.getOperand(0).getDefiningOp<ir::VarOp>();
+    const std::string target = place(op.getOperand(0)).text;
+    flush(touches, out);
+    // Nothing has looked at what it held before.
+    auto isItsClear = [&](const Statement &statement) { return statement.text == target + " = {};"; };
+    if (!out.empty() && isItsClear(out.back()) && !mentions(code.text, target))
+      out.pop_back();
+    for (std::string &statement : before)
+      emit(out, std::move(statement));
+    mentioned = {};
+    for (mlir::Value operand : op.getOperands())
+      for (mlir::Value at = operand; at;) {
+        mlir::Operation *defining = at.getDefiningOp();
+        if (llvm::isa_and_nonnull<ir::VarOp>(defining))
+          mentioned.insert(defining);
+        at = llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(defining) ? defining->getOperand(0) : mlir::Value();
+      }
+    emit(out, target + " = " + code.text + ";");
+    if (variable && !mentions(code.text, target)) {
+      out.back().assigns = variable;
+      out.back().value = code.text;
+    }
+    return;
+  }
+  flush(touches, out);
+  const std::set<mlir::Operation *> mentionedHere = mentioned;
+  for (std::string &statement : before) {
+    mentioned = mentionedHere;
+    emit(out, std::move(statement));
+  }
+  mentioned = mentionedHere;
+  touches.add(consumed);
+  if (op.getNumResults() == 0) {
+    if (!code.text.empty())
+      emit(out, code.text + ";");
+    return;
+  }
+  define(*op, code, touches, /*isPure=*/op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes"), out);
+}
+
+void StateWriter::clear(ir::ClearOp op, Statements &out) {
+  auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
+  const std::string target = place(op.getAddress()).text;
+  flush(touchesOf(op), out);
+  emit(out, target + " = {};");
+  if (variable) {
+    out.back().assigns = variable;
+    out.back().value = "{}";
+  }
+}
+
+void StateWriter::spawnPayload(ir::SpawnPayloadOp op) {
+  std::vector<std::string> arguments = {bind(use(op.getOrigin(), "glm::vec3"), Binding::Assignment),
+                                        bind(use(op.getDirection(), "glm::vec3"), Binding::Assignment),
+                                        bind(use(op.getTmin()), Binding::Assignment),
+                                        bind(use(op.getTmax()), Binding::Assignment), place(op.getPayload()).text};
+  const mlir::Value options[] = {op.getRoot(), op.getMask(), op.getTime()};
+  for (mlir::Value optional : options)
+    if (optional)
+      arguments.push_back(bind(use(optional), Binding::Assignment));
+  spawned = join(arguments, ", ");
 }
 
 /// `target += y` for `target + y`, where `value` is the whole expression of the source that made it.
@@ -552,7 +751,8 @@ std::string StateWriter::assignment(const std::string &target, const std::string
 
 void StateWriter::store(ir::StoreOp op, Statements &out) {
   auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
-  const std::string type = variable ? varType(variable) : typeOf(op.getValue());
+  const Type *declared = variable ? nullptr : declaredType(op.getAddress());
+  const std::string type = variable ? varType(variable) : declared ? module.type(declared) : typeOf(op.getValue());
   const std::string target = place(op.getAddress()).text;
   // A component of what lies there.
   auto insertion = insertions.find(op.getValue());
@@ -567,11 +767,62 @@ void StateWriter::store(ir::StoreOp op, Statements &out) {
     mlir::Value scalar = op.getValue().getDefiningOp<mlir::vector::InsertOp>().getValueToStore();
     return emit(out, assignment(part, insertion->second.value, scalar));
   }
+  // What it held before nobody has looked at.
+  if (!out.empty() && !mentions(value, target))
+    for (const char *zero : {"{}", "0.0f", "0", "0u", "false", "glm::vec2(0.0f)", "glm::vec3(0.0f)", "glm::vec4(0.0f)", "Color(0.0f)"})
+      if (out.back().comment.empty() && out.back().text == target + " = " + zero + ";") {
+        out.pop_back();
+        break;
+      }
   emit(out, assignment(target, value, op.getValue()));
   if (variable) {
     out.back().assigns = variable;
     out.back().value = value;
   }
+  auto load = op.getValue().getDefiningOp<ir::LoadOp>();
+  auto from = load ? load.getAddress().getDefiningOp<ir::FieldOp>() : ir::FieldOp();
+  joinFields(op.getAddress(), from, target, value, out);
+}
+
+/// Field by field is how passes copy and clear a struct: `a.x = b.x; a.y = b.y;` is `a = b;`.
+void StateWriter::joinFields(mlir::Value address, ir::FieldOp from, const std::string &target, const std::string &value, Statements &out) {
+  auto field = address.getDefiningOp<ir::FieldOp>();
+  const Type *type = field ? declaredType(field.getBase()) : nullptr;
+  if (!type || !type->is(TypeKind::Struct))
+    return;
+  const std::vector<typed::Field> &fields = type->structure->fields;
+  const std::string whole = place(field.getBase()).text;
+  mentioned.clear();
+  const std::string part = target.substr(whole.size()); // ".x"
+  const bool isCopy = from && declaredType(from.getBase()) == type && value.size() > part.size() && value.compare(value.size() - part.size(), part.size(), part) == 0;
+  const bool isZero = value == "0.0f" || value == "0" || value == "false" || value == module.type(declaredType(address)) + "(0.0f)";
+  if (!isCopy && !isZero)
+    return;
+  Statement &last = out.back();
+  last.whole = whole;
+  last.from = isZero ? "{}" : value.substr(0, value.size() - part.size());
+  if (out.size() < fields.size())
+    return;
+  std::set<mlir::Operation *> all;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const Statement &one = out[out.size() - fields.size() + i];
+    const std::string begin = whole + "." + module.names.of(&fields[i]) + " = ";
+    if (one.whole != whole || one.from != last.from || one.text.compare(0, begin.size(), begin) != 0)
+      return;
+    all.insert(one.mentions.begin(), one.mentions.end());
+  }
+  Statement joined;
+  joined.comment = out[out.size() - fields.size()].comment;
+  joined.text = whole + " = " + last.from + ";";
+  joined.mentions = std::move(all);
+  if (auto variable = field.getBase().getDefiningOp<ir::VarOp>()) {
+    joined.assigns = variable;
+    joined.value = last.from;
+  }
+  out.resize(out.size() - fields.size());
+  if (!out.empty() && out.back().text == whole + " = {};")
+    out.pop_back();
+  out.push_back(std::move(joined));
 }
 
 void StateWriter::leave(ir::ReturnOp op, Statements &out) {

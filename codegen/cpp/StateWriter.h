@@ -24,6 +24,7 @@ struct FrameField {
   unsigned neededBy = 0; // the first line that reads it
   unsigned madeIn = 0;   // the line of what is saved
   bool isTraced = false; // a color that a ray brought back
+  bool isObject = false; // a variable that lies in the frame all the time
 };
 
 /// What the states of one method share.
@@ -35,6 +36,9 @@ struct Machine {
   std::string frameName = "frame"; // of the parameter
   std::map<std::string, std::string> stepOf; // by the symbol of the state
 };
+
+/// Does the operation write what lies at an address, or in a part of it?
+bool writesTo(mlir::Operation *op, mlir::Value address);
 
 /// The line of an operation in the author's file; 0: unknown.
 unsigned lineOf(mlir::Location location);
@@ -51,6 +55,8 @@ public:
   /// The C++ type of a value; empty if it cannot be told.
   std::string typeOf(mlir::Value value);
   bool usesScratch = false; // of the state that was written last
+  /// The author's type of a variable that stays whole, or of a part of one; null: it is not known.
+  const Type *declaredType(mlir::Value address);
 
 private:
   /// What reading or writing meets: "var x", "state RayOrigin", "frame i", "random"; `any` is everything.
@@ -73,6 +79,7 @@ private:
     mlir::Operation *declares = nullptr; // a variable whose declaration this is, to be joined with its first assignment
     mlir::Operation *assigns = nullptr;  // `x = value;`
     std::string value;
+    std::string whole, from; // a field of `whole` gets that of `from`, or zero
     std::set<mlir::Operation *> mentions;
   };
   using Statements = std::vector<Statement>;
@@ -100,6 +107,11 @@ private:
   Touches touchesOf(mlir::Operation *op);
   std::string keyOf(mlir::Value address);
   Code place(mlir::Value address);
+  void evaluate(ir::EvaluateOp op, Statements &out);
+  void clear(ir::ClearOp op, Statements &out);
+  void joinFields(mlir::Value address, ir::FieldOp from, const std::string &target, const std::string &value, Statements &out);
+  void spawnPayload(ir::SpawnPayloadOp op);
+  void note(mlir::Value address, Touches &touches, bool isWritten);
   Code expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound);
   std::string varType(ir::VarOp variable);
   const std::string &nameOf(ir::VarOp variable);
@@ -125,6 +137,9 @@ private:
   llvm::DenseMap<mlir::Value, Insertion> insertions; // vectors with one component replaced
   std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
   unsigned currentLine = 0;
+  llvm::DenseMap<mlir::Operation *, std::string> elementIndices; // of addresses
+  std::vector<const typed::Variable *> constants;                // of the author's functions, that the state names
+  void nameConstants(const typed::Expr &expr);
   bool hasRefused = false;
   std::string spawned; // the arguments of the ray that is traced when the state ends
 };

@@ -62,7 +62,7 @@ static bool traces(const typed::Module &module, const typed::Function &function)
   bool found = false;
   forEachExpr(*function.body, [&](const typed::Expr &expr) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-      found = found || builtin->builtin == typed::Builtin::Trace;
+      found = found || builtin->builtin == typed::Builtin::Trace || builtin->builtin == typed::Builtin::TracePayload;
     auto *call = dynCast<typed::CallExpr>(&expr);
     if (!call || found)
       return;
@@ -90,9 +90,14 @@ static std::vector<mlir::func::FuncOp> statesOf(const StateProgram &program, con
   return states;
 }
 
+/// `shade`, or `closestHit.Radiance` where there may be one for each payload: what the IR calls a method.
+static std::string slotName(const typed::Function &method) {
+  return lowering::takesPayload(method) ? method.name + "." + toString(method.parameters.front()->type) : method.name;
+}
+
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
-  return states && method.isStateMethod && method.parameters.empty() && traces(module, method) &&
-         !statesOf(*states, definition.name, method.name).empty();
+  return states && method.isStateMethod && traces(module, method) &&
+         !statesOf(*states, definition.name, slotName(method)).empty();
 }
 
 bool ModulePrinter::isPartOfStates(const typed::Class &, const typed::Function &function) const {
@@ -100,7 +105,7 @@ bool ModulePrinter::isPartOfStates(const typed::Class &, const typed::Function &
 }
 
 bool ModulePrinter::isRunBySteps(const std::string &slot) const {
-  return !firstCalls.empty() && (slot == "shade" || slot == "miss");
+  return !firstCalls.empty() && (slot == "shade" || slot == "miss" || slot == "generate" || slot == "closestHit");
 }
 
 std::set<std::string> ModulePrinter::namesInScope(const typed::Class &definition) const {
@@ -131,6 +136,18 @@ static std::string capitalised(std::string word) {
   return word;
 }
 
+/// The first line that asks for what lies at an address.
+static unsigned lineOfAccess(mlir::Value address) {
+  unsigned line = 0;
+  for (mlir::Operation *user : address.getUsers()) {
+    const bool isPart = llvm::isa<ir::FieldOp, ir::ElementOp>(user);
+    const unsigned at = isPart ? lineOfAccess(user->getResult(0)) : lineOf(user->getLoc());
+    if (at != 0 && (line == 0 || at < line))
+      line = at;
+  }
+  return line;
+}
+
 /// The line where what is in the frame is needed: that of the first thing that is made of it.
 static unsigned lineOfUse(ir::FrameLoadOp load) {
   unsigned line = 0;
@@ -143,9 +160,9 @@ static unsigned lineOfUse(ir::FrameLoadOp load) {
 /// The fields of the frame, in the order in which they are saved first.
 static void collectFrame(Machine &machine, StateWriter &writer) {
   std::set<std::string> taken;
-  auto field = [&](llvm::StringRef slot) -> FrameField & {
+  auto field = [&](llvm::StringRef slot, bool isObject = false) -> FrameField & {
     for (FrameField &known : machine.frame)
-      if (known.slot == slot)
+      if (known.slot == slot && known.isObject == isObject)
         return known;
     std::string name; // "sum.2" is the second sum, "ray.origin" a part
     for (std::size_t at = 0; at != slot.size(); ++at)
@@ -153,12 +170,23 @@ static void collectFrame(Machine &machine, StateWriter &writer) {
         name += slot[at];
       else if (at + 1 == slot.size() || !std::isdigit(static_cast<unsigned char>(slot[at + 1])))
         name += '_';
+    if (name == "evaluate" || name == "expression") // what the IR calls it
+      name = "value";
     std::string unique = name;
     for (unsigned i = 2; isReserved(unique) || !taken.insert(unique).second; ++i)
       unique = name + std::to_string(i);
-    machine.frame.push_back({slot.str(), unique, "", 0, 0, true});
+    machine.frame.push_back({slot.str(), unique, "", 0, 0, !isObject, isObject});
     return machine.frame.back();
   };
+  for (auto [number, state] : llvm::enumerate(machine.states))
+    state.walk([&](ir::FrameObjectOp object) {
+      FrameField &saved = field(object.getName(), /*isObject=*/true);
+      saved.type = writer.typeOf(object);
+      saved.madeIn = lineOf(object.getLoc());
+      const unsigned line = lineOfAccess(object);
+      if (number != 0 && line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
+        saved.neededBy = line;
+    });
   for (mlir::func::FuncOp state : machine.states) {
     state.walk([&](ir::FrameStoreOp store) {
       FrameField &saved = field(store.getName());
@@ -183,6 +211,8 @@ static void collectFrame(Machine &machine, StateWriter &writer) {
         changed |= !saved.type.empty();
       });
   }
+  std::stable_partition(machine.frame.begin(), machine.frame.end(),
+                        [](const FrameField &saved) { return saved.type != "bool"; });
 }
 
 static bool mentions(const std::string &text, const std::string &word) {
@@ -217,8 +247,12 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   Machine machine;
   machine.definition = &definition;
   machine.method = &method;
-  machine.states = statesOf(*states, definition.name, method.name);
-  const std::string &name = names.of(&method);
+  machine.states = statesOf(*states, definition.name, slotName(method));
+  std::string name = names.of(&method);
+  const typed::Variable *payload = lowering::takesPayload(method) ? method.parameters.front().get() : nullptr;
+  if (payload && std::count_if(definition.functions.begin(), definition.functions.end(),
+                               [&](const auto &other) { return other->name == method.name; }) > 1)
+    name += names.of(payload->type->structure); // there is one for each
   std::vector<std::string> functions = {name};
   for (std::size_t i = 1; i < machine.states.size(); ++i) {
     functions.push_back(fmt::format("{}AfterTrace{}", name, i));
@@ -232,11 +266,13 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   std::string text;
   if (!machine.frame.empty()) {
     text += fmt::format("// What `{}` needs when its rays come back.\nstruct {} {{\n", name, frame);
+    const auto isBool = [](const FrameField &field) { return field.type == "bool" && !field.isObject; };
+    const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1; // bools share a byte
     for (const FrameField &field : machine.frame) {
       if (field.type.empty())
         unsupported(method.range, fmt::format("`{}` in the frame of a method in C++", field.slot));
-      text += fmt::format("{} {}; // needed by line {}: {}\n", field.type, field.name, field.neededBy,
-                          meaningOf(method, field));
+      text += fmt::format("{} {}{}; // needed by line {}: {}\n", field.type, field.name,
+                          packs && isBool(field) ? " : 1" : "", field.neededBy, meaningOf(method, field));
     }
     text += "};\n\n";
     frames.push_back(names.of(&definition) + "::" + frame);
@@ -245,6 +281,10 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   for (std::size_t i = 0; i < machine.states.size(); ++i) {
     const std::string body = writer.body(machine.states[i]);
     std::vector<std::string> parameters = {mentions(body, "rt") ? "State &rt" : "State &"}, arguments = {"rt"};
+    if (payload && mentions(body, names.of(payload))) {
+      parameters.push_back(names.of(payload->type->structure) + " &" + names.of(payload));
+      arguments.push_back("rtsl::payloadOf<" + names.of(payload->type->structure) + ">(ray)");
+    }
     if (writer.usesScratch) {
       parameters.emplace_back("const Scratch &scratch");
       arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
@@ -252,16 +292,23 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
     if (mentions(body, machine.frameName)) {
       bool writes = false;
       machine.states[i].walk([&](ir::FrameStoreOp) { writes = true; });
+      machine.states[i].walk([&](ir::FrameObjectOp object) {
+        for (mlir::Operation *user : object->getUsers())
+          writes |= writesTo(user, object);
+      });
       parameters.push_back((writes ? "" : "const ") + frame + " &" + machine.frameName);
       arguments.push_back(fmt::format("rtsl::frameAt<{}::{}>(frame)", names.of(&definition), frame));
     }
     const std::string call = functions[i] + "(" + join(arguments, ", ") + ")";
     if (i == 0) {
       text += commentText(method.comment);
-      firstCalls[{&definition, method.name}] = call;
+      firstCalls[{&definition, slotName(method)}] = call;
     } else {
       unsigned line = 0;
-      machine.states[i].walk([&](ir::TraceResultOp result) { line = lineOf(result.getLoc()); });
+      machine.states[i].walk([&](mlir::Operation *op) {
+        if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp>(op) && line == 0)
+          line = lineOf(op->getLoc());
+      });
       text += line ? fmt::format("\n// When the ray of line {} is back.\n", line) : "\n";
       steps.push_back({machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
     }
@@ -278,15 +325,16 @@ std::string ModulePrinter::inheritedStateMachines(const typed::Class &definition
   std::string text;
   if (!states)
     return text;
-  for (const char *name : {"shade", "miss"}) {
-    const typed::Function *method = definition.findMethod(name);
-    if (!method || method->owner == &definition || !isSplit(definition, *method))
-      continue;
-    const bool isOther = std::any_of(definition.functions.begin(), definition.functions.end(),
-                                     [&](const auto &function) { return traces(module, *function); });
-    if (isOther)
-      text += "\n" + stateMachine(definition, *method);
-  }
+  const bool isOther = std::any_of(definition.functions.begin(), definition.functions.end(), [&](const auto &function) {
+    return !function->isStateMethod && traces(module, *function);
+  });
+  std::set<std::string> known;
+  for (const auto &own : definition.functions)
+    known.insert(slotName(*own));
+  for (const typed::Class *at = definition.base; at && isOther; at = at->base)
+    for (const auto &method : at->functions)
+      if (method->isStateMethod && known.insert(slotName(*method)).second && isSplit(definition, *method))
+        text += "\n" + stateMachine(definition, *method);
   return text;
 }
 
@@ -294,15 +342,48 @@ std::string ModulePrinter::inheritedStateMachines(const typed::Class &definition
 // The whole
 //===----------------------------------------------------------------------===//
 
+namespace {
+/// A method with which the machine begins.
+struct Beginning {
+  const char *base, *method, *step, *slot; // of the class, of the function, its number in C++, and who asks for it
+  bool hasPayload;
+};
+constexpr Beginning beginnings[] = {{"rt_Material", "shade", "shade", "shadeFirst", false},
+                                    {"rt_Miss", "miss", "miss", "missFirst", false},
+                                    {"rt_Material", "closestHit", "closestHit", "closestHitFirst", true},
+                                    {"rt_Miss", "miss", "missWithPayload", "missWithPayloadFirst", true},
+                                    {"rt_RayGeneration", "generate", "generate", "generateFirst", false}};
+} // namespace
+
+/// Does some class have such a method?
+static bool isThere(const ModulePrinter &printer, const std::vector<const typed::Class *> &classes, const Beginning &one) {
+  static_cast<void>(printer);
+  for (const typed::Class *definition : classes)
+    for (const typed::Class *at = definition; at; at = at->base)
+      for (const auto &method : at->functions)
+        if (method->isStateMethod && method->body && method->name == one.method &&
+            lowering::takesPayload(*method) == one.hasPayload)
+          return true;
+  return false;
+}
+
 std::string ModulePrinter::stepNumbers() const {
   if (firstCalls.empty())
     return {};
-  std::vector<std::string> numbers = {"shade = 1", "miss"};
+  std::vector<std::string> numbers, begin;
+  for (const Beginning &one : beginnings)
+    if (isThere(*this, classesBelow(one.base), one)) {
+      numbers.push_back(numbers.empty() ? std::string(one.step) + " = 1" : one.step);
+      begin.push_back(fmt::format("`{}`", one.step));
+    }
   for (const Step &step : steps)
     numbers.push_back(step.name);
-  return "// Where a method goes on: `shade` and `miss` begin, the others run when a ray is back.\n"
-         "enum class Step : rtsl::Next { " +
-         join(numbers, ", ") + " };\n";
+  const std::string last = begin.back();
+  begin.pop_back();
+  return fmt::format("// Where a method goes on: {}{} begin{}, the others run when a ray is back.\n"
+                     "enum class Step : rtsl::Next {{ {} }};\n",
+                     begin.empty() ? "" : join(begin, ", ") + " and ", last, begin.empty() ? "s" : "",
+                     join(numbers, ", "));
 }
 
 std::string ModulePrinter::runState() {
@@ -311,17 +392,26 @@ std::string ModulePrinter::runState() {
   auto object = [&](const typed::Class &definition) {
     return "rtsl::object<" + names.of(&definition) + ">(rt, object).";
   };
-  auto begin = [&](const char *base, const char *name) {
-    return dispatch(classesBelow(base), [&](const typed::Class &definition) -> std::string {
-      const typed::Function *method = definition.findMethod(name);
-      if (!method || !method->body)
+  // The first state of a method, or all of it if it does not trace.
+  auto begin = [&](const Beginning &one, const typed::Struct *payload) {
+    return dispatch(classesBelow(one.base), [&](const typed::Class &definition) -> std::string {
+      const typed::Function *method = nullptr;
+      for (const typed::Class *at = &definition; at && !method; at = at->base)
+        for (const auto &function : at->functions)
+          if (function->isStateMethod && function->body && function->name == one.method &&
+              (payload ? lowering::takesPayload(*function) && function->parameters.front()->type->structure == payload
+                       : function->parameters.empty()))
+            method = function.get();
+      if (!method)
         return {};
       for (const typed::Class *at = &definition; at; at = at->base)
-        if (auto first = firstCalls.find({at, name}); first != firstCalls.end())
+        if (auto first = firstCalls.find({at, slotName(*method)}); first != firstCalls.end())
           return "return " + object(definition) + first->second;
       std::string arguments = "rt";
       if (takesScratch(*method))
         arguments += ", rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)";
+      if (payload)
+        arguments += ", rtsl::payloadOf<" + names.of(payload) + ">(ray)";
       return object(definition) + names.of(method) + "(" + arguments + ");\nreturn rtsl::done";
     });
   };
@@ -329,10 +419,22 @@ std::string ModulePrinter::runState() {
                                  "[[maybe_unused]] void *frame) {{\nState &rt = rtsl::stateOf<{}>(ray);\n"
                                  "switch (static_cast<Step>(step)) {{\n",
                                  options.colorComponents);
-  for (const auto &[base, name] : {std::pair{"rt_Material", "shade"}, std::pair{"rt_Miss", "miss"}}) {
-    const std::string body = begin(base, name);
-    const bool returns = body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
-    text += fmt::format("case Step::{}:\n{}{}", name, body, returns ? "" : "return rtsl::done;\n");
+  auto returns = [](const std::string &body) {
+    return body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
+  };
+  for (const Beginning &one : beginnings) {
+    if (!isThere(*this, classesBelow(one.base), one))
+      continue;
+    text += fmt::format("case Step::{}:\n", one.step);
+    if (!one.hasPayload) {
+      const std::string body = begin(one, nullptr);
+      text += body + (returns(body) ? "" : "return rtsl::done;\n");
+      continue;
+    }
+    for (const RayType &type : rayTypes)
+      if (const std::string body = begin(one, type.payload); !body.empty())
+        text += fmt::format("if (rtsl::carries<{}>(ray)) {{\n{}}}\n", names.of(type.payload), body);
+    text += "return rtsl::done;\n";
   }
   for (const Step &step : steps)
     text += "case Step::" + step.name + ":\nreturn " + object(*step.definition) + step.call + ";\n";
@@ -342,17 +444,11 @@ std::string ModulePrinter::runState() {
 std::string ModulePrinter::describeStates() const {
   if (firstCalls.empty())
     return {};
-  auto has = [&](const char *base, const char *name) {
-    for (const typed::Class *definition : classesBelow(base))
-      if (const typed::Function *method = definition->findMethod(name); method && method->body)
-        return true;
-    return false;
-  };
-  auto first = [&](const char *base, const char *name) {
-    return has(base, name) ? fmt::format("static_cast<rtsl::Next>(Step::{})", name) : std::string("rtsl::done");
-  };
-  return fmt::format("program.states<{}>(&slots::runState, {}, {});\n", join(frames, ", "),
-                     first("rt_Material", "shade"), first("rt_Miss", "miss"));
+  std::string text = fmt::format("program.states<{}>(&slots::runState);\n", join(frames, ", "));
+  for (const Beginning &one : beginnings)
+    if (isThere(*this, classesBelow(one.base), one))
+      text += fmt::format("program.slots().states.{} = static_cast<rtsl::Next>(Step::{});\n", one.slot, one.step);
+  return text;
 }
 
 } // namespace rtsl::cpp

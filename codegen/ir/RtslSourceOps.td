@@ -21,15 +21,18 @@ def Rtsl_ExpressionOp : Rtsl_Op<"expression", [Pure]> {
   let assemblyFormat = "$source `cost` $cost `(` $operands `)` attr-dict `:` functional-type($operands, $result)";
 }
 
+def Rtsl_ValueOrPtr : AnyTypeOf<[Rtsl_Value, Rtsl_Ptr]>;
+
 def Rtsl_EvaluateOp : Rtsl_Op<"evaluate"> {
   let summary = "a call of the author's that may have effects";
   let description = [{
-    The operands are the arguments, a reference's object first. `writes` names the state variables that may change; without
-    it all may.
+    The operands are what in it may change: values, and addresses of variables that stay whole. `writes` names the state
+    variables that may change; without it all may. The attribute `rtsl.changes` has the numbers of the operands whose
+    variables may change; `rtsl.reads` says that nothing else happens but that variables are read.
 
     Example: `%f = rtsl.evaluate 4 (%x) writes ["LightColor"] : (f32) -> f32`
   }];
-  let arguments = (ins I32Attr:$source, Variadic<Rtsl_Value>:$operands, OptionalAttr<StrArrayAttr>:$writes);
+  let arguments = (ins I32Attr:$source, Variadic<Rtsl_ValueOrPtr>:$operands, OptionalAttr<StrArrayAttr>:$writes);
   let results = (outs Variadic<Rtsl_Value>:$results);
   let assemblyFormat = [{
     $source `(` $operands `)` (`writes` $writes^)? attr-dict `:` functional-type($operands, $results)

@@ -59,6 +59,14 @@ void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
       continue;
     }
     target = place(*expr.args[i]);
+    if (module.options.source && target.address.getDefiningOp<ir::VarOp>()) { // in its own place: nobody else looks
+      arguments.push_back(target.address);
+      continue;
+    }
+    if (module.options.source && target.address.getDefiningOp<ir::PayloadOp>()) {
+      arguments.push_back(target.address);
+      continue;
+    }
     arguments.push_back(temporary("payload", target.type));
     storeTo(load(target), arguments.back(), target.type);
   }
@@ -67,7 +75,8 @@ void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
   emitter.make<ir::TracePayloadOp>(arguments[0], arguments[1], arguments[2], arguments[3],
                                    arguments[payload], arguments[first], arguments[first + 1],
                                    arguments[first + 2], mlir::IntegerAttr(), mlir::IntegerAttr());
-  copyOut({{target, arguments[payload]}});
+  if (arguments[payload] != target.address)
+    copyOut({{target, arguments[payload]}});
 }
 
 void FunctionLowering::lowerPrint(const typed::BuiltinExpr &expr) {

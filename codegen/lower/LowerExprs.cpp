@@ -132,6 +132,8 @@ void FunctionLowering::lowerInto(const typed::Expr &expr, Value address) {
         [&] { lowerInto(*choice->whenFalse, address); });
   }
   if (livesInMemory(expr.type)) {
+    if (module.options.source && lowerEvaluation(expr, address))
+      return;
     if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && isAggregate(expr.type)) {
       if (ir::leafCount(module.type(expr.type)) > mostStores)
         if (Value constant = tableOf(expr, "constant"))
@@ -340,6 +342,11 @@ Parts FunctionLowering::lowerLength(const typed::LengthExpr &expr) {
 //===----------------------------------------------------------------------===//
 
 Parts FunctionLowering::lowerIncDec(const typed::IncDecExpr &expr) {
+  if (module.options.source && staysWhole(*expr.target)) {
+    const Parts before = expr.prefix ? Parts() : lower(*expr.target);
+    if (lowerEvaluation(expr))
+      return expr.prefix ? lower(*expr.target) : before;
+  }
   Place target = place(*expr.target);
   Parts before = load(target), after;
   for (Value part : before) {
@@ -355,6 +362,8 @@ Parts FunctionLowering::lowerIncDec(const typed::IncDecExpr &expr) {
 }
 
 Parts FunctionLowering::lowerAssign(const typed::AssignExpr &expr) {
+  if (module.options.source && staysWhole(*expr.target) && lowerEvaluation(expr))
+    return lower(*expr.target);
   Place target = place(*expr.target);
   Parts result;
   if (expr.compound) {

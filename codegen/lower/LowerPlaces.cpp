@@ -11,7 +11,7 @@ namespace rtsl::lowering {
 using typed::ExprKind;
 
 Value FunctionLowering::temporary(llvm::StringRef name, const Type *type) {
-  return emitter.variable(name, module.type(type));
+  return variableOf(name, type);
 }
 
 Parts FunctionLowering::loadFrom(Value address, const Type *type) {

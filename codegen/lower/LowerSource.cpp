@@ -29,16 +29,39 @@ static const typed::Expr &rootOf(const typed::Expr &expr) {
   }
 }
 
+/// The same, through components too.
+static const typed::Expr &wholeOf(const typed::Expr &place) {
+  const typed::Expr *root = &rootOf(place);
+  while (auto *swizzle = dynCast<typed::SwizzleExpr>(root))
+    root = &rootOf(*swizzle->base);
+  return *root;
+}
+
 static bool isLocal(const typed::Expr &expr) {
   auto *variable = dynCast<typed::VariableExpr>(&expr);
   return variable && variable->variable->kind != typed::Variable::Kind::Global;
 }
 
-static bool takesValues(const typed::Function &function) {
-  return !livesInMemory(function.returnType) &&
-         std::all_of(function.parameters.begin(), function.parameters.end(), [](const auto &p) {
-           return p->direction == ast::Direction::In && !livesInMemory(p->type);
-         });
+static bool hasNoOutputs(const typed::Function &function) {
+  return std::all_of(function.parameters.begin(), function.parameters.end(),
+                     [](const auto &p) { return p->direction == ast::Direction::In; });
+}
+
+/// The arguments that a built-in function writes: the first of them, and how many; none: 0, 0.
+static std::pair<std::size_t, std::size_t> outputsOf(typed::Builtin builtin) {
+  switch (builtin) {
+  case typed::Builtin::Modf:
+  case typed::Builtin::Frexp:
+    return {1, 1};
+  case typed::Builtin::UaddCarry:
+  case typed::Builtin::UsubBorrow:
+    return {2, 1};
+  case typed::Builtin::UmulExtended:
+  case typed::Builtin::ImulExtended:
+    return {2, 2};
+  default:
+    return {0, 0};
+  }
 }
 
 /// Is the operation itself, whatever its operands are, one that may stand in a whole expression?
@@ -54,7 +77,7 @@ bool FunctionLowering::isKept(const typed::Expr &expr) const {
     return isPureBuiltin(cast<typed::BuiltinExpr>(expr).builtin);
   case ExprKind::Call: {
     const typed::Function &callee = *cast<typed::CallExpr>(expr).function;
-    return takesValues(callee) && module.options.source->isPure(callee);
+    return hasNoOutputs(callee) && module.options.source->isPure(callee);
   }
   case ExprKind::Conditional:
   case ExprKind::Binary: {
@@ -177,55 +200,330 @@ Value FunctionLowering::wholeExpression(SourceTable::Kind kind, const typed::Exp
   return emitter.make<ir::ExpressionOp>(type, number, static_cast<std::uint32_t>(cost), operands);
 }
 
-/// A call with effects that takes values only. One that traces is no such thing: it has to be taken
-/// apart.
-std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr) {
-  std::vector<const typed::Expr *> leaves;
-  const typed::Function *callee = nullptr;
-  if (auto *call = dynCast<typed::CallExpr>(&expr)) {
-    callee = call->function;
-    for (const typed::ExprPtr &arg : call->args)
-      leaves.push_back(arg.get());
-  } else {
-    const auto &method = cast<typed::MethodCallExpr>(expr);
-    callee = method.function;
-    leaves.push_back(method.receiver.get());
-    for (const typed::ExprPtr &arg : method.args)
-      leaves.push_back(arg.get());
+//===----------------------------------------------------------------------===//
+// Evaluations: on variables where they lie
+//===----------------------------------------------------------------------===//
+
+// Structs, arrays and matrices stay whole, and so does what a call writes through its parameters: the operation has their
+// addresses. A number or a vector that is written so is a variable of its own for the time, under the same name.
+
+Value FunctionLowering::variableOf(llvm::StringRef name, const Type *type) {
+  Value variable = emitter.variable(name, module.type(type));
+  if (SourceTable *table = module.options.source) {
+    variable.getDefiningOp()->setAttr(
+        "rtsl.declared", emitter.getI32IntegerAttr(static_cast<std::int32_t>(table->types.size())));
+    table->types.push_back(type);
   }
-  if (callee && (callee->mayTrace || !takesValues(*callee)))
+  return variable;
+}
+
+bool FunctionLowering::mentionsMemory(const typed::Expr &expr) {
+  bool found = false;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    found = found || (isLocal(inner) && livesInMemory(inner.type)) ||
+            (inner.kind == ExprKind::Call && livesInMemory(inner.type));
+  });
+  return found;
+}
+
+/// Is the target part of a variable that stays whole, or a component that is found at run time?
+bool FunctionLowering::staysWhole(const typed::Expr &target) {
+  const typed::Expr &whole = wholeOf(target);
+  if (isLocal(whole) && livesInMemory(whole.type))
+    return true;
+  auto *index = dynCast<typed::IndexExpr>(&target);
+  return index && index->base->type->isVector() && index->index->kind != ExprKind::Literal;
+}
+
+/// Finds what the expression itself, not a part of it, writes.
+bool FunctionLowering::openPlaces(const typed::Expr &expr, Evaluation &evaluation) {
+  std::vector<const typed::Expr *> parts, written;
+  bool readsOld = true;
+  auto outputs = [&](const typed::Function *callee, const std::vector<typed::ExprPtr> &args) {
+    for (std::size_t i = 0; i < args.size(); ++i) {
+      parts.push_back(args[i].get());
+      if (callee && callee->parameters[i]->direction != ast::Direction::In)
+        written.push_back(args[i].get());
+    }
+  };
+  if (auto *assign = dynCast<typed::AssignExpr>(&expr)) {
+    parts = {assign->target.get(), assign->value.get()};
+    written = {assign->target.get()};
+  } else if (auto *step = dynCast<typed::IncDecExpr>(&expr)) {
+    parts = written = {step->target.get()};
+  } else if (auto *call = dynCast<typed::CallExpr>(&expr)) {
+    outputs(call->function, call->args);
+  } else if (auto *method = dynCast<typed::MethodCallExpr>(&expr)) {
+    parts = {method->receiver.get()};
+    outputs(method->function, method->args);
+  } else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr)) {
+    outputs(nullptr, builtin->args);
+    const auto [first, count] = outputsOf(builtin->builtin);
+    for (std::size_t i = first; i < first + count; ++i)
+      written.push_back(builtin->args[i].get());
+    readsOld = false;
+  } else {
+    parts = {&expr};
+  }
+
+  // Parts with effects run before: they must not change what is looked at in its place.
+  std::set<const typed::Variable *> changedBefore;
+  for (const typed::Expr *part : parts)
+    for (const typed::Variable *variable : assignedVariables(*part))
+      changedBefore.insert(variable);
+  std::set<const typed::Variable *> looked;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    if (isLocal(inner) && livesInMemory(inner.type))
+      looked.insert(cast<typed::VariableExpr>(inner).variable);
+  });
+  for (const typed::Expr *place : written) {
+    const typed::Expr &whole = wholeOf(*place);
+    if (isLocal(whole))
+      looked.insert(cast<typed::VariableExpr>(whole).variable);
+  }
+  if (std::any_of(looked.begin(), looked.end(),
+                  [&](const auto *variable) { return changedBefore.count(variable) != 0; }))
+    return false;
+
+  for (const typed::Expr *target : written) {
+    const typed::Expr &whole = wholeOf(*target);
+    if (auto *state = dynCast<typed::StateExpr>(&whole)) {
+      evaluation.states.insert(state->variable);
+      continue;
+    }
+    if (!isLocal(whole))
+      return false;
+    const typed::Variable *variable = cast<typed::VariableExpr>(whole).variable;
+    if (evaluation.places.count(variable))
+      continue;
+    const Place where = place(whole);
+    if (livesInMemory(whole.type)) {
+      evaluation.places[variable] = where.address;
+      continue;
+    }
+    const Value copy = variableOf(variable->name, whole.type);
+    if (readsOld || &whole != target)
+      storeTo(load(where), copy, whole.type);
+    evaluation.places[variable] = copy;
+    evaluation.outputs.push_back({where, copy});
+  }
+  return true;
+}
+
+void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, bool isTop) {
+  auto leaf = [&](Value operand, bool changes = false) {
+    if (changes)
+      evaluation.changed.push_back(static_cast<std::int32_t>(evaluation.operands.size()));
+    evaluation.leaves.push_back(&expr);
+    evaluation.operands.push_back(operand);
+  };
+  auto all = [&](const std::vector<typed::ExprPtr> &parts) {
+    for (const typed::ExprPtr &part : parts)
+      gather(*part, evaluation, false);
+  };
+  auto one = [&](const typed::ExprPtr &part) { gather(*part, evaluation, false); };
+  if (!isTop && expr.kind != ExprKind::String && !isKept(expr)) {
+    if (!livesInMemory(expr.type))
+      return leaf(value(expr));
+    const auto *call = dynCast<typed::CallExpr>(&expr);
+    const Value address = temporary(call ? call->function->name : "value", expr.type);
+    lowerInto(expr, address);
+    return leaf(address);
+  }
+  switch (expr.kind) {
+  case ExprKind::Variable: {
+    if (!isLocal(expr))
+      return;
+    const typed::Variable *variable = cast<typed::VariableExpr>(expr).variable;
+    if (auto place = evaluation.places.find(variable); place != evaluation.places.end())
+      return leaf(place->second, true);
+    if (!livesInMemory(expr.type))
+      return leaf(value(expr));
+    const Value address = place(expr).address;
+    if (!address.getDefiningOp() || !llvm::isa<ir::TableOp>(address.getDefiningOp()))
+      leaf(address);
+    return;
+  }
+  case ExprKind::State:
+    if (!livesInMemory(expr.type) && !evaluation.states.count(cast<typed::StateExpr>(expr).variable))
+      leaf(value(expr));
+    return;
+  case ExprKind::Field:
+    return one(cast<typed::FieldExpr>(expr).base);
+  case ExprKind::Index:
+    one(cast<typed::IndexExpr>(expr).base);
+    return one(cast<typed::IndexExpr>(expr).index);
+  case ExprKind::Swizzle:
+    return one(cast<typed::SwizzleExpr>(expr).base);
+  case ExprKind::Length:
+    return one(cast<typed::LengthExpr>(expr).base);
+  case ExprKind::Unary:
+    return one(cast<typed::UnaryExpr>(expr).operand);
+  case ExprKind::Convert:
+    return one(cast<typed::ConvertExpr>(expr).operand);
+  case ExprKind::IncDec:
+    return one(cast<typed::IncDecExpr>(expr).target);
+  case ExprKind::Assign:
+    one(cast<typed::AssignExpr>(expr).target);
+    return one(cast<typed::AssignExpr>(expr).value);
+  case ExprKind::Binary:
+    one(cast<typed::BinaryExpr>(expr).left);
+    return one(cast<typed::BinaryExpr>(expr).right);
+  case ExprKind::Conditional: {
+    const auto &choice = cast<typed::ConditionalExpr>(expr);
+    one(choice.condition);
+    one(choice.whenTrue);
+    return one(choice.whenFalse);
+  }
+  case ExprKind::Construct:
+    return all(cast<typed::ConstructExpr>(expr).args);
+  case ExprKind::Builtin:
+    return all(cast<typed::BuiltinExpr>(expr).args);
+  case ExprKind::Call:
+    return all(cast<typed::CallExpr>(expr).args);
+  case ExprKind::MethodCall:
+    one(cast<typed::MethodCallExpr>(expr).receiver);
+    return all(cast<typed::MethodCallExpr>(expr).args);
+  default:
+    return; // literals and members
+  }
+}
+
+/// One that traces, or whose parts run only sometimes, is taken apart.
+static bool isOneStep(const typed::Expr &expr) {
+  const typed::Function *callee = nullptr;
+  if (auto *call = dynCast<typed::CallExpr>(&expr))
+    callee = call->function;
+  if (auto *method = dynCast<typed::MethodCallExpr>(&expr))
+    callee = method->function;
+  if (callee && callee->mayTrace)
+    return false;
+  if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
+    return isPureBuiltin(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
+           outputsOf(builtin->builtin).second != 0;
+  return expr.kind != ExprKind::Comma && expr.kind != ExprKind::String;
+}
+
+std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, Value into) {
+  const bool isWrite = expr.kind == ExprKind::Assign || expr.kind == ExprKind::IncDec;
+  if (!isOneStep(expr) || (into && isWrite))
     return std::nullopt;
-  llvm::SmallVector<Value, 8> operands;
-  for (const typed::Expr *leaf : leaves)
-    operands.push_back(value(*leaf));
+  const bool isChoice = expr.kind == ExprKind::Conditional || expr.kind == ExprKind::Binary;
+  if (isChoice && !isKept(expr))
+    return std::nullopt;
+  if (!into && livesInMemory(expr.type) && !isWrite)
+    return std::nullopt;
+  Evaluation evaluation;
+  if (into) {
+    evaluation.leaves.push_back(nullptr);
+    evaluation.operands.push_back(into);
+    evaluation.changed.push_back(0);
+  }
+  if (!openPlaces(expr, evaluation))
+    return std::nullopt;
+  gather(expr, evaluation, true);
+
   emitter.setLoc(module.location(expr.range));
   SourceTable &table = *module.options.source;
   const auto number = static_cast<std::uint32_t>(table.entries.size());
-  table.entries.push_back({SourceTable::Kind::Value, &expr, leaves});
+  table.entries.push_back({into ? SourceTable::Kind::Into : SourceTable::Kind::Value, &expr, evaluation.leaves});
+  const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall;
   mlir::ArrayAttr writes;
-  if (std::optional<std::vector<std::string>> names = table.writes(expr)) {
-    std::vector<llvm::StringRef> refs(names->begin(), names->end());
-    writes = emitter.getStrArrayAttr(refs);
+  std::vector<std::string> names;
+  bool isKnown = true;
+  if (isCall && !isKept(expr)) {
+    std::optional<std::vector<std::string>> found = table.writes(expr);
+    isKnown = found.has_value();
+    if (found)
+      names = std::move(*found);
   }
+  for (typed::StateVariable variable : evaluation.states)
+    names.emplace_back(typed::name(variable));
+  if (isKnown)
+    writes = emitter.getStrArrayAttr(std::vector<llvm::StringRef>(names.begin(), names.end()));
   llvm::SmallVector<mlir::Type, 1> types;
-  if (!expr.type->is(TypeKind::Void))
+  if (!into && !isWrite && !expr.type->is(TypeKind::Void))
     types.push_back(module.type(expr.type));
-  auto op = emitter.make<ir::EvaluateOp>(types, number, operands, writes);
+  auto op = emitter.make<ir::EvaluateOp>(types, number, evaluation.operands, writes);
+  if (!evaluation.changed.empty())
+    op->setAttr("rtsl.changes", emitter.getDenseI32ArrayAttr(evaluation.changed));
+  const bool isPrint = expr.kind == ExprKind::Builtin && cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
+  if (!isPrint && (!isCall || isKept(expr))) // nothing but these variables is touched
+    op->setAttr("rtsl.plain", emitter.getUnitAttr());
+  for (const auto &[where, copy] : evaluation.outputs)
+    store(loadFrom(copy, where.type), where);
   return Parts(op.getResults().begin(), op.getResults().end());
+}
+
+void FunctionLowering::lowerDiscarded(const typed::Expr &expr) {
+  if (module.options.source) {
+    if (auto *comma = dynCast<typed::CommaExpr>(&expr)) {
+      lowerDiscarded(*comma->left);
+      return lowerDiscarded(*comma->right);
+    }
+    auto *assign = dynCast<typed::AssignExpr>(&expr);
+    auto *step = dynCast<typed::IncDecExpr>(&expr);
+    const typed::Expr *target = assign ? assign->target.get() : step ? step->target.get() : nullptr;
+    if (target && staysWhole(*target) && lowerEvaluation(expr))
+      return;
+  }
+  lower(expr);
+}
+
+/// Some part changes what another reads: each part is evaluated in its turn.
+std::optional<Parts> FunctionLowering::lowerOneByOne(const typed::Expr &expr) {
+  std::vector<const typed::Expr *> parts;
+  auto all = [&](const std::vector<typed::ExprPtr> &args) {
+    for (const typed::ExprPtr &arg : args)
+      parts.push_back(arg.get());
+  };
+  if (auto *binary = dynCast<typed::BinaryExpr>(&expr))
+    parts = {binary->left.get(), binary->right.get()};
+  else if (auto *unary = dynCast<typed::UnaryExpr>(&expr))
+    parts = {unary->operand.get()};
+  else if (auto *convert = dynCast<typed::ConvertExpr>(&expr))
+    parts = {convert->operand.get()};
+  else if (auto *construct = dynCast<typed::ConstructExpr>(&expr))
+    all(construct->args);
+  else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
+    all(builtin->args);
+  else if (auto *call = dynCast<typed::CallExpr>(&expr))
+    all(call->args);
+  if (parts.empty() || std::any_of(parts.begin(), parts.end(), [](const auto *part) { return livesInMemory(part->type); }))
+    return std::nullopt;
+  llvm::SmallVector<Value, 8> operands;
+  for (const typed::Expr *part : parts)
+    operands.push_back(value(*part));
+  emitter.setLoc(module.location(expr.range));
+  return Parts{wholeExpression(SourceTable::Kind::Value, expr, parts, operands, module.type(expr.type))};
 }
 
 std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
   const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall;
   if (livesInMemory(expr.type) || expr.kind == ExprKind::String)
     return std::nullopt;
-  if (isCall && !isKept(expr))
+  auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+  if (builtin && builtin->builtin == typed::Builtin::Print && !module.options.prints)
+    return Parts();
+  if ((isCall && !isKept(expr)) ||
+      (builtin && (outputsOf(builtin->builtin).second != 0 || builtin->builtin == typed::Builtin::Print)))
     return lowerEvaluation(expr);
   if (expr.type->is(TypeKind::Void) ||
       (expr.kind == ExprKind::Literal && expr.type->is(TypeKind::Bool)))
     return std::nullopt;
   std::vector<const typed::Expr *> leaves;
-  if (!collectLeaves(expr, leaves) || (leaves.size() == 1 && leaves.front() == &expr))
-    return std::nullopt;
+  if (!collectLeaves(expr, leaves) || (leaves.size() == 1 && leaves.front() == &expr)) {
+    if (!isKept(expr) || expr.kind == ExprKind::Variable || !mentionsMemory(expr))
+      return std::nullopt;
+    std::optional<Parts> read = lowerEvaluation(expr);
+    return read ? read : lowerOneByOne(expr);
+  }
+  if (std::any_of(leaves.begin(), leaves.end(), [&](const auto *leaf) {
+        return (leaf->kind == ExprKind::Field || leaf->kind == ExprKind::Index) && mentionsMemory(*leaf);
+      })) {
+    std::optional<Parts> read = lowerEvaluation(expr);
+    return read ? read : lowerOneByOne(expr);
+  }
   llvm::SmallVector<Value, 8> operands;
   for (const typed::Expr *leaf : leaves)
     operands.push_back(value(*leaf));

@@ -31,7 +31,7 @@ void FunctionLowering::lower(const typed::Stmt &stmt) {
       emitter.setLoc(module.location(builtin->range));
       return answerHit(builtin->builtin);
     }
-    lower(*cast<typed::ExpressionStmt>(stmt).expr);
+    lowerDiscarded(*cast<typed::ExpressionStmt>(stmt).expr);
     return;
   case StmtKind::If:
     return lowerIf(cast<typed::IfStmt>(stmt));
@@ -76,7 +76,7 @@ void FunctionLowering::lowerDeclaration(const typed::Variable &variable) {
       return;
     }
   if (!address)
-    address = variables[&variable].address = emitter.variable(variable.name, module.type(variable.type));
+    address = variables[&variable].address = variableOf(variable.name, variable.type);
   if (variable.init)
     lowerInto(*variable.init, address);
 }
@@ -98,7 +98,7 @@ void FunctionLowering::lowerLoop(const typed::Expr *condition, const typed::Stmt
   auto run = [&] { lower(body); };
   auto advance = [&] {
     emitter.setLoc(module.location(step->range));
-    lower(*step);
+    lowerDiscarded(*step);
   };
   mlir::Location location = emitter.getLoc();
   llvm::function_ref<Value()> noTest = nullptr;

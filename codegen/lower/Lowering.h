@@ -155,7 +155,26 @@ private:
   std::optional<Parts> lowerWhole(const typed::Expr &expr);
   bool collectLeaves(const typed::Expr &expr, std::vector<const typed::Expr *> &leaves) const;
   bool isKept(const typed::Expr &expr) const;
-  std::optional<Parts> lowerEvaluation(const typed::Expr &expr);
+  /// What an evaluation works on: operands, what they stand for, and what is copied back.
+  struct Evaluation {
+    std::vector<const typed::Expr *> leaves;
+    llvm::SmallVector<Value, 8> operands;
+    llvm::SmallVector<std::int32_t, 4> changed; // numbers of operands
+    llvm::DenseMap<const typed::Variable *, Value> places; // of variables that are written
+    std::set<typed::StateVariable> states;                 // that are written
+    std::vector<std::pair<Place, Value>> outputs;
+  };
+  /// The expression as one operation that reads and writes variables where they lie; nothing if that is not possible. With
+  /// `into` its value goes there.
+  std::optional<Parts> lowerEvaluation(const typed::Expr &expr, Value into = nullptr);
+  std::optional<Parts> lowerOneByOne(const typed::Expr &expr);
+  bool openPlaces(const typed::Expr &expr, Evaluation &evaluation);
+  void gather(const typed::Expr &expr, Evaluation &evaluation, bool isTop);
+  bool mentionsMemory(const typed::Expr &expr);
+  bool staysWhole(const typed::Expr &target);
+  /// An expression whose value nobody asks for.
+  void lowerDiscarded(const typed::Expr &expr);
+  Value variableOf(llvm::StringRef name, const Type *type);
   Value wholeExpression(SourceTable::Kind kind, const typed::Expr &expr,
                         std::vector<const typed::Expr *> leaves, llvm::ArrayRef<Value> operands,
                         mlir::Type type);

@@ -20,7 +20,8 @@ struct SourceTable {
     Value,
     Compound,   // the new value of the target of `target op= value`
     Step,       // that of `++target`
-    AngleCosine // the cosine of the angle of an `illuminance`
+    AngleCosine, // the cosine of the angle of an `illuminance`
+    Into         // the value goes to a variable that stays whole, the first operand
   };
   struct Entry {
     Kind kind = Kind::Value;
@@ -28,6 +29,8 @@ struct SourceTable {
     std::vector<const typed::Expr *> leaves; // what the operands stand for, one each
   };
   std::vector<Entry> entries; // by the number of the operation
+  /// Of variables in memory, by the number in their attribute `rtsl.declared`.
+  std::vector<const Type *> types;
 
   /// Does a call read nothing but its arguments and members, and change nothing?
   std::function<bool(const typed::Function &)> isPure;

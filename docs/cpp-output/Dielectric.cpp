@@ -9,8 +9,8 @@ using Color = rtsl::Color<3>;
 
 enum class Id : std::uint32_t { Dielectric = 1 };
 
-// Where a method goes on: `shade` and `miss` begin, the others run when a ray is back.
-enum class Step : rtsl::Next { shade = 1, miss, Dielectric_shadeAfterTrace1 };
+// Where a method goes on: `shade` begins, the others run when a ray is back.
+enum class Step : rtsl::Next { shade = 1, Dielectric_shadeAfterTrace1 };
 
 // Glass with the exact reflectance (Fresnel's equations for unpolarised light). Chance decides
 // whether the reflected or the refracted ray is followed, so there is one ray a hit.
@@ -71,8 +71,6 @@ inline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object,
   case Step::shade:
     return rtsl::object<Dielectric>(rt, object)
         .shade(rt, rtsl::frameAt<Dielectric::ShadeFrame>(frame));
-  case Step::miss:
-    return rtsl::done;
   case Step::Dielectric_shadeAfterTrace1:
     return rtsl::object<Dielectric>(rt, object)
         .shadeAfterTrace1(rt, rtsl::frameAt<Dielectric::ShadeFrame>(frame));
@@ -90,8 +88,8 @@ static RtslShaders describe() {
       .member("index", &Dielectric::index, rtsl::Access::Public, rtsl::Default::Given)
       .member("tint", &Dielectric::tint, rtsl::Access::Public, rtsl::Default::Given)
       .methods({"reflectance", "shade"});
-  program.states<Dielectric::ShadeFrame>(&slots::runState, static_cast<rtsl::Next>(Step::shade),
-                                         rtsl::done);
+  program.states<Dielectric::ShadeFrame>(&slots::runState);
+  program.slots().states.shadeFirst = static_cast<rtsl::Next>(Step::shade);
   return program.finish();
 }
 

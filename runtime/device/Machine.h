@@ -154,8 +154,8 @@ inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t
                       uint32_t index) {
   rays.top = rays.bottom;
   if (launch.rayGeneration) {
-    rays.next = rtsl_rt_RayGeneration_generate_first(&rays.bottom->state);
     startGenerate(rays.bottom->state, launch, x, y, index, rays.events);
+    rays.next = rtsl_rt_RayGeneration_generate_first(&rays.bottom->state);
     rays.bottom->object = launch.rayGeneration;
     return;
   }

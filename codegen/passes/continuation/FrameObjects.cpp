@@ -46,6 +46,7 @@ void moveVariablesToFrame(FuncOp function) {
     mlir::OpBuilder builder(variable);
     auto object = ir::FrameObjectOp::create(builder, variable.getLoc(), variable.getType(),
                                             names.unique(variable.getName().str()), 0u);
+    object->setDiscardableAttrs(variable->getDiscardableAttrDictionary()); // what a printer knows of it
     ir::ClearOp::create(builder, variable.getLoc(), object);
     variable.replaceAllUsesWith(object.getResult());
     variable.erase();

@@ -41,10 +41,12 @@ mlir::Operation *ancestorIn(Block *block, mlir::Operation *op) {
   return op;
 }
 
-/// Variables that were made of values stand in the innermost region that has all their uses.
+/// Variables that were made of values stand in the innermost region that has all their uses. So do the author's, if they
+/// start there anew.
 void placeVariables(FuncOp function) {
   for (auto variable : llvm::to_vector(function.getBody().front().getOps<ir::VarOp>())) {
-    if (!variable->hasAttr("rtsl.value"))
+    const bool isValue = variable->hasAttr("rtsl.value");
+    if (!isValue && !variable->hasAttr("rtsl.declared"))
       continue;
     variable->removeAttr("rtsl.value");
     Block *common = nullptr;
@@ -58,7 +60,8 @@ void placeVariables(FuncOp function) {
     for (mlir::Operation *user : variable->getUsers())
       if (mlir::Operation *at = ancestorIn(common, user); !first || at->isBeforeInBlock(first))
         first = at;
-    if (first)
+    auto clear = llvm::dyn_cast_or_null<ir::ClearOp>(first);
+    if (first && (isValue || (clear && clear.getAddress() == variable.getResult())))
       variable->moveBefore(first);
   }
 }

@@ -331,12 +331,13 @@ public:
   }
 
   runtime::Program::Slots &slots() { return result->slots; }
-  /// Methods were split at their traces: what runs a state, and the numbers of the states in which `shade` and `miss` begin.
+  /// Methods were split at their traces: what runs a state, on the frames of all.
   template <typename... Frames>
-  void states(decltype(runtime::Program::Slots::States::run) run, std::int32_t shade, std::int32_t miss) {
+  void states(decltype(runtime::Program::Slots::States::run) run) {
     std::size_t size = 4;
     ((size = std::max(size, sizeof(Frames))), ...);
-    result->slots.states = {run, static_cast<std::int32_t>((size + 3) / 4 * 4), shade, miss};
+    result->slots.states.run = run;
+    result->slots.states.frameSize = static_cast<std::int32_t>((size + 3) / 4 * 4);
   }
   void needs(std::uint32_t what) { result->needs = what | RTSL_NEEDS_NORMALS; }
   /// RTSL_FEATURE_*: what samples do beside colors.

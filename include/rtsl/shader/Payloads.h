@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "rtsl/shader/State.h"
+#include "rtsl/shader/Rays.h"
 
 namespace rtsl {
 inline namespace RTSL_ARITHMETIC {
@@ -22,27 +22,53 @@ struct RayType {
   std::uint32_t search = 0;
 };
 
-/// Sends a ray with a payload and waits for it. Mask, root and time are the parent ray's unless they are given.
-template <int N, typename Payload>
+namespace detail {
+/// What a ray has of its parent unless it is given.
+struct RayOptions {
+  int root;
+  std::uint32_t mask;
+  float time;
+
+  template <int N>
+  RayOptions(State<N> &, int root, std::uint32_t mask, float time) : root(root), mask(mask), time(time) {}
+  template <int N>
+  RayOptions(State<N> &rt, int root, std::uint32_t mask) : RayOptions(rt, root, mask, rt.Time) {}
+  template <int N>
+  RayOptions(State<N> &rt, int root) : RayOptions(rt, root, rawState(rt)->rayMask) {}
+  template <int N>
+  explicit RayOptions(State<N> &rt) : RayOptions(rt, rawState(rt)->rayRoot) {}
+};
+} // namespace detail
+
+/// Sends a ray with a payload and waits for it. Behind the payload may stand its root, mask and time.
+template <int N, typename Payload, typename... More>
 inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
-                  Payload &payload, int root, std::uint32_t mask, float time) {
+                  Payload &payload, More... more) {
+  const detail::RayOptions options(rt, more...);
   rtsl_trace_payload(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax,
-                     &payload, root, mask, time, Payload::rayType.number, Payload::rayType.search);
+                     &payload, options.root, options.mask, options.time, Payload::rayType.number,
+                     Payload::rayType.search);
 }
-template <int N, typename Payload>
-inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
-                  Payload &payload, int root, std::uint32_t mask) {
-  trace(rt, origin, direction, tmin, tmax, payload, root, mask, rt.Time);
+
+/// Prepares such a ray, which is traced when the state ends. Its payload lies in the frame.
+template <int N, typename Step, typename Payload, typename... More>
+inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
+                      float tmax, Payload &payload, More... more) {
+  const detail::RayOptions options(rt, more...);
+  rtsl_spawn_payload(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax,
+                     &payload, options.root, options.mask, options.time, Payload::rayType.number,
+                     Payload::rayType.search);
+  return static_cast<Next>(step);
 }
-template <int N, typename Payload>
-inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
-                  Payload &payload, int root) {
-  trace(rt, origin, direction, tmin, tmax, payload, root, rawState(rt)->rayMask);
-}
-template <int N, typename Payload>
-inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
-                  Payload &payload) {
-  trace(rt, origin, direction, tmin, tmax, payload, rawState(rt)->rayRoot);
+/// One that takes the place of the ray that sends it, with the payload that this was given.
+template <int N, typename Payload, typename... More>
+inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
+                      Payload &payload, More... more) {
+  const detail::RayOptions options(rt, more...);
+  rtsl_spawn_last_payload(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax,
+                          &payload, options.root, options.mask, options.time, Payload::rayType.number,
+                          Payload::rayType.search);
+  return RTSL_NEXT_LAST;
 }
 
 /// Does the ray carry such a payload?

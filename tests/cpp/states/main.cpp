@@ -20,10 +20,12 @@ int main(int argc, char **argv) try {
                                     {"odd", {0.12, 0.14, 0.2}}});
   RtslRef floor = scene.addObject("Parallelogram", {{-8, 0, 6}, {16, 0, 0}, {0, 0, -16}});
   scene.addPrimitive(floor, make("Glossy", {{"albedo", Value::reference(checks)}}));
-  double x = -4.1;
-  for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived"}) {
-    scene.addPrimitive(make("Sphere", {{"center", {x, 0.8, 0}}, {"radius", 0.7}}), make(name, {}));
-    x += 1.2;
+  int i = 0;
+  for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived", "Table",
+                           "Bundle", "Turned", "Outputs", "Component"}) {
+    const double x = -4.1 + 1.2 * (i % 8), y = 0.8 + 1.5 * (i / 8);
+    scene.addPrimitive(make("Sphere", {{"center", {x, y, 0}}, {"radius", 0.7}}), make(name, {}));
+    ++i;
   }
   scene.addLight(make("BallLight", {{"position", {4, 6, 4}}, {"radius", 0.4}, {"intensity", {38, 36, 33}}}));
   scene.setAmbient({0.12f, 0.13f, 0.16f});

@@ -8,7 +8,8 @@ import tempfile
 
 rtslc, glass, *programs = sys.argv[1:]
 here = pathlib.Path(__file__).parent
-names = ["Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived"]
+names = ["Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived",
+         "Table", "Bundle", "Turned", "Outputs", "Component"]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
     "rtsl": 1,
@@ -23,10 +24,9 @@ scene = {
     "background": {"class": "Sky"},
     "render": {"engine": "classic", "size": [96, 54], "spp": 2, "depth": 4, "seed": 1},
 }
-x = -4.1
-for name in names:
-    scene["objects"].append({"primitive": {"class": "Sphere", "center": [x, 0.8, 0], "radius": 0.7}, "material": name})
-    x += 1.2
+for i, name in enumerate(names):
+    center = [-4.1 + 1.2 * (i % 8), 0.8 + 1.5 * (i // 8), 0]
+    scene["objects"].append({"primitive": {"class": "Sphere", "center": center, "radius": 0.7}, "material": name})
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
     file, ours, theirs = (str(pathlib.Path(folder) / name) for name in ("scene.json", "cpp.exr", "jit.exr"))
     pathlib.Path(file).write_text(json.dumps(scene))
