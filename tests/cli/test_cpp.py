@@ -41,7 +41,7 @@ class Cpp(Case):
         self.assertIn("rtsl::trace(rt, rt.HitPoint, reflected)", recurse)
         self.assertNotIn("Frame", recurse)
 
-    def test_states_that_cannot_be_printed(self):
+    def test_arrays_stay_whole_in_states(self):
         shader = self.write("table.rtsl", """class Table : rt_Material;
             void shade() {
               float table[4];
@@ -51,10 +51,15 @@ class Cpp(Case):
             }
             """)
         text, _ = self.run_rtslc("compile", shader, "--emit=cpp")
-        self.assertIn("rtsl::trace(", text)
-        _, error = self.run_rtslc("compile", shader, "--emit=cpp", "--trace=split", status=DIAGNOSED)
-        self.assertIn("table.rtsl:2:", error)
-        self.assertIn("--trace=recurse", error)
+        self.assertIn("rtsl::array<float, 4> table; // needed by line 6: `float table[4]`", text)
+        self.assertIn("rt.SampleColor = rtsl::traced(rt) * frame.table[rt.Depth];", text)
+        self.assertEqual(text, self.run_rtslc("compile", shader, "--emit=cpp", "--trace=split")[0])
+
+    def test_a_member_called_rtsl(self):
+        shader = self.write("names.rtsl", "class A : rt_Texture; public float rtsl = 1.0; void lookup() "
+                            "{ rt_TextureColor = color(rtsl); }")
+        text, _ = self.run_rtslc("compile", shader, "--emit=cpp")
+        self.assertIn("float rtsl2 = 1.0f;", text)
 
     def test_names_that_cpp_has_taken(self):
         shader = self.write("my-names.rtsl", """
