@@ -68,8 +68,8 @@ ExprPtr FunctionChecker::dispatch(const ast::Expr &expr, Access access) {
     return checkConditional(cast<ast::ConditionalExpr>(expr));
   case ast::ExprKind::Comma: {
     const auto &comma = cast<ast::CommaExpr>(expr);
-    ExprPtr left = checkExpr(*comma.left);
-    ExprPtr right = checkExpr(*comma.right);
+    ExprPtr left = checkOperand(*comma.left);
+    ExprPtr right = checkOperand(*comma.right);
     auto node = makeExpr<typed::CommaExpr>(right->type, expr.range);
     node->left = std::move(left);
     node->right = std::move(right);
@@ -108,6 +108,11 @@ ExprPtr FunctionChecker::requireValue(ExprPtr expr) {
   else
     return expr;
   return errorExpr(expr->range);
+}
+
+ExprPtr FunctionChecker::checkOperand(const ast::Expr &expr) {
+  ExprPtr checked = checkExpr(expr);
+  return checked->type->is(TypeKind::Void) ? std::move(checked) : requireValue(std::move(checked));
 }
 
 ExprPtr FunctionChecker::checkValue(const ast::Expr &expr, Access access) {

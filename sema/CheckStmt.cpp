@@ -82,7 +82,7 @@ StmtPtr FunctionChecker::dispatchStmt(const ast::Stmt &stmt) {
     return checkDeclaration(cast<ast::DeclarationStmt>(stmt));
   case ast::StmtKind::Expression: {
     auto node = makeStmt<typed::ExpressionStmt>(stmt);
-    node->expr = checkExpr(*cast<ast::ExpressionStmt>(stmt).expr);
+    node->expr = checkOperand(*cast<ast::ExpressionStmt>(stmt).expr);
     const typed::ExprKind kind = node->expr->kind;
     const bool hasEffect = kind == typed::ExprKind::Assign || kind == typed::ExprKind::IncDec ||
                            kind == typed::ExprKind::Call || kind == typed::ExprKind::MethodCall ||
@@ -251,7 +251,7 @@ StmtPtr FunctionChecker::checkFor(const ast::ForStmt &stmt) {
   if (stmt.condition)
     node->condition = checkCondition(*stmt.condition);
   if (stmt.step)
-    node->step = checkExpr(*stmt.step);
+    node->step = checkOperand(*stmt.step);
   ++loops;
   // The body is in the scope of the loop's variables (GLSL 4.60, 4.2.2).
   node->body = stmt.body->kind == ast::StmtKind::Compound

@@ -127,11 +127,25 @@ std::vector<ClassScope *> Program::classesBaseFirst() {
   return order;
 }
 
+/// Refuses the first class of a chain that has too many bases. What derives from it is as wrong, and says nothing.
+void Program::limitInheritance() {
+  std::unordered_map<const ClassScope *, unsigned> basesOf;
+  for (const ClassScope *scope : baseFirst) {
+    const unsigned bases = scope->base ? basesOf[scope->base] + 1 : 0;
+    basesOf[scope] = bases;
+    if (bases == maxInheritanceDepth + 1)
+      diagnostics.report(Code::inheritanceTooDeep, scope->declaration->name.range, scope->definition->name,
+                         maxInheritanceDepth)
+          .label(scope->declaration->base.range, "this base has as many as there may be");
+  }
+}
+
 void Program::resolveClasses() {
   for (const std::string &name : classOrder)
     linkBase(*classes[name]);
   breakCycles();
   baseFirst = classesBaseFirst();
+  limitInheritance();
   for (ClassScope *scope : baseFirst) {
     if (scope->base) {
       scope->root = scope->base->root;

@@ -56,6 +56,8 @@ private:
   /// An expression whose value is used: not void, not a whole buffer, not a string.
   typed::ExprPtr checkValue(const ast::Expr &expr, Access access = Access::Read);
   typed::ExprPtr requireValue(typed::ExprPtr expr);
+  /// An expression that may be void: a statement, or a side of a comma.
+  typed::ExprPtr checkOperand(const ast::Expr &expr);
   typed::ExprPtr checkCondition(const ast::Expr &expr);
   typed::ExprPtr errorExpr(SourceRange range);
   typed::ExprPtr checkIntLiteral(const ast::IntLiteral &literal, bool negated);

@@ -24,6 +24,8 @@ constexpr unsigned maxRecursion = 1000;
 /// Depth of an expression tree. Chains of binary operators lean to the left and are walked without
 /// recursion, but everything behind the checker may recurse over what it made.
 constexpr unsigned maxTreeDepth = 2000;
+/// Bases of a class, their own bases included. A class has all their functions, and each is lowered again for each class.
+constexpr unsigned maxInheritanceDepth = 256;
 
 /// A place in a function where something stands that not every method may do.
 struct Use {
@@ -151,6 +153,7 @@ private:
   // Classes.cpp
   void linkBase(ClassScope &scope);
   void breakCycles();
+  void limitInheritance();
   std::vector<ClassScope *> classesBaseFirst();
   void declareMembers(ClassScope &scope);
   void declareMember(ClassScope &scope, const ast::VariableDecl &declaration);

@@ -140,10 +140,6 @@ Code FunctionPrinter::call(const typed::CallExpr &expr) {
 Code FunctionPrinter::methodCall(const typed::MethodCallExpr &expr) {
   const Type *type = expr.receiver->type;
   const std::string className = type->classType ? type->classType->name : type->builtinClass;
-  if (!expr.function && expr.method != "lookup" && expr.method != "lookupFloat") {
-    module.unsupported(expr.range, "calling `" + expr.method + "` through a reference");
-    return {module.type(expr.type) + "{}"};
-  }
   module.useThroughReference(className, expr.method, expr.function);
   const std::string receiver = operand(*expr.receiver, Binding::Primary);
   if (!expr.function)

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace rtsl::cpp {
 
 using typed::ExprKind;
@@ -163,10 +165,7 @@ Code FunctionPrinter::bufferElement(const typed::IndexExpr &expr) {
     indices.insert(indices.begin(), index->index.get());
     base = index->base.get();
   }
-  if (indices.size() != base->type->count) {
-    module.unsupported(expr.range, "a part of a buffer that is not an element");
-    return {module.type(expr.type) + "()"};
-  }
+  assert(indices.size() == base->type->count && "a part of a buffer is no value");
   std::vector<std::string> texts = operands(indices, Binding::Assignment);
   const std::string buffer = place(*base).text;
   for (std::size_t i = 0; i < texts.size(); ++i)

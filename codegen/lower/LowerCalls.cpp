@@ -111,10 +111,6 @@ Parts FunctionLowering::lowerMethodCall(const typed::MethodCallExpr &expr) {
   Value object = value(*expr.receiver);
   if (!expr.function) {
     bool isFloat = expr.method == "lookupFloat";
-    if (!isFloat && expr.method != "lookup") {
-      unsupported(expr.range, "calling `" + expr.method + "` through a reference");
-      return zeroOf(expr.type);
-    }
     emitter.setLoc(module.location(expr.range));
     Value state = emitter.make<ir::StateOp>(isFloat ? "FloatTextureValue" : "TextureColor",
                                             module.type(expr.type));

@@ -98,7 +98,7 @@ inline SineAndCosine sineAndCosine(float x) {
   bool odd = (q.asInt & 1) != 0;
   double upright = odd ? cosine : sine, level = odd ? sine : cosine;
 
-  if (!roundsSafely(upright) | !roundsSafely(level))
+  if (!(roundsSafely(upright) && roundsSafely(level)))
     return carefulSineAndCosine(x);
   return inQuadrant(q.asInt, bitsOf(x) >= floatSignBit, float(upright), float(level));
 }

@@ -202,13 +202,35 @@ TEST(Limits, ConstantsInTheWrongOrderUpToALimit) {
   EXPECT_NE(checked->numbers().find("E0611"), std::string::npos);
 }
 
+TEST(Limits, ClassesInAChainUpToALimit) {
+  const std::string first = "class C0 : rt_Light { public float power; };\n";
+  const std::string last = "class Last : C255 { void illumination() { rt_LightColor = color(power); } };\n";
+  const std::unique_ptr<Checked> checked = checkText(first + numbered(255, "class C@ : C# { };\n") + last);
+  EXPECT_EQ(render(*checked), "");
+  EXPECT_TRUE(checked->module->findClass("Last")->derivesFrom(checked->module->findClass("C0")));
+  EXPECT_EQ(checked->module->findClass("Last")->root, "rt_Light");
+}
+
 TEST(Limits, TenThousandClassesInAChain) {
   const std::unique_ptr<Checked> checked = checkText(
       "class C0 : rt_Light { public float power; };\n" + numbered(10000, "class C@ : C# { };\n") +
       "class Last : C10000 { void illumination() { rt_LightColor = color(power); } };\n");
+  EXPECT_EQ(checked->numbers(), "E0423");
+  const Diagnostic &diagnostic = checked->diagnostics.all().front();
+  EXPECT_EQ(checked->sources.text(diagnostic.range), "C257");
+}
+
+TEST(Limits, TenThousandClassesSideBySide) {
+  const std::unique_ptr<Checked> checked = checkText(
+      "class Base : rt_Light { public float power; float half() { return 0.5 * power; } };\n" +
+      numbered(10000, "class C# : Base { void illumination() { rt_LightColor = color(half()); } };\n"));
   EXPECT_EQ(render(*checked), "");
-  EXPECT_TRUE(checked->module->findClass("Last")->derivesFrom(checked->module->findClass("C0")));
-  EXPECT_EQ(checked->module->findClass("Last")->root, "rt_Light");
+}
+
+TEST(Limits, TenThousandClassesInACircle) {
+  const std::unique_ptr<Checked> checked =
+      checkText(numbered(10000, "class C# : C@ { };\n") + "class C10000 : C0 { };\n");
+  EXPECT_EQ(checked->numbers(), "E0400 E0423"); // what is left of the circle is a chain
 }
 
 TEST(Limits, TenThousandFunctionsInAChain) {
