@@ -87,8 +87,9 @@ void Program::linkBase(ClassScope &scope) {
         "rt_RayGeneration, rt_Miss, rt_Selector and rt_Exception");
 }
 
-/// Cuts every cycle of bases at one class, after saying so.
-void Program::breakCycles() {
+/// Cuts every cycle of bases at one class, after saying so. Whether there were any.
+bool Program::breakCycles() {
+  bool isCut = false;
   std::unordered_map<const ClassScope *, unsigned> visitedBy; // number of the walk
   unsigned walk = 0;
   for (const std::string &name : classOrder) {
@@ -108,7 +109,9 @@ void Program::breakCycles() {
                                                            other->declaration->base.text + "`");
     at->base = nullptr;
     at->definition->base = nullptr;
+    isCut = true;
   }
+  return isCut;
 }
 
 std::vector<ClassScope *> Program::classesBaseFirst() {
@@ -143,9 +146,10 @@ void Program::limitInheritance() {
 void Program::resolveClasses() {
   for (const std::string &name : classOrder)
     linkBase(*classes[name]);
-  breakCycles();
+  const bool hadCycles = breakCycles();
   baseFirst = classesBaseFirst();
-  limitInheritance();
+  if (!hadCycles) // what is left of a circle is no chain that somebody wrote
+    limitInheritance();
   for (ClassScope *scope : baseFirst) {
     if (scope->base) {
       scope->root = scope->base->root;

@@ -152,7 +152,7 @@ private:
   void checkConstant(GlobalConstant &entry);
   // Classes.cpp
   void linkBase(ClassScope &scope);
-  void breakCycles();
+  bool breakCycles();
   void limitInheritance();
   std::vector<ClassScope *> classesBaseFirst();
   void declareMembers(ClassScope &scope);

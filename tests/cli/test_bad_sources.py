@@ -149,8 +149,11 @@ class BoundedSources(Case):
         text = "class C0 : rt_Light { public float power; };\n" + "".join(
             f"class C{i + 1} : C{i} {{ }};\n" for i in range(10_000)) + (
             "class Last : C10000 {\n  void illumination() { rt_LightColor = color(powr); }\n};\n")
-        message = self.refuse(text, "E0200", "powr", line=10_003)
-        self.assertEqual(message["fixes"][0]["replacement"], "power")
+        self.write("bad.rtsl", text)
+        deep, unknown = self.diagnose("check", "bad.rtsl", prepare=bounded)
+        self.assert_message([deep], "E0423", "C257", line=258)
+        self.assert_message([unknown], "E0200", "powr", line=10_003)
+        self.assertEqual(unknown["fixes"][0]["replacement"], "power")
 
 
 if __name__ == "__main__":
