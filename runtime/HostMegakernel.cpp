@@ -108,7 +108,7 @@ Image renderOnHost(const MegakernelCode &code, FlatScene scene, const RenderOpti
   RtslJob job{};
   job.launch = reinterpret_cast<const RtslLaunch *>(memory.get());
   job.status = &status;
-  job.laneBytes = inLines(code.laneBytes(options.maxDepth));
+  job.laneBytes = inLines(code.laneBytes(options.maxDepth, job.launch->referenceChain));
   const Memory lanes = allocate(threads * job.laneBytes, "rays in flight");
   job.lanes = lanes.get();
   Image image;

@@ -87,7 +87,7 @@ enum class Engine : std::uint8_t { Classic, Programs, Either };
 
 /// Code that renders a flat scene and needs nobody else (device/Megakernel.h); null if there is none.
 struct MegakernelCode {
-  std::uint64_t (*laneBytes)(std::uint32_t maxDepth) = nullptr;
+  std::uint64_t (*laneBytes)(std::uint32_t maxDepth, std::uint32_t referenceChain) = nullptr;
   void (*runLane)(const RtslJob *, std::uint32_t lane) = nullptr;
 };
 

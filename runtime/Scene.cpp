@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <unordered_map>
 
 namespace rtsl::runtime {
 
@@ -66,6 +67,8 @@ struct Scene::Implementation {
   std::vector<std::string> instanceNames;
   std::vector<Bounds> instanceBounds; // of RTSL primitives
   std::uint64_t primitiveTotal = 0;
+  std::unordered_map<RtslRef, std::uint32_t> chains; // measureChain
+  std::uint32_t referenceChain = 0;                  // the longest
   std::vector<RtslRef> lights;
   RtslRef camera = 0, rayGeneration = 0, background = 0, exception = 0;
   float backgroundColor[RTSL_MAX_COLOR] = {}, ambient[RTSL_MAX_COLOR] = {};
@@ -106,6 +109,7 @@ struct Scene::Implementation {
     launch.lightCount = std::uint32_t(lights.size());
     launch.colorComponents = program->colorComponents;
     launch.needs = program->needs;
+    launch.referenceChain = referenceChain;
     return launch;
   }
 
@@ -165,6 +169,9 @@ struct Scene::Implementation {
                             std::string name, std::uint32_t primitives, std::uint32_t mask);
   /// RtslInstance::needs of whatever has this material: what it reads, and the objects behind it.
   std::uint32_t needsAt(RtslRef material) const;
+  /// Counts the references that lead on from an object that is complete. Those that it refers to were
+  /// made before it.
+  void measureChain(const ObjectInfo &object);
   bool isClassic() const { return program->engine == Engine::Classic; }
   void dropMeshAttributes();
   /// What an object needs that only the classic engine counts on.
@@ -206,7 +213,28 @@ void forEachReference(const ValueType &type, const std::uint8_t *bytes, const Vi
   }
 }
 
+bool holdsReferences(const ValueType &type) {
+  return type.kind == ValueType::Kind::Reference ||
+         std::any_of(type.fields.begin(), type.fields.end(),
+                     [](const MemberInfo &field) { return holdsReferences(field.type); });
+}
+
 } // namespace
+
+void Scene::Implementation::measureChain(const ObjectInfo &object) {
+  std::uint32_t chain = 0;
+  for (const MemberInfo &member : object.classInfo->members) {
+    if (holdsReferences(member.type)) // if only to no object: it is called, and does nothing
+      chain = std::max(chain, 1u);
+    forEachReference(member.type, records.data() + object.object + member.offset,
+                     [&](RtslRef reference) {
+                       if (const auto found = chains.find(reference); found != chains.end())
+                         chain = std::max(chain, found->second + 1);
+                     });
+  }
+  chains[object.object] = chain;
+  referenceChain = std::max(referenceChain, chain);
+}
 
 std::uint32_t Scene::Implementation::needsAt(RtslRef material) const {
   std::uint32_t needs = 0;
@@ -447,6 +475,7 @@ RtslRef Scene::addObject(const std::string &className, const ObjectValues &value
     self->runConstructor(*classInfo, info, values);
     self->setMembers(*classInfo, info, values);
     self->checkUnset(*classInfo, info, values);
+    self->measureChain(info);
   } catch (...) { // half an object is none
     self->objects.pop_back();
     records.resize(before);

@@ -43,8 +43,11 @@ uint32_t rtsl_features(RtslState *state) {
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {
   return slotsOf(state).states.run(state, number, object, frame);
 }
-int32_t rtsl_frame_size(RtslState *state) {
+int32_t rtsl_frame_size(RtslState *state, int32_t) {
   return slotsOf(state).states.frameSize;
+}
+int32_t rtsl_calls(RtslState *) { // methods called through references are C++ functions
+  return 0;
 }
 int32_t rtsl_rt_Material_shade_first(RtslState *state) {
   return slotsOf(state).states.shadeFirst;

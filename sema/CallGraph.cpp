@@ -1,8 +1,9 @@
 //===- CallGraph.cpp - what follows from who calls whom -------------------===//
 //
-// Functions must not call themselves, a function may trace if something that it calls does, and a
-// helper may use what the methods that lead to it may use. All walks are loops: chains of calls may
-// be long.
+// Functions must not call themselves, but for methods that trace, on objects that members refer to:
+// objects do not refer to each other in a circle, so that ends, and the machine keeps frames for
+// it. A function may trace if something that it calls does, and a helper may use what the methods
+// that lead to it may use. All walks are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/Program.h"
@@ -149,8 +150,16 @@ private:
   Functions targets(const CallEdge &edge) const;
   /// What a call runs when the object is of this class.
   Functions targetsFor(const CallEdge &edge, const ClassScope &scope) const;
-  void reportCycle(const Functions &path, const std::vector<SourceRange> &calls,
-                   const typed::Function *again, SourceRange closing);
+  struct Cycle {
+    Functions path;
+    std::vector<SourceRange> calls;
+    const typed::Function *again;
+    SourceRange closing;
+  };
+  using IsFollowed = bool (*)(const CallEdge &);
+  void walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles);
+  void spreadTracing();
+  void reportCycle(const Cycle &cycle);
   void judgeFrom(const typed::Function &method, const ClassScope &scope, const MethodModel &rules);
   const FunctionFacts &factsOf(const typed::Function *function) const {
     static const FunctionFacts none;
@@ -201,8 +210,8 @@ CallGraph::Functions CallGraph::targetsFor(const CallEdge &edge, const ClassScop
 // Recursion, and who may trace
 //===----------------------------------------------------------------------===//
 
-void CallGraph::reportCycle(const Functions &path, const std::vector<SourceRange> &calls,
-                            const typed::Function *again, SourceRange closing) {
+void CallGraph::reportCycle(const Cycle &cycle) {
+  const auto &[path, calls, again, closing] = cycle;
   const auto first =
       static_cast<std::size_t>(std::find(path.begin(), path.end(), again) - path.begin());
   std::string chain = "`" + again->name + "`";
@@ -214,12 +223,12 @@ void CallGraph::reportCycle(const Functions &path, const std::vector<SourceRange
   for (std::size_t i = first + 1; i < path.size() && i - first <= 8; ++i)
     diagnostic.label(calls[i], "`" + path[i - 1]->name + "` calls `" + path[i]->name + "` here");
   diagnostic.note(chain);
-  diagnostic.note("only `trace` recurses");
+  diagnostic.note("only `trace` recurses, and methods that trace, on objects that members refer to");
 }
 
-/// Depth first over all functions. Callees are finished before their callers, so that `mayTrace` is
-/// known.
-void CallGraph::refuseRecursion() {
+/// Depth first over all functions and the calls that are asked for. Callees are finished before
+/// their callers, so that `mayTrace` is known, but for functions in a cycle.
+void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
   enum class Mark : std::uint8_t { Open, Done };
   std::unordered_map<const typed::Function *, Mark> marks;
   struct Frame {
@@ -234,9 +243,10 @@ void CallGraph::refuseRecursion() {
     marks[function] = Mark::Open;
     Frame frame{const_cast<typed::Function *>(function), {}, 0};
     for (const CallEdge &edge : factsOf(function).calls)
-      for (const typed::Function *target : targets(edge))
-        frame.next.emplace_back(target, edge.range);
-    frame.function->mayTrace = factsOf(function).traces;
+      if (isFollowed(edge))
+        for (const typed::Function *target : targets(edge))
+          frame.next.emplace_back(target, edge.range);
+    frame.function->mayTrace |= factsOf(function).traces;
     stack.push_back(std::move(frame));
     path.push_back(function);
     calls.push_back(call);
@@ -262,7 +272,7 @@ void CallGraph::refuseRecursion() {
       if (mark == marks.end())
         enter(target, range);
       else if (mark->second == Mark::Open)
-        reportCycle(path, calls, target, range);
+        cycles.push_back({path, calls, target, range});
       else
         frame.function->mayTrace |= target->mayTrace;
     }
@@ -272,6 +282,47 @@ void CallGraph::refuseRecursion() {
   for (const ClassScope *scope : baseFirst)
     for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
       walk(function.get());
+}
+
+/// What a function of a cycle does, each of them may.
+void CallGraph::spreadTracing() {
+  std::unordered_map<const typed::Function *, std::vector<typed::Function *>> callers;
+  Functions tracing;
+  for (const auto &[function, facts] : program.facts) {
+    for (const CallEdge &edge : facts.calls)
+      for (const typed::Function *target : targets(edge))
+        callers[target].push_back(const_cast<typed::Function *>(function));
+    if (function->mayTrace)
+      tracing.push_back(function);
+  }
+  while (!tracing.empty()) {
+    const typed::Function *callee = tracing.back();
+    tracing.pop_back();
+    for (typed::Function *caller : callers[callee])
+      if (!caller->mayTrace) {
+        caller->mayTrace = true;
+        tracing.push_back(caller);
+      }
+  }
+}
+
+void CallGraph::refuseRecursion() {
+  // Without what members refer to, no cycle is allowed.
+  std::vector<Cycle> endless, cycles;
+  walkCalls([](const CallEdge &edge) { return !edge.throughMember; }, endless);
+  walkCalls([](const CallEdge &) { return true; }, cycles);
+  if (!cycles.empty())
+    spreadTracing();
+  for (const Cycle &cycle : endless)
+    reportCycle(cycle);
+  const auto isReported = [&](const Cycle &cycle) {
+    return std::any_of(endless.begin(), endless.end(), [&](const Cycle &other) {
+      return other.closing.begin == cycle.closing.begin && other.again == cycle.again;
+    });
+  };
+  for (const Cycle &cycle : cycles)
+    if (!cycle.again->mayTrace && !isReported(cycle))
+      reportCycle(cycle);
 }
 
 //===----------------------------------------------------------------------===//

@@ -22,6 +22,25 @@ static bool anyBroken(const std::vector<ExprPtr> &args) {
                      [](const ExprPtr &arg) { return arg->type->isError(); });
 }
 
+/// Is this a member of the method's own object that the scene sets, or a part of one?
+static bool isOfMember(const typed::Expr &expr) {
+  const typed::Expr *at = &expr;
+  while (true) {
+    switch (at->kind) {
+    case typed::ExprKind::Member: // what `intersect` leaves may be any object
+      return static_cast<const typed::MemberExpr *>(at)->member->access != ast::Access::Scratch;
+    case typed::ExprKind::Field:
+      at = static_cast<const typed::FieldExpr *>(at)->base.get();
+      break;
+    case typed::ExprKind::Index:
+      at = static_cast<const typed::IndexExpr *>(at)->base.get();
+      break;
+    default:
+      return false;
+    }
+  }
+}
+
 ExprPtr FunctionChecker::checkCall(const ast::CallExpr &expr) {
   return expr.receiver ? checkReceiverCall(expr) : checkPlainCall(expr);
 }
@@ -253,8 +272,8 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
     diagnostics.report(Code::useOutsideFunction, expr.callee.range, callee.name);
     return errorExpr(expr.range);
   }
-  facts->calls.push_back(
-      {&callee, callee.owner != nullptr, receiver != nullptr, expr.callee.range});
+  facts->calls.push_back({&callee, callee.owner != nullptr, receiver != nullptr,
+                          receiver && isOfMember(*receiver), expr.callee.range});
   convertArguments(signature, args);
   if (receiver) {
     auto node = makeExpr<typed::MethodCallExpr>(signature.result, expr.range);

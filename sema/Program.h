@@ -44,6 +44,7 @@ struct CallEdge {
   const typed::Function *callee = nullptr;
   bool dispatched = false;       // a method: definitions that override the callee may run
   bool throughReference = false; // on another object
+  bool throughMember = false;    // which a member of the caller's refers to
   SourceRange range;             // of the callee's name
 };
 

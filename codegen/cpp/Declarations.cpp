@@ -376,6 +376,8 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
 //===----------------------------------------------------------------------===//
 
 std::string ModulePrinter::run() {
+  if (states)
+    refuseTracesThroughReferences();
   placeAttributes();
   numberRayTypes();
   // From the inside out: what functions ask for is known when they have been printed.

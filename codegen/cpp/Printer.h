@@ -115,6 +115,7 @@ private:
   /// Is the method printed as its states in this class? Has it become part of those of others?
   bool isSplit(const typed::Class &definition, const typed::Function &method) const;
   bool isPartOfStates(const typed::Class &definition, const typed::Function &function) const;
+  void refuseTracesThroughReferences();
   std::string stateMachine(const typed::Class &definition, const typed::Function &method);
   std::string inheritedStateMachines(const typed::Class &definition);
   std::string meaningOf(const typed::Function &method, const FrameField &field) const;

@@ -76,6 +76,28 @@ static bool traces(const typed::Module &module, const typed::Function &function)
   return found;
 }
 
+// States that lie in a method which is known only when the scene is would need a frame of their own.
+void ModulePrinter::refuseTracesThroughReferences() {
+  const auto mayTrace = [&](const typed::Function &function) {
+    if (traces(module, function))
+      return true;
+    for (const auto &definition : module.classes)
+      for (const auto &other : definition->functions)
+        if (definition.get() != function.owner && definition->derivesFrom(function.owner) &&
+            other->name == function.name && lowering::sameParameters(*other, function) && traces(module, *other))
+          return true;
+    return false;
+  };
+  for (const auto &definition : module.classes)
+    for (const auto &function : definition->functions)
+      if (function->body)
+        forEachExpr(*function->body, [&](const typed::Expr &expr) {
+          auto *call = dynCast<typed::MethodCallExpr>(&expr);
+          if (call && call->function && mayTrace(*call->function))
+            unsupported(call->range, "a method that traces, called through a reference, in C++ with states,");
+        });
+}
+
 static std::vector<mlir::func::FuncOp> statesOf(const StateProgram &program, const std::string &className,
                                                 const std::string &method) {
   std::vector<mlir::func::FuncOp> states;

@@ -207,6 +207,25 @@ struct ConvertState : ConvertOpToLLVMPattern<ir::StateOp> {
   }
 };
 
+struct ConvertKeepAddress : ConvertOpToLLVMPattern<ir::KeepAddressOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::KeepAddressOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, adaptor.getValue(), adaptor.getSlot(), alignof(void *));
+    return mlir::success();
+  }
+};
+
+struct ConvertKeptAddress : ConvertOpToLLVMPattern<ir::KeptAddressOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::KeptAddressOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    mlir::Type pointer = LLVM::LLVMPointerType::get(op.getContext());
+    rewriter.replaceOpWithNewOp<LLVM::LoadOp>(op, pointer, adaptor.getSlot(), alignof(void *));
+    return mlir::success();
+  }
+};
+
 struct ConvertFrameSlot : ConvertOpToLLVMPattern<ir::FrameSlotOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::FrameSlotOp op, OpAdaptor adaptor,
@@ -336,7 +355,7 @@ struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
 
 void addMemoryPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
   patterns.add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
-               ConvertElement, ConvertMember, ConvertTable, ConvertState, ConvertFrameSlot, ConvertAttribute,
+               ConvertElement, ConvertMember, ConvertTable, ConvertState, ConvertFrameSlot, ConvertKeepAddress, ConvertKeptAddress, ConvertAttribute,
                ConvertBufferElement, ConvertBufferLength, ConvertNullRef, ConvertCastRef,
                ConvertEqualRef, ConvertClassId>(converter);
 }

@@ -244,6 +244,17 @@ struct ConvertSpawn : ConvertOpToLLVMPattern<ir::SpawnOp> {
   }
 };
 
+struct ConvertMoveFrame : ConvertOpToLLVMPattern<ir::MoveFrameOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::MoveFrameOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    callRuntime(rewriter, op.getLoc(), runtimeFunction(op),
+                {rayState(rewriter), adaptor.getBytes(), adaptor.getObject()});
+    rewriter.eraseOp(op);
+    return mlir::success();
+  }
+};
+
 struct ConvertTraceResult : ConvertOpToLLVMPattern<ir::TraceResultOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::TraceResultOp op, OpAdaptor,
@@ -258,7 +269,7 @@ struct ConvertTraceResult : ConvertOpToLLVMPattern<ir::TraceResultOp> {
 
 void addRayPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
   patterns.add<ConvertTrace, ConvertHit, ConvertRand, ConvertAmbient, ConvertLightCount,
-               ConvertIlluminate, ConvertSpawn, ConvertTraceResult,
+               ConvertIlluminate, ConvertSpawn, ConvertTraceResult, ConvertMoveFrame,
                ConvertPayloadRay<ir::TracePayloadOp>, ConvertPayloadRay<ir::SpawnPayloadOp>,
                ConvertRaise, ConvertPrint, ConvertPayload, ConvertRayType, ConvertAnswerHit,
                ConvertHitAnswered>(converter);

@@ -26,6 +26,7 @@ std::string runtimeFunction(mlir::Operation *op) {
       .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
       .Case([](ir::SpawnOp spawn) { return spawn.getLast() ? "rtsl_spawn_last" : "rtsl_spawn"; })
       .Case([](ir::TraceResultOp) { return "rtsl_trace_result"; })
+      .Case([](ir::MoveFrameOp) { return "rtsl_move_frame"; })
       .Default([](mlir::Operation *) { return ""; });
 }
 
@@ -65,6 +66,9 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
       })
       .Case([&](ir::SpawnOp) {
         return function(nothing, {pointer, f32, f32, f32, f32, f32, f32});
+      })
+      .Case([&](ir::MoveFrameOp) {
+        return function(nothing, {pointer, i32, i32});
       })
       .Case([&](ir::TraceResultOp) { return function(pointer, {pointer}); });
 }

@@ -20,7 +20,7 @@ def Rtsl_SuspendOp : Rtsl_Op<"suspend", [Terminator, AttrSizedOperandSegments,
     restored; `names` says what each is called in the source, one unique name for one value in the whole function, so that it
     keeps its slot from trace to trace. The `resume` block begins with `rtsl.trace_result` and has this op as its only
     predecessor. A ray with a payload was prepared before, by `rtsl.spawn_payload`: then no ray is named here, and the
-    `resume` block begins with `rtsl.trace_returned`.
+    `resume` block begins with `rtsl.trace_returned`. So was a call, by `rtsl.enter`; its block begins with `rtsl.call_returned`.
 
     Example: `rtsl.suspend %origin, %direction, ^resume(%i : i32) names ["i"]`
   }];
@@ -120,9 +120,101 @@ def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
   }];
 }
 
+// Calls with a frame of their own. What is called runs on the same ray, on a frame above that of its caller:
+//
+//   bytes 0 to 11   the state in which the caller goes on, the caller's object, and how far its frame begins below this one
+//   from 16 on      arguments, then results, then what the callee saves itself
+
+def Rtsl_EnterOp : Rtsl_Op<"enter", []> {
+  let summary = "prepares a call that takes place when this state ends";
+  let description = [{
+    Stands in front of a suspend that names no ray. The object of what is called comes first among the arguments, if it has
+    one; `offsets` are the places of the others in its frame. `writes` names the state variables that the call may change;
+    without it all may. `resume` is the state in which the caller goes on, once it is known.
+
+    Example: `rtsl.enter @Tint.follow(%tint, %d) at [16] : !rtsl.ref<"Tint">, vector<3xf32>`
+  }];
+  let arguments = (ins FlatSymbolRefAttr:$callee, Variadic<AnyType>:$operands, DenseI32ArrayAttr:$offsets,
+                       OptionalAttr<StrArrayAttr>:$writes, OptionalAttr<FlatSymbolRefAttr>:$resume);
+  let assemblyFormat = [{
+    $callee `(` $operands `)` `at` $offsets (`writes` $writes^)? (`then` $resume^)? attr-dict (`:` type($operands)^)?
+  }];
+}
+
+def Rtsl_CallReturnedOp : Rtsl_Op<"call_returned", []> {
+  let summary = "a call has come back";
+  let description = [{
+    Stands where `rtsl.trace_result` would; the results lie at `offsets` in the frame of what was called.
+
+    Example: `%c = rtsl.call_returned at [28] : vector<3xf32>`
+  }];
+  let arguments = (ins DenseI32ArrayAttr:$offsets);
+  let results = (outs Variadic<Rtsl_Value>:$results);
+  let assemblyFormat = "`at` $offsets attr-dict (`:` type($results)^)?";
+}
+
+def Rtsl_CallArgumentOp : Rtsl_Op<"call_argument", [Pure, Rtsl_Named]> {
+  let summary = "an argument of a function with a frame of its own";
+  let description = [{
+    Nothing writes there while the function runs, so it may be read again at any time.
+
+    Example: `%d = rtsl.call_argument "d"[16] : vector<3xf32>`
+  }];
+  let arguments = (ins StrAttr:$name, I32Attr:$offset);
+  let results = (outs AnyType:$result);
+  let assemblyFormat = "$name `[` $offset `]` attr-dict `:` type($result)";
+}
+
+def Rtsl_CallResultOp : Rtsl_Op<"call_result", [MemoryEffects<[MemWrite<Rtsl_FrameResource>]>]> {
+  let summary = "leaves a result for the caller";
+  let description = [{
+    Example: `rtsl.call_result %c, [28] : vector<3xf32>`
+  }];
+  let arguments = (ins Rtsl_Value:$value, I32Attr:$offset);
+  let assemblyFormat = "$value `,` `[` $offset `]` attr-dict `:` type($value)";
+}
+
+def Rtsl_LeaveOp : Rtsl_Op<"leave", []> {
+  let summary = "goes back to the object and the frame of the caller";
+  let description = [{
+    Followed by the end of the state, with `rtsl.next return`.
+  }];
+  let assemblyFormat = "attr-dict";
+}
+
+def Rtsl_MoveFrameOp : Rtsl_Op<"move_frame", []> {
+  let summary = "the ray goes on with another object, on a frame so many bytes further up";
+  let description = [{
+    What `rtsl.enter` and `rtsl.leave` become.
+
+    Example: `rtsl.move_frame %bytes to %object : !rtsl.ref<"Tint">`
+  }];
+  let arguments = (ins I32:$bytes, Rtsl_Ref:$object);
+  let assemblyFormat = "$bytes `to` $object attr-dict `:` type($object)";
+}
+
+def Rtsl_KeepAddressOp : Rtsl_Op<"keep_address", []> {
+  let summary = "writes an address to a frame";
+  let description = [{
+    Example: `rtsl.keep_address %p, %slot : !rtsl.ptr<!rtsl.array<4 x f32>>, !rtsl.ptr<i32>`
+  }];
+  let arguments = (ins Rtsl_Ptr:$value, Arg<Rtsl_Ptr, "", [MemWrite]>:$slot);
+  let assemblyFormat = "$value `,` $slot attr-dict `:` type($value) `,` type($slot)";
+}
+
+def Rtsl_KeptAddressOp : Rtsl_Op<"kept_address", []> {
+  let summary = "reads an address from a frame";
+  let description = [{
+    Example: `%p = rtsl.kept_address %slot : !rtsl.ptr<i32> -> !rtsl.ptr<!rtsl.array<4 x f32>>`
+  }];
+  let arguments = (ins Arg<Rtsl_Ptr, "", [MemRead]>:$slot);
+  let results = (outs Rtsl_Ptr:$result);
+  let assemblyFormat = "$slot attr-dict `:` type($slot) `->` type($result)";
+}
+
 def Rtsl_Transition : I32Enum<"Transition", "what happens when a state ends", [
     I32EnumCase<"Done", 0, "done">, I32EnumCase<"Trace", 1, "trace">, I32EnumCase<"Jump", 2, "jump">,
-    I32EnumCase<"Last", 3, "last">]> {
+    I32EnumCase<"Last", 3, "last">, I32EnumCase<"Return", 4, "return">]> {
   let cppNamespace = "::rtsl::ir";
 }
 
@@ -130,8 +222,9 @@ def Rtsl_NextOp : Rtsl_Op<"next", [Pure]> {
   let summary = "what comes after this state, as a number";
   let description = [{
     `done`: the method is over. `trace @s`: the spawned ray is traced, then state `@s` runs. `jump @s`: state `@s` runs at
-    once. `last`: the spawned ray is traced and the method is over, all in one. Numbers are given when the program is
-    complete: 0 for done, the number of the state for `trace`, its negative for `jump`, RTSL_NEXT_LAST for `last`.
+    once. `last`: the spawned ray is traced and the method is over, all in one. `return`: the caller's state runs at once.
+    Numbers are given when the program is complete: 0 for done, the number of the state for `trace`, its negative for `jump`
+    and `return`, RTSL_NEXT_LAST for `last`.
 
     Example: `%next = rtsl.next trace @Glass.shade.state1`
   }];

@@ -85,6 +85,10 @@ private:
 
 } // namespace
 
+bool isLargeToInline(mlir::func::FuncOp function) {
+  return operationCount(function, smallTracingFunction) > smallTracingFunction;
+}
+
 std::unique_ptr<mlir::Pass> createInlineFunctionsPass() {
   return std::make_unique<InlineFunctions>();
 }

@@ -10,11 +10,16 @@
 
 #include <memory>
 
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+
 namespace mlir {
 class Pass;
 } // namespace mlir
 
 namespace rtsl::codegen {
+
+/// Of a function that traces: is a frame of its own cheaper than a copy for each of its callers?
+bool isLargeToInline(mlir::func::FuncOp function);
 
 /// `rtsl-inline`, on a module of level 2.
 std::unique_ptr<mlir::Pass> createInlineFunctionsPass();

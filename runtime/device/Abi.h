@@ -71,6 +71,7 @@ typedef struct RtslLaunch {
   uint32_t instanceCount, meshCount, lightCount;
   uint32_t colorComponents;
   uint32_t maxDepth;            // 0: camera rays only
+  uint32_t referenceChain;      // how many references lead on from one object at most, one object to the next
   uint32_t width, height;
   uint32_t seed;
   const RtslBvhNode *nodes;     // device traversal; null if the host's own is used
@@ -269,8 +270,19 @@ void rtsl_generate(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sa
 #define RTSL_NEXT_LAST (-2147483647 - 1)
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame);
 
-/// Defined by the compiled program: bytes of its largest frame, a multiple of 4.
-int32_t rtsl_frame_size(RtslState *state);
+/// Defined by the compiled program: bytes of its largest frame, a multiple of 4, with the frames of what is called on top
+/// of it. `chain` is RtslLaunch::referenceChain.
+int32_t rtsl_frame_size(RtslState *state, int32_t chain);
+
+// Some calls have a frame of their own, above that of the caller. It begins with these words.
+#define RTSL_CALL_RESUME 0u  // the state in which the caller goes on
+#define RTSL_CALL_OBJECT 4u  // the caller's
+#define RTSL_CALL_BELOW 8u   // bytes from the beginning of the caller's frame
+#define RTSL_CALL_HEADER 16u // arguments and results follow
+/// Defined by the compiled program, a constant: whether there are such calls.
+int32_t rtsl_calls(RtslState *state);
+/// The ray goes on with `object`, on a frame so many bytes further up.
+void rtsl_move_frame(RtslState *state, int32_t bytes, RtslRef object);
 
 /// Defined by the compiled program: the states in which methods begin that the runtime starts and that may trace. 0: there
 /// is no such method.
@@ -316,8 +328,9 @@ void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_
 // The megakernel: programs that bring their own traversal and need nobody else.
 //===----------------------------------------------------------------------===//
 
-/// Bytes that a lane needs for rays up to this depth, a multiple of 16. Exact: no shader can ask for more.
-uint64_t rtsl_lane_bytes(uint32_t maxDepth);
+/// Bytes that a lane needs for rays up to this depth, a multiple of 16, in scenes whose chains of references are so long.
+/// Exact: no shader can ask for more.
+uint64_t rtsl_lane_bytes(uint32_t maxDepth, uint32_t referenceChain);
 
 /// Renders pixels of the job until none is left, in the lane's own memory. Lanes of different numbers may run at once.
 void rtsl_run_lane(const RtslJob *job, uint32_t lane);

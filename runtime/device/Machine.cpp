@@ -33,13 +33,19 @@ void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float
       {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
 }
 
+void rtsl_move_frame(RtslState *state, int32_t bytes, RtslRef object) {
+  device::Level &level = *reinterpret_cast<device::Level *>(state);
+  level.frame += uint32_t(bytes);
+  level.object = object;
+}
+
 const float *rtsl_trace_result(RtslState *parent) {
   return reinterpret_cast<device::Level *>(parent)->color;
 }
 
 void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
-  void *stack = rtsl_machine_stack(device::stackSize(launch->maxDepth));
+  void *stack = rtsl_machine_stack(device::stackSize(launch->maxDepth, launch->referenceChain));
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);
   else

@@ -7,6 +7,9 @@
 //   level 1: a ray it sent       state | ...
 //   ...
 //
+// What a ray's method calls with a frame of its own has it above that of the caller, on the same
+// level: it is the same ray.
+//
 // A ray behind whose last trace nothing happens gives its level to the ray that it sends: such
 // recursion is a loop. Other rays stay until theirs are back, so a ray of depth d lies at level d
 // at most, one higher above `generate`; how many levels a program needs for a limit of depth is
@@ -34,6 +37,7 @@ struct Level {
   RtslRef object;              // whose method runs
   uint32_t isSpawned;          // the ray one level up, or the one in this level's place, is to be traced
   uint32_t how;                // rtsl_traverse searches for a ray with a payload
+  uint32_t frame;              // of programs with calls: where the frame of what runs begins
 };
 
 /// Bytes of a level with its frame.
@@ -42,9 +46,12 @@ inline uint64_t levelSize(uint64_t frame) {
   return (size + 15) / 16 * 16;
 }
 
-/// Any state will do: each function of a program takes one.
+inline uint64_t levelSize(RtslState *state, uint32_t referenceChain) {
+  return levelSize(uint64_t(uint32_t(rtsl_frame_size(state, int32_t(referenceChain)))));
+}
+
 inline uint64_t levelSize(RtslState *state) {
-  return levelSize(uint64_t(uint32_t(rtsl_frame_size(state))));
+  return levelSize(state, state->launch->referenceChain);
 }
 
 inline Level *above(Level *level, uint64_t size) {
@@ -56,19 +63,27 @@ inline Level *below(Level *level, uint64_t size) {
 }
 
 inline void *frameOf(Level *level) {
-  return level + 1;
+  char *frames = reinterpret_cast<char *>(level + 1);
+  return rtsl_calls(&level->state) ? frames + level->frame : frames;
+}
+
+/// The method of this object begins, on the level's first frame.
+inline void beginOn(Level &level, RtslRef object) {
+  level.object = object;
+  if (rtsl_calls(&level.state))
+    level.frame = 0;
 }
 
 /// Bytes for the rays of a sample, and for `generate` below them.
-inline uint64_t stackSize(uint32_t maxDepth) {
-  RtslState none;
+inline uint64_t stackSize(uint32_t maxDepth, uint32_t referenceChain) {
+  RtslState none; // each function of a program takes one
   bool hasGenerate = rtsl_rt_RayGeneration_generate_first(&none) != 0;
   auto sent = [&](uint32_t kind) { return uint32_t(rtsl_rays_sent(&none, int32_t(kind))); };
   auto sentLast = [&](uint32_t kind) {
     return uint32_t(rtsl_rays_sent_last(&none, int32_t(kind)));
   };
   return mostLevels(uint32_t(rtsl_ray_kinds(&none)), hasGenerate, maxDepth, sent, sentLast) *
-         levelSize(&none);
+         levelSize(&none, referenceChain);
 }
 
 inline void spawnAbove(Level &parent, Vec3 origin, Vec3 direction) {
@@ -115,7 +130,7 @@ inline void spawnInPlace(Level &level, const PayloadRay &ray, uint32_t how) {
 /// `begin` for a ray with a payload.
 inline int32_t beginWithPayload(Level &level) {
   Arrival arrival = arriveWithPayload(level.state, level.how);
-  level.object = arrival.object;
+  beginOn(level, arrival.object);
   if (arrival.kind == Arrival::Surface)
     return rtsl_rt_Material_closestHit_payload_first(&level.state);
   if (arrival.kind == Arrival::Background)
@@ -129,7 +144,7 @@ inline int32_t begin(Level &level) {
   if (level.state.rayType != 0)
     return beginWithPayload(level);
   Arrival arrival = arrive(level.state);
-  level.object = arrival.object;
+  beginOn(level, arrival.object);
   if (arrival.kind == Arrival::Surface)
     return rtsl_rt_Material_shade_first(&level.state);
   if (arrival.kind == Arrival::Background)
@@ -148,7 +163,7 @@ struct Rays {
   static constexpr int32_t trace = -1; // what it meets is to be found
 };
 
-/// Starts a sample, on a stack of stackSize(maxDepth) bytes: with `generate` if the program has it,
+/// Starts a sample, on a stack of stackSize(...) bytes: with `generate` if the program has it,
 /// or else with the camera's ray.
 inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
                       uint32_t index) {
@@ -156,7 +171,7 @@ inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t
   if (launch.rayGeneration) {
     startGenerate(rays.bottom->state, launch, x, y, index, rays.events);
     rays.next = rtsl_rt_RayGeneration_generate_first(&rays.bottom->state);
-    rays.bottom->object = launch.rayGeneration;
+    beginOn(*rays.bottom, launch.rayGeneration);
     return;
   }
   startSample(rays.bottom->state, launch, x, y, index, rays.events);
@@ -210,7 +225,7 @@ inline void endSample(Rays &rays) {
   endEvents(state);
 }
 
-/// One sample of one pixel on a stack of stackSize(maxDepth) bytes.
+/// One sample of one pixel on a stack of stackSize(...) bytes.
 inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index,
                        void *stack, float *color) {
   Rays rays;

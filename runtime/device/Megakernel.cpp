@@ -22,8 +22,8 @@ uint32_t rtsl_traverse(RtslState *state, uint32_t how) {
   return answer;
 }
 
-uint64_t rtsl_lane_bytes(uint32_t maxDepth) {
-  return device::laneBytes(maxDepth);
+uint64_t rtsl_lane_bytes(uint32_t maxDepth, uint32_t referenceChain) {
+  return device::laneBytes(maxDepth, referenceChain);
 }
 
 void rtsl_run_lane(const RtslJob *job, uint32_t lane) {

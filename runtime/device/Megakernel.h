@@ -24,8 +24,8 @@ struct alignas(16) Lane {
 /// What a lane wants that has found no pixel. Beside the values of Rays::next.
 constexpr int32_t nothingLeft = -2;
 
-inline uint64_t laneBytes(uint32_t maxDepth) {
-  return sizeof(Lane) + stackSize(maxDepth);
+inline uint64_t laneBytes(uint32_t maxDepth, uint32_t referenceChain) {
+  return sizeof(Lane) + stackSize(maxDepth, referenceChain);
 }
 
 /// Adds the color of a sample that is over to its pixel. A color that is not finite counts as black,
@@ -81,7 +81,7 @@ inline void endSample(const RtslJob &job, Lane &lane, Rays &rays) {
 
 /// rtsl_run_lane.
 inline void runLane(const RtslJob &job, uint32_t number) {
-  if (laneBytes(job.launch->maxDepth) > job.laneBytes) {
+  if (laneBytes(job.launch->maxDepth, job.launch->referenceChain) > job.laneBytes) {
     __atomic_store_n(&job.status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
     return;
   }

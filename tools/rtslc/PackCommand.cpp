@@ -50,8 +50,9 @@ void packScene(const PackOptions &options, Messages &messages) {
   package.scene = runtime::flatten(*scene);
 
   const runtime::NativeCode code(package.host);
+  const std::uint32_t chain = package.scene.launch().referenceChain;
   for (std::uint32_t depth = 0; depth < package.laneBytes.size(); ++depth)
-    package.laneBytes[depth] = static_cast<std::uint32_t>(code.entries().laneBytes(depth));
+    package.laneBytes[depth] = static_cast<std::uint32_t>(code.entries().laneBytes(depth, chain));
 
   const std::string bytes = runtime::serialize(package);
   runtime::writeFileAtomically(options.output, bytes);

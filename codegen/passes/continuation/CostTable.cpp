@@ -47,6 +47,7 @@ std::int64_t recomputeCost(mlir::Operation *op) {
       .Case<ir::StateOp, ir::MemberOp, ir::AttributeOp, ir::FieldOp, ir::CastRefOp, ir::NullRefOp,
             ir::FrameObjectOp, ir::PayloadOp, ir::TableOp>([](auto) { return 0; })
       .Case([](ir::ElementOp element) { return element.constantIndex() ? 0 : 2; })
+      .Case<ir::CallArgumentOp>([&](auto) { return 4 * width; })
       .Case([&](ir::LoadOp load) { return loadCost(load.getAddress()) * width; })
       .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp>([](auto) { return 2; })
       .Case([](ir::ExpressionOp expression) { return std::int64_t(expression.getCost()); })

@@ -3,7 +3,8 @@
 // Makes the frame a parameter and numbers the states, and adds what runtime/device/Machine.h calls:
 //
 //   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, gives what comes next
-//   func @rtsl_frame_size() -> i32                              bytes of the largest frame
+//   func @rtsl_frame_size(%chain: i32) -> i32                   bytes of the largest frame
+//   func @rtsl_calls() -> i32                                   whether some state calls on a frame of its own
 //   func @rtsl_rt_Material_shade_first() -> i32                 the state in which an entry begins
 //   func @rtsl_rays_sent(%kind: i32) -> i32                     what bounds the stack (RayGraph.h)
 //
@@ -31,15 +32,21 @@ public:
   mlir::LogicalResult run();
 
 private:
-  void passFrame(FuncOp state);
+  mlir::LogicalResult passFrame(FuncOp state);
   mlir::Value address(mlir::Location location, mlir::Value frame, std::uint32_t offset,
                       mlir::Type type);
   void expand(ir::FrameLoadOp load, mlir::Value frame);
   void expand(ir::FrameStoreOp store, mlir::Value frame);
+  mlir::LogicalResult expand(ir::EnterOp call, mlir::Value frame, std::uint32_t frameSize);
+  void expand(ir::CallReturnedOp returned, mlir::Value frame, std::uint32_t frameSize);
+  void expand(ir::LeaveOp leave, mlir::Value frame);
+  void keep(mlir::Value value, mlir::Value frame, std::uint32_t offset);
+  mlir::Value loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset, mlir::Type type);
   mlir::LogicalResult number(ir::NextOp next);
   FuncOp makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type> inputs);
   void makeConstant(llvm::StringRef name, std::int32_t value);
   void makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values);
+  void makeFrameSize();
   void makeRunState();
 
   mlir::Value constant(mlir::Location location, std::int32_t value) {
@@ -50,6 +57,8 @@ private:
   mlir::OpBuilder builder;
   std::vector<FuncOp> states;
   llvm::StringMap<std::int32_t> numbers;
+  std::vector<std::uint32_t> areas; // of frames, by the longest chain of references
+  bool hasCalls = false;
 };
 
 mlir::Value Dispatcher::address(mlir::Location location, mlir::Value frame, std::uint32_t offset,
@@ -94,12 +103,99 @@ void Dispatcher::expand(ir::FrameStoreOp store, mlir::Value frame) {
   store.erase();
 }
 
-void Dispatcher::passFrame(FuncOp state) {
+//===----------------------------------------------------------------------===//
+// Calls with a frame of their own
+//===----------------------------------------------------------------------===//
+
+void Dispatcher::keep(mlir::Value value, mlir::Value frame, std::uint32_t offset) {
+  mlir::Location location = value.getLoc();
+  if (llvm::isa<ir::PtrType>(value.getType()))
+    ir::KeepAddressOp::create(builder, location, value,
+                              address(location, frame, offset, builder.getI32Type()));
+  else
+    ir::StoreOp::create(builder, location, value, address(location, frame, offset, value.getType()));
+}
+
+mlir::Value Dispatcher::loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset,
+                                 mlir::Type type) {
+  if (llvm::isa<ir::PtrType>(type))
+    return ir::KeptAddressOp::create(builder, location, type,
+                                     address(location, frame, offset, builder.getI32Type()));
+  return ir::LoadOp::create(builder, location, address(location, frame, offset, type));
+}
+
+/// The frame of what is called begins where this one ends.
+mlir::LogicalResult Dispatcher::expand(ir::EnterOp call, mlir::Value frame, std::uint32_t frameSize) {
+  builder.setInsertionPoint(call);
+  mlir::Location location = call.getLoc();
+  const std::int32_t resume = numbers.lookup(call.getResume().value_or(""));
+  if (resume == 0)
+    return call.emitOpError() << "goes on in `" << call.getResume().value_or("") << "`, which is no state";
+  auto state = call->getParentOfType<FuncOp>();
+  mlir::Value own = objectOf(state);
+  if (!own)
+    own = ir::NullRefOp::create(builder, location, ir::RefType::get(builder.getContext(), "object"));
+  keep(constant(location, resume), frame, frameSize + RTSL_CALL_RESUME);
+  keep(own, frame, frameSize + RTSL_CALL_OBJECT);
+  keep(constant(location, static_cast<std::int32_t>(frameSize)), frame, frameSize + RTSL_CALL_BELOW);
+  mlir::OperandRange arguments = call.getOperands();
+  mlir::Value object = own;
+  if (arguments.size() > call.getOffsets().size()) {
+    object = arguments.front();
+    arguments = arguments.drop_front();
+  }
+  for (auto [value, offset] : llvm::zip(arguments, call.getOffsets()))
+    keep(value, frame, frameSize + static_cast<std::uint32_t>(offset));
+  ir::MoveFrameOp::create(builder, location, constant(location, static_cast<std::int32_t>(frameSize)), object);
+  call.erase();
+  return mlir::success();
+}
+
+void Dispatcher::expand(ir::CallReturnedOp returned, mlir::Value frame, std::uint32_t frameSize) {
+  builder.setInsertionPoint(returned);
+  for (auto [result, offset] : llvm::zip(returned.getResults(), returned.getOffsets()))
+    result.replaceAllUsesWith(loadFrom(returned.getLoc(), frame, frameSize + static_cast<std::uint32_t>(offset),
+                                       result.getType()));
+  returned.erase();
+}
+
+void Dispatcher::expand(ir::LeaveOp leave, mlir::Value frame) {
+  builder.setInsertionPoint(leave);
+  mlir::Location location = leave.getLoc();
+  mlir::Value below = loadFrom(location, frame, RTSL_CALL_BELOW, builder.getI32Type());
+  mlir::Value down = arith::SubIOp::create(builder, location, constant(location, 0), below);
+  mlir::Value object = loadFrom(location, frame, RTSL_CALL_OBJECT,
+                                ir::RefType::get(builder.getContext(), "object"));
+  ir::MoveFrameOp::create(builder, location, down, object);
+  leave.erase();
+}
+
+mlir::LogicalResult Dispatcher::passFrame(FuncOp state) {
   mlir::Type frameType = ir::PtrType::get(builder.getI32Type());
   (void)state.insertArgument(state.getNumArguments(), frameType, {}, state.getLoc());
   mlir::Value frame = state.getArgument(state.getNumArguments() - 1);
+  std::uint32_t frameSize = 0; // as those above it see it: addresses take eight bytes
+  if (auto size = state->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_size"))
+    frameSize = (static_cast<std::uint32_t>(size.getInt()) + 7) / 8 * 8;
+  bool isFine = true;
   state.walk([&](mlir::Operation *op) {
-    if (auto load = llvm::dyn_cast<ir::FrameLoadOp>(op)) {
+    if (auto call = llvm::dyn_cast<ir::EnterOp>(op)) {
+      hasCalls = true;
+      isFine &= mlir::succeeded(expand(call, frame, frameSize));
+    } else if (auto returned = llvm::dyn_cast<ir::CallReturnedOp>(op)) {
+      expand(returned, frame, frameSize);
+    } else if (auto leave = llvm::dyn_cast<ir::LeaveOp>(op)) {
+      expand(leave, frame);
+    } else if (auto argument = llvm::dyn_cast<ir::CallArgumentOp>(op)) {
+      builder.setInsertionPoint(argument);
+      argument.replaceAllUsesWith(
+          loadFrom(argument.getLoc(), frame, argument.getOffset(), argument.getType()));
+      argument.erase();
+    } else if (auto result = llvm::dyn_cast<ir::CallResultOp>(op)) {
+      builder.setInsertionPoint(result);
+      keep(result.getValue(), frame, result.getOffset());
+      result.erase();
+    } else if (auto load = llvm::dyn_cast<ir::FrameLoadOp>(op)) {
       expand(load, frame);
     } else if (auto store = llvm::dyn_cast<ir::FrameStoreOp>(op)) {
       expand(store, frame);
@@ -116,6 +212,7 @@ void Dispatcher::passFrame(FuncOp state) {
       end.erase();
     }
   });
+  return mlir::success(isFine);
 }
 
 mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
@@ -128,7 +225,14 @@ mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
       value = -value;
   }
   builder.setInsertionPoint(next);
-  next.replaceAllUsesWith(constant(next.getLoc(), value));
+  if (next.getTransition() == ir::Transition::Return) {
+    mlir::Value frame = next->getParentOfType<FuncOp>().getArguments().back();
+    mlir::Value resume = loadFrom(next.getLoc(), frame, RTSL_CALL_RESUME, builder.getI32Type());
+    next.replaceAllUsesWith(
+        arith::SubIOp::create(builder, next.getLoc(), constant(next.getLoc(), 0), resume).getResult());
+  } else {
+    next.replaceAllUsesWith(constant(next.getLoc(), value));
+  }
   next.erase();
   return mlir::success();
 }
@@ -171,6 +275,31 @@ void Dispatcher::makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> v
                              llvm::ArrayRef<std::int32_t>(indices), blocks, operands);
 }
 
+/// @rtsl_frame_size(%chain: i32) -> i32: from the last value on the last difference is added.
+void Dispatcher::makeFrameSize() {
+  mlir::Location location = builder.getUnknownLoc();
+  auto asInt = [](std::uint32_t value) { return static_cast<std::int32_t>(value); };
+  if (areas.size() < 2) {
+    FuncOp function = makeFunction("rtsl_frame_size", {builder.getI32Type()});
+    (void)function;
+    mlir::func::ReturnOp::create(builder, location, constant(location, areas.empty() ? 0 : asInt(areas.back())));
+    return;
+  }
+  makeTable("rtsl_frame_area", areas);
+  mlir::func::FuncOp table = module.lookupSymbol<FuncOp>("rtsl_frame_area");
+  table.setPrivate();
+  table->removeAttr("rtsl.export");
+  FuncOp function = makeFunction("rtsl_frame_size", {builder.getI32Type()});
+  mlir::Value chain = function.getArgument(0), last = constant(location, asInt(areas.size() - 1));
+  mlir::Value isLong = arith::CmpIOp::create(builder, location, arith::CmpIPredicate::ugt, chain, last);
+  mlir::Value index = arith::SelectOp::create(builder, location, isLong, last, chain);
+  mlir::Value known = mlir::func::CallOp::create(builder, location, table, mlir::ValueRange(index)).getResult(0);
+  mlir::Value further = arith::SubIOp::create(builder, location, chain, index);
+  mlir::Value more = arith::MulIOp::create(builder, location, further,
+                                           constant(location, asInt(areas.back() - areas[areas.size() - 2])));
+  mlir::func::ReturnOp::create(builder, location, mlir::ValueRange(arith::AddIOp::create(builder, location, known, more)));
+}
+
 /// A switch over all states. A number that is none ends the method.
 void Dispatcher::makeRunState() {
   mlir::Location location = builder.getUnknownLoc();
@@ -205,7 +334,6 @@ void Dispatcher::makeRunState() {
 
 mlir::LogicalResult Dispatcher::run() {
   const RayGraph rays = findRays(module);
-  std::int32_t frameSize = 0;
   std::map<std::string, std::int32_t> entries;
   for (llvm::StringRef name : machineEntries())
     entries[name.str() + "_first"] = 0;
@@ -219,13 +347,13 @@ mlir::LogicalResult Dispatcher::run() {
     states.push_back(state);
     std::int32_t number = states.size();
     numbers[state.getSymName()] = number;
-    if (auto size = state->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_size"))
-      frameSize = std::max(frameSize, static_cast<std::int32_t>(size.getInt()));
     if (auto entry = state->getAttrOfType<mlir::StringAttr>("rtsl.entry"))
       entries[(entry.getValue() + "_first").str()] = number;
   }
+  areas = frameAreas(module);
   for (FuncOp state : states) {
-    passFrame(state);
+    if (mlir::failed(passFrame(state)))
+      return mlir::failure();
     llvm::SmallVector<ir::NextOp> nexts;
     state.walk([&](ir::NextOp next) { nexts.push_back(next); });
     for (ir::NextOp next : nexts)
@@ -233,7 +361,8 @@ mlir::LogicalResult Dispatcher::run() {
         return mlir::failure();
   }
   makeRunState();
-  makeConstant("rtsl_frame_size", frameSize);
+  makeFrameSize();
+  makeConstant("rtsl_calls", hasCalls);
   for (const auto &[name, number] : entries)
     makeConstant(name, number);
   llvm::SmallVector<std::uint32_t> sent, sentLast;

@@ -46,7 +46,10 @@ bool interfere(const Item &a, const Item &b) {
 
 class Layouter {
 public:
-  explicit Layouter(FuncOp function) : function(function), suspends(suspendsOf(function)) {}
+  explicit Layouter(FuncOp function) : function(function), suspends(suspendsOf(function)) {
+    if (auto bytes = function->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_base"))
+      base = static_cast<std::uint32_t>(bytes.getInt());
+  }
   FrameLayout run();
 
 private:
@@ -59,6 +62,7 @@ private:
   void rewrite();
 
   FuncOp function;
+  std::uint32_t base = 0; // bytes: behind what a call hands over
   llvm::SmallVector<ir::SuspendOp> suspends;
   std::vector<Item> items;
   std::vector<SavedBool> bools;
@@ -117,7 +121,7 @@ void Layouter::placeBools() {
 /// First fit in this order; returns the size of the frame.
 std::uint32_t Layouter::place(const std::vector<unsigned> &order,
                               std::vector<std::uint32_t> &offsets) const {
-  std::uint32_t end = 0;
+  std::uint32_t end = base;
   std::vector<unsigned> placed;
   for (unsigned index : order) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> taken; // from, to
@@ -125,7 +129,7 @@ std::uint32_t Layouter::place(const std::vector<unsigned> &order,
       if (interfere(items[index], items[other]))
         taken.push_back({offsets[other], offsets[other] + items[other].size});
     std::sort(taken.begin(), taken.end());
-    std::uint32_t offset = 0;
+    std::uint32_t offset = base;
     for (auto [from, to] : taken) {
       if (offset + items[index].size <= from)
         break;
@@ -150,7 +154,7 @@ void Layouter::placeWords() {
   size = ~0u;
   for (const std::vector<unsigned> &order : {asTheyCome, bySize, byTraces}) {
     std::vector<std::uint32_t> offsets(items.size());
-    std::uint32_t needed = place(order, offsets);
+    std::uint32_t needed = std::max(place(order, offsets), base);
     if (needed >= size)
       continue;
     size = needed;
@@ -178,7 +182,7 @@ FrameLayout Layouter::describe() const {
   }
   for (std::uint32_t bytes : atTrace)
     layout.lowerBound = std::max(layout.lowerBound, bytes);
-  layout.lowerBound += objects;
+  layout.lowerBound += base + objects;
   std::stable_sort(layout.slots.begin(), layout.slots.end(),
                    [](const FrameSlot &a, const FrameSlot &b) {
                      return std::make_pair(a.offset, a.bit) < std::make_pair(b.offset, b.bit);
@@ -233,7 +237,7 @@ FrameLayout Layouter::run() {
 } // namespace
 
 FrameLayout layoutFrame(FuncOp function) {
-  if (function.isExternal() || suspendsOf(function).empty())
+  if (function.isExternal() || (suspendsOf(function).empty() && !isFramed(function)))
     return {};
   return Layouter(function).run();
 }

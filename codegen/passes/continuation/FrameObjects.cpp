@@ -38,8 +38,11 @@ void moveVariablesToFrame(FuncOp function) {
   for (ir::VarOp variable : variables) {
     llvm::SmallVector<mlir::Value> derived;
     addDerived(variable.getResult(), derived);
-    bool isPayload = llvm::any_of(variable->getUsers(), llvm::IsaPred<ir::SpawnPayloadOp>);
-    if (!isPayload && llvm::none_of(derived, [&](mlir::Value value) {
+    // Others than this state see the payload of a ray, and what a call is given the address of.
+    bool isShown = llvm::any_of(derived, [](mlir::Value value) {
+      return llvm::any_of(value.getUsers(), llvm::IsaPred<ir::SpawnPayloadOp, ir::EnterOp>);
+    });
+    if (!isShown && llvm::none_of(derived, [&](mlir::Value value) {
           return acrossTraces.test(liveness.numberOf(value));
         }))
       continue;

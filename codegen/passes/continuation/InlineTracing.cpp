@@ -1,11 +1,14 @@
 //===- InlineTracing.cpp - calls of functions that trace ------------------===//
 //
 // A state is a piece of one function, so what a function calls and what may trace becomes part of
-// it. Only a call behind which nothing happens, on the caller's own object, stays: it is marked
+// it. A call behind which nothing happens, on the caller's own object, stays: it is marked
 // `rtsl.tail` and later a jump from state to state. That is what an entry is that switches over the
-// classes of a scene.
+// classes of a scene. A call of what may be called by itself, through references, cannot become
+// what it calls, and one of a large function that several call should not: `rtsl.framed`, a frame
+// of its own (CallFrames.cpp).
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/passes/InlineFunctions.h"
 #include "codegen/passes/continuation/Steps.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
@@ -48,6 +51,28 @@ llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
   return inOrder;
 }
 
+llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module) {
+  const llvm::SmallVector<FuncOp> tracing = tracingFunctions(module);
+  llvm::DenseMap<mlir::StringAttr, FuncOp> byName;
+  for (FuncOp function : tracing)
+    byName[function.getSymNameAttr()] = function;
+  llvm::DenseMap<mlir::Operation *, llvm::SmallSetVector<mlir::Operation *, 8>> callees;
+  for (FuncOp function : tracing)
+    function.walk([&, function = function](CallOp call) {
+      if (FuncOp callee = byName.lookup(call.getCalleeAttr().getAttr()))
+        callees[function].insert(callee);
+    });
+  llvm::SmallVector<FuncOp> found;
+  for (FuncOp function : tracing) {
+    llvm::SmallSetVector<mlir::Operation *, 16> reached(callees[function].begin(), callees[function].end());
+    for (std::size_t i = 0; i < reached.size(); ++i)
+      reached.insert(callees[reached[i]].begin(), callees[reached[i]].end());
+    if (reached.contains(function))
+      found.push_back(function);
+  }
+  return found;
+}
+
 namespace {
 
 class Inliner {
@@ -56,11 +81,12 @@ public:
     for (FuncOp function : tracingFunctions(module))
       tracing.insert(function);
   }
-  mlir::LogicalResult run();
+  void run();
 
 private:
   enum class Visit { New, Open, Done };
-  mlir::LogicalResult visit(FuncOp function);
+  void visit(FuncOp function);
+  bool wantsFrame(FuncOp callee);
   FuncOp tracingCallee(CallOp call) {
     auto callee = symbols.lookup<FuncOp>(call.getCallee());
     return callee && tracing.contains(callee) ? callee : FuncOp();
@@ -72,6 +98,7 @@ private:
   mlir::SymbolTable symbols;
   llvm::SmallSetVector<mlir::Operation *, 16> tracing;
   llvm::DenseMap<mlir::Operation *, Visit> visits;
+  llvm::DenseMap<mlir::Operation *, unsigned> callCounts; // before anything was inlined
 };
 
 /// Is the caller over when the call is, and is the callee's object the caller's?
@@ -109,8 +136,13 @@ void Inliner::inlineCall(CallOp call, FuncOp callee) {
     mlir::Block *copy = new mlir::Block;
     before->getParent()->getBlocks().insert(after->getIterator(), copy);
     mapping.map(&block, copy);
-    for (mlir::BlockArgument argument : block.getArguments())
-      mapping.map(argument, copy->addArgument(argument.getType(), argument.getLoc()));
+    for (mlir::BlockArgument argument : block.getArguments()) {
+      // Addresses are computed again behind traces, which arguments of blocks cannot be.
+      if (block.isEntryBlock() && llvm::isa<ir::PtrType>(argument.getType()))
+        mapping.map(argument, call.getOperand(argument.getArgNumber()));
+      else
+        mapping.map(argument, copy->addArgument(argument.getType(), argument.getLoc()));
+    }
   }
   // Blocks need not stand in an order in which definitions come first; clone maps operands when all
   // are there.
@@ -133,47 +165,60 @@ void Inliner::inlineCall(CallOp call, FuncOp callee) {
     for (mlir::OpOperand &operand : clone->getOpOperands())
       operand.set(mapping.lookupOrDefault(operand.get()));
   builder.setInsertionPointToEnd(before);
-  mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()),
-                             call.getOperands());
+  llvm::SmallVector<mlir::Value> passed;
+  llvm::copy_if(call.getOperands(), std::back_inserter(passed),
+                [](mlir::Value value) { return !llvm::isa<ir::PtrType>(value.getType()); });
+  mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()), passed);
   call.erase();
 }
 
-mlir::LogicalResult Inliner::visit(FuncOp function) {
+/// One that is marked already may call itself.
+bool Inliner::wantsFrame(FuncOp callee) {
+  return isFramed(callee) || visits[callee] == Visit::Open ||
+         (callCounts[callee] > 1 && codegen::isLargeToInline(callee));
+}
+
+void Inliner::visit(FuncOp function) {
   Visit &state = visits[function];
-  if (state == Visit::Done)
-    return mlir::success();
-  if (state == Visit::Open)
-    return function.emitError()
-           << "`" << function.getSymName()
-           << "` traces and may be called by itself, through references; such a call has no bound";
+  if (state != Visit::New)
+    return;
   state = Visit::Open;
   while (true) {
     CallOp found;
     FuncOp callee;
     function.walk([&](CallOp call) {
       callee = tracingCallee(call);
-      if (!callee || call->hasAttr("rtsl.tail"))
+      if (!callee || call->hasAttr("rtsl.tail") || isFramed(call))
         return mlir::WalkResult::advance();
       found = call;
       return mlir::WalkResult::interrupt();
     });
     if (!found)
       break;
-    if (mlir::failed(visit(callee)))
-      return mlir::failure();
-    if (isTail(found, callee))
-      found->setAttr("rtsl.tail", mlir::UnitAttr::get(module.getContext()));
-    else
+    visit(callee);
+    auto mark = mlir::UnitAttr::get(module.getContext());
+    if (visits[callee] == Visit::Done && isTail(found, callee)) {
+      found->setAttr("rtsl.tail", mark);
+    } else if (wantsFrame(callee)) {
+      callee->setAttr("rtsl.framed", mark);
+      found->setAttr("rtsl.framed", mark);
+    } else {
       inlineCall(found, callee);
+    }
   }
   visits[function] = Visit::Done;
-  return mlir::success();
 }
 
-mlir::LogicalResult Inliner::run() {
-  for (mlir::Operation *function : tracing)
-    if (mlir::failed(visit(llvm::cast<FuncOp>(function))))
-      return mlir::failure();
+void Inliner::run() {
+  module.walk([&](CallOp call) {
+    if (FuncOp callee = tracingCallee(call))
+      ++callCounts[callee];
+  });
+  // What has a frame already first: the others of its circle then become part of it.
+  for (bool framed : {true, false})
+    for (mlir::Operation *function : tracing)
+      if (isFramed(function) == framed)
+        visit(llvm::cast<FuncOp>(function));
   // What was only called from where it is now inlined has done its work.
   llvm::SmallVector<mlir::Operation *> callersFirst(tracing.begin(), tracing.end());
   bool changed = true;
@@ -188,13 +233,12 @@ mlir::LogicalResult Inliner::run() {
       changed = true;
     }
   }
-  return mlir::success();
 }
 
 } // namespace
 
-mlir::LogicalResult inlineTracingCalls(mlir::ModuleOp module) {
-  return Inliner(module).run();
+void inlineTracingCalls(mlir::ModuleOp module) {
+  Inliner(module).run();
 }
 
 } // namespace rtsl::continuation

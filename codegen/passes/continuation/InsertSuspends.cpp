@@ -15,7 +15,16 @@
 //                                             rtsl.trace_returned
 //                                             after
 //
+// So is a call of a function that has a frame of its own:
+//
+//     %r = call @f(%v) {rtsl.framed}          rtsl.enter @f(%v)
+//     after                           ==>     rtsl.suspend ^resume
+//                                           ^resume:
+//                                             %r = rtsl.call_returned
+//                                             after
+//
 //===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Recompute.h"
 #include "codegen/passes/continuation/Steps.h"
 
 #include "mlir/IR/PatternMatch.h"
@@ -39,6 +48,27 @@ mlir::Value objectOf(FuncOp function) {
   return llvm::isa<ir::RefType>(first.getType()) ? first : mlir::Value();
 }
 
+/// The call is prepared; what it gives comes where `builder` stands.
+static void suspendAtCall(mlir::func::CallOp call, mlir::OpBuilder builder, const WriteSummary &summary) {
+  const bool hasObject =
+      call.getNumOperands() != 0 && llvm::isa<ir::RefType>(call.getOperand(0).getType());
+  const CallLayout layout =
+      layoutCall(call.getOperands().drop_front(hasObject ? 1 : 0).getTypes(), call.getResultTypes());
+  auto returned = ir::CallReturnedOp::create(builder, call.getLoc(), call.getResultTypes(), layout.results);
+  call.replaceAllUsesWith(returned.getResults());
+  builder.setInsertionPoint(call);
+  const StateWrites writes = summary.of(call);
+  mlir::ArrayAttr names;
+  if (!writes.any) {
+    llvm::SmallVector<llvm::StringRef> sorted(writes.names.keys());
+    llvm::sort(sorted);
+    names = builder.getStrArrayAttr(sorted);
+  }
+  ir::EnterOp::create(builder, call.getLoc(), call.getCallee(), call.getOperands(), layout.arguments,
+                      names, /*resume=*/nullptr);
+  call.erase();
+}
+
 /// ^a: x; trace; y      ==>      ^a: x; suspend ^b   ^b: y. Returns a builder at the beginning of
 /// ^b.
 static mlir::OpBuilder suspendAt(mlir::Operation *trace, mlir::Value origin,
@@ -60,15 +90,23 @@ void insertSuspends(FuncOp function) {
 
   llvm::SmallVector<mlir::Operation *> traces;
   function.walk([&](mlir::Operation *op) {
-    if (llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op))
+    if (llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op) ||
+        (llvm::isa<mlir::func::CallOp>(op) && isFramed(op)))
       traces.push_back(op);
   });
+  std::optional<WriteSummary> summary;
   for (mlir::Operation *op : traces) {
     if (auto trace = llvm::dyn_cast<ir::TraceOp>(op)) {
       mlir::OpBuilder builder = suspendAt(trace, trace.getOrigin(), trace.getDirection());
       auto result = ir::TraceResultOp::create(builder, trace.getLoc(), trace.getType());
       trace.replaceAllUsesWith(result.getResult());
       trace.erase();
+      continue;
+    }
+    if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
+      if (!summary)
+        summary.emplace(function->getParentOfType<mlir::ModuleOp>());
+      suspendAtCall(call, suspendAt(call, {}, {}), *summary);
       continue;
     }
     auto trace = llvm::cast<ir::TracePayloadOp>(op);

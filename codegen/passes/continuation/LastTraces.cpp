@@ -271,7 +271,7 @@ void endAt(ir::SuspendOp suspend) {
 
 llvm::SmallVector<mlir::Location> endAtLastTraces(FuncOp function) {
   llvm::SmallVector<mlir::Location> places;
-  if (function.getNumResults() != 0)
+  if (function.getNumResults() != 0 || isFramed(function)) // the caller is not over
     return places;
   for (ir::SuspendOp suspend : suspendsOf(function)) {
     if (auto result = llvm::dyn_cast<ir::TraceResultOp>(suspend.getResume()->front())) {
@@ -325,6 +325,8 @@ bool isAffine(mlir::Operation *op, llvm::function_ref<bool(Value)> isTraced) {
 bool onlyScalesAndAdds(ir::SuspendOp suspend) {
   llvm::DenseSet<Value> traced;
   mlir::Operation *first = &suspend.getResume()->front();
+  if (llvm::isa<ir::CallReturnedOp>(first))
+    return false;
   mlir::Operation *payload = nullptr;
   if (auto result = llvm::dyn_cast<ir::TraceResultOp>(first))
     traced.insert(result.getResult());

@@ -114,7 +114,10 @@ struct InlineTracingPass : ModuleStep<InlineTracingPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(InlineTracingPass)
   static constexpr llvm::StringLiteral argument = "rtsl-inline-tracing";
   static constexpr llvm::StringLiteral description = "inlines calls of functions that trace";
-  mlir::LogicalResult step(mlir::ModuleOp module) { return inlineTracingCalls(module); }
+  mlir::LogicalResult step(mlir::ModuleOp module) {
+    inlineTracingCalls(module);
+    return mlir::success();
+  }
 };
 
 struct TrimPayloadsPass : ModuleStep<TrimPayloadsPass> {

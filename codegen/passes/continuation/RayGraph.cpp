@@ -2,9 +2,11 @@
 #include "codegen/passes/continuation/RayGraph.h"
 
 #include "codegen/ir/Rtsl.h"
+#include "codegen/passes/continuation/Steps.h"
 #include "runtime/device/StackBound.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "llvm/ADT/StringMap.h"
 
 #include <algorithm>
 
@@ -22,10 +24,13 @@ private:
   std::uint32_t payload(llvm::StringRef name, std::optional<std::uint32_t> number);
   std::uint32_t allPayloads() const;
   std::uint32_t kindsOf(mlir::func::FuncOp state) const;
+  void findCallers();
   void addRays(mlir::func::FuncOp state);
 
   mlir::ModuleOp module;
   RayGraph graph;
+  /// The kinds whose rays may run a function that has frames of its own: those that run its callers.
+  llvm::StringMap<std::uint32_t> kindsOfCallers;
 };
 
 llvm::StringRef payloadName(ir::SpawnPayloadOp spawn) {
@@ -61,8 +66,25 @@ std::uint32_t Finder::allPayloads() const {
   return ((1ull << end) - 1) & ~1ull;
 }
 
+void Finder::findCallers() {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (auto state : module.getOps<mlir::func::FuncOp>())
+      if (isState(state))
+        state.walk([&](ir::EnterOp call) {
+          std::uint32_t &known = kindsOfCallers[call.getCallee()];
+          const std::uint32_t before = known;
+          known |= kindsOf(state);
+          changed |= known != before;
+        });
+  }
+}
+
 /// The kinds whose rays may run this state, as bits.
 std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
+  if (continuation::isFramed(state))
+    return kindsOfCallers.lookup(state.getSymName().rsplit(".state").first);
   llvm::StringRef method;
   if (auto name = state->getAttrOfType<mlir::StringAttr>("rtsl.method"))
     method = name.getValue();
@@ -117,6 +139,7 @@ RayGraph Finder::run() {
     graph.kinds = {{"any", 1}};
     return graph;
   }
+  findCallers();
   for (auto state : module.getOps<mlir::func::FuncOp>())
     if (isState(state))
       addRays(state);

@@ -107,13 +107,17 @@ StateWrites WriteSummary::of(mlir::Operation *op) const {
   }
   if (llvm::isa<ir::IlluminateOp>(op))
     return illumination;
-  if (auto call = llvm::dyn_cast<ir::EvaluateOp>(op)) {
-    writes.any = !call.getWrites();
-    if (call.getWrites())
-      for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
+  auto addNamed = [&](std::optional<mlir::ArrayAttr> names) {
+    writes.any = !names;
+    if (names)
+      for (auto name : names->getAsRange<mlir::StringAttr>())
         writes.names.insert(name.getValue());
     return writes;
-  }
+  };
+  if (auto call = llvm::dyn_cast<ir::EvaluateOp>(op))
+    return addNamed(call.getWrites());
+  if (auto call = llvm::dyn_cast<ir::EnterOp>(op))
+    return addNamed(call.getWrites());
   if (llvm::isa<ir::CallMethodOp, ir::HitOp>(op))
     writes.any = true;
   return writes;

@@ -16,7 +16,11 @@ std::uint32_t SplitReport::frameSize() const {
   std::uint32_t size = 0;
   for (const FunctionReport &function : functions)
     size = std::max(size, function.frame.size);
-  return size;
+  return frameAreas.empty() ? size : std::max(size, frameAreas.front());
+}
+
+std::uint32_t SplitReport::frameGrowth() const {
+  return frameAreas.size() < 2 ? 0 : frameAreas.back() - frameAreas[frameAreas.size() - 2];
 }
 
 std::uint64_t SplitReport::levelBytes() const {
@@ -51,6 +55,9 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
   out << "stack: " << levels << (levels == 1 ? " level" : " levels") << " of "
       << report.levelBytes() << " bytes for rays as deep as " << report.maxDepth << ", "
       << (report.rays.grows() ? "more if that is larger" : "and no more if that is larger") << "\n";
+  if (const std::uint32_t growth = report.frameGrowth())
+    out << "stack: " << growth << " bytes more a level for each object in the scene's longest chain of references, "
+        << "for methods call themselves through them\n";
 }
 
 static std::string list(const std::vector<std::string> &names) {
@@ -69,8 +76,8 @@ std::string toText(const SplitReport &report) {
           << ", the last: its ray takes the place of this one, so recursion runs as a loop\n";
     for (const TraceReport &trace : function.traces) {
       const std::string place = trace.place.text();
-      out << "  trace" << (place.empty() ? "" : " at " + place) << ", resumes at "
-          << trace.resumesAt << "\n";
+      out << (trace.callee.empty() ? "  trace" : "  call of " + trace.callee)
+          << (place.empty() ? "" : " at " + place) << ", resumes at " << trace.resumesAt << "\n";
       out << "    live           " << trace.liveBytes << " bytes" << list(trace.live) << "\n";
       out << "    saved          " << trace.savedBytes << " bytes" << list(trace.saved) << "\n";
       out << "    rematerialised " << trace.rematerialised.size() << list(trace.rematerialised);
@@ -120,6 +127,8 @@ std::string toJson(const SplitReport &report) {
       json.attribute("levelBytes", report.levelBytes());
       json.attribute("bytes", levels * report.levelBytes());
       json.attribute("growsWithDepth", report.rays.grows());
+      if (report.frameGrowth() != 0)
+        json.attribute("levelBytesAReference", report.frameGrowth());
     });
     json.attributeArray("payloads", [&] {
       for (const continuation::TrimmedPayload &trimmed : report.trimmed)
@@ -153,6 +162,8 @@ std::string toJson(const SplitReport &report) {
             for (const TraceReport &trace : function.traces)
               json.object([&] {
                 json.attribute("location", trace.place.text());
+                if (!trace.callee.empty())
+                  json.attribute("callee", trace.callee);
                 json.attribute("resumesAt", trace.resumesAt);
                 json.attribute("liveBytes", trace.liveBytes);
                 names("live", trace.live);

@@ -17,6 +17,7 @@ using TracePlace = ir::SourcePlace;
 /// One trace of a function, in the order in which they stand.
 struct TraceReport {
   TracePlace place;
+  std::string callee;            // of a call on a frame of its own; empty: it is a trace
   std::string resumesAt;         // the state
   std::vector<std::string> live; // what plain liveness would save, constants included
   std::uint32_t liveBytes = 0;
@@ -32,8 +33,14 @@ struct TraceReport {
 
 /// A way from the end of a state to what comes next.
 struct TransitionReport {
-  enum Kind : std::uint8_t { Trace, Jump, Done, Last } kind;
-  std::string from, to; // states; `to` is empty for Done and Last
+  /// Call: of `callee`, and on in `to` when it has returned.
+  enum Kind : std::uint8_t { Trace, Jump, Done, Last, Call, Return } kind;
+  std::string from, to; // states; `to` is empty for Done, Last and Return
+  std::string callee;
+
+  bool operator==(const TransitionReport &other) const {
+    return kind == other.kind && from == other.from && to == other.to && callee == other.callee;
+  }
 };
 
 struct FunctionReport {
@@ -49,11 +56,14 @@ struct FunctionReport {
 struct SplitReport {
   std::vector<FunctionReport> functions;
   RayGraph rays;
+  std::vector<std::uint32_t> frameAreas; // frameAreas() of Steps.h
   std::vector<continuation::TrimmedPayload> trimmed;
   /// The limit of depth for which the stack is shown; that of scenes that name none.
   std::uint32_t maxDepth = 8;
-  /// Bytes of the largest frame.
+  /// Bytes of the largest frame, with those of what is called above it.
   std::uint32_t frameSize() const;
+  /// Bytes more for each object in a chain of references; 0 if no function calls itself.
+  std::uint32_t frameGrowth() const;
   /// Bytes that a ray takes on the stack, with a frame of that size.
   std::uint64_t levelBytes() const;
 };

@@ -72,6 +72,8 @@ mlir::LogicalResult FunctionSplitter::reportPlainLiveness() {
     TraceReport trace;
     trace.place = ir::placeOf(ir::SuspendOp(plan.suspend).getLoc());
     trace.onlyScalesAndAdds = onlyScalesAndAdds(plan.suspend);
+    if (auto call = llvm::dyn_cast_or_null<ir::EnterOp>(plan.suspend->getPrevNode()))
+      trace.callee = call.getCallee().str();
     trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
     describe(plan.saved, plainNames, trace.live, trace.liveBytes);
     report.traces.push_back(std::move(trace));
@@ -115,7 +117,16 @@ mlir::LogicalResult FunctionSplitter::cleanUp(llvm::ArrayRef<FuncOp> states) {
 }
 
 static void reportTransitions(FuncOp state, std::vector<TransitionReport> &transitions) {
+  llvm::StringSet<> called; // jumps to where these begin are said with them
+  state.walk([&](ir::EnterOp call) {
+    called.insert((call.getCallee() + ".state0").str());
+    const TransitionReport way = {TransitionReport::Call, state.getSymName().str(),
+                                  call.getResume().value_or("").str(), call.getCallee().str()};
+    if (std::find(transitions.begin(), transitions.end(), way) == transitions.end())
+      transitions.push_back(way);
+  });
   static constexpr std::pair<ir::Transition, TransitionReport::Kind> kinds[] = {
+      {ir::Transition::Return, TransitionReport::Return},
       {ir::Transition::Trace, TransitionReport::Trace},
       {ir::Transition::Jump, TransitionReport::Jump},
       {ir::Transition::Last, TransitionReport::Last},
@@ -126,8 +137,10 @@ static void reportTransitions(FuncOp state, std::vector<TransitionReport> &trans
       if (next.getTransition() != transition)
         return;
       const std::string to = next.getState().value_or("").str();
+      if (kind == TransitionReport::Jump && called.contains(to))
+        return;
       if (seen.insert(to).second)
-        transitions.push_back({kind, state.getSymName().str(), to});
+        transitions.push_back({kind, state.getSymName().str(), to, ""});
     });
   }
 }
@@ -199,11 +212,16 @@ void keepTracingMethods(mlir::ModuleOp module) {
     if (method && llvm::is_contained(startedByRuntime, method.getValue().split('.').first))
       function->setAttr("rtsl.noinline", mlir::UnitAttr::get(module.getContext()));
   }
+  // Of a circle the call through a reference is cut: each goes to an object further down.
+  for (FuncOp function : functionsThatMayCallThemselves(module))
+    if (function.getSymName().starts_with("dispatch.")) {
+      function->setAttr("rtsl.noinline", mlir::UnitAttr::get(module.getContext()));
+      function->setAttr("rtsl.framed", mlir::UnitAttr::get(module.getContext()));
+    }
 }
 
 bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitReport &report) {
-  if (mlir::failed(inlineTracingCalls(module)))
-    return false;
+  inlineTracingCalls(module);
   codegen::Simplify simplify(module.getContext());
   if (options.trim)
     report.trimmed = trimPayloads(module);
@@ -212,7 +230,11 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
     if (auto entry = module.lookupSymbol<FuncOp>(name);
         entry && !entry.isExternal() && !isEmpty(entry) && !llvm::is_contained(functions, entry))
       functions.push_back(entry);
+  // What is called comes after its callers, which ask what it writes.
+  std::stable_partition(functions.begin(), functions.end(), [](FuncOp function) { return !isFramed(function); });
   for (FuncOp function : functions) {
+    if (isFramed(function))
+      takeArgumentsFromFrame(function);
     if (!isRunnable(function))
       continue; // a function of the author's that others could call, if they were in this program
     FunctionReport ofFunction;
@@ -221,6 +243,7 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
     report.functions.push_back(std::move(ofFunction));
   }
   report.rays = findRays(module);
+  report.frameAreas = frameAreas(module);
   if (options.dispatch && mlir::failed(makeDispatch(module)))
     return false;
   return mlir::succeeded(mlir::verify(module));

@@ -110,6 +110,7 @@ void Splitter::endState(mlir::OpBuilder &builder, mlir::Location location,
 
 void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(mapping.lookup(from));
+  ir::EnterOp call; // the last, which is the suspend's
   for (mlir::Operation &op : *from) {
     if (isJump(op)) {
       std::string callee = llvm::cast<mlir::func::CallOp>(op).getCallee().str();
@@ -121,12 +122,21 @@ void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
         ir::SpawnOp::create(builder, op.getLoc(), mapping.lookup(suspend.getOrigin()),
                             mapping.lookup(suspend.getDirection()), /*last=*/false);
       unsigned index = llvm::find(suspends, suspend) - suspends.begin();
-      endState(builder, op.getLoc(), ir::Transition::Trace, stateName(index + 1));
+      if (llvm::isa<ir::CallReturnedOp>(suspend.getResume()->front())) {
+        call.setResume(stateName(index + 1));
+        endState(builder, op.getLoc(), ir::Transition::Jump, call.getCallee().str() + ".state0");
+      } else {
+        endState(builder, op.getLoc(), ir::Transition::Trace, stateName(index + 1));
+      }
     } else if (llvm::isa<mlir::func::ReturnOp>(op)) {
+      if (isFramed(function))
+        ir::LeaveOp::create(builder, op.getLoc());
       endState(builder, op.getLoc(),
-               op.hasAttr("rtsl.last") ? ir::Transition::Last : ir::Transition::Done);
-    } else {
-      builder.clone(op, mapping);
+               isFramed(function)         ? ir::Transition::Return
+               : op.hasAttr("rtsl.last") ? ir::Transition::Last
+                                         : ir::Transition::Done);
+    } else if (auto copy = llvm::dyn_cast<ir::EnterOp>(builder.clone(op, mapping))) {
+      call = copy;
     }
   }
 }
@@ -142,7 +152,7 @@ FuncOp Splitter::makeState(unsigned index, mlir::Block *start) {
   auto state = FuncOp::create(builder, function.getLoc(), stateName(index),
                               builder.getFunctionType(inputs, {builder.getI32Type()}));
   state.setPrivate();
-  for (llvm::StringRef name : {"rtsl.class", "rtsl.method", "rtsl.frame_size"})
+  for (llvm::StringRef name : {"rtsl.class", "rtsl.method", "rtsl.frame_size", "rtsl.framed"})
     if (mlir::Attribute value = function->getAttr(name))
       state->setAttr(name, value);
   state->setAttr("rtsl.state", builder.getI32IntegerAttr(index));

@@ -27,7 +27,8 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
     if (trace.resumesAt != state)
       continue;
     const std::string place = trace.place.text();
-    lines.push_back(place.empty() ? "behind a trace" : "behind the trace at " + place);
+    const std::string what = trace.callee.empty() ? "trace" : "call of " + trace.callee;
+    lines.push_back(place.empty() ? "behind a " + what : "behind the " + what + " at " + place);
     std::string saved = std::to_string(trace.savedBytes) + " of " + std::to_string(trace.liveBytes) +
                         " bytes saved";
     for (std::size_t i = 0; i < trace.saved.size(); ++i)
@@ -45,6 +46,8 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
       continue;
     if (way.kind == TransitionReport::Last)
       lines.push_back("the last trace takes this ray's place");
+    if (way.kind == TransitionReport::Return)
+      lines.push_back("returns to the caller");
     if (!way.to.empty() && !isOwn(function, way.to))
       lines.push_back("or goes on in " + way.to);
   }
@@ -105,7 +108,10 @@ std::string toDot(const SplitReport &report) {
         continue;
       }
       out << "    " << quoted(way.from) << " -> " << quoted(way.to)
-          << (way.kind == TransitionReport::Trace ? " [label=\"trace\"]" : " [style=dashed]") << ";\n";
+          << (way.kind == TransitionReport::Trace  ? " [label=\"trace\"]"
+              : way.kind == TransitionReport::Call ? " [label=\"call\"]"
+                                                   : " [style=dashed]")
+          << ";\n";
     }
     out << "  }\n";
   }

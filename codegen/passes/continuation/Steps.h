@@ -30,6 +30,9 @@ mlir::Value objectOf(FuncOp function);
 /// The functions of the module that trace, or that call one that does.
 llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module);
 
+/// Those of them that calls lead back to.
+llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module);
+
 /// The entries that the machine starts (runtime/device/Machine.h): their states are made even if
 /// they do not trace.
 llvm::ArrayRef<llvm::StringLiteral> machineEntries();
@@ -39,9 +42,29 @@ llvm::ArrayRef<llvm::StringLiteral> machineEntries();
 //===----------------------------------------------------------------------===//
 
 /// InlineTracing.cpp: a call of a function that may trace becomes that function's body, or, where
-/// nothing follows and the object is the caller's own, a jump (`rtsl.tail` on the call). Fails with
-/// a message if such functions call each other in a circle.
-mlir::LogicalResult inlineTracingCalls(mlir::ModuleOp module);
+/// nothing follows and the object is the caller's own, a jump (`rtsl.tail` on the call). Functions
+/// that would become part of themselves, and large ones that several call, get frames of their own:
+/// they and their calls are marked `rtsl.framed`.
+void inlineTracingCalls(mlir::ModuleOp module);
+
+/// CallFrames.cpp: where what a call hands over lies in the frame of what it calls, in bytes.
+struct CallLayout {
+  llvm::SmallVector<std::int32_t> arguments, results; // but for the object
+  std::uint32_t size = 0; // what the callee saves itself begins here
+};
+CallLayout layoutCall(mlir::TypeRange arguments, mlir::TypeRange results);
+
+/// Has the function, or the call, a frame of its own?
+bool isFramed(mlir::Operation *op);
+
+/// CallFrames.cpp: a function with a frame of its own finds its arguments there, and leaves its
+/// results.
+void takeArgumentsFromFrame(FuncOp function);
+
+/// CallFrames.cpp: bytes of all frames that lie above each other in one level, by how far chains of
+/// references reach: a[n] if none is longer than n; one value if none of these functions calls
+/// itself. Of a module whose functions are split.
+std::vector<std::uint32_t> frameAreas(mlir::ModuleOp module);
 
 /// Fields of a payload that are not passed with its rays.
 struct TrimmedPayload {

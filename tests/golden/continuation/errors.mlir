@@ -56,7 +56,7 @@ func.func @f() {
 // -----
 
 func.func @f() {
-  // expected-error @below {{names a state for `trace` and `jump`, and none for `done` and `last`}}
+  // expected-error @below {{names a state for `trace` and `jump`, and none otherwise}}
   %n = rtsl.next done @g
   return
 }
