@@ -35,8 +35,8 @@ struct Level {
   float color[RTSL_MAX_COLOR]; // what the last trace brought back
   int32_t resume;              // the state that runs then
   RtslRef object;              // whose method runs
-  uint32_t isSpawned;          // the ray one level up, or the one in this level's place, is to be traced
-  uint32_t how;                // rtsl_traverse searches for a ray with a payload
+  uint16_t isSpawned;          // the ray one level up, or the one in this level's place, is to be traced
+  uint16_t how;                // rtsl_traverse searches for a ray with a payload
   uint32_t frame;              // of programs with calls: where the frame of what runs begins
 };
 
@@ -104,7 +104,7 @@ inline void spawnAbove(Level &parent, const PayloadRay &ray, uint32_t how) {
     return;
   Level &child = *above(&parent, levelSize(&parent.state));
   spawn(child.state, parent.state, dimension, ray);
-  child.how = how;
+  child.how = uint16_t(how);
 }
 
 /// The ray that `level`'s sends takes its place. Where it may not be sent, what it would have
@@ -124,7 +124,7 @@ inline void spawnInPlace(Level &level, const PayloadRay &ray, uint32_t how) {
   if (!level.isSpawned)
     return;
   spawn(level.state, level.state, dimension, ray);
-  level.how = how;
+  level.how = uint16_t(how);
 }
 
 /// `begin` for a ray with a payload.

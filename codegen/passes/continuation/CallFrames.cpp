@@ -147,7 +147,7 @@ bool isOfMember(mlir::Value object, FuncOp state) {
 void FrameCounter::read(FuncOp state) {
   const unsigned number = numberOf(state.getSymName().rsplit(".state").first);
   if (auto size = state->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_size"))
-    functions[number].bytes = (static_cast<std::uint32_t>(size.getInt()) + 7) / 8 * 8;
+    functions[number].bytes = static_cast<std::uint32_t>(size.getInt());
   functions[number].isCalled |= isFramed(state);
   state.walk([&](ir::EnterOp call) {
     const unsigned callee = numberOf(call.getCallee());
@@ -183,7 +183,8 @@ std::uint32_t FrameCounter::bytes(unsigned function, unsigned chain) {
     else if (chain > 0)
       most = std::max(most, bytes(call.callee, chain - 1));
   }
-  return known[{function, chain}] = functions[function].bytes + most;
+  const std::uint32_t own = functions[function].bytes;
+  return known[{function, chain}] = most == 0 ? own : (own + 7) / 8 * 8 + most; // as Dispatch.cpp has it
 }
 
 std::vector<std::uint32_t> FrameCounter::run() {

@@ -5,7 +5,8 @@
 //   rtsl.frame_store %i, "i"[0]   ==>
 //
 // Stores come only at the ends of states, so between a load and a store of a state nothing else
-// writes the slot; what has to be followed is the value, through arguments of blocks.
+// writes the slot, unless it shares words with an object; what has to be followed is the value,
+// through arguments of blocks.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/Steps.h"
@@ -23,7 +24,9 @@ class SlotContents {
 public:
   explicit SlotContents(ir::FrameStoreOp store) : store(store) {}
 
-  bool isHeldAlready() { return holdsBefore(store, store.getValue()); }
+  bool isHeldAlready() {
+    return !store->hasAttr("rtsl.shared") && holdsBefore(store, store.getValue());
+  }
 
 private:
   /// Does the slot hold `value` just before `op`, however control came there?
@@ -85,9 +88,9 @@ bool SlotContents::holdsBefore(mlir::Operation *op, mlir::Value value) {
 
 } // namespace
 
-void cleanStores(FuncOp state) {
+bool cleanStores(FuncOp state) {
   if (state.isExternal())
-    return;
+    return false;
   llvm::SmallVector<ir::FrameStoreOp> stores;
   state.walk([&](ir::FrameStoreOp store) { stores.push_back(store); });
   llvm::SmallVector<ir::FrameStoreOp> idle;
@@ -97,7 +100,8 @@ void cleanStores(FuncOp state) {
   for (ir::FrameStoreOp store : idle)
     store.erase();
   mlir::IRRewriter rewriter(state.getContext());
-  (void)mlir::runRegionDCE(rewriter, state->getRegions());
+  const bool isSmaller = mlir::succeeded(mlir::runRegionDCE(rewriter, state->getRegions()));
+  return isSmaller || !idle.empty();
 }
 
 } // namespace rtsl::continuation

@@ -6,12 +6,13 @@
 //                                                    %i' = rtsl.frame_load "i"[0]
 //
 // One slot a value over all traces, so that nothing is ever copied from slot to slot. Values that
-// are never saved at the same trace may share words. Bools take a bit each. Words are given first
-// fit, to the largest values first, to those that are saved most often first, or as they come,
+// are never saved at the same trace may share words; objects share them with others that are not
+// wanted while they are (ObjectLifetimes.h). Bools take a bit each. Words are given first fit, to the largest values first, to those that are saved most often first, or as they come,
 // whichever frame is smallest.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
+#include "codegen/passes/continuation/ObjectLifetimes.h"
 #include "codegen/passes/continuation/Steps.h"
 
 #include "llvm/ADT/BitVector.h"
@@ -28,8 +29,10 @@ namespace {
 struct Item {
   std::string name;
   std::uint32_t size = 4; // bytes
-  llvm::BitVector traces; // at which it is saved
-  bool isObject = false;  // wants its words always
+  llvm::BitVector traces; // at which it is saved; of an object: wanted
+  bool isObject = false;
+  llvm::BitVector objects = {}; // of an object: others that are wanted while it is
+  unsigned number = 0;          // of an object, among them
   std::uint32_t offset = 0;
   std::vector<unsigned> bools = {}; // of a word of bools: their indices, one a bit
 };
@@ -41,7 +44,9 @@ struct SavedBool {
 };
 
 bool interfere(const Item &a, const Item &b) {
-  return a.isObject || b.isObject || a.traces.anyCommon(b.traces);
+  if (a.isObject && b.isObject)
+    return a.objects.test(b.number) || b.objects.test(a.number);
+  return a.traces.anyCommon(b.traces);
 }
 
 class Layouter {
@@ -58,6 +63,7 @@ private:
   std::uint32_t place(const std::vector<unsigned> &order,
                       std::vector<std::uint32_t> &offsets) const;
   void placeWords();
+  bool isShared(std::uint32_t offset, std::uint32_t size) const;
   FrameLayout describe() const;
   void rewrite();
 
@@ -88,14 +94,12 @@ void Layouter::collect() {
       items[at->second].traces.set(index);
     }
   // The same object stands in several blocks, once it is recomputed; its name is unique.
-  function.walk([&](ir::FrameObjectOp object) {
-    auto [at, isNew] = itemOf.try_emplace(("object " + object.getName()).str(), items.size());
-    if (!isNew)
-      return;
-    mlir::Type type = llvm::cast<ir::PtrType>(object.getType()).getPointee();
-    items.push_back({object.getName().str(), ir::sizeInBytes(type),
-                     llvm::BitVector(suspends.size(), true), true});
-  });
+  for (auto [number, lifetime] : llvm::enumerate(lifetimesOfObjects(function, suspends))) {
+    itemOf[("object " + lifetime.object.getName()).str()] = items.size();
+    mlir::Type type = llvm::cast<ir::PtrType>(lifetime.object.getType()).getPointee();
+    items.push_back({lifetime.object.getName().str(), ir::sizeInBytes(type), lifetime.traces, true,
+                     lifetime.objects, static_cast<unsigned>(number)});
+  }
 }
 
 /// Gives each bool the lowest bit that is free at all its traces; 32 make a word.
@@ -166,14 +170,10 @@ void Layouter::placeWords() {
 FrameLayout Layouter::describe() const {
   FrameLayout layout;
   layout.size = size;
-  std::uint32_t objects = 0;
   std::vector<std::uint32_t> atTrace(suspends.size());
   for (const Item &item : items) {
-    if (item.isObject)
-      objects += item.size;
-    else
-      for (unsigned trace : item.traces.set_bits())
-        atTrace[trace] += item.size;
+    for (unsigned trace : item.traces.set_bits())
+      atTrace[trace] += item.size;
     if (item.bools.empty())
       layout.slots.push_back({item.name, item.offset, item.size, -1, item.isObject});
     for (unsigned index : item.bools)
@@ -182,12 +182,19 @@ FrameLayout Layouter::describe() const {
   }
   for (std::uint32_t bytes : atTrace)
     layout.lowerBound = std::max(layout.lowerBound, bytes);
-  layout.lowerBound += base + objects;
+  layout.lowerBound += base;
   std::stable_sort(layout.slots.begin(), layout.slots.end(),
                    [](const FrameSlot &a, const FrameSlot &b) {
                      return std::make_pair(a.offset, a.bit) < std::make_pair(b.offset, b.bit);
                    });
   return layout;
+}
+
+/// Does an object take some of these words, at other times?
+bool Layouter::isShared(std::uint32_t offset, std::uint32_t size) const {
+  return llvm::any_of(items, [&](const Item &item) {
+    return item.isObject && item.offset < offset + size && offset < item.offset + item.size;
+  });
 }
 
 void Layouter::rewrite() {
@@ -209,12 +216,16 @@ void Layouter::rewrite() {
       }
       mlir::IntegerAttr offsetAttr = builder.getI32IntegerAttr(offset);
       builder.setInsertionPoint(suspend);
-      ir::FrameStoreOp::create(builder, value.getLoc(), value, name, offsetAttr, bit);
+      auto store = ir::FrameStoreOp::create(builder, value.getLoc(), value, name, offsetAttr, bit);
       builder.setInsertionPointAfter(last);
       auto load = ir::FrameLoadOp::create(builder, argument.getLoc(), value.getType(), name,
                                           offsetAttr, bit);
       argument.replaceAllUsesWith(load.getResult());
       last = load;
+      if (isShared(offset, bit ? 4 : ir::sizeInBytes(value.getType()))) {
+        store->setAttr("rtsl.shared", builder.getUnitAttr());
+        load->setAttr("rtsl.shared", builder.getUnitAttr());
+      }
     }
     suspend.getSavedMutable().clear();
     suspend.setNamesAttr(builder.getArrayAttr({}));

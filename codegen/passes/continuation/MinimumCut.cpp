@@ -1,8 +1,9 @@
 //===- MinimumCut.cpp - what to save and what to recompute ----------------===//
 //
 // Maximum flow by blocking flows (Dinic, "Algorithm for solution of a problem of maximum flow in a
-// network with power estimation", 1970). The graphs are small and shallow: some hundred values for
-// a large shader.
+// network with power estimation", 1970). As they are built the graphs have no circles, so the first
+// flow goes along all of their edges, whatever the distances; that leaves little to the phases,
+// which would be as many as the longest chain of operands.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/MinimumCut.h"
@@ -15,7 +16,7 @@ namespace {
 
 class Network {
 public:
-  explicit Network(unsigned nodes) : edgesOf(nodes), level(nodes), next(nodes) {}
+  explicit Network(unsigned nodes) : edgesOf(nodes), next(nodes) {}
 
   void connect(unsigned from, unsigned to, std::int64_t capacity) {
     edgesOf[from].push_back(edges.size());
@@ -34,17 +35,20 @@ private:
     std::int64_t capacity; // what is left of it; edge i ^ 1 goes back
   };
   bool measure(unsigned source, unsigned sink);
+  bool isAhead(unsigned node, unsigned index) const {
+    return level.empty() ? index % 2 == 0 : level[edges[index].to] == level[node] + 1;
+  }
   std::int64_t augment(unsigned node, unsigned sink, std::int64_t limit);
 
   std::vector<Edge> edges;
-  std::vector<std::vector<unsigned>> edgesOf;
-  std::vector<int> level;
+  std::vector<llvm::SmallVector<unsigned, 6>> edgesOf;
+  std::vector<int> level; // empty: none has been measured, and every edge leads ahead
   std::vector<unsigned> next;
 };
 
 /// Distances from the source along edges that have capacity left; true if the sink can be reached.
 bool Network::measure(unsigned source, unsigned sink) {
-  std::fill(level.begin(), level.end(), -1);
+  level.assign(edgesOf.size(), -1);
   std::vector<unsigned> queue = {source};
   level[source] = 0;
   for (std::size_t i = 0; i < queue.size(); ++i)
@@ -58,33 +62,31 @@ bool Network::measure(unsigned source, unsigned sink) {
   return level[sink] >= 0;
 }
 
+/// Sends at most so much from the node to the sink, along edges that lead ahead.
 std::int64_t Network::augment(unsigned node, unsigned sink, std::int64_t limit) {
   if (node == sink)
     return limit;
+  std::int64_t all = 0;
   for (; next[node] < edgesOf[node].size(); ++next[node]) {
     unsigned index = edgesOf[node][next[node]];
-    unsigned to = edges[index].to;
-    if (edges[index].capacity <= 0 || level[to] != level[node] + 1)
+    if (edges[index].capacity <= 0 || !isAhead(node, index))
       continue;
-    if (std::int64_t sent = augment(to, sink, std::min(limit, edges[index].capacity))) {
-      edges[index].capacity -= sent;
-      edges[index ^ 1].capacity += sent;
-      return sent;
-    }
+    std::int64_t sent = augment(edges[index].to, sink, std::min(limit - all, edges[index].capacity));
+    edges[index].capacity -= sent;
+    edges[index ^ 1].capacity += sent;
+    all += sent;
+    if (all == limit) // more may fit through this edge
+      break;
   }
-  return 0;
+  return all;
 }
 
 std::int64_t Network::maximumFlow(unsigned source, unsigned sink) {
-  std::int64_t flow = 0;
+  std::int64_t flow = augment(source, sink, impossible);
   // With infinite capacity all the way nothing separates source and sink.
   while (flow < impossible && measure(source, sink)) {
     std::fill(next.begin(), next.end(), 0u);
-    while (std::int64_t sent = augment(source, sink, impossible)) {
-      flow += sent;
-      if (flow >= impossible)
-        break;
-    }
+    flow += augment(source, sink, impossible - flow);
   }
   return flow;
 }

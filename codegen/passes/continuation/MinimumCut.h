@@ -19,6 +19,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "llvm/ADT/SmallVector.h"
+
 #include <cstdint>
 #include <vector>
 
@@ -29,7 +31,7 @@ constexpr std::int64_t impossible = std::int64_t(1) << 60;
 struct ValueNode {
   std::int64_t saveCost = impossible;      // below `impossible` if it can be saved
   std::int64_t recomputeCost = impossible; // below `impossible` if it can be recomputed
-  std::vector<unsigned> operands;          // smaller indices: a graph without circles
+  llvm::SmallVector<unsigned, 4> operands; // smaller indices: a graph without circles
   bool needed = false;                     // behind the trace
 };
 

@@ -21,17 +21,19 @@ namespace rtsl::continuation {
 
 /// Nothing between its place and its uses changes what it gives.
 static bool mayMove(mlir::Operation &op) {
-  if (llvm::isa<ir::FrameLoadOp>(
-          op)) // stores stand at the ends of states, behind the beginning of any block
-    return true;
+  // Stores stand at the ends of states, behind the beginning of any block; objects are written
+  // anywhere.
+  if (llvm::isa<ir::FrameLoadOp>(op))
+    return !op.hasAttr("rtsl.shared");
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) // constant for a launch
     return llvm::isa_and_nonnull<ir::MemberOp>(load.getAddress().getDefiningOp());
   return !op.hasTrait<mlir::OpTrait::IsTerminator>() && mlir::isMemoryEffectFree(&op);
 }
 
-void sinkLoads(FuncOp state) {
+bool sinkLoads(FuncOp state) {
   if (state.isExternal() || state.getBody().hasOneBlock())
-    return;
+    return false;
+  bool changed = false;
   mlir::DominanceInfo dominance(state);
   mlir::CFGLoopInfo loops(dominance.getDomTree(&state.getBody()));
   mlir::Block &entry = state.getBody().front();
@@ -48,7 +50,9 @@ void sinkLoads(FuncOp state) {
     if (target == &entry)
       continue;
     op.moveBefore(&target->front());
+    changed = true;
   }
+  return changed;
 }
 
 } // namespace rtsl::continuation

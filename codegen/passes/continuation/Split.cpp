@@ -107,9 +107,9 @@ mlir::LogicalResult FunctionSplitter::cleanUp(llvm::ArrayRef<FuncOp> states) {
   for (FuncOp state : states) {
     function = state;
     simplify.run(state);
-    cleanStores(state);
-    sinkLoads(state);
-    simplify.run(state);
+    const bool isCleaner = cleanStores(state);
+    if (sinkLoads(state) || isCleaner)
+      simplify.run(state);
     if (mlir::failed(check("clean-up")))
       return mlir::failure();
   }
@@ -246,7 +246,7 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
   report.frameAreas = frameAreas(module);
   if (options.dispatch && mlir::failed(makeDispatch(module)))
     return false;
-  return mlir::succeeded(mlir::verify(module));
+  return !options.verifyEach || mlir::succeeded(mlir::verify(module));
 }
 
 } // namespace rtsl

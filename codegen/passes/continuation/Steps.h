@@ -164,12 +164,12 @@ FrameLayout layoutFrame(FuncOp function);
 /// each trace.
 mlir::FailureOr<llvm::SmallVector<FuncOp>> splitStates(FuncOp function);
 
-/// CleanStores.cpp: removes stores of what the slot already holds.
-void cleanStores(FuncOp state);
+/// CleanStores.cpp: removes stores of what the slot already holds. True if there were any.
+bool cleanStores(FuncOp state);
 
 /// SinkLoads.cpp: moves loads of the frame, and what is recomputed, to where they are used, never
-/// into a loop.
-void sinkLoads(FuncOp state);
+/// into a loop. True if any moved.
+bool sinkLoads(FuncOp state);
 
 /// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in the order in which they
 /// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`,

@@ -99,12 +99,21 @@ void trimVectors(FuncOp function) {
   for (ir::SuspendOp suspend : suspendsOf(function))
     acrossTraces |= liveness.into(suspend.getResume());
 
+  llvm::DenseMap<mlir::Block *, unsigned> blockNumbers;
+  for (mlir::Block &block : function.getBody())
+    blockNumbers.try_emplace(&block, blockNumbers.size());
+  const auto isBefore = [&](mlir::Operation *a, mlir::Operation *b) {
+    return a->getBlock() == b->getBlock()
+               ? a->isBeforeInBlock(b)
+               : blockNumbers.lookup(a->getBlock()) < blockNumbers.lookup(b->getBlock());
+  };
   for (mlir::Value whole : liveness.valuesOf(acrossTraces)) {
     llvm::SmallVector<mlir::Operation *> parts; // in program order: uses have none
-    for (mlir::Block &block : function.getBody())
-      for (mlir::Operation &op : block)
-        if (isPart(op) && op.getOperand(0) == whole && &block != whole.getParentBlock())
-          parts.push_back(&op);
+    for (mlir::Operation *user : whole.getUsers())
+      if (isPart(*user) && user->getOperand(0) == whole && user->getBlock() != whole.getParentBlock() &&
+          !llvm::is_contained(parts, user)) // a shuffle has its operand twice
+        parts.push_back(user);
+    llvm::sort(parts, isBefore);
     for (mlir::Operation *part : parts) {
       // The same part that is there already, or that moved before.
       mlir::Operation *same = nullptr;
@@ -127,7 +136,7 @@ void trimVectors(FuncOp function) {
   // A result of a trace comes first in its block; it may have been pushed down.
   for (ir::SuspendOp suspend : suspendsOf(function))
     for (mlir::Operation &op : *suspend.getResume())
-      if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp>(op)) {
+      if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp, ir::CallReturnedOp>(op)) {
         op.moveBefore(&suspend.getResume()->front());
         break;
       }

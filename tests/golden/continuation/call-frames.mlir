@@ -73,5 +73,5 @@ rtsl.class @Tint root "rt_Texture" {
 // MACHINE:         rtsl.move_frame %{{.*}} to %{{.*}} : !rtsl.ref<"object">
 // MACHINE-LABEL: func.func private @rtsl_frame_area(
 // MACHINE-DAG:     0: ^bb1(%c0_i32
-// MACHINE-DAG:     1: ^bb1(%c56_i32
-// MACHINE-DAG:     2: ^bb1(%c112_i32
+// MACHINE-DAG:     1: ^bb1(%c52_i32
+// MACHINE-DAG:     2: ^bb1(%c108_i32

@@ -107,7 +107,7 @@ func.func @Fan.miss(%self: !rtsl.ref<"Fan">) attributes {rtsl.class = "Fan", rts
 // MACHINE: call @Fan.miss.state0
 // MACHINE: ^[[SECOND]]:
 // MACHINE: call @Fan.miss.state1
-// MACHINE-LABEL: func.func @rtsl_frame_size() -> i32
+// MACHINE-LABEL: func.func @rtsl_frame_size(%arg0: i32) -> i32
 // MACHINE-NEXT: arith.constant 4 : i32
 
 // REPORT: Fan.miss: 2 states, frame of 4 bytes
