@@ -389,7 +389,7 @@ void World::renderByLane(std::vector<float> &pixels) {
   RtslJob job{};
   job.launch = &launch;
   job.status = &status;
-  job.laneBytes = (code.megakernel.laneBytes(launch.maxDepth) + 15) / 16 * 16;
+  job.laneBytes = (code.megakernel.laneBytes(launch.maxDepth, launch.referenceChain) + 15) / 16 * 16;
   job.lanes = static_cast<std::uint8_t *>(rtsl_machine_stack(job.laneBytes));
   job.pixels = pixels.data();
   job.samplesPerPixel = 1;
