@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace rtsl::cpp {
 
@@ -275,12 +276,36 @@ std::string ModulePrinter::structure(const typed::Struct &structure) {
   return text + "};\n";
 }
 
+/// Whether C++ takes the text for a constant expression: numbers, constants that it takes for such, and what is not
+/// division. The header's functions are none, and no infinity may come out.
+bool ModulePrinter::isConstexpr(const Type *type, const typed::Constant *value, const std::string &name,
+                                const std::string &initialiser) {
+  if (!type->isScalar() || !value || (type->is(TypeKind::Float) && !std::isfinite(value->scalars.front().f)))
+    return false;
+  const auto isWordPart = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
+  for (std::size_t at = 0; at < initialiser.size();) {
+    std::size_t end = at;
+    while (end < initialiser.size() && isWordPart(initialiser[end]))
+      ++end;
+    const std::string word = initialiser.substr(at, end - at);
+    const bool isNumber = !word.empty() && (std::isdigit(static_cast<unsigned char>(word[0])) || word[0] == '.');
+    if (word.empty() ? initialiser[at] == '/' || initialiser[at] == '%'
+                     : !isNumber && word != "true" && word != "false" && constexprNames.count(word) == 0)
+      return false;
+    at = std::max(end, at + 1);
+  }
+  constexprNames.insert(name);
+  return true;
+}
+
 std::string ModulePrinter::constant(const typed::Variable &constant) {
   FunctionPrinter printer(*this, nullptr);
-  const bool isPlain = (constant.type->isScalar() && constant.constant) || printer.isTable(*constant.init);
+  const std::string &name = names.of(&constant);
+  const std::string initialiser = printer.initialiser(*constant.init);
+  const bool isPlain = isConstexpr(constant.type, constant.constant.get(), name, initialiser) ||
+                       printer.isTable(*constant.init);
   std::string text = commentText(constant.comment) + "inline " + (isPlain ? "constexpr " : "const ") +
-                     type(constant.type) + " " +
-                     declarator(type(constant.type), names.of(&constant), printer.initialiser(*constant.init)) + ";";
+                     type(constant.type) + " " + declarator(type(constant.type), name, initialiser) + ";";
   const std::string trailing = notes.trailingComment(constant.init->range);
   return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
 }
@@ -318,9 +343,11 @@ std::string ModulePrinter::member(const typed::Member &member) {
   std::string text = commentText(member.comment);
   const std::string &name = names.of(&member);
   if (member.isConst) {
-    const bool isPlain = (member.type->isScalar() && member.constant) || (member.init && printer.isTable(*member.init));
+    const std::string initialiser = member.init ? printer.initialiser(*member.init) : zero(member.type);
+    const bool isPlain = isConstexpr(member.type, member.constant.get(), name, initialiser) ||
+                         (member.init && printer.isTable(*member.init));
     text += std::string(isPlain ? "static constexpr " : "inline static const ") + type(member.type) + " " +
-            declarator(type(member.type), name, member.init ? printer.initialiser(*member.init) : zero(member.type)) + ";";
+            declarator(type(member.type), name, initialiser) + ";";
   } else {
     std::string value = member.init ? printer.initialiser(*member.init) : zero(member.type);
     if (member.type->is(TypeKind::Bool))

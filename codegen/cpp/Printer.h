@@ -17,6 +17,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace rtsl::cpp {
@@ -92,9 +93,12 @@ public:
   bool throwsFromAnyHit = false;          // some answer stands where no `return` can
 
 private:
+  std::unordered_set<std::string> constexprNames; // constants of numbers that were printed as constexpr
+
   // Declarations.cpp
   std::string structure(const typed::Struct &structure);
   std::string constant(const typed::Variable &constant);
+  bool isConstexpr(const Type *type, const typed::Constant *value, const std::string &name, const std::string &initialiser);
   std::string freeFunctions();
   std::string signature(const typed::Function &function, bool isMethod);
   std::string function(const typed::Function &function, bool isMethod);
