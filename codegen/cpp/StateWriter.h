@@ -37,11 +37,17 @@ struct Machine {
   std::map<std::string, std::string> stepOf; // by the symbol of the state
 };
 
+/// Does the evaluation write what lies at the address that it is given as this operand?
+bool changes(ir::EvaluateOp op, std::size_t operand);
+
 /// Does the operation write what lies at an address, or in a part of it?
 bool writesTo(mlir::Operation *op, mlir::Value address);
 
 /// The line of an operation in the author's file; 0: unknown.
 unsigned lineOf(mlir::Location location);
+
+/// What a value is called among people: as the author calls it, or after the operation that makes it.
+std::string nameFor(mlir::Value value);
 
 /// The opposite of a condition.
 Code negated(const Code &code);
@@ -84,40 +90,51 @@ private:
   };
   using Statements = std::vector<Statement>;
 
-  void block(mlir::Block &block, Statements &out);
+  // StateWriter.cpp
   void operation(mlir::Operation &op, Statements &out);
+  void spawnPayload(ir::SpawnPayloadOp op);
+  void leave(ir::ReturnOp op, Statements &out);
+  void unsupported(mlir::Operation &op);
+
+  // StateStatements.cpp
+  void block(mlir::Block &block, Statements &out);
   void choice(ir::IfOp op, Statements &out);
   void loop(ir::LoopOp op, Statements &out);
   void switchOver(ir::SwitchOp op, Statements &out);
-  void store(ir::StoreOp op, Statements &out);
-  void leave(ir::ReturnOp op, Statements &out);
   std::string text(const Statements &statements);
   std::string under(const Statements &statements);
-  std::string assignment(const std::string &target, const std::string &value, mlir::Value made);
   std::string lights(ir::LoopOp op, mlir::Block *&lit);
   std::string counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body);
   void joinDeclarations(Statements &statements);
 
-  Code use(mlir::Value value, const std::string &type = {});
-  Code constant(mlir::Value value, const std::string &type);
-  void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out);
+  // StateStores.cpp
+  void evaluate(ir::EvaluateOp op, Statements &out);
+  void clear(ir::ClearOp op, Statements &out);
+  void store(ir::StoreOp op, Statements &out);
+  std::string assignment(const std::string &target, const std::string &value, mlir::Value made);
+  void joinFields(mlir::Value address, ir::FieldOp from, const std::string &target, const std::string &value, Statements &out);
+
+  // StateOrder.cpp
+  std::string keyOf(mlir::Value address);
+  void note(mlir::Value address, Touches &touches, bool isWritten);
+  Touches touchesOf(mlir::Operation *op);
+  void emit(Statements &out, std::string text);
   void materialise(mlir::Value value, Statements &out);
   void flush(const Touches &touches, Statements &out);
   void flushBefore(mlir::Operation &op, Statements &out);
-  Touches touchesOf(mlir::Operation *op);
-  std::string keyOf(mlir::Value address);
+  void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out);
+
+  // StateExpressions.cpp
+  Code use(mlir::Value value, const std::string &type = {});
+  Code constant(mlir::Value value, const std::string &type);
   Code place(mlir::Value address);
-  void evaluate(ir::EvaluateOp op, Statements &out);
-  void clear(ir::ClearOp op, Statements &out);
-  void joinFields(mlir::Value address, ir::FieldOp from, const std::string &target, const std::string &value, Statements &out);
-  void spawnPayload(ir::SpawnPayloadOp op);
-  void note(mlir::Value address, Touches &touches, bool isWritten);
   Code expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound);
+  void nameConstants(const typed::Expr &expr);
+
+  // StateNames.cpp
   std::string varType(ir::VarOp variable);
   const std::string &nameOf(ir::VarOp variable);
   std::string freshName(std::string wanted);
-  void emit(Statements &out, std::string text);
-  void unsupported(mlir::Operation &op);
 
   ModulePrinter &module;
   const SourceTable &source;
@@ -139,7 +156,6 @@ private:
   unsigned currentLine = 0;
   llvm::DenseMap<mlir::Operation *, std::string> elementIndices; // of addresses
   std::vector<const typed::Variable *> constants;                // of the author's functions, that the state names
-  void nameConstants(const typed::Expr &expr);
   bool hasRefused = false;
   std::string spawned; // the arguments of the ray that is traced when the state ends
 };

@@ -1,0 +1,144 @@
+//===- StateExpressions.cpp - places and expressions of a state -----------===//
+//
+// An expression is the author's tree (codegen/lower/SourceTable.h), whose leaves are what the IR has computed.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/cpp/StateWriter.h"
+
+#include "sema/Casting.h"
+
+#include "mlir/IR/Matchers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::cpp {
+
+using typed::ExprKind;
+
+Code StateWriter::use(mlir::Value value, const std::string &type) {
+  if (auto found = declared.find(value); found != declared.end())
+    return {found->second};
+  auto found = pending.find(value);
+  if (found == pending.end())
+    return constant(value, type);
+  Code code = found->second.code;
+  consumed.add(found->second.touches);
+  if (--found->second.usesLeft == 0)
+    pending.erase(value);
+  return code;
+}
+
+Code StateWriter::constant(mlir::Value value, const std::string &type) {
+  mlir::Attribute attribute;
+  if (!mlir::matchPattern(value, mlir::m_Constant(&attribute))) {
+    if (value.getDefiningOp<ir::NullRefOp>())
+      return {type.empty() ? "{}" : type + "{}"};
+    if (value.getDefiningOp())
+      unsupported(*value.getDefiningOp());
+    return {"0"};
+  }
+  if (auto integer = llvm::dyn_cast<mlir::IntegerAttr>(attribute)) {
+    if (integer.getType().isInteger(1))
+      return {integer.getValue().isZero() ? "false" : "true"};
+    return {std::to_string(integer.getInt())};
+  }
+  if (auto number = llvm::dyn_cast<mlir::FloatAttr>(attribute))
+    return {floatText(number.getValue().convertToFloat())};
+  auto dense = llvm::dyn_cast<mlir::DenseElementsAttr>(attribute);
+  if (!type.empty() && dense && dense.isSplat() && dense.getElementType().isF32())
+    return {type + "(" + floatText(dense.getSplatValue<float>()) + ")"};
+  unsupported(*value.getDefiningOp());
+  return {"0"};
+}
+
+Code StateWriter::place(mlir::Value address) {
+  if (auto state = address.getDefiningOp<ir::StateOp>())
+    return {"rt." + state.getName().str()};
+  if (auto variable = address.getDefiningOp<ir::VarOp>()) {
+    mentioned.insert(variable);
+    return {nameOf(variable)};
+  }
+  if (auto object = address.getDefiningOp<ir::FrameObjectOp>())
+    for (const FrameField &field : machine.frame)
+      if (field.isObject && field.slot == object.getName())
+        return {machine.frameName + "." + field.name};
+  if (address.getDefiningOp<ir::PayloadOp>())
+    return {module.names.of(machine.method->parameters.front().get())};
+  if (auto field = address.getDefiningOp<ir::FieldOp>())
+    if (const Type *base = declaredType(field.getBase()); base && base->is(TypeKind::Struct))
+      for (const typed::Field &part : base->structure->fields)
+        if (part.name == field.getField())
+          return {place(field.getBase()).text + "." + module.names.of(&part)};
+  if (auto element = address.getDefiningOp<ir::ElementOp>())
+    return {place(element.getBase()).text + "[" + elementIndices[element] + "]"};
+  unsupported(*address.getDefiningOp());
+  return {"0"};
+}
+
+/// `isCompound`: on return, whether the first operand is the target of `target op= value`, which may be printed so.
+Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound) {
+  isCompound = false;
+  printer.replaced.clear();
+  for (auto [leaf, operand] : llvm::zip(entry.leaves, operands)) {
+    if (!leaf)
+      continue;
+    const Code code = llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, module.type(leaf->type));
+    printer.replaced[leaf] = code;
+  }
+  nameConstants(*entry.expr);
+  switch (entry.kind) {
+  case SourceTable::Kind::Value:
+  case SourceTable::Kind::Into:
+    return printer.expr(*entry.expr);
+  case SourceTable::Kind::AngleCosine:
+    return {"rtsl::cosOfAngle(" + printer.argument(*entry.expr) + ")"};
+  case SourceTable::Kind::Compound: {
+    const auto &assign = static_cast<const typed::AssignExpr &>(*entry.expr);
+    isCompound = printer.plainOperator(assign.op, *assign.target, *assign.value) != nullptr;
+    return printer.binary(assign.op, *assign.target, *assign.value);
+  }
+  case SourceTable::Kind::Step: {
+    const auto &step = static_cast<const typed::IncDecExpr &>(*entry.expr);
+    const Type *scalar = step.target->type->scalar();
+    const std::string target = printer.operand(*step.target, Binding::Sum);
+    if (scalar->is(TypeKind::Int))
+      return {fmt::format("rtsl::{}({}, 1)", step.increment ? "add" : "sub", target)};
+    return {fmt::format("{} {} {}", target, step.increment ? "+" : "-", scalar->is(TypeKind::Float) ? "1.0f" : "1u"),
+            Binding::Sum};
+  }
+  }
+  return {"0"};
+}
+
+Code negated(const Code &code) {
+  if (code.binding != Binding::Unary || code.text.front() != '!')
+    return {"!" + bind(code, Binding::Unary), Binding::Unary};
+  const std::string inner = code.text.substr(1);
+  int depth = 0; // do parentheses hold all of it?
+  std::size_t end = 0;
+  do
+    depth += inner[end] == '(' ? 1 : inner[end] == ')' ? -1 : 0;
+  while (depth != 0 && ++end != inner.size());
+  if (inner.front() == '(' && end + 1 == inner.size())
+    return {inner.substr(1, inner.size() - 2), Binding::Assignment};
+  return {inner, Binding::Primary};
+}
+
+/// Constant arrays and structs of a function are declared where a state names them.
+void StateWriter::nameConstants(const typed::Expr &expr) {
+  std::set<const typed::Expr *> elsewhere;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    if (printer.replaced.count(&inner))
+      forEachExpr(inner, [&](const typed::Expr &part) { elsewhere.insert(&part); });
+  });
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    auto *named = dynCast<typed::VariableExpr>(&inner);
+    if (named && named->variable->isConst && named->variable->kind != typed::Variable::Kind::Global &&
+        !elsewhere.count(&inner) && std::find(constants.begin(), constants.end(), named->variable) == constants.end())
+      constants.push_back(named->variable);
+  });
+}
+
+} // namespace rtsl::cpp

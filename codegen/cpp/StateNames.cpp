@@ -1,0 +1,149 @@
+//===- StateNames.cpp - names and types of what a state computes ----------===//
+#include "codegen/cpp/StateWriter.h"
+
+#include "codegen/passes/continuation/Names.h"
+
+#include "mlir/Dialect/Arith/IR/Arith.h"
+#include "mlir/Dialect/Vector/IR/VectorOps.h"
+#include "llvm/ADT/TypeSwitch.h"
+
+namespace rtsl::cpp {
+
+namespace arith = mlir::arith;
+
+std::string StateWriter::freshName(std::string wanted) {
+  std::string clean;
+  for (char c : wanted)
+    clean += std::isalnum(static_cast<unsigned char>(c)) || c == '_' ? c : '_';
+  while (clean.find("__") != std::string::npos)
+    clean.erase(clean.find("__"), 1);
+  if (clean.empty() || std::isdigit(static_cast<unsigned char>(clean.front())))
+    clean = "value" + clean;
+  std::string name = clean;
+  for (unsigned i = 2; isReserved(name) || always.count(name) || !taken.insert(name).second; ++i)
+    name = clean + (i == 2 && (isReserved(clean) || always.count(clean)) ? "_" : std::to_string(i));
+  return name;
+}
+
+std::string nameFor(mlir::Value value) {
+  if (std::string name = continuation::authorsName(value); !name.empty())
+    return name.substr(0, name.find('.') == std::string::npos ? name.size() : name.find('.'));
+  mlir::Operation *op = value.getDefiningOp();
+  if (llvm::isa_and_nonnull<ir::RandOp>(op))
+    return "random";
+  if (llvm::isa_and_nonnull<ir::TraceResultOp>(op))
+    return "traced";
+  if (auto load = llvm::dyn_cast_or_null<ir::FrameLoadOp>(op))
+    return load.getName().str();
+  if (auto load = llvm::dyn_cast_or_null<ir::LoadOp>(op)) {
+    std::string name = continuation::sourceName(value);
+    name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+    return name;
+  }
+  return "value";
+}
+
+const std::string &StateWriter::nameOf(ir::VarOp variable) {
+  std::string &name = variableNames[variable];
+  if (name.empty())
+    name = freshName(variable.getName().str());
+  return name;
+}
+
+static std::string scalarType(mlir::Type type) {
+  if (type.isF32())
+    return "float";
+  if (type.isInteger(1))
+    return "bool";
+  if (type.isInteger(32))
+    return "int";
+  return {};
+}
+
+static std::string stateType(llvm::StringRef name) {
+  static const std::map<std::string, std::string> types = {
+#define RTSL_STATE_VARIABLE(name, type) {#name, #type},
+#include "runtime/device/StateVariables.def"
+  };
+  const std::string &word = types.at(name.str());
+  if (word == "color")
+    return "Color";
+  if (word == "uint2")
+    return "glm::uvec2";
+  return word == "float" || word == "int" ? word : "glm::" + word;
+}
+
+const Type *StateWriter::declaredType(mlir::Value address) {
+  mlir::Operation *op = address.getDefiningOp();
+  if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
+    return machine.method->parameters.front()->type;
+  if (auto field = llvm::dyn_cast_or_null<ir::FieldOp>(op)) {
+    const Type *base = declaredType(field.getBase());
+    if (base && base->is(TypeKind::Struct))
+      for (const typed::Field &part : base->structure->fields)
+        if (part.name == field.getField())
+          return part.type;
+    return nullptr;
+  }
+  if (auto element = llvm::dyn_cast_or_null<ir::ElementOp>(op)) {
+    const Type *base = declaredType(element.getBase());
+    return base && base->is(TypeKind::Array) ? base->element : nullptr;
+  }
+  auto number = op ? op->getAttrOfType<mlir::IntegerAttr>("rtsl.declared") : mlir::IntegerAttr();
+  return number ? source.types[static_cast<std::size_t>(number.getInt())] : nullptr;
+}
+
+std::string StateWriter::varType(ir::VarOp variable) {
+  auto [at, isNew] = variableTypes.try_emplace(variable);
+  if (!isNew)
+    return at->second;
+  if (const Type *declared = declaredType(variable))
+    return variableTypes[variable] = module.type(declared);
+  std::string type;
+  for (mlir::Operation *user : variable->getUsers())
+    if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty())
+      type = typeOf(store.getValue());
+  if (type.empty())
+    type = scalarType(llvm::cast<ir::PtrType>(variable.getType()).getPointee());
+  return variableTypes[variable] = type;
+}
+
+std::string StateWriter::typeOf(mlir::Value value) {
+  mlir::Operation *op = value.getDefiningOp();
+  if (!op)
+    return {};
+  if (llvm::isa<ir::PtrType>(value.getType())) {
+    const Type *declared = declaredType(value);
+    return declared ? module.type(declared) : std::string();
+  }
+  return llvm::TypeSwitch<mlir::Operation *, std::string>(op)
+      .Case([&](ir::ExpressionOp expression) {
+        const SourceTable::Entry &entry = source.entries[expression.getSource()];
+        return entry.kind == SourceTable::Kind::AngleCosine ? "float" : module.type(entry.expr->type);
+      })
+      .Case([&](ir::EvaluateOp call) { return module.type(source.entries[call.getSource()].expr->type); })
+      .Case([&](ir::LoadOp load) {
+        if (auto variable = load.getAddress().getDefiningOp<ir::VarOp>())
+          return varType(variable);
+        if (auto state = load.getAddress().getDefiningOp<ir::StateOp>())
+          return stateType(state.getName());
+        if (const Type *declared = declaredType(load.getAddress()))
+          return module.type(declared);
+        return scalarType(value.getType());
+      })
+      .Case([&](ir::FrameLoadOp load) {
+        for (const FrameField &field : machine.frame)
+          if (!field.isObject && field.slot == load.getName())
+            return field.type;
+        return std::string();
+      })
+      .Case<ir::TraceResultOp>([](auto) { return std::string("Color"); })
+      .Case([&](arith::SelectOp select) {
+        std::string type = typeOf(select.getTrueValue());
+        return type.empty() ? typeOf(select.getFalseValue()) : type;
+      })
+      .Case([&](mlir::vector::InsertOp insert) { return typeOf(insert.getDest()); })
+      .Default([&](mlir::Operation *) { return scalarType(value.getType()); });
+}
+
+} // namespace rtsl::cpp

@@ -1,0 +1,186 @@
+//===- StateOrder.cpp - what a state evaluates when ------------------------===//
+//
+// The value of an operation waits until it is used, and is then part of the expression that uses it, unless something in
+// between would change it: then it gets a variable before.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/cpp/StateWriter.h"
+
+#include "codegen/passes/continuation/Names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::cpp {
+
+void StateWriter::Touches::add(const Touches &other) {
+  reads.insert(other.reads.begin(), other.reads.end());
+  writes.insert(other.writes.begin(), other.writes.end());
+  readsAny |= other.readsAny;
+  writesAny |= other.writesAny;
+}
+
+/// Would it show if the two changed places?
+bool StateWriter::meet(const Touches &a, const Touches &b) {
+  auto common = [](const std::set<std::string> &x, const std::set<std::string> &y) {
+    return std::any_of(x.begin(), x.end(), [&](const std::string &key) { return y.count(key) != 0; });
+  };
+  // Unknown methods reach the ray's state and draw random numbers; variables and the frame are this function's own.
+  auto isOpen = [](const std::set<std::string> &keys) {
+    return std::any_of(keys.begin(), keys.end(), [](const std::string &key) {
+      return key.compare(0, 6, "state ") == 0 || key == "random";
+    });
+  };
+  auto writesMeet = [&](const Touches &x, const Touches &y) {
+    return common(x.writes, y.reads) || common(x.writes, y.writes) ||
+           (x.writesAny && (y.readsAny || y.writesAny || isOpen(y.reads) || isOpen(y.writes))) ||
+           (x.readsAny && isOpen(y.writes));
+  };
+  return writesMeet(a, b) || writesMeet(b, a);
+}
+
+std::string StateWriter::keyOf(mlir::Value address) {
+  mlir::Operation *op = address.getDefiningOp();
+  while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(op))
+    op = op->getOperand(0).getDefiningOp();
+  if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
+    return "object " + object.getName().str();
+  if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
+    return "payload";
+  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
+    return "state " + state.getName().str();
+  if (llvm::isa_and_nonnull<ir::VarOp>(op))
+    return fmt::format("var {}", static_cast<const void *>(op));
+  return {};
+}
+
+void StateWriter::note(mlir::Value address, Touches &touches, bool isWritten) {
+  (isWritten ? touches.writes : touches.reads).insert(keyOf(address));
+}
+
+bool changes(ir::EvaluateOp op, std::size_t operand) {
+  auto changed = op->getAttrOfType<mlir::DenseI32ArrayAttr>("rtsl.changes");
+  return changed && llvm::is_contained(changed.asArrayRef(), static_cast<std::int32_t>(operand));
+}
+
+StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
+  Touches touches;
+  op->walk([&](mlir::Operation *inner) {
+    if (auto load = llvm::dyn_cast<ir::LoadOp>(inner))
+      touches.reads.insert(keyOf(load.getAddress()));
+    else if (auto store = llvm::dyn_cast<ir::StoreOp>(inner))
+      touches.writes.insert(keyOf(store.getAddress()));
+    else if (auto frameLoad = llvm::dyn_cast<ir::FrameLoadOp>(inner))
+      touches.reads.insert("frame " + frameLoad.getName().str());
+    else if (auto frameStore = llvm::dyn_cast<ir::FrameStoreOp>(inner))
+      touches.writes.insert("frame " + frameStore.getName().str());
+    else if (llvm::isa<ir::RandOp>(inner))
+      touches.writes.insert("random");
+    else if (auto clear = llvm::dyn_cast<ir::ClearOp>(inner))
+      note(clear.getAddress(), touches, true);
+    else if (auto copy = llvm::dyn_cast<ir::CopyOp>(inner)) {
+      note(copy.getSource(), touches, false);
+      note(copy.getTarget(), touches, true);
+    } else if (auto call = llvm::dyn_cast<ir::EvaluateOp>(inner)) {
+      for (auto [index, operand] : llvm::enumerate(call.getOperands()))
+        if (llvm::isa<ir::PtrType>(operand.getType())) {
+          note(operand, touches, false);
+          if (changes(call, index))
+            note(operand, touches, true);
+        }
+      if (!call->hasAttr("rtsl.plain")) {
+        touches.readsAny = true;
+        touches.writes.insert("random");
+        touches.writesAny = !call.getWrites();
+      }
+      if (call.getWrites())
+        for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
+          touches.writes.insert("state " + name.getValue().str());
+    } else if (llvm::isa<ir::IlluminateOp>(inner)) {
+      touches.readsAny = touches.writesAny = true;
+    }
+  });
+  return touches;
+}
+
+void StateWriter::emit(Statements &out, std::string text) {
+  Statement statement;
+  if (auto comment = comments.find(currentLine); comment != comments.end()) {
+    statement.comment = module.commentText(comment->second);
+    comments.erase(comment);
+  }
+  if (currentLine != 0)
+    statement.comment += module.lineDirective(machine.method->range, currentLine);
+  statement.text = std::move(text);
+  statement.mentions = std::move(mentioned);
+  mentioned.clear();
+  out.push_back(std::move(statement));
+}
+
+/// Gives a value that waits for its use a variable now.
+void StateWriter::materialise(mlir::Value value, Statements &out) {
+  Pending waiting = std::move(pending[value]);
+  pending.erase(value);
+  const std::set<mlir::Operation *> before = std::move(mentioned);
+  mentioned.clear();
+  const std::string type = typeOf(value);
+  if (type.empty())
+    unsupported(*value.getDefiningOp());
+  const std::string name = freshName(nameFor(value));
+  emit(out, fmt::format("{} {};", type, declarator(type, name, waiting.code.text)));
+  declared[value] = name;
+  mentioned = before;
+}
+
+/// Before something that touches this happens, what waits and would notice is evaluated.
+void StateWriter::flush(const Touches &touches, Statements &out) {
+  llvm::SmallVector<mlir::Value> first;
+  for (auto &[value, waiting] : pending)
+    if (meet(waiting.touches, touches))
+      first.push_back(value);
+  for (mlir::Value value : first)
+    materialise(value, out);
+}
+
+/// Before a construct with regions: what an inner statement would change cannot wait for another region, and nothing that
+/// is used once waits to be evaluated in each round of a loop.
+void StateWriter::flushBefore(mlir::Operation &op, Statements &out) {
+  const Touches inside = touchesOf(&op);
+  const bool isLoop = llvm::isa<ir::LoopOp>(op);
+  llvm::SmallVector<mlir::Value> first;
+  for (auto &[value, waiting] : pending) {
+    const bool isConstant = waiting.isTrivial && waiting.touches.reads.empty();
+    if (!waiting.isPure || meet(waiting.touches, inside) || (isLoop && waiting.usesLeft == 1 && !isConstant))
+      first.push_back(value);
+  }
+  for (mlir::Value value : first)
+    materialise(value, out);
+}
+
+/// An operation has given a value: it waits for its use, or gets a variable.
+void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out) {
+  mlir::Value value = op.getResult(0);
+  const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
+  if (uses == 0) {
+    if (!isPure)
+      emit(out, code.text + ";");
+    return;
+  }
+  auto *user = *value.user_begin();
+  auto stores = [&] {
+    return llvm::isa<ir::FrameStoreOp>(user) ||
+           (llvm::isa<ir::StoreOp>(user) && user->getBlock() == op.getBlock());
+  };
+  const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
+                       !continuation::authorsName(value).empty();
+  const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp>(op);
+  auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
+  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
+                         (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
+  pending[value] = {std::move(code), std::move(touches), uses, isPure, isTrivial};
+  if (uses == 1 ? isNamed && !stores() : isNamed || !isTrivial)
+    materialise(value, out);
+}
+
+} // namespace rtsl::cpp
