@@ -6,6 +6,7 @@
 #include "codegen/passes/ExpandCopies.h"
 #include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/InlineFunctions.h"
+#include "codegen/passes/PropagateConstants.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/ToControlFlow.h"
 
@@ -39,7 +40,7 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   module.addPass(createInlineFunctionsPass());
   auto &inlined = module.nest<mlir::func::FuncOp>();
   addPromotion(inlined);
-  inlined.addPass(mlir::createSCCPPass());
+  inlined.addPass(createPropagateConstantsPass());
   inlined.addPass(createExpandCopiesPass());
   inlined.addPass(createBindMembersPass()); // what copies have hidden
   inlined.addPass(createSimplifyPass());
@@ -58,6 +59,7 @@ void registerPasses() {
   mlir::registerPass(createHoistVariablesPass);
   mlir::registerPass(createExpandCopiesPass);
   mlir::registerPass(createInlineFunctionsPass);
+  mlir::registerPass(createPropagateConstantsPass);
   mlir::registerPass(createSimplifyPass);
   mlir::PassPipelineRegistration<>("rtsl-ssa", "level 1 to level 2, optimised", buildSsaPipeline);
 }
