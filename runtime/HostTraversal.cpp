@@ -71,7 +71,7 @@ std::uint32_t HostScene::withNodes(RtslState &state, Work work) const {
 std::uint32_t HostScene::traverseOurselves(RtslState &state, std::uint32_t how) const {
   std::uint32_t answer = withNodes(state, [&] {
     return how & RTSL_ASK_ANY_HIT
-               ? device::traverseAsking(state, how, slots)
+               ? device::traverseAsking(state, how, FilledSlots{slots})
                : device::traverseDevice(state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect);
   });
   rayCounters().badRays += answer == RTSL_BAD_RAY;

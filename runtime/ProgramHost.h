@@ -10,4 +10,17 @@ struct ProgramHost {
   Program::Slots slots;
 };
 
+/// The slots, for device code that calls methods: where no class of the scene has one, nothing happens.
+struct FilledSlots {
+  const Program::Slots &slots;
+#define RTSL_SLOT(base, method)                                                                    \
+  void base##_##method(RtslState *state, RtslRef object) const {                                   \
+    if (slots.base##_##method)                                                                     \
+      slots.base##_##method(state, object);                                                        \
+  }
+#define RTSL_PAYLOAD_SLOT(base, method) RTSL_SLOT(base, method##_payload)
+#include "runtime/device/PayloadSlots.def"
+#include "runtime/device/Slots.def"
+};
+
 } // namespace rtsl::runtime

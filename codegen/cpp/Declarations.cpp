@@ -148,8 +148,25 @@ bool ModulePrinter::takesScratch(const typed::Function &function) {
 bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed::Function &function) {
   const Type *type = parameter.type;
   const bool isLarge = type->is(TypeKind::Struct) || type->is(TypeKind::Array) || type->isMatrix();
-  return parameter.direction == ast::Direction::In && isLarge &&
-         (!function.body || !assignedVariables(*function.body).count(&parameter));
+  if (parameter.direction != ast::Direction::In || !isLarge)
+    return false;
+  const auto position = std::find_if(function.parameters.begin(), function.parameters.end(),
+                                     [&](const auto &one) { return one.get() == &parameter; }) -
+                        function.parameters.begin();
+  auto assigns = [&](const typed::Function &method) {
+    return method.body &&
+           assignedVariables(*method.body).count(method.parameters[static_cast<std::size_t>(position)].get()) != 0;
+  };
+  if (!function.owner || function.isConstructor || function.isStateMethod)
+    return !assigns(function);
+  // What overrides a method takes what that takes.
+  const typed::Function &top = overridden(function);
+  return std::none_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
+    return definition->derivesFrom(top.owner) &&
+           std::any_of(definition->functions.begin(), definition->functions.end(), [&](const auto &method) {
+             return method->name == top.name && lowering::sameParameters(*method, top) && assigns(*method);
+           });
+  });
 }
 
 std::string ModulePrinter::signature(const typed::Function &function, bool isMethod) {

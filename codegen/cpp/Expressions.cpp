@@ -220,6 +220,12 @@ static bool isInMemory(const typed::Expr &expr) {
     return !index->base->type->isVector() || isInMemory(*index->base);
   if (auto *assignment = dynCast<typed::AssignExpr>(&expr))
     return isInMemory(*assignment->target);
+  if (auto *comma = dynCast<typed::CommaExpr>(&expr))
+    return isInMemory(*comma->right);
+  if (auto *construct = dynCast<typed::ConstructExpr>(&expr)) // of its own type: nothing happens
+    return construct->args.front()->type == expr.type && isInMemory(*construct->args.front());
+  if (auto *convert = dynCast<typed::ConvertExpr>(&expr))
+    return convert->operand->type == expr.type && isInMemory(*convert->operand);
   return expr.kind == ExprKind::Member || expr.kind == ExprKind::Field;
 }
 

@@ -30,6 +30,20 @@ Code StateWriter::use(mlir::Value value, const std::string &type) {
   return code;
 }
 
+static Code numberCode(mlir::Attribute number, bool isUnsigned) {
+  std::string text;
+  if (auto integer = llvm::dyn_cast<mlir::IntegerAttr>(number)) {
+    const llvm::APInt &value = integer.getValue();
+    text = integer.getType().isInteger(1)    ? (value.isZero() ? "false" : "true")
+           : isUnsigned                      ? fmt::format("{}u", value.getZExtValue())
+           : value.isMinSignedValue()        ? "std::numeric_limits<int>::min()"
+                                             : std::to_string(value.getSExtValue());
+  } else {
+    text = floatText(llvm::cast<mlir::FloatAttr>(number).getValue().convertToFloat());
+  }
+  return {text, text.front() == '-' ? Binding::Unary : Binding::Primary};
+}
+
 Code StateWriter::constant(mlir::Value value, const std::string &type) {
   mlir::Attribute attribute;
   if (!mlir::matchPattern(value, mlir::m_Constant(&attribute))) {
@@ -39,18 +53,20 @@ Code StateWriter::constant(mlir::Value value, const std::string &type) {
       unsupported(*value.getDefiningOp());
     return {"0"};
   }
-  if (auto integer = llvm::dyn_cast<mlir::IntegerAttr>(attribute)) {
-    if (integer.getType().isInteger(1))
-      return {integer.getValue().isZero() ? "false" : "true"};
-    return {std::to_string(integer.getInt())};
-  }
-  if (auto number = llvm::dyn_cast<mlir::FloatAttr>(attribute))
-    return {floatText(number.getValue().convertToFloat())};
   auto dense = llvm::dyn_cast<mlir::DenseElementsAttr>(attribute);
-  if (!type.empty() && dense && dense.isSplat() && dense.getElementType().isF32())
-    return {type + "(" + floatText(dense.getSplatValue<float>()) + ")"};
-  unsupported(*value.getDefiningOp());
-  return {"0"};
+  if (!dense)
+    return numberCode(attribute, type == "unsigned");
+  mlir::Type element = dense.getElementType();
+  std::string vector = type;
+  if (vector.empty())
+    vector = fmt::format("glm::{}vec{}", element.isF32() ? "" : element.isInteger(1) ? "b" : "i", dense.getNumElements());
+  const bool isUnsigned = vector.compare(0, 9, "glm::uvec") == 0;
+  if (dense.isSplat())
+    return {vector + "(" + numberCode(dense.getSplatValue<mlir::Attribute>(), isUnsigned).text + ")"};
+  std::vector<std::string> parts;
+  for (mlir::Attribute part : dense.getValues<mlir::Attribute>())
+    parts.push_back(numberCode(part, isUnsigned).text);
+  return {vector + "(" + join(parts, ", ") + ")"};
 }
 
 Code StateWriter::place(mlir::Value address) {
@@ -133,11 +149,23 @@ void StateWriter::nameConstants(const typed::Expr &expr) {
     if (printer.replaced.count(&inner))
       forEachExpr(inner, [&](const typed::Expr &part) { elsewhere.insert(&part); });
   });
+  auto add = [&](const typed::Variable &constant) {
+    if (std::find(constants.begin(), constants.end(), &constant) != constants.end())
+      return;
+    nameConstants(*constant.init); // what it names stands in front of it
+    constants.push_back(&constant);
+  };
   forEachExpr(expr, [&](const typed::Expr &inner) {
-    auto *named = dynCast<typed::VariableExpr>(&inner);
-    if (named && named->variable->isConst && named->variable->kind != typed::Variable::Kind::Global &&
-        !elsewhere.count(&inner) && std::find(constants.begin(), constants.end(), named->variable) == constants.end())
-      constants.push_back(named->variable);
+    if (elsewhere.count(&inner))
+      return;
+    if (auto *named = dynCast<typed::VariableExpr>(&inner);
+        named && named->variable->isConst && named->variable->kind != typed::Variable::Kind::Global)
+      add(*named->variable);
+    if (auto *literal = dynCast<typed::LiteralExpr>(&inner)) // the value of one
+      if (const void *named = printer.namedConstant(*literal))
+        for (const auto &local : machine.method->locals)
+          if (local.get() == named)
+            add(*local);
   });
 }
 
