@@ -69,6 +69,7 @@ private:
   bool putJump(Block *target, Block *at, const Context &context);
   bool putUnreachable(Block *at);
   bool putIf(ir::IfOp choice, bool thenIsOpen, bool elseIsOpen, Block *at);
+  void dropUnaskedFlags();
 
   Level open(Level::Kind kind, Block *at) {
     return {kind, at, at->empty() ? nullptr : &at->back()};
@@ -84,6 +85,7 @@ private:
   mlir::OpBuilder builder;
   mlir::Location location = builder.getUnknownLoc();
   llvm::DenseSet<Block *> insideOf; // the headers of loops whose bodies are being built
+  llvm::SmallVector<ir::VarOp> allFlags;
   bool failed = false;
 };
 
@@ -110,7 +112,8 @@ bool Builder::putJump(Block *target, Block *at, const Context &context) {
       builder.setInsertionPointAfter(level.behind);
     else
       builder.setInsertionPointToStart(level.place);
-    flag = ir::VarOp::create(builder, location, "left", builder.getI1Type());
+    allFlags.push_back(ir::VarOp::create(builder, location, "left", builder.getI1Type()));
+    flag = allFlags.back();
   }
   put<ir::StoreOp>(at, put<mlir::arith::ConstantOp>(at, builder.getBoolAttr(true)), flag);
   if (level.kind != Level::Loop)
@@ -324,6 +327,24 @@ bool Builder::putTerminator(mlir::Operation *terminator, Block *at, const Contex
   return putUnreachable(at);
 }
 
+/// Nobody asks for the flag of a loop with no other way out, or where both ways are the same.
+void Builder::dropUnaskedFlags() {
+  for (ir::VarOp flag : allFlags) {
+    if (llvm::any_of(flag->getUsers(), [](mlir::Operation *user) {
+          return !llvm::isa<ir::StoreOp>(user) && !user->use_empty();
+        }))
+      continue;
+    for (mlir::Operation *user : llvm::make_early_inc_range(flag->getUsers())) {
+      auto store = llvm::dyn_cast<ir::StoreOp>(user);
+      mlir::Operation *value = store ? store.getValue().getDefiningOp() : nullptr;
+      user->erase();
+      if (value)
+        value->erase();
+    }
+    flag.erase();
+  }
+}
+
 mlir::LogicalResult Builder::run() {
   mlir::Region &body = function.getBody();
   llvm::SmallVector<Block *> old;
@@ -339,6 +360,7 @@ mlir::LogicalResult Builder::run() {
     block->dropAllDefinedValueUses();
   for (Block *block : old)
     block->erase();
+  dropUnaskedFlags();
   return mlir::failure(failed);
 }
 

@@ -22,12 +22,13 @@ int main(int argc, char **argv) try {
   scene.addPrimitive(floor, make("Glossy", {{"albedo", Value::reference(checks)}}));
   int i = 0;
   for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived", "Table",
-                           "Bundle", "Turned", "Outputs", "Component"}) {
+                           "Bundle", "Turned", "Outputs", "Component", "Lit"}) {
     const double x = -4.1 + 1.2 * (i % 8), y = 0.8 + 1.5 * (i / 8);
     scene.addPrimitive(make("Sphere", {{"center", {x, y, 0}}, {"radius", 0.7}}), make(name, {}));
     ++i;
   }
   scene.addLight(make("BallLight", {{"position", {4, 6, 4}}, {"radius", 0.4}, {"intensity", {38, 36, 33}}}));
+  scene.addLight(make("BallLight", {{"position", {-5, 5, 3}}, {"radius", 0.2}, {"intensity", {18, 20, 25}}}));
   scene.setAmbient({0.12f, 0.13f, 0.16f});
   scene.setBackground(make("Sky", {}));
   RenderOptions options;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""states.py RTSLC GLASS PROGRAM...: the programs' pictures are that of the same scene by machine code, to the last bit."""
+"""states.py RTSLC GLASS PROGRAM...: the programs' pictures are that of the same scene by machine code, to the last bit,
+and recursion, states and the host megakernel make one picture of it too, with the traversal that all three have."""
 import json
 import pathlib
 import subprocess
@@ -9,7 +10,7 @@ import tempfile
 rtslc, glass, *programs = sys.argv[1:]
 here = pathlib.Path(__file__).parent
 names = ["Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived",
-         "Table", "Bundle", "Turned", "Outputs", "Component"]
+         "Table", "Bundle", "Turned", "Outputs", "Component", "Lit"]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
     "rtsl": 1,
@@ -19,7 +20,8 @@ scene = {
     "materials": {"floor": {"class": "Glossy", "albedo": "checks"}, **{name: {"class": name} for name in names}},
     "objects": [{"primitive": {"class": "Parallelogram", "constructor": [[-8, 0, 6], [16, 0, 0], [0, 0, -16]]},
                  "material": "floor"}],
-    "lights": [{"class": "BallLight", "position": [4, 6, 4], "radius": 0.4, "intensity": [38, 36, 33]}],
+    "lights": [{"class": "BallLight", "position": [4, 6, 4], "radius": 0.4, "intensity": [38, 36, 33]},
+               {"class": "BallLight", "position": [-5, 5, 3], "radius": 0.2, "intensity": [18, 20, 25]}],
     "ambient": [0.12, 0.13, 0.16],
     "background": {"class": "Sky"},
     "render": {"engine": "classic", "size": [96, 54], "spp": 2, "depth": 4, "seed": 1},
@@ -30,7 +32,18 @@ for i, name in enumerate(names):
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
     file, ours, theirs = (str(pathlib.Path(folder) / name) for name in ("scene.json", "cpp.exr", "jit.exr"))
     pathlib.Path(file).write_text(json.dumps(scene))
-    subprocess.run([rtslc, "render", file, "-o", theirs, "-q"], check=True)
+
+    def render(picture, *how):
+        subprocess.run([rtslc, "render", file, "-o", picture, "-q", *how], check=True)
+
+    def compare(a, b):
+        subprocess.run([rtslc, "compare", a, b, "--threshold", "0"], check=True)
+
+    render(theirs)
     for program in programs:
         subprocess.run([program, ours], check=True)
-        subprocess.run([rtslc, "compare", ours, theirs, "--threshold", "0"], check=True)
+        compare(ours, theirs)
+    render(theirs, "--trace=recurse", "--traversal=device")
+    for how in (["--trace=split", "--traversal=device"], ["--target=host-megakernel"]):
+        render(ours, *how)
+        compare(ours, theirs)
