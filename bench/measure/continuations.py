@@ -1,4 +1,4 @@
-"""What continuations cost: bytes saved at each trace beside plain liveness, and instructions beside recursion."""
+"""What continuations cost: bytes saved at each trace beside plain liveness, and instructions beside saving all that is live."""
 
 import json
 import re
@@ -13,8 +13,8 @@ from . import process
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENES = sorted((ROOT / "examples").glob("*/scene.json"))
 
-# Both traverse with runtime/device; they differ in how shaders trace.
-WAYS = {"recurse": ["--trace=recurse", "--traversal=device"], "split": ["--target=host-megakernel"]}
+# What states keep over a trace.
+WAYS = {"live": ["--save=live"], "needed": ["--save=needed"]}
 
 
 def saved_bytes(build, scene):
@@ -27,7 +27,8 @@ def saved_bytes(build, scene):
             "location": trace["location"],
             "live": trace["liveBytes"],
             "saved": trace["savedBytes"],
-            "recomputed": trace["rematerialisedCost"],
+            "cost": trace["extra"]["cost"],
+            "plainCost": trace["extraOfPlainLiveness"]["cost"],
         }
         for function in report["functions"]
         for trace in function["traces"]
@@ -35,12 +36,12 @@ def saved_bytes(build, scene):
     return {"traces": traces, "frame": report["frameSize"], "stack": report["stack"]}
 
 
-def count_instructions(program, scene, way, samples, size, folder):
+def count_instructions(program, package, samples, size, folder):
     """What callgrind counts in a whole run with one thread."""
     out = folder / "callgrind.out"
-    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", str(program), "render", str(scene),
+    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", str(program), str(package), "--target=host",
                "--threads", "1", "--size", size, "--spp", str(samples), "-q", "-o", str(folder / "x.exr")]
-    done = subprocess.run(command + WAYS[way], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     found = re.search(r"^summary: (\d+)", out.read_text(), re.MULTILINE) if out.exists() else None
     if done.returncode != 0 or not found:
         raise process.Failed(f"callgrind: {done.stderr[-400:]}")
@@ -48,14 +49,16 @@ def count_instructions(program, scene, way, samples, size, folder):
 
 
 def instructions_per_sample(build, scene, way, size, folder):
-    """Between runs of few and many samples: what a run takes before the first sample is in both."""
+    """Of the scene's package on the host megakernel, so nothing is compiled while callgrind counts. Between runs of few and many
+    samples: what a run takes before the first sample is in both."""
     # Without debug information, which valgrind's reader does not understand.
-    program = folder / "rtslc-render"
+    program, package = folder / "rtsl-run", folder / f"{way}.rtslpkg"
     if not program.exists():
-        subprocess.run(["strip", "-g", "-o", program, build / "bin" / "rtslc-render"], check=True)
+        subprocess.run(["strip", "-g", "-o", program, build / "bin" / "rtsl-run"], check=True)
+    process.run([str(build / "bin" / "rtslc"), "pack", "-q", str(scene), "-o", str(package), *WAYS[way]])
     few, many = 1, 9
     width, height = map(int, size.split("x"))
-    counts = [count_instructions(program, scene, way, samples, size, folder) for samples in (few, many)]
+    counts = [count_instructions(program, package, samples, size, folder) for samples in (few, many)]
     return (counts[1] - counts[0]) / ((many - few) * width * height)
 
 
@@ -80,16 +83,21 @@ def show(report):
         for trace in scene["traces"]:
             print(f"  {trace['function'] + ', ' + trace['location']:62}{trace['live']:7}{trace['saved']:7}")
     print(f"median share of {report['tracesCounted']} traces: {report['medianShareSaved']:.2f} (limit 0.50)")
-    for scene in report["scenes"]:
-        if "instructions" in scene:
-            recurse, split = scene["instructions"]["recurse"], scene["instructions"]["split"]
-            print(f"{scene['scene']}: {split:.0f} instructions a sample on the host megakernel, {recurse:.0f} by recursion: "
-                  f"{100 * (split / recurse - 1):+.1f} % (limit +5 %)")
+    measured = [scene for scene in report["scenes"] if "instructions" in scene]
+    if measured:
+        print(f"\n{'instructions a sample, host megakernel':40}{'all live saved':>15}{'as it is':>10}{'more':>9}")
+    for scene in measured:
+        counts = scene["instructions"]
+        print(f"{scene['scene']:40}{counts['live']:15.0f}{counts['needed']:10.0f}"
+              f"{100 * (counts['needed'] / counts['live'] - 1):+7.1f} %")
+    if measured:
+        more = median(scene["instructions"]["needed"] / scene["instructions"]["live"] - 1 for scene in measured)
+        print(f"median over the examples: {100 * more:+.1f} % (limit +5 %)")
 
 
 def add(subcommands, common):
     parser = subcommands.add_parser("continuations", parents=[common],
-                                    help="bytes saved at traces, and instructions beside recursion (with valgrind)")
+                                    help="bytes saved at traces, and instructions that this costs (with valgrind)")
     parser.add_argument("--size", default="32x18", help="of the pictures whose instructions are counted (default: 32x18)")
     parser.set_defaults(parts=[part])
 

@@ -93,18 +93,34 @@ void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &)) {
   expectSuccess(ir, [&] { return mlir::succeeded(passes.run(ir)); });
 }
 
-/// Level 1 to level 2, with `trace` as the options ask.
-SplitReport runToSsa(mlir::ModuleOp ir, TraceMode trace, bool dispatch = true) {
+SplitOptions splitOptions(const CompileOptions &options) {
+  SplitOptions split;
+  split.rematerialise = split.trim = split.cleanUp = !options.savesAllThatIsLive;
+  return split;
+}
+
+/// Level 1 to level 2, to states.
+SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options) {
   SplitReport report;
-  if (trace == TraceMode::Split)
-    keepTracingMethods(ir);
+  keepTracingMethods(ir);
   run(ir, codegen::buildSsaPipeline);
-  if (trace == TraceMode::Split) {
-    SplitOptions split;
-    split.dispatch = dispatch;
-    expectSuccess(ir, [&] { return splitAtTrace(ir, split, report); });
-  }
+  expectSuccess(ir, [&] { return splitAtTrace(ir, options, report); });
   return report;
+}
+
+SplitReport runToExplainedStates(mlir::ModuleOp ir, const CompileOptions &options) {
+  SplitOptions split = splitOptions(options);
+  split.explain = true;
+  return runToStates(ir, split);
+}
+
+/// With `trace` left a call, or as states.
+void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace, bool dispatch = true) {
+  if (trace == TraceMode::Recurse)
+    return run(ir, codegen::buildSsaPipeline);
+  SplitOptions split = splitOptions(options);
+  split.dispatch = dispatch;
+  runToStates(ir, split);
 }
 
 /// Stages that show states by name, before they are numbered.
@@ -232,7 +248,8 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
 }
 
 /// Warns of a trace over which much is alive: values that are saved, and variables that lie in the frame all the time.
-void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &frame, Diagnostics &diagnostics) {
+void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &frame, std::uint32_t largeLiveState,
+                     Diagnostics &diagnostics) {
   struct Part {
     std::string name;
     std::uint32_t bytes;
@@ -275,7 +292,7 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
   if (stage == Stage::Ir)
     return print(*ir);
   const bool isSplit = stage == Stage::Split || stage == Stage::Structured || stage == Stage::Ptx;
-  runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/stage == Stage::Ptx);
+  runToSsa(*ir, options, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/stage == Stage::Ptx);
   if (stage == Stage::Structured)
     expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)); });
   if (stage == Stage::Ssa || isLookedAtSplit(stage))
@@ -305,7 +322,7 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
   const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, *context);
   if (!ir)
     return std::nullopt;
-  runToSsa(*ir, TraceMode::Split, /*dispatch=*/false);
+  runToSsa(*ir, options, TraceMode::Split, /*dispatch=*/false);
   mlir::ModuleOp program = *ir;
   for (auto function : program.getOps<mlir::func::FuncOp>())
     if (function->hasAttr("rtsl.state"))
@@ -361,7 +378,7 @@ std::optional<std::string> explainStates(const typed::Module &module, const Comp
   const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, diagnostics, *context);
   if (!ir)
     return std::nullopt;
-  return write(runToSsa(*ir, TraceMode::Split), format);
+  return write(runToExplainedStates(*ir, options), format);
 }
 
 void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics) {
@@ -372,9 +389,9 @@ void checkLiveState(const typed::Module &module, const CompileOptions &options, 
   const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, refusals, *context);
   if (!ir || refusals.hasErrors())
     return;
-  for (const FunctionReport &function : runToSsa(*ir, TraceMode::Split).functions)
+  for (const FunctionReport &function : runToStates(*ir, splitOptions(options)).functions)
     for (const TraceReport &trace : function.traces)
-      warnOfLiveState(trace, function.frame, diagnostics);
+      warnOfLiveState(trace, function.frame, options.largeLiveState, diagnostics);
 }
 
 namespace {
@@ -423,7 +440,7 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runti
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
   }
-  runToSsa(ir, TraceMode::Recurse);
+  run(ir, codegen::buildSsaPipeline);
   codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
   machine.optimization = std::min(machine.optimization, 1u);
   LlvmCode code = translate(ir, machine);
@@ -457,7 +474,7 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
     bindToScene(*ir, request, options, makeObjects, program);
   if (stage == Stage::Ir)
     return print(*ir);
-  runToSsa(*ir, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/!isLookedAtSplit(stage));
+  runToSsa(*ir, options, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/!isLookedAtSplit(stage));
   if (stage == Stage::Structured)
     expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)); });
   if (stage == Stage::Ssa || isLookedAtSplit(stage))
@@ -519,7 +536,7 @@ void describeEvents(const typed::Module &module, const LinkRequest &request, con
 /// What a bound program takes on a GPU. `ir` is used up.
 ProgramSize measure(mlir::ModuleOp ir, const CompileOptions &options, const runtime::Program &program) {
   ProgramSize size;
-  const SplitReport report = runToSsa(ir, TraceMode::Split);
+  const SplitReport report = runToStates(ir, splitOptions(options));
   size.frameBytes = report.frameSize();
   for (const FunctionReport &function : report.functions)
     size.states += static_cast<std::uint32_t>(function.states.size());
@@ -596,7 +613,7 @@ std::optional<std::string> explainSceneStates(const typed::Module &module, const
   const auto ir = linkScene(module, request, options, diagnostics, *context, program);
   if (!ir)
     return std::nullopt;
-  SplitReport report = runToSsa(*ir, TraceMode::Split);
+  SplitReport report = runToExplainedStates(*ir, options);
   report.maxDepth = maxDepth;
   return write(report, format);
 }
@@ -606,7 +623,7 @@ namespace {
 /// Linked level 1 as a program in this process: the parts of it that are exported.
 void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
   const bool isMegakernel = options.target == Target::HostMegakernel;
-  runToSsa(ir, isMegakernel ? TraceMode::Split : options.trace);
+  runToSsa(ir, options, isMegakernel ? TraceMode::Split : options.trace);
   if (options.restructure) {
     expectSuccess(ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
     run(ir, codegen::buildSsaPipeline);
@@ -649,7 +666,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
   if (!ir)
     return false;
   bindToScene(*ir, request, options, makeObjects, program);
-  const SplitReport report = runToSsa(*ir, TraceMode::Split);
+  const SplitReport report = runToStates(*ir, splitOptions(options));
   package.frameBytes = report.frameSize();
   package.stateCount = 0;
   for (const FunctionReport &function : report.functions)

@@ -39,6 +39,10 @@ struct CompileOptions {
   unsigned optimization = 2; // of machine code, 0 to 3
   TraceMode trace = TraceMode::Recurse; // of Target::Host; there is no recursion elsewhere
   Target target = Target::Host;
+  /// States save all that is live over a trace, and nothing is computed again: to compare with.
+  bool savesAllThatIsLive = false;
+  /// What -Wlive-state calls much, in bytes: half of the registers that a GPU thread of a ray tracer has, 32 of 64.
+  std::uint32_t largeLiveState = 128;
   /// Bring everything back to level 1 and down again, with TraceMode::Split: for tests, which ask that this changes nothing.
   bool restructure = false;
   FloatingPoint floatingPoint = FloatingPoint::Strict;
@@ -123,12 +127,9 @@ std::optional<SceneExplanation> explainScene(const typed::Module &module, const 
                                              const CompileOptions &options, Diagnostics &diagnostics,
                                              const MakeObjects &makeObjects);
 
-/// Splits the module at `trace` and warns where more than `largeLiveState` bytes are saved: -Wlive-state. Does nothing
+/// Splits the module at `trace` and warns where more than CompileOptions::largeLiveState bytes are saved: -Wlive-state. Does nothing
 /// if that warning is off, or if the module cannot be lowered.
 void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics);
-
-/// Half of the registers that a GPU thread of a ray tracer has: 32 of 64.
-constexpr std::uint32_t largeLiveState = 128;
 
 /// Compiles and links the module for scenes, in this process. Null if there were errors. With `makeObjects` it is bound to
 /// the scene that this makes (codegen/link/BindScene.h), and renders no other. SceneProgram.h puts both together.

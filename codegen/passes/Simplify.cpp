@@ -179,6 +179,8 @@ void Simplify::run(mlir::func::FuncOp function) const {
       folded |= mergeChains(rewriter, function.getBody());
       changed |= folded;
     }
+    if (round > 0 && !changed)
+      break; // what was unified in the round before is unified still
     mlir::DominanceInfo dominance(function);
     bool unified = false;
     mlir::eliminateCommonSubExpressions(rewriter, dominance, function, &unified);

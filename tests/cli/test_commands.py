@@ -117,6 +117,11 @@ class Commands(Case):
         self.assertRegex(message["message"], "^1[0-9][0-9] bytes .*more than 128; `w` costs most: 128 bytes$")
         self.write("narrow.rtsl", text.replace("32", "12"))
         self.assertEqual(self.run_rtslc("check", "narrow.rtsl", "-Wlive-state"), ("", ""))
+        _, error = self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=64")
+        self.assertRegex(error, "more than 64; `w` costs most: 48 bytes")
+        self.assertEqual(self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=1000"), ("", ""))
+        _, error = self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=much", status=2)
+        self.assertIn("give a number of bytes", error)
 
     def test_documented_warnings_are_those_of_the_compiler(self):
         out, _ = self.run_rtslc("check", "-Whelp")

@@ -39,6 +39,18 @@ std::string warningList() {
   return text;
 }
 
+/// Takes the number of `live-state=BYTES` off.
+std::string withoutLimit(const std::string &text, std::uint32_t &largeLiveState) {
+  const std::string name = "live-state";
+  if (text.rfind(name + "=", 0) != 0)
+    return text;
+  const std::string digits = text.substr(name.size() + 1);
+  if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos)
+    throw CLI::ValidationError("-W" + text, "give a number of bytes");
+  largeLiveState = static_cast<std::uint32_t>(std::stoul(digits));
+  return name;
+}
+
 void applyWarning(const std::string &text, WarningOptions &warnings) {
   if (text == "help") {
     fmt::print("{}", warningList());
@@ -73,10 +85,10 @@ void addMessageOptions(CLI::App &command, CommonOptions &options) {
           "-W",
           [&options](const std::vector<std::string> &texts) {
             for (const std::string &text : texts)
-              applyWarning(text, options.warnings);
+              applyWarning(withoutLimit(text, options.compile.largeLiveState), options.warnings);
           },
           "turn a warning on, or off with no-NAME; NAME can be all or perf; error[=NAME] makes them errors; "
-          "-Whelp lists them")
+          "live-state=BYTES says how much is much; -Whelp lists them")
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -134,6 +146,12 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
                                                                            {"split", TraceMode::Split}})
                       .description(""))
       ->type_name("recurse|split");
+  command
+      .add_option("--save", options.compile.savesAllThatIsLive,
+                  "what states keep over a `trace`: needed, what cannot be had again for less; live, all that is alive there, to "
+                  "compare with")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"needed", false}, {"live", true}}).description(""))
+      ->type_name("needed|live");
   command.add_option("--gpu-arch", options.compile.gpu, "the oldest NVIDIA GPU that PTX is for; sm_75 if not given")
       ->check(CLI::IsMember({"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"}))
       ->type_name("sm_75|sm_80|sm_86|sm_89|sm_90|sm_100|sm_120");

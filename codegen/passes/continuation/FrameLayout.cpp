@@ -176,6 +176,7 @@ FrameLayout Layouter::describe() const {
       atTrace[trace] += item.size;
     if (item.bools.empty())
       layout.slots.push_back({item.name, item.offset, item.size, -1, item.isObject});
+    layout.unshared += item.bools.empty() ? item.size : 4 * static_cast<std::uint32_t>(item.bools.size());
     for (unsigned index : item.bools)
       layout.slots.push_back(
           {bools[index].name, item.offset, 4, static_cast<int>(bools[index].bit % 32), false});
@@ -183,6 +184,7 @@ FrameLayout Layouter::describe() const {
   for (std::uint32_t bytes : atTrace)
     layout.lowerBound = std::max(layout.lowerBound, bytes);
   layout.lowerBound += base;
+  layout.unshared += base;
   std::stable_sort(layout.slots.begin(), layout.slots.end(),
                    [](const FrameSlot &a, const FrameSlot &b) {
                      return std::make_pair(a.offset, a.bit) < std::make_pair(b.offset, b.bit);

@@ -169,6 +169,7 @@ struct SplitPass : ModuleStep<SplitPass> {
     options.trim = !noTrim;
     options.cleanUp = !noCleanUp;
     options.dispatch = !noDispatch;
+    options.explain = !reportAs.empty();
     options.verifyEach = true;
     SplitReport report;
     bool done = splitAtTrace(module, options, report);

@@ -49,8 +49,8 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
     out << "\n";
   }
   for (const continuation::TrimmedPayload &trimmed : report.trimmed)
-    out << "payload " << trimmed.payload << ": not passed, for nobody there reads it, "
-        << llvm::join(trimmed.fields, ", ") << "\n";
+    out << "payload " << trimmed.payload << ": " << trimmed.bytes << " bytes of " << trimmed.bytesBefore
+        << "; not passed, for nobody there reads it, " << llvm::join(trimmed.fields, ", ") << "\n";
   const std::uint32_t levels = report.rays.levels(report.maxDepth);
   out << "stack: " << levels << (levels == 1 ? " level" : " levels") << " of "
       << report.levelBytes() << " bytes for rays as deep as " << report.maxDepth << ", "
@@ -62,6 +62,36 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
 
 static std::string list(const std::vector<std::string> &names) {
   return names.empty() ? "" : ": " + llvm::join(names, ", ");
+}
+
+std::string toText(const BytesRange &range) {
+  const std::string least = range.least == range.most ? "" : std::to_string(range.least) + " to ";
+  return least + std::to_string(range.most) + " bytes";
+}
+
+static std::string count(unsigned number, llvm::StringRef what) {
+  return (std::to_string(number) + " " + what + (number == 1 ? "" : "s")).str();
+}
+
+static std::string describe(const ExtraReport &extra) {
+  std::string text = extra.recomputed == 0 ? "" : count(extra.recomputed, "operation") + " again, ";
+  return text + count(extra.stores, "store") + ", " + count(extra.loads, "load") + ", cost " + std::to_string(extra.cost);
+}
+
+/// What is live, and how much of it is left after each optimisation.
+static void writeTrace(llvm::raw_ostream &out, const TraceReport &trace) {
+  out << "    live           " << trace.liveBytes << " bytes" << list(trace.live) << "\n";
+  for (const StepReport &step : trace.steps)
+    if (llvm::StringRef(step.step) == "trim-vectors" && step.savedBytes != trace.liveBytes)
+      out << "    trimmed        " << step.savedBytes << " bytes\n";
+  out << "    rematerialised " << trace.rematerialisedBytes << " bytes" << list(trace.rematerialised) << "\n";
+  out << "    saved          " << trace.savedBytes << " bytes" << list(trace.saved) << "\n";
+  if (trace.liveBytes == 0 && trace.savedBytes == 0)
+    return;
+  const TraceTraffic &traffic = trace.steps.back().traffic;
+  out << "    stored         " << toText(traffic.stored) << "\n";
+  out << "    restored       " << toText(traffic.restored) << "\n";
+  out << "    extra          " << describe(trace.extra) << "; of plain liveness " << describe(trace.plainly) << "\n";
 }
 
 std::string toText(const SplitReport &report) {
@@ -78,15 +108,13 @@ std::string toText(const SplitReport &report) {
       const std::string place = trace.place.text();
       out << (trace.callee.empty() ? "  trace" : "  call of " + trace.callee)
           << (place.empty() ? "" : " at " + place) << ", resumes at " << trace.resumesAt << "\n";
-      out << "    live           " << trace.liveBytes << " bytes" << list(trace.live) << "\n";
-      out << "    saved          " << trace.savedBytes << " bytes" << list(trace.saved) << "\n";
-      out << "    rematerialised " << trace.rematerialised.size() << list(trace.rematerialised);
-      if (trace.rematerialisedCost != 0)
-        out << " (about " << trace.rematerialisedCost << " instructions)";
-      out << "\n";
+      writeTrace(out, trace);
       if (trace.onlyScalesAndAdds)
         out << "    then           sums and products alone\n";
     }
+    if (function.frame.unshared != function.frame.size)
+      out << "  frame: " << function.frame.unshared << " bytes if nothing shared words, at least "
+          << function.frame.lowerBound << "\n";
     for (const continuation::FrameSlot &slot : function.frame.slots) {
       out << "  slot " << slot.offset;
       if (slot.bit >= 0)
@@ -105,6 +133,22 @@ std::string toText(const SplitReport &report) {
   if (!report.functions.empty())
     writeRays(out, report);
   return text;
+}
+
+static void writeStep(llvm::json::OStream &json, const StepReport &step) {
+  json.attribute("after", step.step);
+  json.attribute("savedBytes", step.savedBytes);
+  json.attribute("storedBytes", step.traffic.stored.most);
+  json.attribute("storedBytesLeast", step.traffic.stored.least);
+  json.attribute("restoredBytes", step.traffic.restored.most);
+  json.attribute("restoredBytesLeast", step.traffic.restored.least);
+}
+
+static void writeExtra(llvm::json::OStream &json, const ExtraReport &extra) {
+  json.attribute("recomputedOperations", extra.recomputed);
+  json.attribute("stores", extra.stores);
+  json.attribute("loads", extra.loads);
+  json.attribute("cost", extra.cost);
 }
 
 std::string toJson(const SplitReport &report) {
@@ -134,6 +178,8 @@ std::string toJson(const SplitReport &report) {
       for (const continuation::TrimmedPayload &trimmed : report.trimmed)
         json.object([&] {
           json.attribute("name", trimmed.payload);
+          json.attribute("bytes", trimmed.bytes);
+          json.attribute("bytesBefore", trimmed.bytesBefore);
           names("notPassed", trimmed.fields);
         });
     });
@@ -150,6 +196,7 @@ std::string toJson(const SplitReport &report) {
         json.object([&] {
           json.attribute("name", function.name);
           json.attribute("frameSize", function.frame.size);
+          json.attribute("frameSizeUnshared", function.frame.unshared);
           json.attribute("frameLowerBound", function.frame.lowerBound);
           names("states", function.states);
           json.attribute("alwaysTraces", function.endings.alwaysTraces);
@@ -170,7 +217,13 @@ std::string toJson(const SplitReport &report) {
                 json.attribute("savedBytes", trace.savedBytes);
                 names("saved", trace.saved);
                 names("rematerialised", trace.rematerialised);
-                json.attribute("rematerialisedCost", trace.rematerialisedCost);
+                json.attribute("rematerialisedBytes", trace.rematerialisedBytes);
+                json.attributeArray("steps", [&] {
+                  for (const StepReport &step : trace.steps)
+                    json.object([&] { writeStep(json, step); });
+                });
+                json.attributeObject("extra", [&] { writeExtra(json, trace.extra); });
+                json.attributeObject("extraOfPlainLiveness", [&] { writeExtra(json, trace.plainly); });
                 json.attribute("onlyScalesAndAdds", trace.onlyScalesAndAdds);
               });
           });

@@ -14,19 +14,50 @@ namespace rtsl {
 /// Where a trace stands.
 using TracePlace = ir::SourcePlace;
 
+/// Over the ways on which a trace is met, or the ways on from it.
+struct BytesRange {
+  std::uint32_t least = 0, most = 0;
+};
+
+/// "4 bytes", "0 to 4 bytes".
+std::string toText(const BytesRange &range);
+
+/// What is moved between registers and frame at one trace.
+struct TraceTraffic {
+  BytesRange stored, restored;    // before it, behind it
+  unsigned stores = 0, loads = 0; // operations
+  bool isStored = false;          // by some state
+};
+
+/// The same with all steps done up to one of them.
+struct StepReport {
+  const char *step; // "liveness": none of the optimisations
+  std::uint32_t savedBytes = 0; // in the frame while the ray is away
+  TraceTraffic traffic;
+};
+
+/// What a trace runs beside the author's own code.
+struct ExtraReport {
+  unsigned recomputed = 0, stores = 0, loads = 0; // operations, but for constants and addresses
+  std::int64_t cost = 0;                          // units of CostTable.h
+};
+
 /// One trace of a function, in the order in which they stand.
 struct TraceReport {
   TracePlace place;
   std::string callee;            // of a call on a frame of its own; empty: it is a trace
   std::string resumesAt;         // the state
-  std::vector<std::string> live; // what plain liveness would save, constants included
+  // What plain liveness would save, constants included. This and what follows from it (`steps`,
+  // `rematerialised`, `plainly`) is there if SplitOptions::explain.
+  std::vector<std::string> live;
   std::uint32_t liveBytes = 0;
   std::vector<std::string> saved;
   std::vector<std::uint32_t> savedSizes;   // bytes of each; 0 of a bool
   std::uint32_t savedBytes = 0;            // bools as bits of one word
   std::vector<std::string> rematerialised; // of what was live; not what it is made from
-  std::int64_t rematerialisedCost =
-      0; // instructions, about (CostTable.h), of all that is recomputed
+  std::uint32_t rematerialisedBytes = 0;   // of these, had they been saved
+  std::vector<StepReport> steps;           // in the order of the optimisations
+  ExtraReport extra, plainly;              // as it is, and if all that is live were saved
   /// Nothing follows but sums and products of what came back: recursion keeps what these need.
   bool onlyScalesAndAdds = false;
 };

@@ -4,6 +4,7 @@
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/continuation/CostTable.h"
+#include "codegen/passes/continuation/FrameTraffic.h"
 #include "codegen/passes/continuation/Names.h"
 
 #include "mlir/IR/Verifier.h"
@@ -15,21 +16,28 @@ using namespace continuation;
 
 namespace {
 
-/// Names and bytes of what would be or is saved at a trace.
-void describe(llvm::ArrayRef<mlir::Value> values, UniqueNames &uniqueNames,
-              std::vector<std::string> &names, std::uint32_t &bytes,
-              std::vector<std::uint32_t> *sizes = nullptr) {
-  unsigned bools = 0;
+/// Bytes of values in a frame: 32 bools take a word.
+std::uint32_t bytesOf(llvm::ArrayRef<mlir::Value> values) {
+  std::uint32_t bools = 0, bytes = 0;
   for (mlir::Value value : values) {
-    names.push_back(uniqueNames.of(value));
-    const bool isBool = value.getType().isInteger(1);
-    const std::uint32_t size = isBool ? 0 : ir::sizeInBytes(value.getType());
-    bools += isBool;
-    bytes += size;
-    if (sizes)
-      sizes->push_back(size);
+    if (value.getType().isInteger(1))
+      ++bools;
+    else
+      bytes += ir::sizeInBytes(value.getType());
   }
-  bytes += (bools + 31) / 32 * 4;
+  return bytes + (bools + 31) / 32 * 4;
+}
+
+/// With everything that a trace saves stored before it and restored behind it.
+StepReport stepBeforeSplit(const char *step, const SuspendPlan &plan) {
+  const std::uint32_t bytes = bytesOf(plan.saved);
+  const auto count = static_cast<unsigned>(plan.saved.size());
+  return {step, bytes, {{bytes, bytes}, {bytes, bytes}, count, count, true}};
+}
+
+/// Units of CostTable.h.
+std::int64_t costOf(const TraceTraffic &traffic) {
+  return traffic.stored.most / 4 * storeWordCost + traffic.restored.most / 4 * loadWordCost;
 }
 
 /// Takes one function through all steps.
@@ -43,9 +51,12 @@ public:
 
 private:
   mlir::LogicalResult check(llvm::StringRef step);
-  mlir::LogicalResult reportPlainLiveness();
+  void listTraces();
+  mlir::LogicalResult reportPlainLiveness(const char *step);
   mlir::LogicalResult planAndRematerialise();
   mlir::LogicalResult cleanUp(llvm::ArrayRef<FuncOp> states);
+  void reportTraffic(const char *step, const FrameTraffic &traffic);
+  void sumUpExtras();
 
   FuncOp function;
   const SplitOptions &options;
@@ -61,22 +72,33 @@ mlir::LogicalResult FunctionSplitter::check(llvm::StringRef step) {
                               << step << "`";
 }
 
-/// What would be saved if nothing were clever: the figure that all others are compared with.
-mlir::LogicalResult FunctionSplitter::reportPlainLiveness() {
+void FunctionSplitter::listTraces() {
+  for (ir::SuspendOp suspend : suspendsOf(function)) {
+    TraceReport trace;
+    trace.place = ir::placeOf(suspend.getLoc());
+    trace.onlyScalesAndAdds = onlyScalesAndAdds(suspend);
+    if (auto call = llvm::dyn_cast_or_null<ir::EnterOp>(suspend->getPrevNode()))
+      trace.callee = call.getCallee().str();
+    trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
+    report.traces.push_back(std::move(trace));
+  }
+}
+
+/// What would be saved if nothing were computed again: with the first step, the figure that all
+/// others are compared with.
+mlir::LogicalResult FunctionSplitter::reportPlainLiveness(const char *step) {
   RematerialiseOptions plain;
   plain.onlyAddresses = true;
   auto plans = planContinuations(function, plain);
   if (mlir::failed(plans))
     return mlir::failure();
-  for (const SuspendPlan &plan : *plans) {
-    TraceReport trace;
-    trace.place = ir::placeOf(ir::SuspendOp(plan.suspend).getLoc());
-    trace.onlyScalesAndAdds = onlyScalesAndAdds(plan.suspend);
-    if (auto call = llvm::dyn_cast_or_null<ir::EnterOp>(plan.suspend->getPrevNode()))
-      trace.callee = call.getCallee().str();
-    trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
-    describe(plan.saved, plainNames, trace.live, trace.liveBytes);
-    report.traces.push_back(std::move(trace));
+  for (auto [plan, trace] : llvm::zip(*plans, report.traces)) {
+    trace.steps.push_back(stepBeforeSplit(step, plan));
+    if (trace.steps.size() > 1)
+      continue;
+    for (mlir::Value value : plan.saved)
+      trace.live.push_back(plainNames.of(value));
+    trace.liveBytes = trace.steps.front().savedBytes;
   }
   return mlir::success();
 }
@@ -89,31 +111,66 @@ mlir::LogicalResult FunctionSplitter::planAndRematerialise() {
     return mlir::failure();
   UniqueNames names;
   for (auto [plan, trace] : llvm::zip(*plans, report.traces)) {
-    describe(plan.saved, names, trace.saved, trace.savedBytes, &trace.savedSizes);
+    trace.savedBytes = bytesOf(plan.saved);
+    for (mlir::Value value : plan.saved) {
+      trace.saved.push_back(names.of(value));
+      trace.savedSizes.push_back(value.getType().isInteger(1) ? 0 : ir::sizeInBytes(value.getType()));
+    }
+    if (!options.explain)
+      continue;
+    trace.steps.push_back(stepBeforeSplit("rematerialise", plan));
     llvm::StringSet<> live;
     for (const std::string &name : trace.live)
       live.insert(name);
+    llvm::SmallVector<mlir::Value> again;
+    llvm::SmallPtrSet<mlir::Operation *, 16> operations;
     for (mlir::Value value : plan.recomputed) {
-      trace.rematerialisedCost += recomputeCost(value.getDefiningOp());
-      if (std::string name = plainNames.of(value); live.contains(name))
+      mlir::Operation *op = value.getDefiningOp();
+      if (const std::int64_t cost = recomputeCost(op); operations.insert(op).second && cost != 0) {
+        ++trace.extra.recomputed;
+        trace.extra.cost += cost;
+      }
+      if (std::string name = plainNames.of(value); live.contains(name)) {
         trace.rematerialised.push_back(name);
+        again.push_back(value);
+      }
     }
+    trace.rematerialisedBytes = bytesOf(again);
   }
   rematerialise(function, *plans);
   return mlir::success();
 }
 
 mlir::LogicalResult FunctionSplitter::cleanUp(llvm::ArrayRef<FuncOp> states) {
+  FrameTraffic cleaned;
   for (FuncOp state : states) {
     function = state;
+    cleanStores(state);
+    if (options.explain)
+      cleaned.add(state);
+    sinkLoads(state);
     simplify.run(state);
-    const bool isCleaner = cleanStores(state);
-    if (sinkLoads(state) || isCleaner)
-      simplify.run(state);
     if (mlir::failed(check("clean-up")))
       return mlir::failure();
   }
+  if (options.explain)
+    reportTraffic("clean-stores", cleaned);
   return mlir::success();
+}
+
+void FunctionSplitter::reportTraffic(const char *step, const FrameTraffic &traffic) {
+  for (TraceReport &trace : report.traces)
+    trace.steps.push_back({step, trace.savedBytes, traffic.at(trace.resumesAt)});
+}
+
+void FunctionSplitter::sumUpExtras() {
+  for (TraceReport &trace : report.traces) {
+    const TraceTraffic &plain = trace.steps.front().traffic, &now = trace.steps.back().traffic;
+    trace.plainly = {0, plain.stores, plain.loads, costOf(plain)};
+    trace.extra.stores = now.stores;
+    trace.extra.loads = now.loads;
+    trace.extra.cost += costOf(now);
+  }
 }
 
 static void reportTransitions(FuncOp state, std::vector<TransitionReport> &transitions) {
@@ -153,12 +210,17 @@ mlir::LogicalResult FunctionSplitter::run() {
   for (mlir::Location last : endAtLastTraces(function))
     report.lastTraces.push_back(ir::placeOf(last));
   moveVariablesToFrame(function);
-  if (mlir::failed(check("suspend")) || mlir::failed(reportPlainLiveness()))
+  if (mlir::failed(check("suspend")))
+    return mlir::failure();
+  listTraces();
+  if (options.explain && mlir::failed(reportPlainLiveness("liveness")))
     return mlir::failure();
 
   if (options.trim)
     trimVectors(function);
   if (mlir::failed(check("trim")))
+    return mlir::failure();
+  if (options.explain && options.trim && mlir::failed(reportPlainLiveness("trim-vectors")))
     return mlir::failure();
 
   if (mlir::failed(planAndRematerialise()) || mlir::failed(check("rematerialise")))
@@ -182,8 +244,16 @@ mlir::LogicalResult FunctionSplitter::run() {
   }
   if (options.cleanUp && mlir::failed(cleanUp(*states)))
     return mlir::failure();
-  for (FuncOp state : *states)
+  FrameTraffic traffic;
+  for (FuncOp state : *states) {
     reportTransitions(state, report.transitions);
+    if (options.explain)
+      traffic.add(state);
+  }
+  if (options.explain) {
+    reportTraffic(options.cleanUp ? "sink-loads" : "split-states", traffic);
+    sumUpExtras();
+  }
   return mlir::success();
 }
 

@@ -40,6 +40,11 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
         again += (i ? ", " : ": ") + trace.rematerialised[i];
       lines.push_back(again);
     }
+    if (trace.liveBytes != 0) {
+      const TraceTraffic &traffic = trace.steps.back().traffic;
+      lines.push_back(toText(traffic.stored) + " stored, " + toText(traffic.restored) + " restored; cost " +
+                      std::to_string(trace.extra.cost) + " of " + std::to_string(trace.plainly.cost));
+    }
   }
   for (const TransitionReport &way : function.transitions) {
     if (way.from != state)

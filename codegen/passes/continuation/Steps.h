@@ -70,6 +70,7 @@ std::vector<std::uint32_t> frameAreas(mlir::ModuleOp module);
 struct TrimmedPayload {
   std::string payload;
   std::vector<std::string> fields;
+  std::uint32_t bytesBefore = 0, bytes = 0;
 };
 
 /// TrimPayloads.cpp: takes fields out of payloads that nobody reads, and those that only the senders
@@ -148,6 +149,8 @@ struct FrameSlot {
 struct FrameLayout {
   std::vector<FrameSlot> slots; // by offset, then bit, then first use
   std::uint32_t size = 0;       // bytes
+  /// If no two values or objects shared words, nor bools.
+  std::uint32_t unshared = 0;
   /// No frame is smaller: the most that is alive at one trace.
   std::uint32_t lowerBound = 0;
 };

@@ -15,6 +15,7 @@
 // sets before, has to have its place all the same: so each field that is left is passed both ways.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Layout.h"
 #include "codegen/passes/continuation/Steps.h"
 
 #include "mlir/IR/Dominance.h"
@@ -41,7 +42,7 @@ public:
       : module(module), type(type), uses(type.getFieldNames().size()) {}
 
   /// The names of the fields that are not passed any more.
-  std::vector<std::string> run();
+  TrimmedPayload run();
 
 private:
   bool findBases();
@@ -50,7 +51,7 @@ private:
   llvm::SmallVector<ir::FieldOp> accessesOf(unsigned field);
   void makeVariables(unsigned field);
   void eraseAccesses(unsigned field);
-  void changeType(llvm::ArrayRef<unsigned> kept);
+  ir::StructType changeType(llvm::ArrayRef<unsigned> kept);
 
   mlir::ModuleOp module;
   ir::StructType type;
@@ -158,20 +159,21 @@ void PayloadTrimmer::eraseAccesses(unsigned field) {
     op->erase();
 }
 
-void PayloadTrimmer::changeType(llvm::ArrayRef<unsigned> kept) {
+ir::StructType PayloadTrimmer::changeType(llvm::ArrayRef<unsigned> kept) {
   llvm::SmallVector<mlir::StringAttr> names;
   llvm::SmallVector<mlir::Type> types;
   for (unsigned field : kept) {
     names.push_back(type.getFieldNames()[field]);
     types.push_back(type.getFieldTypes()[field]);
   }
-  const mlir::Type smaller = ir::PtrType::get(
-      ir::StructType::get(type.getContext(), type.getName(), names, types));
+  const auto smaller = ir::StructType::get(type.getContext(), type.getName(), names, types);
   for (mlir::Operation *base : bases)
-    base->getResult(0).setType(smaller);
+    base->getResult(0).setType(ir::PtrType::get(smaller));
+  return smaller;
 }
 
-std::vector<std::string> PayloadTrimmer::run() {
+/// Without fields if nothing is taken out.
+TrimmedPayload PayloadTrimmer::run() {
   if (!findBases())
     return {};
   for (mlir::Operation *base : bases)
@@ -194,8 +196,7 @@ std::vector<std::string> PayloadTrimmer::run() {
     else if (!uses[field].byPrograms)
       makeVariables(field);
   }
-  changeType(kept);
-  return dropped;
+  return {type.getName().str(), std::move(dropped), ir::sizeInBytes(type), ir::sizeInBytes(changeType(kept))};
 }
 
 } // namespace
@@ -211,10 +212,9 @@ std::vector<TrimmedPayload> trimPayloads(mlir::ModuleOp module) {
   if (!isLinked) // other classes may come that read the rest
     return trimmed;
   for (mlir::Type type : types) {
-    auto payload = llvm::cast<ir::StructType>(type);
-    std::vector<std::string> fields = PayloadTrimmer(module, payload).run();
-    if (!fields.empty())
-      trimmed.push_back({payload.getName().str(), std::move(fields)});
+    TrimmedPayload payload = PayloadTrimmer(module, llvm::cast<ir::StructType>(type)).run();
+    if (!payload.fields.empty())
+      trimmed.push_back(std::move(payload));
   }
   return trimmed;
 }

@@ -113,6 +113,9 @@ func.func @Fan.miss(%self: !rtsl.ref<"Fan">) attributes {rtsl.class = "Fan", rts
 // REPORT: Fan.miss: 2 states, frame of 4 bytes
 // REPORT-NEXT:   trace at talk.mlir:{{[0-9]+}}:8, resumes at Fan.miss.state1
 // REPORT-NEXT:     live           28 bytes: one, iend, direction, node, i
+// REPORT-NEXT:     rematerialised 24 bytes: one, iend, direction, node
 // REPORT-NEXT:     saved          4 bytes: i
-// REPORT-NEXT:     rematerialised 4: one, iend, direction, node (about 2 instructions)
+// REPORT-NEXT:     stored         4 bytes
+// REPORT-NEXT:     restored       4 bytes
+// REPORT-NEXT:     extra          1 operation again, 1 store, 1 load, cost 14; of plain liveness 5 stores, 5 loads, cost 84
 // REPORT-NEXT:   slot 0 to 4: i

@@ -1,0 +1,89 @@
+//===- FrameTraffic.cpp - what states move between registers and frame ----===//
+#include "codegen/passes/continuation/FrameTraffic.h"
+
+#include "codegen/ir/Layout.h"
+
+#include <algorithm>
+#include <set>
+
+namespace rtsl::continuation {
+
+namespace {
+
+/// Bytes of the values that the block's operations of this kind move; a word of bools counts once.
+template <typename Op> std::uint32_t bytesIn(mlir::Block &block) {
+  std::uint32_t bytes = 0;
+  std::set<std::uint32_t> wordsOfBools;
+  for (Op op : block.getOps<Op>()) {
+    if (op.getBit()) {
+      bytes += wordsOfBools.insert(op.getOffset()).second ? 4 : 0;
+      continue;
+    }
+    if constexpr (std::is_same_v<Op, ir::FrameLoadOp>)
+      bytes += ir::sizeInBytes(op.getResult().getType());
+    else
+      bytes += ir::sizeInBytes(op.getValue().getType());
+  }
+  return bytes;
+}
+
+/// What is loaded on the ways through the state that load least and most. No loop loads, so both are
+/// there after as many rounds as there are blocks.
+BytesRange loadedOnWays(FuncOp state) {
+  llvm::DenseMap<mlir::Block *, BytesRange> upTo;
+  BytesRange ways = {~0u, 0};
+  bool changed = true;
+  for (std::size_t round = 0; changed && round <= state.getBody().getBlocks().size(); ++round) {
+    changed = false;
+    for (mlir::Block &block : state.getBody()) {
+      const std::uint32_t own = bytesIn<ir::FrameLoadOp>(block);
+      BytesRange range = {~0u, 0};
+      for (mlir::Block *predecessor : block.getPredecessors())
+        if (auto before = upTo.find(predecessor); before != upTo.end())
+          range = {std::min(range.least, before->second.least), std::max(range.most, before->second.most)};
+      if (block.isEntryBlock())
+        range.least = 0;
+      else if (range.least == ~0u)
+        continue; // nothing is known of what comes before
+      range = {range.least + own, range.most + own};
+      auto [at, isNew] = upTo.try_emplace(&block, range);
+      changed |= isNew || at->second.least != range.least || at->second.most != range.most;
+      at->second = range;
+    }
+  }
+  for (auto &[block, range] : upTo)
+    if (block->hasNoSuccessors())
+      ways = {std::min(ways.least, range.least), std::max(ways.most, range.most)};
+  return ways.least == ~0u ? BytesRange{0, 0} : ways;
+}
+
+} // namespace
+
+void FrameTraffic::add(FuncOp state) {
+  TraceTraffic &behind = traffic[state.getSymName()];
+  behind.restored = loadedOnWays(state);
+  state.walk([&](ir::FrameLoadOp) { ++behind.loads; });
+
+  const auto storesBefore = [&](mlir::Operation *suspends, llvm::StringRef resume) {
+    mlir::Block &block = *suspends->getBlock();
+    const std::uint32_t bytes = bytesIn<ir::FrameStoreOp>(block);
+    const auto stores = llvm::range_size(block.getOps<ir::FrameStoreOp>());
+    TraceTraffic &at = traffic[resume];
+    at.stored = at.isStored ? BytesRange{std::min(at.stored.least, bytes), std::max(at.stored.most, bytes)}
+                            : BytesRange{bytes, bytes};
+    at.stores = std::max(at.stores, static_cast<unsigned>(stores));
+    at.isStored = true;
+  };
+  state.walk([&](mlir::Operation *op) {
+    if (auto next = llvm::dyn_cast<ir::NextOp>(op); next && next.getTransition() == ir::Transition::Trace)
+      storesBefore(op, *next.getState());
+    else if (auto call = llvm::dyn_cast<ir::EnterOp>(op); call && call.getResume())
+      storesBefore(op, *call.getResume());
+  });
+}
+
+TraceTraffic FrameTraffic::at(llvm::StringRef state) const {
+  return traffic.lookup(state);
+}
+
+} // namespace rtsl::continuation
