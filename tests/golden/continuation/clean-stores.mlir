@@ -62,3 +62,15 @@ func.func @moved(%x: f32) -> i32 {
   %n = rtsl.next trace @s
   rtsl.end %n
 }
+
+// An object lies over the slot at other times, so it may have been written since: the store stays.
+// CHECK-LABEL: func.func @shared
+// CHECK:        rtsl.frame_store
+func.func @shared() -> i32 {
+  %c = rtsl.trace_result : vector<3xf32>
+  %w = rtsl.frame_load "w"[0] {rtsl.shared} : f32
+  rtsl.frame_store %w, "w"[0] {rtsl.shared} : f32
+  rtsl.spawn %c, %c
+  %n = rtsl.next trace @s
+  rtsl.end %n
+}

@@ -55,3 +55,19 @@ func.func @state(%p: i1) -> i32 {
   %n = rtsl.next done
   rtsl.end %n
 }
+
+// An object lies over the slot at other times and may be written before the use: the load stays where the state begins.
+// CHECK-LABEL: func.func @shared
+// CHECK-NEXT:   rtsl.frame_load "w"[0] {rtsl.shared} : f32
+// CHECK-NEXT:   cf.cond_br
+func.func @shared(%p: i1) -> i32 {
+  %w = rtsl.frame_load "w"[0] {rtsl.shared} : f32
+  cf.cond_br %p, ^yes, ^no
+^yes:
+  %d = arith.addf %w, %w : f32
+  %a = rtsl.to_sint %d : f32
+  rtsl.end %a
+^no:
+  %n = rtsl.next done
+  rtsl.end %n
+}
