@@ -18,6 +18,11 @@
 // needed behind the traces before it; therefore plans and liveness are computed in turn until
 // neither changes. Arguments of blocks are never recomputed.
 //
+// That each trace's choice is the cheapest for it does not make all of them together the cheapest: a
+// value that is saved for less here may have to be saved at the traces before only for that. So
+// afterwards one after the other is forbidden to be saved at one trace, and if all plans together
+// are cheaper without, it stays so.
+//
 // In strict SSA an operand of a value cannot be defined anew while the value is live (its
 // definition dominates that of the value, which dominates all uses), so what is recomputed from
 // operands as they are behind the trace is the same value, in loops too.
@@ -60,11 +65,17 @@ private:
   struct Decision {
     BitVector needed, saved, recomputed;
   };
-  mlir::LogicalResult decide(ir::SuspendOp suspend, Decision &decision);
+  /// One a trace.
+  using Decisions = llvm::SmallVector<Decision>;
+  mlir::LogicalResult decideAll(Decisions &decisions);
+  mlir::LogicalResult decide(std::size_t trace, Decision &decision);
+  mlir::LogicalResult complain(ir::SuspendOp suspend, llvm::ArrayRef<unsigned> values,
+                               llvm::ArrayRef<ValueNode> nodes);
+  void improveTogether(Decisions &decisions);
+  std::int64_t costOf(const Decisions &decisions);
   llvm::ArrayRef<unsigned> operandsOf(unsigned value);
-  std::int64_t costOfSaving(Value value, std::int64_t traceFrequency);
-  std::int64_t costOfRecomputing(unsigned number, ir::SuspendOp suspend,
-                                 std::int64_t traceFrequency);
+  std::int64_t costOfSaving(unsigned number, std::size_t trace);
+  std::int64_t costOfRecomputing(unsigned number, std::size_t trace);
   std::int64_t frequency(mlir::Block *block) { return loopFrequency(loops.getLoopDepth(block)); }
   void dropUnneeded(Decision &decision, const BitVector &needed);
 
@@ -76,6 +87,8 @@ private:
   mlir::DominanceInfo dominance;
   mlir::CFGLoopInfo loops;
   Value object; // a parameter of every state
+  llvm::SmallVector<ir::SuspendOp> suspends = suspendsOf(function);
+  llvm::SmallVector<BitVector> forbidden; // what is not saved at each trace, whatever that costs; empty: nothing
   std::vector<std::optional<llvm::SmallVector<unsigned, 4>>> operandNumbers; // made when asked for
   std::vector<std::int64_t> costs; // of executing what makes a value once; -1: not asked for yet
 };
@@ -94,15 +107,16 @@ llvm::ArrayRef<unsigned> Planner::operandsOf(unsigned value) {
 }
 
 /// An address, and an index that has been made of an i32, have no place in a frame.
-std::int64_t Planner::costOfSaving(Value value, std::int64_t traceFrequency) {
-  if (!ir::isValueType(value.getType()))
+std::int64_t Planner::costOfSaving(unsigned number, std::size_t trace) {
+  Value value = liveness.values()[number];
+  if (!ir::isValueType(value.getType()) || (!forbidden.empty() && forbidden[trace].test(number)))
     return impossible;
-  return saveCost(value.getType(), frequency(value.getParentBlock()), traceFrequency);
+  return saveCost(value.getType(), frequency(value.getParentBlock()),
+                  frequency(suspends[trace]->getBlock()));
 }
 
 /// `impossible` where saving is not dearer: then nothing that a value is made of need be looked at.
-std::int64_t Planner::costOfRecomputing(unsigned number, ir::SuspendOp suspend,
-                                        std::int64_t traceFrequency) {
+std::int64_t Planner::costOfRecomputing(unsigned number, std::size_t trace) {
   Value value = liveness.values()[number];
   if (options.onlyAddresses && ir::isValueType(value.getType()))
     return impossible;
@@ -111,22 +125,21 @@ std::int64_t Planner::costOfRecomputing(unsigned number, ir::SuspendOp suspend,
     return impossible;
   if (costs[number] < 0)
     costs[number] = recomputeCost(op);
-  const std::int64_t cost = costs[number] * traceFrequency;
-  if (cost >= costOfSaving(value, traceFrequency) || !recompute.isPossible(op, suspend))
+  const std::int64_t cost = costs[number] * frequency(suspends[trace]->getBlock());
+  if (cost >= costOfSaving(number, trace) || !recompute.isPossible(op, suspends[trace]))
     return impossible;
   return cost;
 }
 
 /// The cheapest way to have `decision.needed` behind the suspend.
-mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
+mlir::LogicalResult Planner::decide(std::size_t trace, Decision &decision) {
   // Everything from which something needed can be recomputed.
-  const std::int64_t traceFrequency = frequency(suspend->getBlock());
   llvm::DenseMap<unsigned, std::int64_t> recomputing;
   BitVector reached = decision.needed;
   llvm::SmallVector<unsigned> worklist(reached.set_bits_begin(), reached.set_bits_end());
   while (!worklist.empty()) {
     unsigned value = worklist.pop_back_val();
-    const std::int64_t cost = costOfRecomputing(value, suspend, traceFrequency);
+    const std::int64_t cost = costOfRecomputing(value, trace);
     if (cost == impossible)
       continue;
     recomputing[value] = cost;
@@ -145,7 +158,7 @@ mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
     ValueNode &node = nodes[index];
     nodeOf[number] = index;
     node.needed = decision.needed.test(number);
-    node.saveCost = costOfSaving(liveness.values()[number], traceFrequency);
+    node.saveCost = costOfSaving(number, trace);
     auto cost = recomputing.find(number);
     if (cost == recomputing.end())
       continue;
@@ -156,16 +169,8 @@ mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
 
   Choice choice = chooseSaved(nodes);
   decision.saved = decision.recomputed = liveness.none();
-  if (!choice.feasible) {
-    for (auto [index, number] : llvm::enumerate(values)) {
-      Value value = liveness.values()[number];
-      if (nodes[index].saveCost == impossible && nodes[index].recomputeCost == impossible)
-        return mlir::emitError(suspend.getLoc())
-               << "the address `" << sourceName(value)
-               << "` is used after a trace and cannot be computed again there";
-    }
-    return mlir::emitError(suspend.getLoc()) << "an address cannot be kept across a trace";
-  }
+  if (!choice.feasible)
+    return forbidden.empty() ? complain(suspends[trace], values, nodes) : mlir::failure();
   for (auto [index, number] : llvm::enumerate(values)) {
     if (choice.saved[index])
       decision.saved.set(number);
@@ -173,6 +178,16 @@ mlir::LogicalResult Planner::decide(ir::SuspendOp suspend, Decision &decision) {
       decision.recomputed.set(number);
   }
   return mlir::success();
+}
+
+mlir::LogicalResult Planner::complain(ir::SuspendOp suspend, llvm::ArrayRef<unsigned> values,
+                                      llvm::ArrayRef<ValueNode> nodes) {
+  for (auto [number, node] : llvm::zip(values, nodes))
+    if (node.saveCost == impossible && node.recomputeCost == impossible)
+      return mlir::emitError(suspend.getLoc())
+             << "the address `" << sourceName(liveness.values()[number])
+             << "` is used after a trace and cannot be computed again there";
+  return mlir::emitError(suspend.getLoc()) << "an address cannot be kept across a trace";
 }
 
 /// Keeps of a decision what is needed in the end, directly or for something recomputed.
@@ -194,9 +209,8 @@ void Planner::dropUnneeded(Decision &decision, const BitVector &needed) {
   decision.recomputed &= kept;
 }
 
-mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
-  llvm::SmallVector<ir::SuspendOp> suspends = suspendsOf(function);
-  llvm::SmallVector<Decision> decisions(suspends.size());
+mlir::LogicalResult Planner::decideAll(Decisions &decisions) {
+  decisions.resize(suspends.size());
   for (Decision &decision : decisions)
     decision.needed = decision.saved = decision.recomputed = liveness.none();
 
@@ -221,7 +235,7 @@ mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
         continue;
       changed = isStale = true;
       decisions[i].needed = needed;
-      if (mlir::failed(decide(suspends[i], decisions[i])))
+      if (mlir::failed(decide(i, decisions[i])))
         return mlir::failure();
     }
   }
@@ -236,6 +250,76 @@ mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
       changed |= saved != decision.saved;
     }
   }
+  return mlir::success();
+}
+
+std::int64_t Planner::costOf(const Decisions &decisions) {
+  std::int64_t cost = 0;
+  for (auto [trace, decision] : llvm::enumerate(decisions)) {
+    for (unsigned number : decision.saved.set_bits())
+      cost += costOfSaving(number, trace);
+    for (unsigned number : decision.recomputed.set_bits())
+      cost += costs[number] * frequency(suspends[trace]->getBlock());
+  }
+  return cost;
+}
+
+/// How much is tried to make all plans together cheaper: values by traces, each time.
+static constexpr std::size_t mostTried = 20000;
+
+void Planner::improveTogether(Decisions &decisions) {
+  std::size_t triesLeft = mostTried / (liveness.values().size() * suspends.size());
+  std::int64_t best = costOf(decisions);
+  forbidden.assign(suspends.size(), liveness.none());
+  const auto isNeededElsewhere = [&](unsigned number, std::size_t trace) {
+    for (auto [other, decision] : llvm::enumerate(decisions))
+      if (other != trace && decision.needed.test(number))
+        return true;
+    return false;
+  };
+  bool improved = true;
+  while (improved) { // one saving less may make another worth it
+    improved = false;
+    for (std::size_t trace = suspends.size(); trace-- > 0;) {
+      const BitVector candidates = decisions[trace].saved;
+      for (unsigned number : candidates.set_bits()) {
+        if (!decisions[trace].saved.test(number) || !isNeededElsewhere(number, trace))
+          continue;
+        // What is then saved in its place is forbidden in turn.
+        const BitVector before = forbidden[trace];
+        BitVector next = liveness.none();
+        next.set(number);
+        bool isBetter = false;
+        while (!isBetter && next.any()) {
+          if (triesLeft-- == 0) {
+            forbidden[trace] = before;
+            return;
+          }
+          forbidden[trace] |= next;
+          Decisions without;
+          if (mlir::failed(decideAll(without)))
+            break;
+          next = without[trace].saved;
+          next.reset(decisions[trace].saved);
+          if (const std::int64_t cost = costOf(without); cost < best) {
+            isBetter = improved = true;
+            best = cost;
+            decisions = std::move(without);
+          }
+        }
+        if (!isBetter)
+          forbidden[trace] = before;
+      }
+    }
+  }
+}
+
+mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
+  Decisions decisions;
+  if (mlir::failed(decideAll(decisions)))
+    return mlir::failure();
+  if (suspends.size() > 1 && !options.onlyAddresses)
+    improveTogether(decisions);
 
   llvm::SmallVector<SuspendPlan> plans;
   for (auto [suspend, decision] : llvm::zip(suspends, decisions))
