@@ -130,6 +130,8 @@ bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendO
     return known->second;
   bool fixed = llvm::is_contained(fixedState, state);
   auto writes = [&](mlir::Operation *op) {
+    if (llvm::isa<ir::IlluminateOp>(op) && state == "HitPoint")
+      return false; // whatever lights do: it is put back (illuminate in runtime/device/Classic.h)
     StateWrites found = summary.of(op);
     return found.names.contains(state) || (found.any && !fixed);
   };

@@ -60,8 +60,18 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
         << "for methods call themselves through them\n";
 }
 
-static std::string list(const std::vector<std::string> &names) {
-  return names.empty() ? "" : ": " + llvm::join(names, ", ");
+/// "constant", or "constant.2": one that the author has not named.
+static bool isConstant(llvm::StringRef name) {
+  return name == "constant" || name.starts_with("constant.");
+}
+
+std::string listOf(const std::vector<std::string> &names) {
+  const auto constants = llvm::count_if(names, isConstant);
+  std::vector<std::string> shown;
+  if (constants != 0)
+    shown.push_back(constants == 1 ? "a constant" : std::to_string(constants) + " constants");
+  llvm::copy_if(names, std::back_inserter(shown), [](const std::string &name) { return !isConstant(name); });
+  return shown.empty() ? "" : ": " + llvm::join(shown, ", ");
 }
 
 std::string toText(const BytesRange &range) {
@@ -80,12 +90,12 @@ static std::string describe(const ExtraReport &extra) {
 
 /// What is live, and how much of it is left after each optimisation.
 static void writeTrace(llvm::raw_ostream &out, const TraceReport &trace) {
-  out << "    live           " << trace.liveBytes << " bytes" << list(trace.live) << "\n";
+  out << "    live           " << trace.liveBytes << " bytes" << listOf(trace.live) << "\n";
   for (const StepReport &step : trace.steps)
     if (llvm::StringRef(step.step) == "trim-vectors" && step.savedBytes != trace.liveBytes)
       out << "    trimmed        " << step.savedBytes << " bytes\n";
-  out << "    rematerialised " << trace.rematerialisedBytes << " bytes" << list(trace.rematerialised) << "\n";
-  out << "    saved          " << trace.savedBytes << " bytes" << list(trace.saved) << "\n";
+  out << "    rematerialised " << trace.rematerialisedBytes << " bytes" << listOf(trace.rematerialised) << "\n";
+  out << "    saved          " << trace.savedBytes << " bytes" << listOf(trace.saved) << "\n";
   if (trace.liveBytes == 0 && trace.savedBytes == 0)
     return;
   const TraceTraffic &traffic = trace.steps.back().traffic;

@@ -19,6 +19,9 @@ struct BytesRange {
   std::uint32_t least = 0, most = 0;
 };
 
+/// ": 2 constants, normal, sum" of these names of values; "" if there are none.
+std::string listOf(const std::vector<std::string> &names);
+
 /// "4 bytes", "0 to 4 bytes".
 std::string toText(const BytesRange &range);
 

@@ -29,17 +29,10 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
     const std::string place = trace.place.text();
     const std::string what = trace.callee.empty() ? "trace" : "call of " + trace.callee;
     lines.push_back(place.empty() ? "behind a " + what : "behind the " + what + " at " + place);
-    std::string saved = std::to_string(trace.savedBytes) + " of " + std::to_string(trace.liveBytes) +
-                        " bytes saved";
-    for (std::size_t i = 0; i < trace.saved.size(); ++i)
-      saved += (i ? ", " : ": ") + trace.saved[i];
-    lines.push_back(saved);
-    if (!trace.rematerialised.empty()) {
-      std::string again = "computed again";
-      for (std::size_t i = 0; i < trace.rematerialised.size(); ++i)
-        again += (i ? ", " : ": ") + trace.rematerialised[i];
-      lines.push_back(again);
-    }
+    lines.push_back(std::to_string(trace.savedBytes) + " of " + std::to_string(trace.liveBytes) + " bytes saved" +
+                    listOf(trace.saved));
+    if (!trace.rematerialised.empty())
+      lines.push_back("computed again" + listOf(trace.rematerialised));
     if (trace.liveBytes != 0) {
       const TraceTraffic &traffic = trace.steps.back().traffic;
       lines.push_back(toText(traffic.stored) + " stored, " + toText(traffic.restored) + " restored; cost " +

@@ -190,3 +190,19 @@ func.func @index(%v: vector<3xf32>, %i: i32) -> f32 {
   %x = vector.extract %v[%index] : f32 from vector<3xf32>
   return %x : f32
 }
+
+// What a light that is not known yet leaves in the ray's state cannot be told, but the point that was hit is put back.
+// CHECK-LABEL: func.func @lights
+// CHECK:        rtsl.suspend %{{.*}}, %{{.*}}, ^bb1(%{{.*}} : vector<3xf32>) names ["GeometricNormal"]
+// CHECK-NEXT: ^bb1(
+// CHECK:        rtsl.state "HitPoint"
+// CHECK-NEXT:   rtsl.load
+func.func @lights(%i: i32) -> (vector<3xf32>, vector<3xf32>) {
+  %place = rtsl.state "HitPoint" : !rtsl.ptr<vector<3xf32>>
+  %p = rtsl.load %place : !rtsl.ptr<vector<3xf32>>
+  %normal = rtsl.state "GeometricNormal" : !rtsl.ptr<vector<3xf32>>
+  %n = rtsl.load %normal : !rtsl.ptr<vector<3xf32>>
+  %lit = rtsl.illuminate %i, %p
+  %c = rtsl.trace %p, %n : vector<3xf32>
+  return %p, %n : vector<3xf32>, vector<3xf32>
+}
