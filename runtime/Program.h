@@ -107,7 +107,9 @@ struct Program {
     /// Without `run` traces are calls.
     struct States {
       std::int32_t (*run)(RtslState *, std::int32_t number, RtslRef object, void *frame) = nullptr;
-      std::int32_t frameSize = 0;                  // bytes of the largest frame
+      std::int32_t frameSize = 0;                  // bytes of the largest frame of a method that the runtime starts
+      std::uint32_t calledMethods = 0;             // that are called through references, on frames of their own,
+      std::uint32_t calledFrameSize = 0;           // bytes of the largest of these, a multiple of 8
       // The states in which methods begin; 0: there is none.
       std::int32_t shadeFirst = 0, missFirst = 0, closestHitFirst = 0, missWithPayloadFirst = 0, generateFirst = 0;
     } states;

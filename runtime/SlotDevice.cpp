@@ -15,9 +15,27 @@
 
 namespace {
 
-/// What the slots of a ray's program are.
-const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) {
-  return static_cast<const rtsl::runtime::ProgramHost *>(state->launch->host)->slots;
+/// What the slots of a program are.
+const rtsl::runtime::Program::Slots &slotsOf(const RtslLaunch *launch) {
+  return static_cast<const rtsl::runtime::ProgramHost *>(launch->host)->slots;
+}
+const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) { return slotsOf(state->launch); }
+
+/// What stands where the frame of a method begins that was called.
+struct CallHeader {
+  int32_t resume; // the state in which the caller goes on
+  RtslRef object; // the caller's
+  uint32_t below; // bytes from the beginning of the caller's frame
+};
+static_assert(offsetof(CallHeader, resume) == RTSL_CALL_RESUME && offsetof(CallHeader, object) == RTSL_CALL_OBJECT &&
+              offsetof(CallHeader, below) == RTSL_CALL_BELOW && sizeof(CallHeader) <= RTSL_CALL_HEADER);
+
+/// Bytes of all frames of a level. Calls that lead round in a circle go down a chain of references, so each method may be
+/// there once for each object of the longest.
+uint64_t frameBytes(const RtslLaunch *launch) {
+  const auto &states = slotsOf(launch).states;
+  const uint64_t own = (uint64_t(states.frameSize) + 7) / 8 * 8;
+  return own + (uint64_t(launch->referenceChain) + 1) * states.calledMethods * states.calledFrameSize;
 }
 
 } // namespace
@@ -44,10 +62,24 @@ int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *f
   return slotsOf(state).states.run(state, number, object, frame);
 }
 int32_t rtsl_frame_size(RtslState *state, int32_t) {
-  return slotsOf(state).states.frameSize;
+  return int32_t(frameBytes(state->launch));
 }
-int32_t rtsl_calls(RtslState *) { // methods called through references are C++ functions
-  return 0;
+int32_t rtsl_calls(RtslState *state) {
+  return slotsOf(state).states.calledMethods != 0;
+}
+void *rtsl_call(RtslState *state, const void *end, int32_t resume, RtslRef object) {
+  auto &level = *reinterpret_cast<device::Level *>(state);
+  char *frame = static_cast<char *>(device::frameOf(&level));
+  const uint64_t size = end ? uint64_t(static_cast<const char *>(end) - frame) : 0;
+  const auto below = uint32_t((size + 7) / 8 * 8); // it may hold addresses
+  new (frame + below) CallHeader{resume, level.object, below};
+  rtsl_move_frame(state, int32_t(below), object);
+  return frame + below + RTSL_CALL_HEADER;
+}
+int32_t rtsl_return(RtslState *state) {
+  const CallHeader call = *static_cast<CallHeader *>(device::frameOf(reinterpret_cast<device::Level *>(state)));
+  rtsl_move_frame(state, -int32_t(call.below), call.object);
+  return -call.resume;
 }
 int32_t rtsl_rt_Material_shade_first(RtslState *state) {
   return slotsOf(state).states.shadeFirst;
@@ -79,11 +111,10 @@ int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state) {
 /// rtsl_sample of such a program, with calls or with the machine.
 void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
-  const auto &states = static_cast<const rtsl::runtime::ProgramHost *>(launch->host)->slots.states;
-  if (!states.run)
+  if (!slotsOf(launch).states.run)
     return launch->rayGeneration ? rtsl_generate(launch, x, y, sample, color) : rtsl_sample(launch, x, y, sample, color);
   const uint64_t levels = uint64_t(launch->maxDepth) + (launch->rayGeneration ? 2 : 1);
-  void *stack = rtsl_machine_stack(levels * device::levelSize(uint64_t(states.frameSize)));
+  void *stack = rtsl_machine_stack(levels * device::levelSize(frameBytes(launch)));
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);
   else

@@ -16,8 +16,11 @@ namespace rtsl::cpp {
 ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
                              const StateProgram *states)
     : module(module), options(options), names(module),
-      effects(module, options.prints, options.exceptions && options.checkIndices), notes(diagnostics.sources()), states(states),
-      diagnostics(diagnostics) {}
+      effects(module, options.prints, options.exceptions && options.checkIndices), notes(diagnostics.sources()), tracing(module), states(states),
+      diagnostics(diagnostics) {
+  if (states)
+    findCalledMethods();
+}
 
 void ModulePrinter::unsupported(SourceRange range, const std::string &what) {
   diagnostics.report(rtsl::Code::notSupportedYet, range, what);
@@ -236,7 +239,7 @@ bool ModulePrinter::overrides(const typed::Function &function) const {
     return false;
   for (const typed::Class *base = function.owner->base; base; base = base->base)
     for (const auto &method : base->functions)
-      if (method->name == function.name && lowering::sameParameters(*method, function))
+      if (method->name == function.name && lowering::sameParameters(*method, function) && !isPartOfStates(*method))
         return isOverridden(*method);
   return false;
 }
@@ -244,12 +247,12 @@ bool ModulePrinter::overrides(const typed::Function &function) const {
 // Only what the author's own code calls on the object itself needs C++'s dispatch: the runtime and
 // references know the class.
 bool ModulePrinter::isOverridden(const typed::Function &function) const {
-  if (function.isConstructor || !function.owner || function.isStateMethod)
+  if (function.isConstructor || !function.owner || function.isStateMethod || isPartOfStates(function))
     return false;
   for (const auto &definition : module.classes)
     if (definition.get() != function.owner && definition->derivesFrom(function.owner))
       for (const auto &method : definition->functions)
-        if (method->name == function.name && lowering::sameParameters(*method, function))
+        if (method->name == function.name && lowering::sameParameters(*method, function) && !isPartOfStates(*method))
           return true;
   return false;
 }
@@ -344,9 +347,10 @@ std::string ModulePrinter::freeFunctions() {
   }
   std::string text;
   for (const typed::Function *function : prototypes)
-    text += signature(*function, false) + ";\n";
+    if (!isPartOfStates(*function))
+      text += signature(*function, false) + ";\n";
   for (const auto &function : module.functions)
-    if (function->body)
+    if (function->body && !isPartOfStates(*function))
       text += "\n" + this->function(*function, false);
   return text;
 }
@@ -402,14 +406,15 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
   for (const auto &function : definition.functions)
     for (const typed::Class *at = definition.base; at; at = at->base)
       for (const auto &method : at->functions)
-        if (method->name == function->name && !method->isConstructor &&
+        if (method->name == function->name && !method->isConstructor && !isPartOfStates(*method) && !isPartOfStates(*function) &&
             !lowering::sameParameters(*method, *function) && shown.insert(method->name).second)
           text += "\nusing " + names.of(at) + "::" + names.of(method.get()) + ";\n";
   for (const auto &function : definition.functions) {
-    if (!function->body || isPartOfStates(definition, *function))
+    const bool isMachine = function->body && isSplit(definition, *function);
+    if (!function->body || (isPartOfStates(*function) && !isMachine))
       continue;
     text += (isFirst ? "" : "\n") +
-            (isSplit(definition, *function) ? stateMachine(definition, *function) : this->function(*function, true));
+            (isMachine ? stateMachine(definition, *function) : this->function(*function, true));
     isFirst = false;
   }
   return text + inheritedStateMachines(definition) + "};\n";
@@ -420,8 +425,6 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
 //===----------------------------------------------------------------------===//
 
 std::string ModulePrinter::run() {
-  if (states)
-    refuseTracesThroughReferences();
   placeAttributes();
   numberRayTypes();
   // From the inside out: what functions ask for is known when they have been printed.
@@ -444,6 +447,8 @@ std::string ModulePrinter::run() {
                      "// and its options.\n#define RTSL_FAST\n"
                    : "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math it computes what rtslc's own\n"
                      "// machine code computes, to the last bit.\n";
+  if (!options.whyCalls.empty()) // without the advice in parentheses
+    text += "//\n// Rays are calls, not the ends of states: " + options.whyCalls.substr(0, options.whyCalls.find(" (")) + ".\n";
   if (!options.checkIndices)
     text += "#define RTSL_UNCHECKED // indices are trusted (--unchecked)\n";
   text += "#include <rtsl/shader.h>\n\n";
@@ -454,6 +459,8 @@ std::string ModulePrinter::run() {
     if (!part.empty())
       text += (part.front() == '\n' ? "" : "\n") + part;
   };
+  if (!calledMethods.empty()) // what they are given says where they begin
+    add(stepNumbers());
   add(references);
   add(structs);
   add(constants);
@@ -466,7 +473,8 @@ std::string ModulePrinter::run() {
         ids.push_back(fmt::format("{} = {}", names.of(definition.get()), next++));
       return join(ids, ", ");
     }()));
-  add(stepNumbers());
+  if (calledMethods.empty())
+    add(stepNumbers());
   add(classes);
   add(methods);
   add(entries);

@@ -22,6 +22,7 @@ struct Options {
   bool prints = false;               // `print` prints; otherwise it is left out
   bool exceptions = false;           // samples end at what docs/language.md calls an exception
   bool checkIndices = true;
+  std::string whyCalls;              // what states cannot show, so that traces are calls though nobody asked; empty: nothing
   bool fast = false;                 // RTSL_FAST: the C++ compiler may change last digits (docs/fast.md)
 };
 

@@ -77,12 +77,15 @@ static std::string parameterList(ModulePrinter &printer, const typed::Function &
 
 std::string ModulePrinter::references() {
   std::string text;
-  std::set<std::string> declared; // structs that signatures mention
+  for (const CalledMethod &called : calledMethods)
+    referenced.try_emplace(called.definition->name);
+  bool mentionsStructs = !calledMethods.empty();
+  for (const auto &[className, methods] : referenced)
+    for (const ThroughReference &through : methods)
+      mentionsStructs |= through.function != nullptr;
   for (const auto &structure : module.structs)
-    for (const auto &[className, methods] : referenced)
-      for (const ThroughReference &through : methods)
-        if (through.function && declared.insert(structure->name).second)
-          text += "struct " + names.of(structure.get()) + ";\n";
+    if (mentionsStructs)
+      text += "struct " + names.of(structure.get()) + ";\n";
   for (const auto &[className, methods] : referenced) {
     text += "\n/// Any `" + className + "` of the scene.\nstruct " + names.reference(className) +
             " : rtsl::Reference {\nusing Reference::Reference;\nstatic constexpr const char *className = \"" +
@@ -95,7 +98,7 @@ std::string ModulePrinter::references() {
         text += std::string(through.method == "lookup" ? "Color" : "float") + " " + through.method +
                 "(State &rt) const;\n";
     }
-    text += "};\n";
+    text += callStructures(className) + "};\n";
   }
   return text;
 }

@@ -41,6 +41,18 @@ bool isReserved(const std::string &word) {
          word.compare(0, 5, "rtsl_") == 0;
 }
 
+/// What stands where types are named outside of the author's code: functions in the namespace `slots`, and what they call
+/// their parameters.
+static const std::set<std::string> &besideTypes() {
+  static const std::set<std::string> words = {
+#define RTSL_SLOT(base, method) #method,
+#include "runtime/device/Slots.def"
+#define RTSL_PAYLOAD_SLOT(base, method) #method "WithPayload",
+#include "runtime/device/PayloadSlots.def"
+      "runState", "ray", "object", "step", "frame", "call", "fields"};
+  return words;
+}
+
 /// Without what is reserved to the implementation.
 static std::string cleaned(std::string word) {
   for (std::size_t at; (at = word.find("__")) != std::string::npos;)
@@ -48,6 +60,15 @@ static std::string cleaned(std::string word) {
   if (word.size() > 1 && word[0] == '_' && std::isupper(static_cast<unsigned char>(word[1])))
     word.erase(0, 1);
   return word;
+}
+
+std::string unique(std::string name, std::set<std::string> &taken) {
+  for (std::size_t at; (at = name.find("__")) != std::string::npos;) // C++ keeps these for itself
+    name.erase(at, 1);
+  const std::string base = name;
+  for (unsigned i = 2; isReserved(name) || !taken.insert(name).second; ++i)
+    name = base + std::to_string(i);
+  return name;
 }
 
 /// `avoid` must not be its name; `all` are names that others have.
@@ -90,14 +111,14 @@ void Names::nameFileLevel(const typed::Module &module) {
   for (const auto &function : module.functions)
     all.insert(function->name);
 
-  auto add = [&](const void *entity, const std::string &name) {
-    give(entity, name, name, {}, all);
+  auto add = [&](const void *entity, const std::string &name, const std::set<std::string> &avoid = {}) {
+    give(entity, name, name, avoid, all);
     fileLevel.insert(names[entity]);
   };
   for (const auto &structure : module.structs)
-    add(structure.get(), structure->name);
+    add(structure.get(), structure->name, besideTypes());
   for (const auto &definition : module.classes)
-    add(definition.get(), definition->name);
+    add(definition.get(), definition->name, besideTypes());
   typeNames = fileLevel;
   for (const auto &constant : module.constants)
     add(constant.get(), constant->name);

@@ -43,6 +43,10 @@ private:
   std::set<std::string> memberNames; // of all classes, methods too
 };
 
+/// The name, or the name with a number behind it, as none of these; it is one of them then. Without two underscores in a row, which
+/// C++ keeps for itself.
+std::string unique(std::string name, std::set<std::string> &taken);
+
 /// Is the word C++'s own, a macro's, or one that generated code uses?
 bool isReserved(const std::string &word);
 

@@ -11,6 +11,7 @@
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
+#include "codegen/cpp/Tracing.h"
 
 #include <functional>
 #include <map>
@@ -54,6 +55,21 @@ struct Interval {
 struct StateProgram;
 struct FrameField;
 
+/// A method that traces and is called through references: it runs on a frame of its own, which begins with what it is
+/// given and returns.
+struct CalledMethod {
+  std::string symbol;                          // of its declaration in the IR
+  std::string slot;                            // what the IR calls it in every class
+  const typed::Class *definition = nullptr;    // the first that has it
+  const typed::Function *function = nullptr;   // and what it has
+  std::string step;                            // where it begins: `Filter_follow`
+  std::string structure;                       // of what it is given, in the references to the class: `Follow`
+  std::vector<const typed::Variable *> given;  // as the IR passes it; null: where a result goes that stays whole
+  std::vector<std::string> fields;             // of these
+  std::vector<std::int32_t> offsets;           // in the IR
+  std::string returned;                        // the field of the result; empty: there is none
+};
+
 class ModulePrinter {
 public:
   /// `states`: what traces, split; null: traces are calls.
@@ -76,6 +92,10 @@ public:
   void useThroughReference(const std::string &className, const std::string &method,
                            const typed::Function *function);
   void unsupported(SourceRange range, const std::string &what);
+  /// Of a declaration in the IR; null: there is no such method.
+  const CalledMethod *calledMethod(const std::string &symbol) const;
+  /// The struct of what it is given: `FilterRef::Follow`.
+  std::string structureOf(const CalledMethod &called) const;
   /// The C++ names that mean something in every method of a class.
   std::set<std::string> namesInScope(const typed::Class &definition) const;
 
@@ -118,15 +138,25 @@ private:
   // States.cpp
   /// Is the method printed as its states in this class? Has it become part of those of others?
   bool isSplit(const typed::Class &definition, const typed::Function &method) const;
-  bool isPartOfStates(const typed::Class &definition, const typed::Function &function) const;
-  void refuseTracesThroughReferences();
+  bool isPartOfStates(const typed::Function &function) const;
   std::string stateMachine(const typed::Class &definition, const typed::Function &method);
+  bool differsIn(const typed::Class &derived, const typed::Function &method) const;
   std::string inheritedStateMachines(const typed::Class &definition);
   std::string meaningOf(const typed::Function &method, const FrameField &field) const;
+
+  // RunState.cpp
   std::string stepNumbers() const;
   std::string runState();
   std::string describeStates() const;
   bool isRunBySteps(const std::string &slot) const; // "shade" and "miss", if anything traces
+
+  // CalledMethods.cpp
+  void findCalledMethods();
+  std::set<std::string> typeNames() const; // of the author's structs and classes
+  std::string stepName(const typed::Class &definition, const std::string &function);
+  const CalledMethod *calledMethod(const typed::Class &definition, const typed::Function &method) const;
+  std::string callStructures(const std::string &className);
+  std::string runCalledMethod(const CalledMethod &called);
 
   // Payloads.cpp
   void numberRayTypes();
@@ -155,8 +185,11 @@ private:
     std::string call; // `shadeAfterTrace1(rt, frame)`
   };
   std::vector<Step> steps;
+  std::set<std::string> stepNames;
   std::map<std::pair<const typed::Class *, std::string>, std::string> firstCalls; // by class and method
-  std::vector<std::string> frames;                                                 // the structs
+  std::vector<std::string> frames, calledFrames;                                   // the structs
+  TracingFunctions tracing;
+  std::vector<CalledMethod> calledMethods;
 
   struct RayType {
     const typed::Struct *payload;

@@ -80,6 +80,8 @@ Code StateWriter::place(mlir::Value address) {
     for (const FrameField &field : machine.frame)
       if (field.isObject && field.slot == object.getName())
         return {machine.frameName + "." + field.name};
+  if (auto argument = address.getDefiningOp<ir::CallArgumentOp>())
+    return {machine.addressName(module, machine.given(argument))};
   if (address.getDefiningOp<ir::PayloadOp>())
     return {module.names.of(machine.method->parameters.front().get())};
   if (auto field = address.getDefiningOp<ir::FieldOp>())

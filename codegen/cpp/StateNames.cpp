@@ -7,9 +7,29 @@
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 #include "llvm/ADT/TypeSwitch.h"
 
+#include <algorithm>
+
 namespace rtsl::cpp {
 
 namespace arith = mlir::arith;
+
+std::size_t Machine::given(ir::CallArgumentOp argument) const {
+  const auto at = std::find(called->offsets.begin(), called->offsets.end(), static_cast<std::int32_t>(argument.getOffset()));
+  return static_cast<std::size_t>(at - called->offsets.begin());
+}
+
+const Type *Machine::givenType(std::size_t number) const {
+  const typed::Variable *given = called->given[number];
+  return given ? given->type : method->returnType;
+}
+
+std::string Machine::addressName(const ModulePrinter &printer, std::size_t number) const {
+  if (!called->given[number])
+    return called->fields[number];
+  const std::size_t before = called->given.size() - method->parameters.size();
+  const std::string &name = printer.names.of(method->parameters[number - before].get());
+  return name.empty() ? called->fields[number] : name;
+}
 
 std::string StateWriter::freshName(std::string wanted) {
   std::string clean;
@@ -33,6 +53,8 @@ std::string nameFor(mlir::Value value) {
     return "random";
   if (llvm::isa_and_nonnull<ir::TraceResultOp>(op))
     return "traced";
+  if (llvm::isa_and_nonnull<ir::CallReturnedOp>(op))
+    return "returned";
   if (auto load = llvm::dyn_cast_or_null<ir::FrameLoadOp>(op))
     return load.getName().str();
   if (auto load = llvm::dyn_cast_or_null<ir::LoadOp>(op)) {
@@ -77,6 +99,8 @@ const Type *StateWriter::declaredType(mlir::Value address) {
   mlir::Operation *op = address.getDefiningOp();
   if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
     return machine.method->parameters.front()->type;
+  if (auto argument = llvm::dyn_cast_or_null<ir::CallArgumentOp>(op))
+    return machine.givenType(machine.given(argument));
   if (auto field = llvm::dyn_cast_or_null<ir::FieldOp>(op)) {
     const Type *base = declaredType(field.getBase());
     if (base && base->is(TypeKind::Struct))
@@ -138,6 +162,13 @@ std::string StateWriter::typeOf(mlir::Value value) {
         return std::string();
       })
       .Case<ir::TraceResultOp>([](auto) { return std::string("Color"); })
+      .Case([&](ir::CallArgumentOp argument) { return module.type(machine.givenType(machine.given(argument))); })
+      .Case([&](ir::CallReturnedOp) {
+        const auto call = machine.callBefore.find(op->getParentOfType<mlir::func::FuncOp>().getSymName().str());
+        const bool isKnown = call != machine.callBefore.end() && call->second;
+        return isKnown ? module.type(call->second->function->returnType) : std::string();
+      })
+      .Case([&](ir::CastRefOp cast) { return typeOf(cast.getObject()); })
       .Case([&](arith::SelectOp select) {
         std::string type = typeOf(select.getTrueValue());
         return type.empty() ? typeOf(select.getFalseValue()) : type;

@@ -48,6 +48,8 @@ std::string StateWriter::keyOf(mlir::Value address) {
     return "object " + object.getName().str();
   if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
     return "payload";
+  if (auto argument = llvm::dyn_cast_or_null<ir::CallArgumentOp>(op))
+    return "argument " + std::to_string(argument.getOffset());
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
     return "state " + state.getName().str();
   if (llvm::isa_and_nonnull<ir::VarOp>(op))
@@ -110,6 +112,7 @@ void StateWriter::emit(Statements &out, std::string text) {
     statement.comment = module.commentText(comment->second);
     comments.erase(comment);
   }
+  statement.hasSpace = !out.empty() && spaces.erase(currentLine) != 0;
   if (currentLine != 0)
     statement.comment += module.lineDirective(machine.method->range, currentLine);
   statement.text = std::move(text);
@@ -174,7 +177,7 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
   };
   const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
                        !continuation::authorsName(value).empty();
-  const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp>(op);
+  const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
   const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
                          (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);

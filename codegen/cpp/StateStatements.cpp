@@ -284,7 +284,7 @@ void StateWriter::joinDeclarations(Statements &statements) {
 std::string StateWriter::text(const Statements &statements) {
   std::string text;
   for (const Statement &statement : statements)
-    text += statement.comment + statement.text + "\n";
+    text += (statement.hasSpace && !text.empty() ? "\n" : "") + statement.comment + statement.text + "\n";
   return text;
 }
 
@@ -306,10 +306,13 @@ std::string StateWriter::body(mlir::func::FuncOp state) {
   usesScratch = false;
   insertions.clear();
   comments.clear();
+  spaces.clear();
   currentLine = 0;
   forEachStmt(*machine.method->body, [&](const typed::Stmt &stmt) {
     if (!stmt.comment.empty())
       comments[module.notes.line(stmt.range)] = stmt.comment;
+    if (module.notes.followsEmptyLine(stmt.range, {}))
+      spaces.insert(module.notes.line(stmt.range));
   });
   elementIndices.clear();
   constants.clear();

@@ -29,6 +29,8 @@ bool writesTo(mlir::Operation *op, mlir::Value address) {
     return copy.getTarget() == address;
   if (auto spawn = llvm::dyn_cast<ir::SpawnPayloadOp>(op))
     return spawn.getPayload() == address;
+  if (auto call = llvm::dyn_cast<ir::EnterOp>(op))
+    return llvm::is_contained(call.getOperands(), address);
   if (auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op))
     for (auto [index, operand] : llvm::enumerate(evaluation.getOperands()))
       if (operand == address && changes(evaluation, index))
@@ -104,10 +106,12 @@ void StateWriter::clear(ir::ClearOp op, Statements &out) {
   auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
   const std::string target = place(op.getAddress()).text;
   flush(touchesOf(op), out);
-  emit(out, target + " = {};");
+  const Type *type = declaredType(op.getAddress());
+  const std::string zero = type ? module.zero(type) : "{}";
+  emit(out, target + " = " + zero + ";");
   if (variable) {
     out.back().assigns = variable;
-    out.back().value = "{}";
+    out.back().value = zero;
   }
 }
 

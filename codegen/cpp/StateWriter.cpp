@@ -29,9 +29,13 @@ unsigned lineOf(mlir::Location location) {
 StateWriter::StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine)
     : module(module), source(source), machine(machine), printer(module, machine.method) {
   always = module.namesInScope(*machine.definition);
-  while (always.count(machine.frameName))
-    machine.frameName += '_';
-  always.insert(machine.frameName);
+  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
+    always.insert(machine.addressName(module, at));
+  for (std::string *name : {&machine.frameName, &machine.callName}) {
+    while (always.count(*name))
+      *name += '_';
+    always.insert(*name);
+  }
 }
 
 void StateWriter::unsupported(mlir::Operation &op) {
@@ -103,6 +107,20 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
         flush(touches, out);
         define(op, {"rtsl::rand(rt)"}, touches, false, out);
       })
+      .Case([&](ir::CallArgumentOp argument) {
+        if (!llvm::isa<ir::PtrType>(argument.getType()))
+          define(op, {machine.frameName + "." + machine.called->fields[machine.given(argument)]}, {}, true, out);
+      })
+      .Case([&](ir::CallResultOp result) {
+        const std::string value = bind(use(result.getValue(), module.type(machine.method->returnType)), Binding::Assignment);
+        emit(out, machine.frameName + "." + machine.called->returned + " = " + value + ";");
+      })
+      .Case([&](ir::CallReturnedOp) {
+        const auto call = machine.callBefore.find(op.getParentOfType<mlir::func::FuncOp>().getSymName().str());
+        if (op.getNumResults() != 0 && call->second)
+          define(op, {machine.callName + "." + call->second->returned}, {}, true, out);
+      })
+      .Case([&](ir::CastRefOp cast) { pure(use(cast.getObject())); })
       .Case([&](ir::TraceResultOp) { define(op, {"rtsl::traced(rt)"}, {}, true, out); })
       .Case([&](ir::LightCountOp) { define(op, {"rtsl::lightCount(rt)"}, {}, true, out); })
       .Case([&](ir::IlluminateOp light) {
@@ -172,7 +190,7 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
               Binding::Assignment});
       })
       .Case<arith::ConstantOp, ir::NullRefOp, ir::NextOp, ir::StateOp, ir::YieldOp, ir::ConditionOp,
-            ir::TraceReturnedOp, ir::FrameObjectOp, ir::PayloadOp, ir::FieldOp, ir::TableOp>([](auto) {})
+            ir::TraceReturnedOp, ir::EnterOp, ir::LeaveOp, ir::FrameObjectOp, ir::PayloadOp, ir::FieldOp, ir::TableOp>([](auto) {})
       .Case([&](ir::ElementOp element) { elementIndices[element] = bind(use(element.getIndex()), Binding::Assignment); })
       .Default([&](mlir::Operation *) { unsupported(op); });
 }
@@ -193,15 +211,41 @@ void StateWriter::spawnPayload(ir::SpawnPayloadOp op) {
   spawned = join(arguments, ", ");
 }
 
+/// A call behind which the state ends: its arguments are looked at there, for what is saved is saved before.
+std::string StateWriter::call(ir::ReturnOp op) {
+  mlir::Operation *at = op;
+  while (at && !llvm::isa<ir::EnterOp>(at))
+    at = at->getPrevNode();
+  auto enter = llvm::dyn_cast_or_null<ir::EnterOp>(at);
+  const CalledMethod *called = enter ? module.calledMethod(enter.getCallee().str()) : nullptr;
+  if (!called) {
+    unsupported(*op);
+    return {};
+  }
+  std::vector<std::string> arguments = {"rt"}, given;
+  if (machine.hasFrame())
+    arguments.push_back(machine.frameName);
+  arguments.push_back("Step::" + machine.stepOf.at(enter.getResume()->str()));
+  arguments.push_back(bind(use(enter.getOperands().front()), Binding::Assignment));
+  for (auto [variable, value] : llvm::zip(called->given, enter.getOperands().drop_front()))
+    given.push_back(llvm::isa<ir::PtrType>(value.getType())
+                        ? "&" + place(value).text
+                        : bind(use(value, module.type(variable->type)), Binding::Assignment));
+  arguments.push_back(module.structureOf(*called) + "{" + join(given, ", ") + "}");
+  return "return rtsl::callThen(" + join(arguments, ", ") + ");";
+}
+
 void StateWriter::leave(ir::ReturnOp op, Statements &out) {
   auto next = op.getValues().empty() ? ir::NextOp() : op.getValues().front().getDefiningOp<ir::NextOp>();
   if (!next || next.getTransition() == ir::Transition::Done)
     return emit(out, "return rtsl::done;");
   if (next.getTransition() == ir::Transition::Last)
     return emit(out, "return rtsl::traceLast(rt, " + spawned + ");");
-  const std::string &step = machine.stepOf.at(next.getState()->str());
+  if (next.getTransition() == ir::Transition::Return)
+    return emit(out, "return rtsl::returnToCaller(rt);");
   if (next.getTransition() == ir::Transition::Jump)
-    return unsupported(*op);
+    return emit(out, call(op));
+  const std::string &step = machine.stepOf.at(next.getState()->str());
   emit(out, "return rtsl::traceThen(rt, Step::" + step + ", " + spawned + ");");
 }
 

@@ -24,6 +24,7 @@ struct FrameField {
   unsigned neededBy = 0; // the first line that reads it
   unsigned madeIn = 0;   // the line of what is saved
   bool isTraced = false; // a color that a ray brought back
+  bool isReturned = false; // what a call returned
   bool isObject = false; // a variable that lies in the frame all the time
 };
 
@@ -33,8 +34,18 @@ struct Machine {
   const typed::Function *method = nullptr;
   std::vector<mlir::func::FuncOp> states;
   std::vector<FrameField> frame;
-  std::string frameName = "frame"; // of the parameter
-  std::map<std::string, std::string> stepOf; // by the symbol of the state
+  std::string frameName = "frame", callName = "call"; // of the parameters
+  std::map<std::string, std::string> stepOf;          // by the symbol of the state
+  const CalledMethod *called = nullptr;               // the method is called through references
+  std::map<std::string, const CalledMethod *> callBefore; // what has returned when a state begins; null: it cannot be shown
+
+  bool hasFrame() const { return called || !frame.empty(); }
+  /// Which of what it is given the operation asks for.
+  std::size_t given(ir::CallArgumentOp argument) const;
+  /// The author's type of what is given.
+  const Type *givenType(std::size_t number) const;
+  /// The name for what is given by its address.
+  std::string addressName(const ModulePrinter &printer, std::size_t number) const;
 };
 
 /// Does the evaluation write what lies at the address that it is given as this operand?
@@ -82,6 +93,7 @@ private:
   };
   struct Statement {
     std::string comment, text;
+    bool hasSpace = false; // an empty line above
     mlir::Operation *declares = nullptr; // a variable whose declaration this is, to be joined with its first assignment
     mlir::Operation *assigns = nullptr;  // `x = value;`
     std::string value;
@@ -93,6 +105,7 @@ private:
   // StateWriter.cpp
   void operation(mlir::Operation &op, Statements &out);
   void spawnPayload(ir::SpawnPayloadOp op);
+  std::string call(ir::ReturnOp op);
   void leave(ir::ReturnOp op, Statements &out);
   void unsupported(mlir::Operation &op);
 
@@ -153,6 +166,7 @@ private:
   };
   llvm::DenseMap<mlir::Value, Insertion> insertions; // vectors with one component replaced
   std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
+  std::set<unsigned> spaces;                         // lines of statements with an empty line above, likewise
   unsigned currentLine = 0;
   llvm::DenseMap<mlir::Operation *, std::string> elementIndices; // of addresses
   std::vector<const typed::Variable *> constants;                // of the author's functions, that the state names

@@ -2,8 +2,9 @@
 #include "codegen/cpp/States.h"
 
 #include "codegen/cpp/StateWriter.h"
+#include "codegen/cpp/Tracing.h"
 #include "codegen/lower/Analysis.h"
-#include "codegen/link/Members.h"
+#include "codegen/passes/continuation/Steps.h"
 #include "sema/Casting.h"
 
 #include <fmt/format.h>
@@ -30,11 +31,13 @@ static const std::vector<std::pair<StateVariable, const char *>> &stateVariables
 
 SourceTable makeSourceTable(const typed::Module &module) {
   auto effects = std::make_shared<EffectsOf>(module);
+  auto tracing = std::make_shared<TracingFunctions>(module);
   SourceTable table;
-  table.isPure = [effects](const typed::Function &function) {
+  table.isPure = [effects, tracing](const typed::Function &function) {
     const Effects &inside = effects->function(function);
-    return inside.isPure() && !inside.usesRay && !inside.usesScratch && !function.mayTrace;
+    return inside.isPure() && !inside.usesRay && !inside.usesScratch && !function.mayTrace && !tracing->mayBeCalled(function);
   };
+  table.mayTrace = [tracing](const typed::Function &function) { return tracing->mayBeCalled(function); };
   table.writes = [effects](const typed::Expr &expr) -> std::optional<std::vector<std::string>> {
     auto *call = dynCast<typed::CallExpr>(&expr);
     if (!call) // of a method that is known when the scene is
@@ -55,79 +58,28 @@ SourceTable makeSourceTable(const typed::Module &module) {
 // What is split
 //===----------------------------------------------------------------------===//
 
-/// Does the function trace, itself or through what it calls? (`mayTrace` counts shadow rays too.)
-static bool traces(const typed::Module &module, const typed::Function &function) {
-  if (!function.mayTrace || !function.body)
-    return false;
-  bool found = false;
-  forEachExpr(*function.body, [&](const typed::Expr &expr) {
-    if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-      found = found || builtin->builtin == typed::Builtin::Trace || builtin->builtin == typed::Builtin::TracePayload;
-    auto *call = dynCast<typed::CallExpr>(&expr);
-    if (!call || found)
-      return;
-    found = traces(module, *call->function);
-    for (const auto &definition : module.classes) // one that overrides it
-      for (const auto &other : definition->functions)
-        found = found || (call->function->owner && definition.get() != call->function->owner &&
-                          definition->derivesFrom(call->function->owner) && other->name == call->function->name &&
-                          lowering::sameParameters(*other, *call->function) && traces(module, *other));
-  });
-  return found;
-}
-
-// States that lie in a method which is known only when the scene is would need a frame of their own.
-void ModulePrinter::refuseTracesThroughReferences() {
-  const auto mayTrace = [&](const typed::Function &function) {
-    if (traces(module, function))
-      return true;
-    for (const auto &definition : module.classes)
-      for (const auto &other : definition->functions)
-        if (definition.get() != function.owner && definition->derivesFrom(function.owner) &&
-            other->name == function.name && lowering::sameParameters(*other, function) && traces(module, *other))
-          return true;
-    return false;
-  };
-  for (const auto &definition : module.classes)
-    for (const auto &function : definition->functions)
-      if (function->body)
-        forEachExpr(*function->body, [&](const typed::Expr &expr) {
-          auto *call = dynCast<typed::MethodCallExpr>(&expr);
-          if (call && call->function && mayTrace(*call->function))
-            unsupported(call->range, "a method that traces, called through a reference, in C++ with states,");
-        });
-}
-
+/// `isFramed`: of the method as others call it, on a frame of its own.
 static std::vector<mlir::func::FuncOp> statesOf(const StateProgram &program, const std::string &className,
-                                                const std::string &method) {
+                                                const std::string &method, bool isFramed) {
   std::vector<mlir::func::FuncOp> states;
   mlir::ModuleOp ir = program.ir;
   for (auto function : ir.getOps<mlir::func::FuncOp>()) {
     auto ofClass = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
     auto ofMethod = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
     if (function->hasAttr("rtsl.state") && ofClass && ofMethod && ofClass.getValue() == className &&
-        ofMethod.getValue() == method)
+        ofMethod.getValue() == method && continuation::isFramed(function) == isFramed)
       states.push_back(function);
   }
   return states;
 }
 
-/// `shade`, or `closestHit.Radiance` where there may be one for each payload: what the IR calls a method.
-static std::string slotName(const typed::Function &method) {
-  return lowering::takesPayload(method) ? method.name + "." + toString(method.parameters.front()->type) : method.name;
-}
-
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
-  return states && method.isStateMethod && traces(module, method) &&
-         !statesOf(*states, definition.name, slotName(method)).empty();
+  return states && tracing.contains(method) && (method.isStateMethod || calledMethod(definition, method)) &&
+         !statesOf(*states, definition.name, lowering::slotName(module, method), !method.isStateMethod).empty();
 }
 
-bool ModulePrinter::isPartOfStates(const typed::Class &, const typed::Function &function) const {
-  return states && !function.isStateMethod && traces(module, function);
-}
-
-bool ModulePrinter::isRunBySteps(const std::string &slot) const {
-  return !firstCalls.empty() && (slot == "shade" || slot == "miss" || slot == "generate" || slot == "closestHit");
+bool ModulePrinter::isPartOfStates(const typed::Function &function) const {
+  return states && !function.isStateMethod && tracing.contains(function);
 }
 
 std::set<std::string> ModulePrinter::namesInScope(const typed::Class &definition) const {
@@ -158,6 +110,11 @@ static std::string capitalised(std::string word) {
   return word;
 }
 
+static std::string uncapitalised(std::string word) {
+  word[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
 /// The first line that asks for what lies at an address.
 static unsigned lineOfAccess(mlir::Value address) {
   unsigned line = 0;
@@ -179,9 +136,12 @@ static unsigned lineOfUse(ir::FrameLoadOp load) {
   return line;
 }
 
-/// The fields of the frame, in the order in which they are saved first.
-static void collectFrame(Machine &machine, StateWriter &writer) {
-  std::set<std::string> taken;
+/// The fields of the frame, in the order in which they are saved first; none is called as a type.
+static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::string> taken) {
+  if (machine.called) {
+    taken.insert(machine.called->fields.begin(), machine.called->fields.end());
+    taken.insert({"begin", machine.called->returned});
+  }
   auto field = [&](llvm::StringRef slot, bool isObject = false) -> FrameField & {
     for (FrameField &known : machine.frame)
       if (known.slot == slot && known.isObject == isObject)
@@ -192,12 +152,9 @@ static void collectFrame(Machine &machine, StateWriter &writer) {
         name += slot[at];
       else if (at + 1 == slot.size() || !std::isdigit(static_cast<unsigned char>(slot[at + 1])))
         name += '_';
-    if (name == "evaluate" || name == "expression") // what the IR calls it
+    if (name == "evaluate" || name == "expression" || name == "call_returned") // what the IR calls it
       name = "value";
-    std::string unique = name;
-    for (unsigned i = 2; isReserved(unique) || !taken.insert(unique).second; ++i)
-      unique = name + std::to_string(i);
-    machine.frame.push_back({slot.str(), unique, "", 0, 0, !isObject, isObject});
+    machine.frame.push_back({slot.str(), unique(name, taken), "", 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
   for (auto [number, state] : llvm::enumerate(machine.states))
@@ -215,6 +172,7 @@ static void collectFrame(Machine &machine, StateWriter &writer) {
       if (unsigned line = lineOf(store.getLoc()); saved.madeIn == 0)
         saved.madeIn = line;
       saved.isTraced &= store.getValue().getDefiningOp<ir::TraceResultOp>() != nullptr;
+      saved.isReturned &= store.getValue().getDefiningOp<ir::CallReturnedOp>() != nullptr;
     });
     state.walk([&](ir::FrameLoadOp load) {
       FrameField &saved = field(load.getName());
@@ -233,6 +191,9 @@ static void collectFrame(Machine &machine, StateWriter &writer) {
         changed |= !saved.type.empty();
       });
   }
+  for (FrameField &saved : machine.frame)
+    if (saved.neededBy == 0) // by what is called
+      saved.neededBy = saved.madeIn;
   std::stable_partition(machine.frame.begin(), machine.frame.end(),
                         [](const FrameField &saved) { return saved.type != "bool"; });
 }
@@ -252,6 +213,8 @@ static bool mentions(const std::string &text, const std::string &word) {
 std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameField &field) const {
   if (field.isTraced)
     return fmt::format("what the ray of line {} brought back", field.madeIn);
+  if (field.isReturned)
+    return fmt::format("what the call of line {} returned", field.madeIn);
   for (const auto &local : method.locals)
     if (local->name == field.slot)
       if (std::string comment = notes.trailingComment(local->init ? local->init->range : local->range);
@@ -269,25 +232,37 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   Machine machine;
   machine.definition = &definition;
   machine.method = &method;
-  machine.states = statesOf(*states, definition.name, slotName(method));
+  machine.called = method.isStateMethod ? nullptr : calledMethod(definition, method);
+  const std::string slot = lowering::slotName(module, method);
+  machine.states = statesOf(*states, definition.name, slot, machine.called != nullptr);
   std::string name = names.of(&method);
   const typed::Variable *payload = lowering::takesPayload(method) ? method.parameters.front().get() : nullptr;
-  if (payload && std::count_if(definition.functions.begin(), definition.functions.end(),
-                               [&](const auto &other) { return other->name == method.name; }) > 1)
+  const bool isOverloaded = std::count_if(definition.functions.begin(), definition.functions.end(),
+                                          [&](const auto &other) { return other->name == method.name; }) > 1;
+  if (payload && isOverloaded)
     name += names.of(payload->type->structure); // there is one for each
+  if (machine.called && machine.called->structure != capitalised(name)) // there are others of the name
+    name = uncapitalised(machine.called->structure);
+  for (mlir::func::FuncOp state : machine.states)
+    state.walk([&](ir::EnterOp call) {
+      machine.callBefore[call.getResume().value_or("").str()] = calledMethod(call.getCallee().str());
+    });
+  std::set<std::string> taken = namesInScope(definition); // what is printed beside the author's own stands behind it
   std::vector<std::string> functions = {name};
   for (std::size_t i = 1; i < machine.states.size(); ++i) {
-    functions.push_back(fmt::format("{}AfterTrace{}", name, i));
-    machine.stepOf[machine.states[i].getSymName().str()] =
-        fmt::format("{}_{}", names.of(&definition), functions.back());
+    const std::string symbol = machine.states[i].getSymName().str();
+    functions.push_back(unique(fmt::format("{}After{}{}", name, machine.callBefore.count(symbol) ? "Call" : "Trace", i), taken));
+    machine.stepOf[symbol] = stepName(definition, functions.back());
   }
   StateWriter writer(*this, states->source, machine);
-  collectFrame(machine, writer);
+  collectFrame(machine, writer, typeNames());
 
-  const std::string frame = capitalised(name) + "Frame";
+  std::string frame = unique(capitalised(name) + "Frame", taken);
+  const std::string scope = names.of(&definition) + "::";
   std::string text;
   if (!machine.frame.empty()) {
-    text += fmt::format("// What `{}` needs when its rays come back.\nstruct {} {{\n", name, frame);
+    text += fmt::format("// What `{}` needs when its rays come back.\nstruct {}{} {{\n", name, frame,
+                        machine.called ? " : " + structureOf(*machine.called) : "");
     const auto isBool = [](const FrameField &field) { return field.type == "bool" && !field.isObject; };
     const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1; // bools share a byte
     for (const FrameField &field : machine.frame) {
@@ -297,11 +272,23 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
                           packs && isBool(field) ? " : 1" : "", field.neededBy, meaningOf(method, field));
     }
     text += "};\n\n";
-    frames.push_back(names.of(&definition) + "::" + frame);
+  } else if (machine.called) {
+    frame = structureOf(*machine.called);
   }
+  const std::string frameType = machine.frame.empty() ? frame : scope + frame;
+  const bool hasFrame = machine.hasFrame();
+  if (hasFrame)
+    (machine.called ? calledFrames : frames).push_back(frameType);
+  const std::string frameHere =
+      hasFrame ? fmt::format("rtsl::{}<{}>(frame)", machine.called ? "calledFrameAt" : "frameAt", frameType) : "frame";
 
   for (std::size_t i = 0; i < machine.states.size(); ++i) {
-    const std::string body = writer.body(machine.states[i]);
+    std::string body = writer.body(machine.states[i]);
+    for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at) // under the author's name
+      if (const std::string address = machine.addressName(*this, at); mentions(body, address))
+        body = fmt::format("{} &{} = *{}.{};\n", type(machine.givenType(at)), address, machine.frameName,
+                           machine.called->fields[at]) +
+               body;
     std::vector<std::string> parameters = {mentions(body, "rt") ? "State &rt" : "State &"}, arguments = {"rt"};
     if (payload && mentions(body, names.of(payload))) {
       parameters.push_back(names.of(payload->type->structure) + " &" + names.of(payload));
@@ -309,29 +296,37 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
     }
     if (writer.usesScratch) {
       parameters.emplace_back("const Scratch &scratch");
-      arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+      arguments.push_back("rtsl::loadScratch<" + scope + "Scratch>(rt)");
     }
     if (mentions(body, machine.frameName)) {
       bool writes = false;
-      machine.states[i].walk([&](ir::FrameStoreOp) { writes = true; });
+      machine.states[i].walk([&](mlir::Operation *op) { writes |= llvm::isa<ir::FrameStoreOp, ir::CallResultOp>(op); });
       machine.states[i].walk([&](ir::FrameObjectOp object) {
         for (mlir::Operation *user : object->getUsers())
           writes |= writesTo(user, object);
       });
       parameters.push_back((writes ? "" : "const ") + frame + " &" + machine.frameName);
-      arguments.push_back(fmt::format("rtsl::frameAt<{}::{}>(frame)", names.of(&definition), frame));
+      arguments.push_back(frameHere);
+    }
+    const auto before = machine.callBefore.find(machine.states[i].getSymName().str());
+    if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
+      const std::string given = structureOf(*before->second);
+      parameters.push_back("const " + given + " &" + machine.callName);
+      arguments.push_back(fmt::format("rtsl::callAbove<{}>({})", given, frameHere));
     }
     const std::string call = functions[i] + "(" + join(arguments, ", ") + ")";
     if (i == 0) {
       text += commentText(method.comment);
-      firstCalls[{&definition, slotName(method)}] = call;
+      firstCalls[{&definition, slot}] = call;
     } else {
       unsigned line = 0;
       machine.states[i].walk([&](mlir::Operation *op) {
-        if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp>(op) && line == 0)
+        if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp, ir::CallReturnedOp>(op) && line == 0)
           line = lineOf(op->getLoc());
       });
-      text += line ? fmt::format("\n// When the ray of line {} is back.\n", line) : "\n";
+      const bool isCall = before != machine.callBefore.end();
+      text += line ? fmt::format(isCall ? "\n// When the call of line {} is over.\n" : "\n// When the ray of line {} is back.\n", line)
+                   : "\n";
       steps.push_back({machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
     }
     if (i == 0)
@@ -341,135 +336,41 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   return text;
 }
 
-// Objects of a class that inherits a method run that of the base, unless what it calls on itself is
-// another function and has become part of the states.
+/// Has something that the method calls on its own object, and that has become part of its states, another definition in the
+/// derived class?
+bool ModulePrinter::differsIn(const typed::Class &derived, const typed::Function &method) const {
+  std::set<const typed::Function *> seen = {&method};
+  std::vector<const typed::Function *> open = {&method};
+  bool differs = false;
+  while (!open.empty()) {
+    const typed::Function *function = open.back();
+    open.pop_back();
+    forEachExpr(*function->body, [&](const typed::Expr &expr) {
+      auto *call = dynCast<typed::CallExpr>(&expr);
+      if (!call || !call->onSelf)
+        return;
+      const typed::Function &here = lowering::resolve(*call->function, &derived);
+      const typed::Function &above = lowering::resolve(*call->function, method.owner);
+      differs |= &here != &above && (isPartOfStates(here) || isPartOfStates(above));
+      if (here.body && seen.insert(&here).second)
+        open.push_back(&here);
+    });
+  }
+  return differs;
+}
+
 std::string ModulePrinter::inheritedStateMachines(const typed::Class &definition) {
   std::string text;
   if (!states)
     return text;
-  const bool isOther = std::any_of(definition.functions.begin(), definition.functions.end(), [&](const auto &function) {
-    return !function->isStateMethod && traces(module, *function);
-  });
   std::set<std::string> known;
   for (const auto &own : definition.functions)
-    known.insert(slotName(*own));
-  for (const typed::Class *at = definition.base; at && isOther; at = at->base)
+    known.insert(lowering::slotName(module, *own));
+  for (const typed::Class *at = definition.base; at; at = at->base)
     for (const auto &method : at->functions)
-      if (method->isStateMethod && known.insert(slotName(*method)).second && isSplit(definition, *method))
+      if (known.insert(lowering::slotName(module, *method)).second && isSplit(definition, *method) &&
+          differsIn(definition, *method))
         text += "\n" + stateMachine(definition, *method);
-  return text;
-}
-
-//===----------------------------------------------------------------------===//
-// The whole
-//===----------------------------------------------------------------------===//
-
-namespace {
-/// A method with which the machine begins.
-struct Beginning {
-  const char *base, *method, *step, *slot; // of the class, of the function, its number in C++, and who asks for it
-  bool hasPayload;
-};
-constexpr Beginning beginnings[] = {{"rt_Material", "shade", "shade", "shadeFirst", false},
-                                    {"rt_Miss", "miss", "miss", "missFirst", false},
-                                    {"rt_Material", "closestHit", "closestHit", "closestHitFirst", true},
-                                    {"rt_Miss", "miss", "missWithPayload", "missWithPayloadFirst", true},
-                                    {"rt_RayGeneration", "generate", "generate", "generateFirst", false}};
-} // namespace
-
-/// Does some class have such a method?
-static bool isThere(const ModulePrinter &printer, const std::vector<const typed::Class *> &classes, const Beginning &one) {
-  static_cast<void>(printer);
-  for (const typed::Class *definition : classes)
-    for (const typed::Class *at = definition; at; at = at->base)
-      for (const auto &method : at->functions)
-        if (method->isStateMethod && method->body && method->name == one.method &&
-            lowering::takesPayload(*method) == one.hasPayload)
-          return true;
-  return false;
-}
-
-std::string ModulePrinter::stepNumbers() const {
-  if (firstCalls.empty())
-    return {};
-  std::vector<std::string> numbers, begin;
-  for (const Beginning &one : beginnings)
-    if (isThere(*this, classesBelow(one.base), one)) {
-      numbers.push_back(numbers.empty() ? std::string(one.step) + " = 1" : one.step);
-      begin.push_back(fmt::format("`{}`", one.step));
-    }
-  for (const Step &step : steps)
-    numbers.push_back(step.name);
-  const std::string last = begin.back();
-  begin.pop_back();
-  return fmt::format("// Where a method goes on: {}{} begin{}, the others run when a ray is back.\n"
-                     "enum class Step : rtsl::Next {{ {} }};\n",
-                     begin.empty() ? "" : join(begin, ", ") + " and ", last, begin.empty() ? "s" : "",
-                     join(numbers, ", "));
-}
-
-std::string ModulePrinter::runState() {
-  if (firstCalls.empty())
-    return {};
-  auto object = [&](const typed::Class &definition) {
-    return "rtsl::object<" + names.of(&definition) + ">(rt, object).";
-  };
-  // The first state of a method, or all of it if it does not trace.
-  auto begin = [&](const Beginning &one, const typed::Struct *payload) {
-    return dispatch(classesBelow(one.base), [&](const typed::Class &definition) -> std::string {
-      const typed::Function *method = nullptr;
-      for (const typed::Class *at = &definition; at && !method; at = at->base)
-        for (const auto &function : at->functions)
-          if (function->isStateMethod && function->body && function->name == one.method &&
-              (payload ? lowering::takesPayload(*function) && function->parameters.front()->type->structure == payload
-                       : function->parameters.empty()))
-            method = function.get();
-      if (!method)
-        return {};
-      for (const typed::Class *at = &definition; at; at = at->base)
-        if (auto first = firstCalls.find({at, slotName(*method)}); first != firstCalls.end())
-          return "return " + object(definition) + first->second;
-      std::string arguments = "rt";
-      if (takesScratch(*method))
-        arguments += ", rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)";
-      if (payload)
-        arguments += ", rtsl::payloadOf<" + names.of(payload) + ">(ray)";
-      return object(definition) + names.of(method) + "(" + arguments + ");\nreturn rtsl::done";
-    });
-  };
-  std::string text = fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object, "
-                                 "[[maybe_unused]] void *frame) {{\nState &rt = rtsl::stateOf<{}>(ray);\n"
-                                 "switch (static_cast<Step>(step)) {{\n",
-                                 options.colorComponents);
-  auto returns = [](const std::string &body) {
-    return body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
-  };
-  for (const Beginning &one : beginnings) {
-    if (!isThere(*this, classesBelow(one.base), one))
-      continue;
-    text += fmt::format("case Step::{}:\n", one.step);
-    if (!one.hasPayload) {
-      const std::string body = begin(one, nullptr);
-      text += body + (returns(body) ? "" : "return rtsl::done;\n");
-      continue;
-    }
-    for (const RayType &type : rayTypes)
-      if (const std::string body = begin(one, type.payload); !body.empty())
-        text += fmt::format("if (rtsl::carries<{}>(ray)) {{\n{}}}\n", names.of(type.payload), body);
-    text += "return rtsl::done;\n";
-  }
-  for (const Step &step : steps)
-    text += "case Step::" + step.name + ":\nreturn " + object(*step.definition) + step.call + ";\n";
-  return text + "}\nreturn rtsl::done;\n}\n";
-}
-
-std::string ModulePrinter::describeStates() const {
-  if (firstCalls.empty())
-    return {};
-  std::string text = fmt::format("program.states<{}>(&slots::runState);\n", join(frames, ", "));
-  for (const Beginning &one : beginnings)
-    if (isThere(*this, classesBelow(one.base), one))
-      text += fmt::format("program.slots().states.{} = static_cast<rtsl::Next>(Step::{});\n", one.slot, one.step);
   return text;
 }
 

@@ -322,6 +322,7 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
   const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, *context);
   if (!ir)
     return std::nullopt;
+  continuation::callThroughFrames(*ir);
   runToSsa(*ir, options, TraceMode::Split, /*dispatch=*/false);
   mlir::ModuleOp program = *ir;
   for (auto function : program.getOps<mlir::func::FuncOp>())
@@ -359,6 +360,8 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   Diagnostics refusals(diagnostics.sources());
   if (std::optional<std::string> text = printSplitCpp(module, printing, options, refusals))
     return text;
+  if (!refusals.all().empty())
+    printing.whyCalls = refusals.all().front().message;
   return cpp::print(module, printing, diagnostics);
 }
 

@@ -217,4 +217,28 @@ bool mayAnswerHit(const typed::Function &function, const typed::Class *concrete)
   return mayAnswer(function, concrete, visited);
 }
 
+// Brackets have no place in a symbol: `float[4]` becomes `float_4`.
+std::string parameterWords(const typed::Function &function) {
+  std::string words;
+  for (const auto &parameter : function.parameters) {
+    words += '.';
+    for (char c : toString(parameter->type))
+      if (c == '[')
+        words += '_';
+      else if (c != ']' && c != ' ')
+        words += c;
+  }
+  return words;
+}
+
+std::string slotName(const typed::Module &module, const typed::Function &method) {
+  if (takesPayload(method)) // beside others for other payloads, in this class or the next
+    return method.name + parameterWords(method);
+  for (const auto &definition : module.classes)
+    for (const auto &other : definition->functions)
+      if (other->name == method.name && !sameParameters(*other, method) && !method.isConstructor)
+        return method.name + parameterWords(method);
+  return method.name;
+}
+
 } // namespace rtsl::lowering

@@ -3,6 +3,8 @@
 
 #include "sema/Walk.h"
 
+#include <string>
+
 namespace rtsl::lowering {
 
 /// Does the function change nothing and give the same for the same arguments?
@@ -33,6 +35,12 @@ const typed::Function &resolve(const typed::Function &callee, const typed::Class
 
 /// Do two functions have the same parameter types?
 bool sameParameters(const typed::Function &a, const typed::Function &b);
+
+/// The types of a function's parameters as a part of a symbol: `.vec3.float_4`.
+std::string parameterWords(const typed::Function &function);
+
+/// What the IR calls a method, whatever class has it: its name, with its parameters' types where others have that name.
+std::string slotName(const typed::Module &module, const typed::Function &method);
 
 /// Does the expression stand for a place in memory (and not for a value)?
 bool isPlace(const typed::Expr &expr);

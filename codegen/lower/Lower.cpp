@@ -14,6 +14,8 @@ mlir::OwningOpRef<mlir::ModuleOp> lower(const typed::Module &module, const Lower
   std::size_t errorsBefore = options.diagnostics->errorCount();
   mlir::OwningOpRef<mlir::ModuleOp> target =
       mlir::ModuleOp::create(mlir::UnknownLoc::get(&context));
+  if (options.source) // passes leave variables whole then
+    (*target)->setAttr("rtsl.source", mlir::UnitAttr::get(&context));
   lowering::ModuleLowering(module, options, *target).run();
   if (options.diagnostics->errorCount() != errorsBefore)
     return nullptr;

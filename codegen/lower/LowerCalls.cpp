@@ -30,6 +30,28 @@ static bool canShare(const typed::Expr &arg, const std::vector<typed::ExprPtr> &
   return true;
 }
 
+// For people to read, what stays whole goes to a method that traces as it is, if nobody else looks at it meanwhile.
+bool FunctionLowering::canHandOver(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
+                                   std::size_t index) const {
+  auto *variable = dynCast<typed::VariableExpr>(args[index].get());
+  if (!module.options.source || !variable || variable->variable->kind == typed::Variable::Kind::Global ||
+      !livesInMemory(variable->type) || callee.parameters[index]->direction != ast::Direction::InOut)
+    return false;
+  for (std::size_t other = 0; other < args.size(); ++other) {
+    if (other > index && hasSideEffects(*args[other]))
+      return false;
+    bool isLookedAt = false;
+    if (other != index && callee.parameters[other]->direction != ast::Direction::In)
+      forEachExpr(*args[other], [&](const typed::Expr &inner) {
+        auto *same = dynCast<typed::VariableExpr>(&inner);
+        isLookedAt |= same && same->variable == variable->variable;
+      });
+    if (isLookedAt)
+      return false;
+  }
+  return true;
+}
+
 void FunctionLowering::passArguments(const typed::Function &callee,
                                      const std::vector<typed::ExprPtr> &args,
                                      llvm::SmallVectorImpl<Value> &values,
@@ -56,6 +78,10 @@ void FunctionLowering::passArguments(const typed::Function &callee,
       Value copy = temporary(name, type);
       lowerInto(*args[i], copy);
       values.push_back(copy);
+      continue;
+    }
+    if (isDispatched && canHandOver(callee, args, i)) {
+      values.push_back(place(*args[i]).address);
       continue;
     }
     Place target = place(*args[i]);

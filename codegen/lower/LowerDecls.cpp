@@ -39,28 +39,8 @@ void ModuleLowering::reportUnsupported(SourceRange range, const std::string &wha
 // Names
 //===----------------------------------------------------------------------===//
 
-// Brackets have no place in a symbol: `float[4]` becomes `float_4`.
-static std::string parameterWords(const typed::Function &function) {
-  std::string words;
-  for (const auto &parameter : function.parameters) {
-    words += '.';
-    for (char c : toString(parameter->type))
-      if (c == '[')
-        words += '_';
-      else if (c != ']' && c != ' ')
-        words += c;
-  }
-  return words;
-}
-
 std::string ModuleLowering::slotName(const typed::Function &method) const {
-  if (takesPayload(method)) // beside others for other payloads, in this class or the next
-    return method.name + parameterWords(method);
-  for (const auto &definition : source.classes)
-    for (const auto &other : definition->functions)
-      if (other->name == method.name && !sameParameters(*other, method) && !method.isConstructor)
-        return method.name + parameterWords(method);
-  return method.name;
+  return lowering::slotName(source, method);
 }
 
 std::string ModuleLowering::symbolOf(const FunctionKey &key) {

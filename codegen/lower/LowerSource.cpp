@@ -390,13 +390,13 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
 }
 
 /// One that traces, or whose parts run only sometimes, is taken apart.
-static bool isOneStep(const typed::Expr &expr) {
+static bool isOneStep(const typed::Expr &expr, const SourceTable &table) {
   const typed::Function *callee = nullptr;
   if (auto *call = dynCast<typed::CallExpr>(&expr))
     callee = call->function;
   if (auto *method = dynCast<typed::MethodCallExpr>(&expr))
     callee = method->function;
-  if (callee && callee->mayTrace)
+  if (callee && table.mayTrace(*callee))
     return false;
   if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
     return isPureBuiltin(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
@@ -406,7 +406,7 @@ static bool isOneStep(const typed::Expr &expr) {
 
 std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, Value into) {
   const bool isWrite = expr.kind == ExprKind::Assign || expr.kind == ExprKind::IncDec;
-  if (!isOneStep(expr) || (into && isWrite))
+  if (!isOneStep(expr, *module.options.source) || (into && isWrite))
     return std::nullopt;
   const bool isChoice = expr.kind == ExprKind::Conditional || expr.kind == ExprKind::Binary;
   if (isChoice && !isKept(expr))
@@ -445,6 +445,8 @@ std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, 
   if (!into && !isWrite && !expr.type->is(TypeKind::Void))
     types.push_back(module.type(expr.type));
   auto op = emitter.make<ir::EvaluateOp>(types, number, evaluation.operands, writes);
+  if (into) // all of it
+    op->setAttr("rtsl.into", emitter.getUnitAttr());
   if (!evaluation.changed.empty())
     op->setAttr("rtsl.changes", emitter.getDenseI32ArrayAttr(evaluation.changed));
   const bool isPrint = expr.kind == ExprKind::Builtin && cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;

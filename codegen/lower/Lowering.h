@@ -221,6 +221,7 @@ private:
   void passArguments(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
                      llvm::SmallVectorImpl<Value> &values, std::vector<CopyOut> &outputs,
                      bool isDispatched);
+  bool canHandOver(const typed::Function &callee, const std::vector<typed::ExprPtr> &args, std::size_t index) const;
   void copyOut(const std::vector<CopyOut> &outputs);
 
   // LowerBuiltins.cpp, LowerBuiltinsInteger.cpp, LowerBuiltinsRay.cpp

@@ -34,6 +34,8 @@ struct SourceTable {
 
   /// Does a call read nothing but its arguments and members, and change nothing?
   std::function<bool(const typed::Function &)> isPure;
+  /// May a call trace, whichever class the object is of?
+  std::function<bool(const typed::Function &)> mayTrace;
   /// The state variables that a call may change; nothing: any.
   std::function<std::optional<std::vector<std::string>>(const typed::Expr &call)> writes;
 };

@@ -33,6 +33,15 @@ bool isSmall(mlir::Type type) {
   return ir::leafCount(type) <= mostLeaves && !holdsBuffer(type);
 }
 
+/// With expressions kept whole, for people to read, so are variables; but for what rays carry, whose fields the passes look at.
+bool staysWhole(Value address) {
+  while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(address.getDefiningOp()))
+    address = address.getDefiningOp()->getOperand(0);
+  if (llvm::isa_and_nonnull<ir::PayloadOp>(address.getDefiningOp()))
+    return false;
+  return llvm::none_of(address.getUsers(), llvm::IsaPred<ir::TracePayloadOp>);
+}
+
 /// Calls `visit` with the addresses of each leaf of the type behind `addresses`, which is the same
 /// for all of them.
 void forEachLeaf(OpBuilder &builder, Location location, llvm::ArrayRef<Value> addresses,
@@ -69,8 +78,11 @@ struct ExpandCopies : mlir::PassWrapper<ExpandCopies, mlir::OperationPass<mlir::
 
   void runOnOperation() override {
     OpBuilder builder(&getContext());
+    auto module = getOperation()->getParentOfType<mlir::ModuleOp>();
+    const bool isForPeople = module && module->hasAttr("rtsl.source");
     getOperation().walk([&](ir::CopyOp copy) {
-      if (!isSmall(pointee(copy.getSource())))
+      if (!isSmall(pointee(copy.getSource())) ||
+          (isForPeople && staysWhole(copy.getSource()) && staysWhole(copy.getTarget())))
         return;
       builder.setInsertionPoint(copy);
       forEachLeaf(builder, copy.getLoc(), {copy.getSource(), copy.getTarget()},
@@ -81,7 +93,7 @@ struct ExpandCopies : mlir::PassWrapper<ExpandCopies, mlir::OperationPass<mlir::
       copy.erase();
     });
     getOperation().walk([&](ir::ClearOp clear) {
-      if (!isSmall(pointee(clear.getAddress())))
+      if (!isSmall(pointee(clear.getAddress())) || (isForPeople && staysWhole(clear.getAddress())))
         return;
       builder.setInsertionPoint(clear);
       forEachLeaf(builder, clear.getLoc(), {clear.getAddress()}, [&](llvm::ArrayRef<Value> leaf) {

@@ -12,6 +12,7 @@
 
 #include "rtsl/shader/FloatingPoint.h" // first
 
+#include "rtsl/shader/Calls.h"
 #include "rtsl/shader/Common.h"
 #include "rtsl/shader/Describe.h"
 #include "rtsl/shader/Elementary.h"

@@ -7,65 +7,7 @@ import unittest
 
 from harness import EXAMPLES, Case
 
-SHADERS = """
-struct Light { color sum; float weights[3]; int count; };
-
-class Eye : rt_Camera {
-  void generateRay() {
-    rt_RayOrigin = vec3(0.0);
-    rt_RayDirection = vec3(rt_ScreenCoord - vec2(0.5), 1.0);
-  }
-};
-
-class Filter : rt_Texture {
-  color follow(vec3 o, vec3 d, bool twice, inout Light light) {
-    light.weights[light.count % 3] += 0.25;
-    light.count += 1;
-    return trace(o, d);
-  }
-  float size() { return 0.5; }
-};
-
-// Each tint asks the one inside of it, some twice and in a loop, and traces for itself in between.
-class Tint : Filter {
-  public Filter inner;
-  public Filter others[2];
-  public color tint = color(0.5, 0.7, 0.9);
-  public int rounds = 1;
-  color follow(vec3 o, vec3 d, bool twice, inout Light light) {
-    color sum = color(0.0);
-    for (int i = 0; i < rounds; ++i) {
-      Light mine = light;
-      float share = 1.0 / float(i + 2);
-      color first = inner.follow(o, d + vec3(0.0, share, 0.0), !twice, mine);
-      color own = twice && i == 0 ? trace(o, -d) : color(share);
-      sum += tint * first * others[i % 2].follow(o, d, twice, light) + share * own * mine.weights[i % 3];
-      light.sum += mine.sum + own;
-      if (light.count > 40)
-        break;
-    }
-    return sum + color(rand() * size());
-  }
-};
-
-class Mirror : rt_Material {
-  public Filter filter;
-  void shade() {
-    Light light = Light(color(0.0), float[](1.0, 2.0, 3.0), 0);
-    vec3 d = reflect(rt_RayDirection, rt_ShadingNormal);
-    color c = filter.follow(rt_HitPoint, d, rt_Depth < 2, light);
-    rt_SampleColor = 0.5 * c + 0.1 * light.sum + color(float(light.count) * light.weights[1] * 0.001);
-  }
-};
-
-class Sky : rt_Miss {
-  public Filter filter;
-  void miss() {
-    rt_SampleColor = color(0.5) + 0.25 * vec3color(rt_RayDirection);
-  }
-  color vec3color(vec3 v) { vec3 n = normalize(v); return color(abs(n.x), abs(n.y), abs(n.z)); }
-};
-"""
+SHADERS = EXAMPLES.parent / "tests/cpp/scenes/Chains.rtsl"
 
 WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversal=device"], ["--target=host-megakernel"])
 
@@ -73,7 +15,7 @@ WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversa
 class CallFrames(Case):
     def setUp(self):
         super().setUp()
-        self.write("shaders.rtsl", SHADERS)
+        self.write("shaders.rtsl", SHADERS.read_text())
 
     def scene(self, chain, depth=3, rounds=2, branches=True):
         """Tints in a chain of this length, the last with a filter that only traces inside."""
@@ -120,12 +62,15 @@ class CallFrames(Case):
         self.assertEqual(report["stack"]["levelBytesAReference"], (filter_["frameSize"] + 7) // 8 * 8)
         self.assertEqual({trace.get("callee") for trace in filter_["traces"]}, {None, "dispatch.Filter.follow"})
 
-    def test_cpp_is_printed_with_calls(self):
-        text, _ = self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp")
+    def test_cpp_is_printed_with_frames(self):
+        text, _ = self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp", "--trace=split")
+        self.assertIn("struct FollowFrame : FilterRef::Follow {", text)
+        self.assertRegex(text, r"return rtsl::callThen\(rt, frame, Step::Tint_followAfterCall1, inner,\s+FilterRef::Follow\{frame.o,")
+        self.assertNotIn("rtsl::trace(", text)
+        self.assertEqual(text, self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp")[0])
+        text, _ = self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp", "--trace=recurse")
         self.assertRegex(text, r"Color follow\(State &rt, .*\) const override")
         self.assertNotIn("enum class Step", text)
-        _, error = self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp", "--trace=split", "-o", "x.cpp", status=1)
-        self.assertIn("called through a reference, in C++ with states, is not supported yet", error)
 
 
 if __name__ == "__main__":

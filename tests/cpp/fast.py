@@ -4,22 +4,15 @@ keeps its bits in a program that has both."""
 import json
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
+
+from programs import built_with, run, same_picture
 
 rtslc, source, library, render = sys.argv[1:]
 glass = pathlib.Path(source, "examples/glass")
 shaders = sorted(glass.glob("*.rtsl"))
-FLAGS = ("-std=c++17 -march=x86-64-v3 -Wall -Wextra -Wpedantic -Werror -Wconversion -fPIC -shared "
-         f"-I {source} -I {source}/include -L {library} -lrtsl -Wl,-rpath,{library}").split()
-
-
-def run(*words):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, words))}\n{done.stdout[-2000:]}{done.stderr[-6000:]}")
-    return done.stdout
+FLAGS = ["-march=x86-64-v3", "-fPIC", "-shared", *built_with(source, library)]
 
 
 def difference(a, b):
@@ -47,7 +40,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-fast-") as name:
             run(compiler, folder / "other.cpp", folder / "shaders.cpp", "-o", folder / "shaders.so", flags, *FLAGS)
             pictures[mode] = folder / f"{mode}.exr"
             run(render, folder / "shaders.so", folder / "scene.json", pictures[mode])
-        run(rtslc, "compare", pictures["strict"], folder / "jit.exr", "--threshold", "0")
+        same_picture(rtslc, pictures["strict"], folder / "jit.exr")
         apart = difference(pictures["fast"], folder / "jit.exr")
         print(f"{compiler}: fast and strict are {apart:.2g} apart (RMSE)")
         assert apart > 0

@@ -1,20 +1,14 @@
 #!/usr/bin/env python3
-"""install.py CMAKE BUILD SOURCE CC: installs into a folder, and builds the example and a C program from there alone."""
+"""install.py CMAKE BUILD SOURCE CC CXX: installs into a folder, and builds the example and a C program from there alone."""
+import json
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-cmake, build, source, cc = sys.argv[1:]
+from programs import run, same_picture
 
-
-def run(*words, **more):
-    done = subprocess.run([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **more)
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, words))}\n{done.stdout[-6000:]}")
-    return done.stdout
-
+cmake, build, source, cc, cxx = sys.argv[1:]
 
 with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     folder = pathlib.Path(name)
@@ -46,6 +40,22 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     environment = dict(os.environ, PKG_CONFIG_PATH=":".join(str(p.parent) for p in prefix.rglob("rtsl.pc")))
     flags = run("pkg-config", "--cflags", "--libs", "rtsl", env=environment).split()
     library = next(prefix.rglob("librtsl.so")).parent
-    run(cc, "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", f"{source}/tests/cpp/scene.c", "-o", folder / "c-api",
-        *flags, f"-Wl,-rpath,{library}")
-    assert "no shaders" in run(folder / "c-api")
+    installed = prefix / "bin/rtslc"
+    scene = {
+        "rtsl": 1, "import": [f"{source}/tests/cpp/scenes/Events.rtsl", f"{source}/examples/glass/Sphere.rtsl"],
+        "rayGeneration": {"class": "Eye", "curve": [0.5, 0.25]}, "exception": {"class": "Code"},
+        "objects": [{"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 2}, "material": {"class": "Endless"}}],
+        "render": {"engine": "programs", "size": [4, 4], "spp": 2, "depth": 5},
+    }
+    (folder / "scene.json").write_text(json.dumps(scene))
+    run(installed, "compile", *scene["import"], "--emit=cpp", "--print", "--exceptions", "-o", folder / "events.cpp")
+    run(cc, "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-c", f"{source}/tests/cpp/scene.c", "-o", folder / "c.o",
+        *flags)
+    run(cxx, "-std=c++17", folder / "events.cpp", folder / "c.o", "-o", folder / "c-api", *flags, f"-Wl,-rpath,{library}")
+    printed = run(folder / "c-api", folder / "c.exr").splitlines()
+    said = json.loads(run(installed, "render", folder / "scene.json", "-o", folder / "jit.exr", "--json", "--print", "--exceptions"))
+    same_picture(installed, folder / "c.exr", folder / "jit.exr")
+    assert printed == 2 * said["printed"], (printed, said)
+    mistakes = run(folder / "c-api").splitlines()
+    for line, word in zip(mistakes, ("no shaders", "Nobody", "nothing", "Code", "reference 0"), strict=True):
+        assert word in line, mistakes

@@ -5,13 +5,15 @@ import subprocess
 import sys
 import tempfile
 
+from programs import run, same_picture
+
 rtslc, glass, *programs = sys.argv[1:]
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
     ours, theirs = (str(pathlib.Path(folder) / name) for name in ("cpp.exr", "jit.exr"))
-    subprocess.run([rtslc, "render", f"{glass}/scene.json", "-o", theirs, "--size", "96x54", "--spp", "4", "-q"], check=True)
+    run(rtslc, "render", f"{glass}/scene.json", "-o", theirs, "--size", "96x54", "--spp", "4", "-q")
     for program in programs:
-        subprocess.run([program, f"{glass}/knot.obj", ours, "96", "4"], check=True)
-        subprocess.run([rtslc, "compare", ours, theirs, "--threshold", "0"], check=True)
+        run(program, f"{glass}/knot.obj", ours, "96", "4")
+        same_picture(rtslc, ours, theirs)
         # Without its mesh there is a message and no picture.
         done = subprocess.run([program, "nowhere.obj", f"{folder}/none.png"], capture_output=True, text=True)
         assert done.returncode == 1 and "nowhere.obj" in done.stderr, done

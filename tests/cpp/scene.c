@@ -1,14 +1,80 @@
-/* The C interface compiles as C, and says what is wrong. */
+/* The C interface renders what scenes/scenes.py calls its events: scene PICTURE.exr. What shaders print goes to standard
+ * output. Without an argument it says what goes wrong. */
 #include <rtsl/rtsl.h>
 
 #include <stdio.h>
 
-int main(void) {
-  RtslRenderSettings settings = rtslRenderDefaults();
-  if (settings.width != 960 || settings.samplesPerPixel != 16)
-    return 1;
+const RtslShaders *events_shaders(void);
+
+static void show(const char *line, void *count) {
+  printf("%s\n", line);
+  ++*(int *)count;
+}
+
+static int fail(const char *what) {
+  fprintf(stderr, "%s: %s\n", what, rtslError());
+  return 1;
+}
+
+static int mistakes(void) {
+  const double one = 1.0;
+  RtslScene *scene;
   if (rtslSceneCreate(NULL) != NULL)
-    return 2;
+    return fail("no shaders are shaders");
   printf("%s\n", rtslError());
+  if (!(scene = rtslSceneCreate(events_shaders())))
+    return fail("scene");
+  if (rtslSceneAddObject(scene, "Nobody") != 0)
+    return fail("a class that is not there");
+  printf("%s\n", rtslError());
+  rtslMember(scene, "nothing", &one, 1);
+  if (rtslSceneAddObject(scene, "Eye") != 0)
+    return fail("a member that is not there");
+  printf("%s\n", rtslError());
+  /* Objects of another kind, and none. */
+  if (rtslSceneSetRayGeneration(scene, rtslSceneAddObject(scene, "Code")) != 0)
+    return fail("an exception program as ray generation");
+  printf("%s\n", rtslError());
+  if (rtslSceneSetException(scene, 0) != 0)
+    return fail("no object as exception program");
+  printf("%s\n", rtslError());
+  rtslSceneDestroy(scene);
+  return 0;
+}
+
+int main(int count, char **arguments) {
+  const double curve[] = {0.5, 0.25}, center[] = {0.0, 0.0, 0.0}, radius = 2.0;
+  RtslRenderSettings settings = rtslRenderDefaults();
+  RtslObject eye, code, sphere, endless;
+  RtslScene *scene;
+  float pixels[4 * 4 * 3];
+  int lines = 0, again = 0;
+  if (settings.width != 960 || settings.samplesPerPixel != 16)
+    return fail("defaults");
+  if (count != 2)
+    return mistakes();
+  if (!(scene = rtslSceneCreate(events_shaders())))
+    return fail("scene");
+  rtslMember(scene, "curve", curve, 2);
+  eye = rtslSceneAddObject(scene, "Eye");
+  code = rtslSceneAddObject(scene, "Code");
+  rtslMember(scene, "center", center, 3);
+  rtslMember(scene, "radius", &radius, 1);
+  sphere = rtslSceneAddObject(scene, "Sphere");
+  endless = rtslSceneAddObject(scene, "Endless");
+  if (!rtslSceneSetRayGeneration(scene, eye) || !rtslSceneSetException(scene, code) ||
+      !rtslSceneAddPrimitive(scene, sphere, endless))
+    return fail("objects");
+  settings.width = settings.height = 4;
+  settings.samplesPerPixel = 2;
+  settings.maxDepth = 5;
+  if (!rtslRenderToFile(scene, &settings, arguments[1]) || !rtslTakePrinted(scene, show, &lines) || lines == 0)
+    return fail("picture");
+  /* Into memory, and what it prints is there once. */
+  if (rtslSceneChannels(scene) != 3 || !rtslRender(scene, &settings, pixels) || !(pixels[0] > 0.0f))
+    return fail("pixels");
+  if (!rtslTakePrinted(scene, show, &again) || again != lines || !rtslTakePrinted(scene, show, &again) || again != lines)
+    return fail("printed lines");
+  rtslSceneDestroy(scene);
   return 0;
 }

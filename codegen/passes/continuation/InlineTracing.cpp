@@ -36,7 +36,7 @@ llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
                           bool here =
                               llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp, ir::SpawnOp,
                                         ir::SpawnPayloadOp>(op) ||
-                              (call && tracing.contains(symbols.lookup(call.getCallee())));
+                              (call && (isFramed(call) || tracing.contains(symbols.lookup(call.getCallee()))));
                           return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
                         })
                         .wasInterrupted();

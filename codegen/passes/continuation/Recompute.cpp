@@ -53,9 +53,17 @@ WriteSummary::WriteSummary(mlir::ModuleOp module) {
   bool hasLights = false;
   llvm::SmallVector<FuncOp> bodies;
   for (FuncOp function : module.getOps<FuncOp>()) {
-    functions[function.getSymNameAttr()].any = function.isExternal();
-    if (!function.isExternal())
+    if (!function.isExternal()) {
+      functions[function.getSymNameAttr()] = {};
       bodies.push_back(function);
+      continue;
+    }
+    StateWrites &writes = functions[function.getSymNameAttr()];
+    const auto known = function->getAttrOfType<mlir::ArrayAttr>("rtsl.writes"); // OpenCalls.cpp
+    writes.any = !known;
+    if (known)
+      for (auto name : known.getAsRange<mlir::StringAttr>())
+        writes.names.insert(name.getValue());
   }
   auto isLight = [](FuncOp function) {
     auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");

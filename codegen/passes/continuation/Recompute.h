@@ -32,6 +32,7 @@ public:
   explicit WriteSummary(mlir::ModuleOp module);
   /// What one operation may write.
   StateWrites of(mlir::Operation *op) const;
+  StateWrites ofFunction(FuncOp function) const { return functions.lookup(function.getSymNameAttr()); }
 
 private:
   llvm::DenseMap<mlir::StringAttr, StateWrites> functions;

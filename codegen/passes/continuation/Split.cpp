@@ -210,6 +210,8 @@ mlir::LogicalResult FunctionSplitter::run() {
   for (mlir::Location last : endAtLastTraces(function))
     report.lastTraces.push_back(ir::placeOf(last));
   moveVariablesToFrame(function);
+  if (function->getParentOfType<mlir::ModuleOp>()->hasAttr("rtsl.source"))
+    removeIdleClears(function);
   if (mlir::failed(check("suspend")))
     return mlir::failure();
   listTraces();

@@ -47,6 +47,11 @@ llvm::ArrayRef<llvm::StringLiteral> machineEntries();
 /// they and their calls are marked `rtsl.framed`.
 void inlineTracingCalls(mlir::ModuleOp module);
 
+/// OpenCalls.cpp: of a program without a scene, on level 1: calls of methods that trace, through references, become framed
+/// calls of `@dispatch.CLASS.METHOD`, which is only declared. It has the names of the first class that has the method
+/// (`rtsl.class`) and of the method (`rtsl.method`).
+void callThroughFrames(mlir::ModuleOp module);
+
 /// CallFrames.cpp: where what a call hands over lies in the frame of what it calls, in bytes.
 struct CallLayout {
   llvm::SmallVector<std::int32_t> arguments, results; // but for the object
@@ -99,6 +104,9 @@ bool onlyScalesAndAdds(ir::SuspendOp suspend);
 
 /// FrameObjects.cpp: variables that are still in memory and live across a trace move to the frame.
 void moveVariablesToFrame(FuncOp function);
+
+/// IdleClears.cpp: of a program that is printed for people, no variable is cleared that is written before it is read.
+void removeIdleClears(FuncOp function);
 
 /// TrimVectors.cpp: parts that are taken out of a vector behind a trace are taken out before it.
 void trimVectors(FuncOp function);

@@ -339,6 +339,14 @@ public:
     result->slots.states.run = run;
     result->slots.states.frameSize = static_cast<std::int32_t>((size + 3) / 4 * 4);
   }
+  /// So many methods are called through references, on these frames.
+  template <typename... Frames>
+  void calls(std::uint32_t methods) {
+    std::size_t size = 0;
+    ((size = std::max(size, sizeof(Frames))), ...);
+    result->slots.states.calledMethods = methods;
+    result->slots.states.calledFrameSize = static_cast<std::uint32_t>(RTSL_CALL_HEADER + (size + 7) / 8 * 8);
+  }
   void needs(std::uint32_t what) { result->needs = what | RTSL_NEEDS_NORMALS; }
   /// RTSL_FEATURE_*: what samples do beside colors.
   void features(std::uint32_t what) { result->slots.features = what; }

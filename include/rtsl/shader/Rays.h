@@ -51,7 +51,7 @@ inline Color<N> traced(State<N> &rt) {
 /// The frame of a method, in which its values survive its rays.
 template <typename Frame>
 inline Frame &frameAt(void *memory) {
-  static_assert(alignof(Frame) <= 4 && std::is_trivially_copyable_v<Frame>);
+  static_assert(alignof(Frame) <= 8 && std::is_trivially_copyable_v<Frame>);
   return *static_cast<Frame *>(memory);
 }
 

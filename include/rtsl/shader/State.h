@@ -141,7 +141,7 @@ template <typename Primitive, int N>
 inline void intersect(State<N> &rt, const Primitive &primitive) {
   typename Primitive::Scratch scratch;
   primitive.intersect(rt, scratch);
-  if (scratch.accepted)
+  if (static_cast<const Scratch &>(scratch).accepted) // a member of the author's may be called so, too
     scratch.visit([&](int word, const auto &value) { storeAttribute(rt, word, value); });
 }
 

@@ -4,14 +4,16 @@ lines and the counted exceptions of the compiler's own machine code, to the last
 import json
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+from programs import built_with, run, same_picture
 
 rtslc, source, library, render = sys.argv[1:]
 here = pathlib.Path(__file__).parent
 glass = pathlib.Path(source, "examples/glass")
-FLAGS = "-std=c++17 -Wall -Wextra -Wpedantic -Werror -Wconversion -fPIC -shared".split()
+FLAGS = ["-fPIC", "-shared", *built_with(source, library)]
 
 
 def sphere(center, radius, material):
@@ -57,6 +59,42 @@ def events(answered):
     return scene
 
 
+def chains(length, depth, branches=True):
+    """Objects that ask each other, in a chain of this length (Chains.rtsl)."""
+    textures = {"t0": {"class": "Filter"}, "s0": {"class": "Scale"}}
+    for i in range(1, length + 1):
+        textures[f"t{i}"] = {"class": "Tint", "inner": f"t{i - 1}", "others": [f"t{max(i - 2, 0)}" if branches else "t0", "t0"],
+                             "rounds": 2 if branches else 1}
+        textures[f"s{i}"] = {"class": "Twice" if i % 3 == 2 else "Ask", "inner": f"s{i - 1}", "filter": f"t{min(i, 1)}"}
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Chains.rtsl"), str(glass / "Sphere.rtsl")],
+        "camera": {"class": "Eye"}, "textures": textures,
+        "materials": {"mirror": {"class": "Mirror", "filter": f"t{length}"},
+                      "marked": {"class": "Marked", "scale": f"s{length}", "others": [f"s{length // 2}", "s0"]}},
+        "objects": [sphere([0, 0, 4], 2, "mirror"), sphere([3, 2, 0], 1, "mirror"), sphere([-2, 1, 3], 1, "marked"),
+                    sphere([0, -3, 2], 1.5, "marked")],
+        "background": {"class": "Sky", "filter": "t0"},
+        "render": {"engine": "classic", "size": [16, 16], "spp": 2, "depth": depth},
+    }
+
+
+def names():
+    """Whose names C++ cannot have (Names.rtsl)."""
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Names.rtsl"), str(glass / "PinholeCamera.rtsl")],
+        "camera": {"class": "PinholeCamera", "constructor": [[0, 0, 4], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1]},
+        "textures": {"t0": {"class": "glm_", "memory": 0.5}, "t1": {"class": "FilterRef", "inner": "t0"},
+                     "s": {"class": "State", "double": 0.5, "NULL": 0.25}},
+        "materials": {"a": {"class": "program", "filter": "t1", "slots": "s"}, "b": {"class": "lookup", "frame": 0.75}},
+        "objects": [{"primitive": {"class": "intersect", "center": [-0.6, 0, 0]}, "material": "a"},
+                    {"primitive": {"class": "intersect", "center": [0.6, 0.2, 0.3]}, "material": "b"}],
+        "background": {"class": "miss"},
+        "render": {"engine": "classic", "size": [32, 32], "spp": 2, "depth": 3},
+    }
+
+
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
     ("g++", ["-O2"], [], [whitted()]),
@@ -64,14 +102,11 @@ CASES = [
     ("g++", ["-O1"], ["--print"], [events(False)]),
     ("g++", ["-O1"], ["--exceptions"], [events(False), events(True)]),
     ("g++", ["-O1"], ["--unchecked"], [answers("programs")]),
+    ("g++", ["-O1"], [], [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)]),
+    ("clang++-22", ["-O1"], ["--trace=recurse"], [chains(3, 2)]),
+    ("g++", ["-O0"], ["--trace=recurse"], [names()]),
+    ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]
-
-
-def run(*words, **more):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, **more)
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, words))}\n{done.stdout[-2000:]}{done.stderr[-6000:]}")
-    return done.stdout
 
 
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
@@ -82,14 +117,13 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
             continue
         imports = list(dict.fromkeys(file for scene in scenes for file in scene["import"]))
         run(rtslc, "compile", *imports, "--emit=cpp", *options, "-o", folder / "shaders.cpp")
-        run(compiler, *FLAGS, *flags, "-I", source, "-I", f"{source}/include", folder / "shaders.cpp", "-o",
-            folder / "shaders.so", "-L", library, "-lrtsl", f"-Wl,-rpath,{library}")
+        run(compiler, folder / "shaders.cpp", "-o", folder / "shaders.so", *flags, *FLAGS)
         for scene in scenes:
             (folder / "scene.json").write_text(json.dumps(scene))
             events_of = [option for option in options if option in ("--print", "--exceptions")]
             theirs = json.loads(run(rtslc, "render", folder / "scene.json", "-o", folder / "jit.exr", "--json", *events_of))
             ours = json.loads(run(render, folder / "shaders.so", folder / "scene.json", folder / "cpp.exr"))
-            run(rtslc, "compare", folder / "cpp.exr", folder / "jit.exr", "--threshold", "0")
+            same_picture(rtslc, folder / "cpp.exr", folder / "jit.exr")
             assert ours["printed"] == theirs.get("printed", []), (ours, theirs)
             assert ours.get("exceptions") == theirs.get("exceptions"), (ours, theirs)
             if "--print" in options:

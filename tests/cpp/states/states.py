@@ -3,9 +3,11 @@
 and recursion, states and the host megakernel make one picture of it too, with the traversal that all three have."""
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+from programs import run, same_picture
 
 rtslc, glass, *programs = sys.argv[1:]
 here = pathlib.Path(__file__).parent
@@ -34,16 +36,13 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
     pathlib.Path(file).write_text(json.dumps(scene))
 
     def render(picture, *how):
-        subprocess.run([rtslc, "render", file, "-o", picture, "-q", *how], check=True)
-
-    def compare(a, b):
-        subprocess.run([rtslc, "compare", a, b, "--threshold", "0"], check=True)
+        run(rtslc, "render", file, "-o", picture, "-q", *how)
 
     render(theirs)
     for program in programs:
-        subprocess.run([program, ours], check=True)
-        compare(ours, theirs)
+        run(program, ours)
+        same_picture(rtslc, ours, theirs)
     render(theirs, "--trace=recurse", "--traversal=device")
     for how in (["--trace=split", "--traversal=device"], ["--target=host-megakernel"]):
         render(ours, *how)
-        compare(ours, theirs)
+        same_picture(rtslc, ours, theirs)

@@ -1,0 +1,164 @@
+//===- CalledMethods.cpp - methods that trace, called through references ---===//
+//
+//   struct FilterRef : rtsl::Reference {
+//     struct Follow { ... };                   // what `follow` is given and returns
+//   };
+//   return rtsl::callThen(rt, frame, Step::Tint_shadeAfterCall1, inner, FilterRef::Follow{o, d});
+//
+// The caller's state ends there, and goes on in another when the method has returned. The method's frame begins with that
+// struct, whatever class has it (include/rtsl/shader/Calls.h, codegen/passes/continuation/OpenCalls.cpp).
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/States.h"
+
+#include "codegen/lower/Analysis.h"
+#include "codegen/passes/continuation/Steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace rtsl::cpp {
+
+std::set<std::string> ModulePrinter::typeNames() const {
+  std::set<std::string> found;
+  for (const auto &structure : module.structs)
+    found.insert(names.of(structure.get()));
+  for (const auto &definition : module.classes)
+    found.insert(names.of(definition.get()));
+  return found;
+}
+
+std::string ModulePrinter::stepName(const typed::Class &definition, const std::string &function) {
+  return unique(names.of(&definition) + "_" + function, stepNames);
+}
+
+void ModulePrinter::findCalledMethods() {
+  std::map<const typed::Class *, std::set<std::string>> structures;
+  mlir::ModuleOp ir = states->ir;
+  for (auto declaration : ir.getOps<mlir::func::FuncOp>()) {
+    auto ofClass = declaration->getAttrOfType<mlir::StringAttr>("rtsl.class");
+    auto slot = declaration->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    if (!declaration.isExternal() || !ofClass || !slot)
+      continue;
+    CalledMethod called;
+    called.symbol = declaration.getSymName().str();
+    called.slot = slot.getValue().str();
+    for (const auto &definition : module.classes)
+      for (const auto &function : definition->functions)
+        if (definition->name == ofClass.getValue() && lowering::slotName(module, *function) == called.slot) {
+          called.definition = definition.get();
+          called.function = function.get();
+        }
+    if (!called.function)
+      continue;
+    const std::string &name = names.of(called.function);
+    called.step = stepName(*called.definition, name);
+    called.structure = name;
+    called.structure[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+    structures.try_emplace(called.definition, typeNames()); // which it would hide
+    called.structure = unique(called.structure, structures[called.definition]);
+
+    // As the IR has them: where a result goes that stays whole, and the parameters.
+    const mlir::FunctionType type = declaration.getFunctionType();
+    const continuation::CallLayout layout =
+        continuation::layoutCall(type.getInputs().drop_front(), type.getResults());
+    called.offsets.assign(layout.arguments.begin(), layout.arguments.end());
+    std::set<std::string> fields = {"begin"};
+    if (called.offsets.size() > called.function->parameters.size()) {
+      called.given.push_back(nullptr);
+      called.fields.push_back(unique("returned", fields));
+    }
+    for (const auto &parameter : called.function->parameters) {
+      const std::string &given = names.of(parameter.get());
+      called.given.push_back(parameter.get());
+      called.fields.push_back(unique(given.empty() ? "unnamed" : given, fields));
+    }
+    if (type.getNumResults() != 0)
+      called.returned = unique("returned", fields);
+    calledMethods.push_back(std::move(called));
+  }
+}
+
+const CalledMethod *ModulePrinter::calledMethod(const std::string &symbol) const {
+  for (const CalledMethod &called : calledMethods)
+    if (called.symbol == symbol)
+      return &called;
+  return nullptr;
+}
+
+const CalledMethod *ModulePrinter::calledMethod(const typed::Class &definition, const typed::Function &method) const {
+  for (const CalledMethod &called : calledMethods)
+    if ((&definition == called.definition || definition.derivesFrom(called.definition)) && !method.isStateMethod &&
+        lowering::slotName(module, method) == called.slot)
+      return &called;
+  return nullptr;
+}
+
+std::string ModulePrinter::structureOf(const CalledMethod &called) const {
+  return names.reference(called.definition->name) + "::" + called.structure;
+}
+
+/// Is it given as an address?
+static bool isAddress(const typed::Variable *given) {
+  return !given || given->direction != ast::Direction::In || given->type->is(TypeKind::Struct) ||
+         given->type->is(TypeKind::Array) || given->type->isMatrix();
+}
+
+std::string ModulePrinter::callStructures(const std::string &className) {
+  std::string text;
+  for (const CalledMethod &called : calledMethods) {
+    if (called.definition->name != className)
+      continue;
+    text += fmt::format("\n// What `{}` is given{}.\nstruct {} {{\nstatic constexpr Step begin = Step::{};\n",
+                        names.of(called.function), called.returned.empty() ? "" : ", and what it returns",
+                        called.structure, called.step);
+    for (std::size_t i = 0; i < called.given.size(); ++i) {
+      const typed::Variable *given = called.given[i];
+      const Type *of = given ? given->type : called.function->returnType;
+      text += fmt::format("{}{}{};\n", type(of), isAddress(given) ? " *" : " ", called.fields[i]);
+    }
+    if (!called.returned.empty())
+      text += fmt::format("{} {}{{}};\n", type(called.function->returnType), called.returned);
+    text += "};\n";
+  }
+  return text;
+}
+
+/// The method of an object's class begins, or runs at once if that does not trace.
+std::string ModulePrinter::runCalledMethod(const CalledMethod &called) {
+  bool isPlain = false;
+  const std::string body = dispatch(classesBelow(called.definition->name), [&](const typed::Class &definition) -> std::string {
+    const typed::Function *method = findMethod(definition, *called.function);
+    if (!method)
+      return {};
+    const std::string object = "rtsl::object<" + names.of(&definition) + ">(rt, object).";
+    for (const typed::Class *at = &definition; at; at = at->base)
+      if (auto first = firstCalls.find({at, called.slot}); first != firstCalls.end())
+        return "return " + object + first->second;
+    isPlain = true;
+    std::vector<std::string> arguments;
+    if (takesState(*method))
+      arguments.emplace_back("rt");
+    if (takesScratch(*method))
+      arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+    for (std::size_t i = 0; i < called.given.size(); ++i)
+      if (called.given[i])
+        arguments.push_back((isAddress(called.given[i]) ? "*call." : "call.") + called.fields[i]);
+    std::string result;
+    if (!called.returned.empty())
+      result = "call." + called.returned + " = ";
+    else if (!called.given.empty() && !called.given.front())
+      result = "*call." + called.fields.front() + " = ";
+    return result + object + names.of(method) + "(" + join(arguments, ", ") + ")";
+  });
+  const std::string call =
+      isPlain ? fmt::format("auto &call = rtsl::calledFrameAt<{}>(frame);\n", structureOf(called)) : std::string();
+  const bool isOver = body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
+  return fmt::format("case Step::{}:{}\n{}{}{}{}", called.step, isPlain ? " {" : "", call, body,
+                     isOver ? "" : "return rtsl::returnToCaller(rt);\n", isPlain ? "}\n" : "");
+}
+
+} // namespace rtsl::cpp

@@ -1,0 +1,131 @@
+//===- RunState.cpp - all states of a program, by number ------------------===//
+#include "codegen/cpp/Printer.h"
+
+#include "codegen/lower/Analysis.h"
+
+#include <fmt/format.h>
+
+namespace rtsl::cpp {
+
+namespace {
+/// A method with which the machine begins.
+struct Beginning {
+  const char *base, *method, *step, *slot; // of the class, of the function, its number in C++, and who asks for it
+  bool hasPayload;
+};
+constexpr Beginning beginnings[] = {{"rt_Material", "shade", "shade", "shadeFirst", false},
+                                    {"rt_Miss", "miss", "miss", "missFirst", false},
+                                    {"rt_Material", "closestHit", "closestHit", "closestHitFirst", true},
+                                    {"rt_Miss", "miss", "missWithPayload", "missWithPayloadFirst", true},
+                                    {"rt_RayGeneration", "generate", "generate", "generateFirst", false}};
+} // namespace
+
+/// Does some class have such a method?
+static bool isThere(const ModulePrinter &printer, const std::vector<const typed::Class *> &classes, const Beginning &one) {
+  static_cast<void>(printer);
+  for (const typed::Class *definition : classes)
+    for (const typed::Class *at = definition; at; at = at->base)
+      for (const auto &method : at->functions)
+        if (method->isStateMethod && method->body && method->name == one.method &&
+            lowering::takesPayload(*method) == one.hasPayload)
+          return true;
+  return false;
+}
+
+bool ModulePrinter::isRunBySteps(const std::string &slot) const {
+  return !firstCalls.empty() && (slot == "shade" || slot == "miss" || slot == "generate" || slot == "closestHit");
+}
+
+std::string ModulePrinter::stepNumbers() const {
+  if (firstCalls.empty())
+    return {};
+  std::vector<std::string> numbers, begin;
+  auto add = [&](const std::string &step) {
+    numbers.push_back(numbers.empty() ? step + " = 1" : step);
+    begin.push_back(fmt::format("`{}`", step));
+  };
+  for (const Beginning &one : beginnings)
+    if (isThere(*this, classesBelow(one.base), one))
+      add(one.step);
+  for (const CalledMethod &called : calledMethods)
+    add(called.step);
+  for (const Step &step : steps)
+    numbers.push_back(step.name);
+  const std::string last = begin.back();
+  begin.pop_back();
+  return fmt::format("// Where a method goes on: {}{} begin{}, the others run when a ray is back{}.\n"
+                     "enum class Step : rtsl::Next {{ {} }};\n",
+                     begin.empty() ? "" : join(begin, ", ") + " and ", last, begin.empty() ? "s" : "",
+                     calledMethods.empty() ? "" : " or a call over", join(numbers, ", "));
+}
+
+std::string ModulePrinter::runState() {
+  if (firstCalls.empty())
+    return {};
+  auto object = [&](const typed::Class &definition) {
+    return "rtsl::object<" + names.of(&definition) + ">(rt, object).";
+  };
+  // The first state of a method, or all of it if it does not trace.
+  auto begin = [&](const Beginning &one, const typed::Struct *payload) {
+    return dispatch(classesBelow(one.base), [&](const typed::Class &definition) -> std::string {
+      const typed::Function *method = nullptr;
+      for (const typed::Class *at = &definition; at && !method; at = at->base)
+        for (const auto &function : at->functions)
+          if (function->isStateMethod && function->body && function->name == one.method &&
+              (payload ? lowering::takesPayload(*function) && function->parameters.front()->type->structure == payload
+                       : function->parameters.empty()))
+            method = function.get();
+      if (!method)
+        return {};
+      for (const typed::Class *at = &definition; at; at = at->base)
+        if (auto first = firstCalls.find({at, lowering::slotName(module, *method)}); first != firstCalls.end())
+          return "return " + object(definition) + first->second;
+      std::string arguments = "rt";
+      if (takesScratch(*method))
+        arguments += ", rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)";
+      if (payload)
+        arguments += ", rtsl::payloadOf<" + names.of(payload) + ">(ray)";
+      return object(definition) + names.of(method) + "(" + arguments + ");\nreturn rtsl::done";
+    });
+  };
+  std::string text = fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object, "
+                                 "[[maybe_unused]] void *frame) {{\nState &rt = rtsl::stateOf<{}>(ray);\n"
+                                 "switch (static_cast<Step>(step)) {{\n",
+                                 options.colorComponents);
+  auto returns = [](const std::string &body) {
+    return body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
+  };
+  for (const Beginning &one : beginnings) {
+    if (!isThere(*this, classesBelow(one.base), one))
+      continue;
+    text += fmt::format("case Step::{}:\n", one.step);
+    if (!one.hasPayload) {
+      const std::string body = begin(one, nullptr);
+      text += body + (returns(body) ? "" : "return rtsl::done;\n");
+      continue;
+    }
+    for (const RayType &type : rayTypes)
+      if (const std::string body = begin(one, type.payload); !body.empty())
+        text += fmt::format("if (rtsl::carries<{}>(ray)) {{\n{}}}\n", names.of(type.payload), body);
+    text += "return rtsl::done;\n";
+  }
+  for (const CalledMethod &called : calledMethods)
+    text += runCalledMethod(called);
+  for (const Step &step : steps)
+    text += "case Step::" + step.name + ":\nreturn " + object(*step.definition) + step.call + ";\n";
+  return text + "}\nreturn rtsl::done;\n}\n";
+}
+
+std::string ModulePrinter::describeStates() const {
+  if (firstCalls.empty())
+    return {};
+  std::string text = fmt::format("program.states<{}>(&slots::runState);\n", join(frames, ", "));
+  if (!calledMethods.empty())
+    text += fmt::format("program.calls<{}>({});\n", join(calledFrames, ", "), calledMethods.size());
+  for (const Beginning &one : beginnings)
+    if (isThere(*this, classesBelow(one.base), one))
+      text += fmt::format("program.slots().states.{} = static_cast<rtsl::Next>(Step::{});\n", one.slot, one.step);
+  return text;
+}
+
+} // namespace rtsl::cpp

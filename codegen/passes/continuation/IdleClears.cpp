@@ -1,0 +1,85 @@
+//===- IdleClears.cpp - clears of what is written before it is read --------===//
+//
+//   rtsl.clear %ray                       rtsl.clear %ray
+//   rtsl.clear %ray             ==>       ...
+//   ...
+//
+// Variables in memory are cleared where they are declared, and once more where they move to the frame. For people, who read
+// what the printer for C++ makes of it, a clear says that somebody wants the zeros.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Steps.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+
+namespace rtsl::continuation {
+
+namespace {
+
+/// The variable, object or argument that an address is part of.
+mlir::Value rootOf(mlir::Value address) {
+  while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(address.getDefiningOp()))
+    address = address.getDefiningOp()->getOperand(0);
+  return address;
+}
+
+bool mentions(mlir::Operation *op, mlir::Value root) {
+  return llvm::any_of(op->getOperands(), [&](mlir::Value operand) {
+    return llvm::isa<ir::PtrType>(operand.getType()) && rootOf(operand) == root;
+  });
+}
+
+/// Does the operation write all of it, and read nothing of it?
+bool overwrites(mlir::Operation *op, mlir::Value root) {
+  if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
+    return clear.getAddress() == root;
+  if (auto copy = llvm::dyn_cast<ir::CopyOp>(op))
+    return copy.getTarget() == root && rootOf(copy.getSource()) != root;
+  if (auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op))
+    return evaluation->hasAttr("rtsl.into") && evaluation.getOperand(0) == root &&
+           llvm::none_of(evaluation.getOperands().drop_front(), [&](mlir::Value operand) {
+             return llvm::isa<ir::PtrType>(operand.getType()) && rootOf(operand) == root;
+           });
+  return false;
+}
+
+/// Is it written again, on every way, before anybody looks at it?
+bool isIdle(ir::ClearOp clear) {
+  const mlir::Value root = clear.getAddress();
+  llvm::SmallPtrSet<mlir::Block *, 16> seen;
+  llvm::SmallVector<mlir::Block::iterator> begins = {std::next(clear->getIterator())};
+  llvm::SmallVector<mlir::Block *> blocks = {clear->getBlock()};
+  while (!begins.empty()) {
+    auto at = begins.pop_back_val();
+    mlir::Block *block = blocks.pop_back_val();
+    bool isOver = false;
+    for (; at != block->end() && !isOver; ++at) {
+      isOver = overwrites(&*at, root);
+      if (!isOver && !llvm::isa<ir::FieldOp, ir::ElementOp>(*at) && mentions(&*at, root))
+        return false;
+    }
+    if (isOver)
+      continue;
+    for (mlir::Block *next : block->getSuccessors())
+      if (seen.insert(next).second) {
+        begins.push_back(next->begin());
+        blocks.push_back(next);
+      }
+  }
+  return true;
+}
+
+} // namespace
+
+void removeIdleClears(FuncOp function) {
+  llvm::SmallVector<ir::ClearOp> clears;
+  function.walk([&](ir::ClearOp clear) {
+    if (llvm::isa_and_nonnull<ir::VarOp, ir::FrameObjectOp>(clear.getAddress().getDefiningOp()))
+      clears.push_back(clear);
+  });
+  for (ir::ClearOp clear : clears)
+    if (isIdle(clear))
+      clear.erase();
+}
+
+} // namespace rtsl::continuation

@@ -1,0 +1,203 @@
+//===- OpenCalls.cpp - calls through references, of a program without a scene ===//
+//
+//   rtsl.call_method "follow" on %f(%d)
+//       ==>   func.call @dispatch.Filter.follow(%f, %d) {rtsl.framed}
+//
+// where some class below Filter has a `follow` that traces. Which one runs is known when there is a scene, so
+// `@dispatch.Filter.follow` is only declared, under the first class that has the method; whoever makes a program of this
+// (codegen/cpp) chooses there. The methods that it may stand for get frames of their own. The declaration says what they
+// may write, `rtsl.writes`, for they are cut before all that call them are.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Recompute.h"
+#include "codegen/passes/continuation/Steps.h"
+
+#include "mlir/IR/SymbolTable.h"
+#include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/StringMap.h"
+
+namespace rtsl::continuation {
+
+namespace {
+
+class OpenCalls {
+public:
+  explicit OpenCalls(mlir::ModuleOp module) : module(module), symbols(module) {}
+  void run();
+
+private:
+  ir::ClassOp baseClass(ir::ClassOp definition);
+  bool isBelow(ir::ClassOp derived, llvm::StringRef base);
+  llvm::SmallVector<FuncOp> targets(llvm::StringRef base, llvm::StringRef method);
+  void findTracing();
+  std::string firstWith(llvm::StringRef className, llvm::StringRef method);
+  void replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun);
+  void giveFrame(FuncOp method);
+  void summariseWrites();
+
+  mlir::ModuleOp module;
+  mlir::SymbolTable symbols;
+  llvm::SmallSetVector<mlir::Operation *, 16> tracing;
+  llvm::SmallSetVector<mlir::Operation *, 8> framed;                                 // what was called so
+  llvm::SmallVector<std::pair<FuncOp, llvm::SmallVector<FuncOp>>> declarations; // and what they may stand for
+};
+
+/// The author's class that this one derives from, or null.
+ir::ClassOp OpenCalls::baseClass(ir::ClassOp definition) {
+  return definition.getBase() ? symbols.lookup<ir::ClassOp>(*definition.getBase()) : ir::ClassOp();
+}
+
+bool OpenCalls::isBelow(ir::ClassOp derived, llvm::StringRef base) {
+  if (derived.getRoot() == base)
+    return true;
+  for (ir::ClassOp at = derived; at; at = baseClass(at))
+    if (at.getSymName() == base)
+      return true;
+  return false;
+}
+
+llvm::SmallVector<FuncOp> OpenCalls::targets(llvm::StringRef base, llvm::StringRef method) {
+  llvm::SmallVector<FuncOp> found;
+  for (ir::ClassOp definition : module.getOps<ir::ClassOp>())
+    if (isBelow(definition, base))
+      if (auto function = symbols.lookup<FuncOp>((definition.getSymName() + "." + method).str()))
+        found.push_back(function);
+  return found;
+}
+
+static llvm::StringRef baseOf(ir::CallMethodOp call) {
+  return llvm::cast<ir::RefType>(call.getObject().getType()).getClassName();
+}
+
+/// What traces, with what calls it through references.
+void OpenCalls::findTracing() {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (FuncOp function : module.getOps<FuncOp>()) {
+      if (tracing.contains(function))
+        continue;
+      const bool traces = function
+                              .walk([&](mlir::Operation *op) {
+                                bool here = llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op);
+                                if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
+                                  here = tracing.contains(symbols.lookup(call.getCallee()));
+                                if (auto call = llvm::dyn_cast<ir::CallMethodOp>(op))
+                                  here = llvm::any_of(targets(baseOf(call), call.getMethod()),
+                                                      [&](FuncOp target) { return tracing.contains(target); });
+                                return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+                              })
+                              .wasInterrupted();
+      if (traces)
+        changed |= tracing.insert(function);
+    }
+  }
+}
+
+/// The class that has the method and whose base has not.
+std::string OpenCalls::firstWith(llvm::StringRef className, llvm::StringRef method) {
+  auto definition = symbols.lookup<ir::ClassOp>(className);
+  if (!definition) // a class of the language
+    return className.str();
+  for (ir::ClassOp base = baseClass(definition);
+       base && symbols.lookup((base.getSymName() + "." + method).str()); base = baseClass(base))
+    definition = base;
+  return definition.getSymName().str();
+}
+
+/// Who calls the method on the own object does not want a frame for it: it stays as it is, and has a twin.
+void OpenCalls::giveFrame(FuncOp method) {
+  if (!framed.insert(method))
+    return;
+  const bool isCalled = !mlir::SymbolTable::symbolKnownUseEmpty(method, module);
+  FuncOp twin = method;
+  if (isCalled) {
+    twin = method.clone();
+    twin.setSymName((method.getSymName() + ".framed").str());
+    symbols.insert(twin, std::next(method->getIterator()));
+  }
+  for (const char *mark : {"rtsl.framed", "rtsl.noinline"})
+    twin->setAttr(mark, mlir::UnitAttr::get(module.getContext()));
+}
+
+void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
+  const std::string base = firstWith(baseOf(call), call.getMethod());
+  const std::string name = "dispatch." + base + "." + call.getMethod().str();
+  mlir::OpBuilder builder(call);
+  mlir::Value object = call.getObject();
+  const mlir::Type type = ir::RefType::get(module.getContext(), base);
+  if (object.getType() != type)
+    object = ir::CastRefOp::create(builder, call.getLoc(), type, object);
+  llvm::SmallVector<mlir::Value> arguments = {object};
+  llvm::append_range(arguments, call.getArguments());
+  auto declaration = symbols.lookup<FuncOp>(name);
+  if (!declaration) {
+    declaration = FuncOp::create(
+        call.getLoc(), name, builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
+    declaration.setPrivate();
+    declaration->setAttr("rtsl.class", builder.getStringAttr(base));
+    declaration->setAttr("rtsl.method", call.getMethodAttr());
+    symbols.insert(declaration);
+    declarations.push_back({declaration, {}});
+  }
+  for (auto &[known, stands] : declarations)
+    if (known == declaration)
+      for (FuncOp target : mayRun)
+        if (!llvm::is_contained(stands, target))
+          stands.push_back(target);
+  auto framedCall = mlir::func::CallOp::create(builder, call.getLoc(), declaration, arguments);
+  framedCall->setAttr("rtsl.framed", builder.getUnitAttr());
+  call.replaceAllUsesWith(framedCall.getResults());
+  call.erase();
+}
+
+/// One may call another, so until nothing changes.
+void OpenCalls::summariseWrites() {
+  mlir::OpBuilder builder(module.getContext());
+  for (auto &entry : declarations)
+    entry.first->setAttr("rtsl.writes", builder.getArrayAttr({}));
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    const WriteSummary summary(module);
+    for (auto &[declaration, stands] : declarations) {
+      StateWrites writes;
+      for (FuncOp target : stands)
+        writes.add(summary.ofFunction(target));
+      const mlir::Attribute before = declaration->getAttr("rtsl.writes");
+      if (writes.any) {
+        declaration->removeAttr("rtsl.writes");
+      } else {
+        llvm::SmallVector<llvm::StringRef> names(writes.names.keys());
+        llvm::sort(names);
+        declaration->setAttr("rtsl.writes", builder.getStrArrayAttr(names));
+      }
+      changed |= declaration->getAttr("rtsl.writes") != before;
+    }
+  }
+}
+
+void OpenCalls::run() {
+  findTracing();
+  llvm::SmallVector<ir::CallMethodOp> calls;
+  module.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
+  for (ir::CallMethodOp call : calls) {
+    const llvm::SmallVector<FuncOp> mayRun = targets(baseOf(call), call.getMethod());
+    if (llvm::none_of(mayRun, [&](FuncOp target) { return tracing.contains(target); }))
+      continue;
+    replace(call, mayRun);
+  }
+  summariseWrites();
+  for (auto &[declaration, stands] : declarations)
+    for (FuncOp target : stands)
+      if (tracing.contains(target))
+        giveFrame(target);
+}
+
+} // namespace
+
+void callThroughFrames(mlir::ModuleOp module) {
+  OpenCalls(module).run();
+}
+
+} // namespace rtsl::continuation
