@@ -112,7 +112,7 @@ void StateWriter::emit(Statements &out, std::string text) {
     statement.comment = module.commentText(comment->second);
     comments.erase(comment);
   }
-  statement.hasSpace = !out.empty() && spaces.erase(currentLine) != 0;
+  statement.hasSpace = spaces.erase(currentLine) != 0 && !out.empty();
   if (currentLine != 0)
     statement.comment += module.lineDirective(machine.method->range, currentLine);
   statement.text = std::move(text);

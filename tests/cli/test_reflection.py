@@ -20,6 +20,8 @@ def complaints(value, schema, where="$"):
     if "type" in schema and (not isinstance(value, KINDS[schema["type"]]) or schema["type"] == "integer" and value is True):
         yield f"{where} is no {schema['type']}"
         return
+    if value < schema["minimum"] if "minimum" in schema else False:
+        yield f"{where} is {value!r}"
     if isinstance(value, dict):
         for name in schema.get("required", []):
             if name not in value:
@@ -27,6 +29,8 @@ def complaints(value, schema, where="$"):
         for name, part in value.items():
             if name in schema.get("properties", {}):
                 yield from complaints(part, schema["properties"][name], f"{where}.{name}")
+            elif isinstance(schema.get("additionalProperties"), dict):
+                yield from complaints(part, schema["additionalProperties"], f"{where}.{name}")
             elif schema.get("additionalProperties") is False:
                 yield f"{where} has {name}"
     if isinstance(value, list) and "items" in schema:
@@ -40,6 +44,40 @@ class Reflection(Case):
         value = json.loads(text)
         self.assertEqual(list(complaints(value, SCHEMA)), [])
         return value
+
+    def test_the_validator_knows_what_the_schema_uses(self):
+        known = {"$schema", "$ref", "$defs", "title", "description", "type", "properties", "required", "additionalProperties",
+                 "items", "enum", "const", "minimum"}
+
+        def keywords(schema):
+            yield from schema
+            for named in ("properties", "$defs"):
+                for part in schema.get(named, {}).values():
+                    yield from keywords(part)
+            for single in ("items", "additionalProperties"):
+                if isinstance(schema.get(single), dict):
+                    yield from keywords(schema[single])
+
+        self.assertEqual(set(keywords(SCHEMA)) - known, set())
+
+    def test_every_example(self):
+        folders = {file.parent for file in EXAMPLES.rglob("*.rtsl")} | {EXAMPLES.parent / "tests/cpp/scenes"}
+        self.assertGreater(len(folders), 2)
+        for folder in sorted(folders):
+            for file in sorted(folder.glob("*.rtsl")):
+                value = self.reflect(file)
+                try:
+                    import jsonschema
+                except ImportError:
+                    continue
+                jsonschema.Draft202012Validator(SCHEMA).validate(value)
+
+    def test_names_that_cpp_has_taken(self):
+        value = self.reflect(EXAMPLES.parent / "tests/cpp/scenes/Names.rtsl")
+        names = {one["name"]: one["cpp"] for one in value["cppNames"]}
+        for name, cpp in (("shade", "shade_"), ("State", "State_"), ("State.template", "template_"), ("State.new.delete", "delete_"),
+                          ("lookup", "lookup_"), ("fields", "fields_"), ("Follow.union", "union_"), ("State.NULL", "NULL_")):
+            self.assertEqual(names.get(name), cpp, names)
 
     def test_the_validator_complains(self):
         value = self.reflect(EXAMPLES / "glass/Sphere.rtsl")

@@ -22,7 +22,7 @@ _rtslc() {
     fi
   fi
   if [[ $current == -* ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '^ +(-[a-zA-Z],)?--[a-z-]+' <<< "$help" | grep -oE -- '--[a-z-]+')" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '^ +(-[a-zA-Z],)?--[A-Za-z-]+' <<< "$help" | grep -oE -- '--[A-Za-z-]+')" -- "$current")
   fi
 }
 complete -o default -F _rtslc rtslc

@@ -144,8 +144,9 @@ int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
                                                 ? translateScene(options, buildScene, messages, filesRead)
                                                 : translate(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
-      writeOutput(options.output, *text);
+      // First what names the output: where that cannot be written, the old output stays.
       writeDependencies(options.common.dependencies, options.output, options.files, filesRead);
+      writeOutput(options.output, *text);
     }
   } catch (const runtime::Error &error) {
     messages.report(error);
