@@ -83,6 +83,12 @@ constexpr ForeignQualifier foreignQualifiers[] = {
     {"precise", ""},       {"virtual", ""},        {"constexpr", "const"},
 };
 
+/// Words of which C makes the names of its types, `unsigned int` say.
+bool isWordOfType(std::string_view word) {
+  return word == "unsigned" || word == "signed" || word == "long" || word == "short" || word == "int" || word == "char" ||
+         word == "double";
+}
+
 class TokenChecker {
 public:
   TokenChecker(FileId file, TokenList &list, Diagnostics &diagnostics)
@@ -124,6 +130,7 @@ private:
 
   bool isDeclarationStart() const;
   std::size_t skipForeignWords(std::size_t index);
+  std::size_t wordsOfType(std::size_t index) const;
   void retag(Token &token, std::size_t index);
 
   void put(Token token);
@@ -227,6 +234,16 @@ std::size_t TokenChecker::skipForeignWords(std::size_t index) {
     }
   }
   return 0;
+}
+
+/// Number of words from `index` on that C takes for one type and that stand one space apart: one name, which the checker
+/// does not know and can replace. 1: it is none of those.
+std::size_t TokenChecker::wordsOfType(std::size_t index) const {
+  const auto isPart = [&](std::size_t at) { return typeAt(at) == RtslLexer::IDENTIFIER && isWordOfType(textOf(in[at])); };
+  std::size_t count = 1;
+  while (isPart(index) && isPart(index + count) && in[index + count].begin == in[index + count - 1].end + 1)
+    ++count;
+  return count;
 }
 
 /// Turns keywords that stand where a name must stand into names, and `illuminance` into a keyword.
@@ -499,6 +516,9 @@ void TokenChecker::run() {
       continue;
     }
     Token token = in[index];
+    const std::size_t words = wordsOfType(index);
+    index += words - 1;
+    token.end = in[index].end;
     token.followsMistake |= followsMistake;
     followsMistake = false;
     retag(token, index);

@@ -96,12 +96,14 @@ struct Program {
   std::vector<ClassInfo> classes;
   std::uint32_t colorComponents = 3;
 
-  /// Entries of Slots.def; a slot that no class of the scene fills may be null.
+  /// Entries of Slots.def and SamplingSlots.def; a slot that no class of the scene fills may be null.
   struct Slots {
 #define RTSL_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
 #include "runtime/device/Slots.def"
 #define RTSL_PAYLOAD_SLOT(base, method) void (*base##_##method##_payload)(RtslState *, RtslRef) = nullptr;
 #include "runtime/device/PayloadSlots.def"
+#define RTSL_SAMPLING_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
+#include "runtime/device/SamplingSlots.def"
 
     /// Of shaders in C++ that were split at their traces: what the machine asks for (runtime/device/Machine.h).
     /// Without `run` traces are calls.

@@ -135,7 +135,7 @@ std::string ModulePrinter::runCalledMethod(const CalledMethod &called) {
     if (!method)
       return {};
     const std::string object = "rtsl::object<" + names.of(&definition) + ">(rt, object).";
-    for (const typed::Class *at = &definition; at; at = at->base)
+    for (const typed::Class *at = &definition; at != method->owner->base; at = at->base) // a base of that has others
       if (auto first = firstCalls.find({at, called.slot}); first != firstCalls.end())
         return "return " + object + first->second;
     isPlain = true;

@@ -116,7 +116,16 @@ std::string ModulePrinter::zero(const Type *type) {
 std::string declarator(const std::string &type, const std::string &name, const std::string &value) {
   if (value == "{}")
     return name + "{}";
-  const bool namesType = value.compare(0, type.size() + 1, type + "{") == 0;
+  // All of the value, or only the first operand of something?
+  auto isWhole = [&] {
+    int depth = 0;
+    std::size_t end = type.size();
+    do
+      depth += (value[end] == '{') - (value[end] == '}');
+    while (depth > 0 && ++end < value.size());
+    return end + 1 == value.size();
+  };
+  const bool namesType = value.compare(0, type.size() + 1, type + "{") == 0 && isWhole();
   return namesType ? name + value.substr(type.size()) : name + " = " + value;
 }
 
@@ -401,12 +410,13 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
     isFirst = false;
   }
 
-  // Overloads of a base's functions do not hide the others.
+  // Overloads of a base's functions do not hide the others. States may have other names.
   std::set<std::string> shown;
   for (const auto &function : definition.functions)
     for (const typed::Class *at = definition.base; at; at = at->base)
       for (const auto &method : at->functions)
         if (method->name == function->name && !method->isConstructor && !isPartOfStates(*method) && !isPartOfStates(*function) &&
+            (!isSplit(*at, *method) || nameOfMachine(*at, *method) == names.of(method.get())) &&
             !lowering::sameParameters(*method, *function) && shown.insert(method->name).second)
           text += "\nusing " + names.of(at) + "::" + names.of(method.get()) + ";\n";
   for (const auto &function : definition.functions) {

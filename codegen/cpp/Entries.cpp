@@ -166,6 +166,8 @@ struct Slot {
 constexpr Slot allSlots[] = {
 #define RTSL_SLOT(base, method) {#base, #method},
 #include "runtime/device/Slots.def"
+#define RTSL_SAMPLING_SLOT(base, method) {#base, #method},
+#include "runtime/device/SamplingSlots.def"
 };
 } // namespace
 

@@ -41,8 +41,10 @@ std::string FunctionPrinter::initialiser(const typed::Expr &expr) { return apart
 std::string FunctionPrinter::temporaryName(const std::string &hint) {
   for (unsigned i = 1;; ++i) {
     std::string name = hint + std::to_string(i);
-    if (usedNames.insert(name).second)
+    if (usedNames.insert(name).second) {
+      temporaries.insert(name);
       return name;
+    }
   }
 }
 
@@ -212,8 +214,7 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
   return {};
 }
 
-/// Does it lie in a record, a struct or an array, where bools have 32 bits?
-static bool isInMemory(const typed::Expr &expr) {
+bool isInMemory(const typed::Expr &expr) {
   if (auto *swizzle = dynCast<typed::SwizzleExpr>(&expr))
     return isInMemory(*swizzle->base);
   if (auto *index = dynCast<typed::IndexExpr>(&expr))

@@ -324,6 +324,11 @@ Code FunctionPrinter::binary(BinaryOp op, const typed::Expr &left, const typed::
     both = operands({&left, &right}, forRight);
   else
     both = {operand(left, forLeft), operand(right, forRight)};
+  // Bools that lie in memory compare with those that do not as values do.
+  if (op == BinaryOp::Equal || op == BinaryOp::NotEqual || op == BinaryOp::LogicalXor) {
+    if (left.type->isVector() && left.type->element->is(TypeKind::Bool) && isInMemory(left) != isInMemory(right))
+      both[isInMemory(left) ? 0 : 1] = module.type(left.type) + "(" + both[isInMemory(left) ? 0 : 1] + ")";
+  }
   if (both[0] == both[1] && binding >= Binding::Equality && binding <= Binding::Relation &&
       left.type->scalar()) {
     // Compilers find `x == x` odd.
@@ -353,6 +358,10 @@ Code FunctionPrinter::unary(const typed::UnaryExpr &expr) {
     if (!range(expr))
       return {"rtsl::negate(" + argument(*expr.operand) + ")"};
   }
+  // GLM subtracts four components from 0, and a zero keeps its sign then.
+  const Type *type = expr.operand->type;
+  if ((type->isVector() && type->count == 4) || (type->isMatrix() && type->rows() == 4))
+    return {"rtsl::negate(" + argument(*expr.operand) + ")"};
   std::string text = operand(*expr.operand, Binding::Unary);
   if (text.front() == '-')
     text = "(" + text + ")";

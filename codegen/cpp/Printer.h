@@ -139,6 +139,8 @@ private:
   /// Is the method printed as its states in this class? Has it become part of those of others?
   bool isSplit(const typed::Class &definition, const typed::Function &method) const;
   bool isPartOfStates(const typed::Function &function) const;
+  /// The name in C++ of the first state of a method that rays start, or others call.
+  std::string nameOfMachine(const typed::Class &definition, const typed::Function &method) const;
   std::string stateMachine(const typed::Class &definition, const typed::Function &method);
   bool differsIn(const typed::Class &derived, const typed::Function &method) const;
   std::string inheritedStateMachines(const typed::Class &definition);
@@ -311,7 +313,7 @@ private:
   const typed::Class *owner;
   std::vector<std::string> *before = nullptr; // statements that go before the one being printed
   bool isInLambda = false;                    // these are not the function's own
-  std::set<std::string> usedNames;
+  std::set<std::string> usedNames, temporaries; // the latter are of variables of its own
   std::set<const typed::Variable *> readVariables, mentionedVariables, hoistedDeclarations;
   std::map<const typed::Variable *, Interval> counters;
 
@@ -321,6 +323,8 @@ private:
   friend class StateWriter;
 };
 
+/// Does it lie in a record, a struct or an array, where bools have 32 bits?
+bool isInMemory(const typed::Expr &expr);
 /// `text` in parentheses if it binds less tightly than `atLeast`.
 std::string bind(const Code &code, Binding atLeast);
 /// May a call of the function, or of one that overrides it, end `anyHit`?

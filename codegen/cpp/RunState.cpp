@@ -77,7 +77,8 @@ std::string ModulePrinter::runState() {
             method = function.get();
       if (!method)
         return {};
-      for (const typed::Class *at = &definition; at; at = at->base)
+      // States of its own class, or of one between it and the method's: a base has others.
+      for (const typed::Class *at = &definition; at != method->owner->base; at = at->base)
         if (auto first = firstCalls.find({at, lowering::slotName(module, *method)}); first != firstCalls.end())
           return "return " + object(definition) + first->second;
       std::string arguments = "rt";

@@ -25,6 +25,7 @@ Code StateWriter::use(mlir::Value value, const std::string &type) {
     return constant(value, type);
   Code code = found->second.code;
   consumed.add(found->second.touches);
+  mentioned.insert(found->second.mentions.begin(), found->second.mentions.end());
   if (--found->second.usesLeft == 0)
     pending.erase(value);
   return code;
@@ -122,7 +123,7 @@ Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange o
     const Type *scalar = step.target->type->scalar();
     const std::string target = printer.operand(*step.target, Binding::Sum);
     if (scalar->is(TypeKind::Int))
-      return {fmt::format("rtsl::{}({}, 1)", step.increment ? "add" : "sub", target)};
+      return {fmt::format("rtsl::{}({}, 1)", step.increment ? "add" : "subtract", target)};
     return {fmt::format("{} {} {}", target, step.increment ? "+" : "-", scalar->is(TypeKind::Float) ? "1.0f" : "1u"),
             Binding::Sum};
   }

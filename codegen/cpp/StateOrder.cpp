@@ -131,6 +131,7 @@ void StateWriter::materialise(mlir::Value value, Statements &out) {
   if (type.empty())
     unsupported(*value.getDefiningOp());
   const std::string name = freshName(nameFor(value));
+  mentioned = std::move(waiting.mentions);
   emit(out, fmt::format("{} {};", type, declarator(type, name, waiting.code.text)));
   declared[value] = name;
   mentioned = before;
@@ -154,7 +155,11 @@ void StateWriter::flushBefore(mlir::Operation &op, Statements &out) {
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending) {
     const bool isConstant = waiting.isTrivial && waiting.touches.reads.empty();
-    if (!waiting.isPure || meet(waiting.touches, inside) || (isLoop && waiting.usesLeft == 1 && !isConstant))
+    auto isUsedInside = [&, value = value] {
+      return llvm::any_of(value.getUsers(), [&](mlir::Operation *user) { return op.isAncestor(user); });
+    };
+    if (!waiting.isPure || meet(waiting.touches, inside) ||
+        (isLoop && waiting.usesLeft == 1 && !isConstant && isUsedInside()))
       first.push_back(value);
   }
   for (mlir::Value value : first)
@@ -181,7 +186,7 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
   const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
                          (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
-  pending[value] = {std::move(code), std::move(touches), uses, isPure, isTrivial};
+  pending[value] = {std::move(code), std::move(touches), mentioned, uses, isPure, isTrivial};
   if (uses == 1 ? isNamed && !stores() : isNamed || !isTrivial)
     materialise(value, out);
 }

@@ -87,6 +87,7 @@ private:
   struct Pending {
     Code code;
     Touches touches;
+    std::set<mlir::Operation *> mentions; // the variables in the code
     unsigned usesLeft = 0;
     bool isPure = true;     // no effects of its own
     bool isTrivial = false; // may stand in the text more than once

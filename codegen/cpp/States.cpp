@@ -228,6 +228,14 @@ std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameF
   return line.empty() ? field.slot : "`" + line + "`";
 }
 
+std::string ModulePrinter::nameOfMachine(const typed::Class &definition, const typed::Function &method) const {
+  const bool isOneOfMany =
+      lowering::takesPayload(method) &&
+      std::count_if(definition.functions.begin(), definition.functions.end(),
+                    [&](const auto &other) { return other->name == method.name; }) > 1; // there is one for each
+  return names.of(&method) + (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
+}
+
 std::string ModulePrinter::stateMachine(const typed::Class &definition, const typed::Function &method) {
   Machine machine;
   machine.definition = &definition;
@@ -235,12 +243,8 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   machine.called = method.isStateMethod ? nullptr : calledMethod(definition, method);
   const std::string slot = lowering::slotName(module, method);
   machine.states = statesOf(*states, definition.name, slot, machine.called != nullptr);
-  std::string name = names.of(&method);
+  std::string name = nameOfMachine(definition, method);
   const typed::Variable *payload = lowering::takesPayload(method) ? method.parameters.front().get() : nullptr;
-  const bool isOverloaded = std::count_if(definition.functions.begin(), definition.functions.end(),
-                                          [&](const auto &other) { return other->name == method.name; }) > 1;
-  if (payload && isOverloaded)
-    name += names.of(payload->type->structure); // there is one for each
   if (machine.called && machine.called->structure != capitalised(name)) // there are others of the name
     name = uncapitalised(machine.called->structure);
   for (mlir::func::FuncOp state : machine.states)

@@ -216,6 +216,8 @@ std::vector<std::string> entries(const runtime::Program &program, const CompileO
   names.push_back("rtsl_rt_Material_anyHit_payload");
 #define RTSL_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
 #include "runtime/device/Slots.def"
+#define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
+#include "runtime/device/SamplingSlots.def"
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
@@ -240,6 +242,8 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
   find(jit, "rtsl_rt_Material_anyHit_payload", program.slots.rt_Material_anyHit_payload);
 #define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "runtime/device/Slots.def"
+#define RTSL_SAMPLING_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
+#include "runtime/device/SamplingSlots.def"
   for (runtime::ClassInfo &info : program.classes) {
     find(jit, initializeSymbol(info.name), info.initialize);
     find(jit, constructSymbol(info.name), info.construct);
@@ -257,10 +261,10 @@ void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &
   std::vector<Part> parts;
   std::uint32_t bytes = trace.savedBytes;
   for (std::size_t i = 0; i != trace.saved.size(); ++i)
-    parts.push_back({trace.saved[i], trace.savedSizes[i]});
+    parts.push_back({trace.savedShown[i], trace.savedSizes[i]});
   for (const continuation::FrameSlot &slot : frame.slots)
     if (slot.isObject) {
-      parts.push_back({slot.name, slot.size});
+      parts.push_back({"`" + slot.name + "`", slot.size});
       bytes += slot.size;
     }
   if (bytes <= largeLiveState)
@@ -276,7 +280,7 @@ void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &
                                               parts.front().bytes);
   std::string others;
   for (std::size_t i = 1; i < parts.size(); ++i)
-    others += fmt::format("{}`{}` {}", i == 1 ? "" : ", ", parts[i].name, parts[i].bytes);
+    others += fmt::format("{}{} {}", i == 1 ? "" : ", ", parts[i].name, parts[i].bytes);
   if (!others.empty())
     diagnostic.note("and then: " + others);
 }

@@ -59,6 +59,7 @@ struct LinkRequest {
   std::vector<std::pair<std::string, std::string>> surfaces;
   runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints
+  bool isSampled = false;     // the host calls SamplingSlots.def; the program has them then
   /// What stays in the program although the scene does not need it.
   ItemSet keep = {};
   /// Where the scene first mentions a class.

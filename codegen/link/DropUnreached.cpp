@@ -64,6 +64,10 @@ private:
     addMethods("rt_Primitive", "computeBounds", {"says where the tree has it", {}});
     if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
       addMethods("rt_Exception", "exception", {"for samples that meet an exception", {}});
+    if (context.request.isSampled) {
+#define RTSL_SAMPLING_SLOT(base, method) addMethods(#base, #method, {"called by the host", {}});
+#include "runtime/device/SamplingSlots.def"
+    }
   }
 
   void addClassicRays(const Cause &cause) {

@@ -1,6 +1,6 @@
 //===- MakeEntries.cpp - the ways into a program --------------------------===//
 //
-// The runtime calls a program in four ways: a slot of Slots.def on an object, the `intersect` of a class that it knows,
+// The runtime calls a program in four ways: a slot of Slots.def or SamplingSlots.def on an object, the `intersect` of a class that it knows,
 // the defaults of a class on a new record, and the constructor of a class on packed arguments:
 //
 //   func.func @Glass.construct(%self: !rtsl.ref<"Glass">, %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
@@ -20,6 +20,10 @@ struct Slot {
 constexpr Slot slots[] = {
 #define RTSL_SLOT(base, method) {#base, #method},
 #include "runtime/device/Slots.def"
+};
+constexpr Slot samplingSlots[] = {
+#define RTSL_SAMPLING_SLOT(base, method) {#base, #method},
+#include "runtime/device/SamplingSlots.def"
 };
 
 void exportFunction(mlir::func::FuncOp function) {
@@ -96,6 +100,9 @@ void makeEntries(LinkContext &context) {
   }
   for (const Slot &slot : slots)
     makeSlot(context, slot);
+  if (context.request.isSampled)
+    for (const Slot &slot : samplingSlots)
+      makeSlot(context, slot);
   makePayloadSlots(context);
   makeFeatures(context);
   for (LinkedClass &linked : context.classes) {

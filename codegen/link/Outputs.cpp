@@ -17,12 +17,12 @@ namespace {
 using mlir::func::FuncOp;
 
 /// State that methods write for other methods alone. The runtime reads the rest, and both normals where one is asked for:
-/// if the author leaves one out it is the other.
-bool isOnlyForMethods(llvm::StringRef state) {
+/// if the author leaves one out it is the other. `isSampled`: the host reads what sampling gives.
+bool isOnlyForMethods(llvm::StringRef state, bool isSampled) {
   return llvm::StringSwitch<bool>(state)
       .Cases({"TextureUV", "TextureUVW", "TextureColor", "FloatTextureValue"}, true)
       .Cases({"dPdu", "dPdv", "dsdu", "dsdv", "dtdu", "dtdv"}, true)
-      .Cases({"PDF", "BSDFValue", "EmissionColor"}, true)
+      .Cases({"PDF", "BSDFValue", "EmissionColor"}, !isSampled)
       .Default(false);
 }
 
@@ -72,7 +72,7 @@ void dropUnreadOutputs(LinkContext &context) {
 
   llvm::MapVector<mlir::StringAttr, Output> outputs;
   context.ir.walk([&](ir::StateOp state) {
-    if (!isOnlyForMethods(state.getName()))
+    if (!isOnlyForMethods(state.getName(), context.request.isSampled))
       return;
     const bool isRead = llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !llvm::isa<ir::StoreOp>(user); });
     Output &output = outputs[state.getNameAttr()];

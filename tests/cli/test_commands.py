@@ -123,6 +123,16 @@ class Commands(Case):
         _, error = self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=much", status=2)
         self.assertIn("give a number of bytes", error)
 
+    def test_live_state_without_a_name_is_named_by_its_line(self):
+        quotients = "rand() / (" * 34
+        self.write("sums.rtsl", "class Sums : rt_Material;\n\nvoid shade() {\n"
+                   f"  float s = {quotients}luminance(trace(rt_HitPoint, rt_RayDirection)){')' * 34};\n"
+                   "  rt_SampleColor = color(s);\n}\n")
+        _, error = self.run_rtslc("check", "sums.rtsl", "-Wlive-state")
+        self.assertRegex(error, "bytes stay alive over this `trace`, more than 128; what line 4 computes costs most: 4 bytes")
+        self.assertRegex(error, "and then: what line 4 computes 4, ")
+        self.assertNotIn("rand.2", error)
+
     def test_documented_warnings_are_those_of_the_compiler(self):
         out, _ = self.run_rtslc("check", "-Whelp")
         listed = [(name, code, "perf" if rest else "on") for name, code, rest in

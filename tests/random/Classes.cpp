@@ -172,7 +172,8 @@ void Generator::addMethod(const ClassPlan &plan, Node &members, const std::strin
   work = 0;
   workLimit = large ? 400 : 60;
   scope = around(plan);
-  append(scope, everyRay(types));
+  if (context.ray)
+    append(scope, everyRay(types));
   append(scope, state);
   scope.push_back({"h", types.uintType, false});
   const std::size_t first = scope.size();
@@ -295,6 +296,17 @@ void Generator::makePrimitive(const ClassPlan *base) {
               "rt_dPdu = toVector(h); rt_dPdv = toVector(h * 7u); rt_dsdu = toUnit(h); rt_dtdv = "
               "toUnit(h * 9u); ",
               below(2), rules);
+  if (likely(25)) {
+    addMethod(*plan, *members, "generateSample", named(types.floatType, {"PDF"}, true),
+              "rt_HitPoint = toVector(h); rt_GeometricNormal = toVector(h * 7u); rt_PDF = toUnit(h); ", 1 + below(2), rules);
+    addMethod(*plan, *members, "samplePDF", named(types.floatType, {"PDF"}, true), "rt_PDF = toUnit(h); ", below(2), rules);
+  }
+  if (likely(25)) {
+    Context noRay;
+    noRay.ray = false;
+    addMethod(*plan, *members, "computeBounds", {}, "rt_BoundMin = toVector(h); rt_BoundMax = toVector(h * 3u); ", below(2),
+              noRay);
+  }
   program.primitives.push_back(plan->name);
 }
 
@@ -429,10 +441,43 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base,
         addPayloadMethod(*plan, *members, "anyHit", payload, state, rules);
     }
   }
+  if (!base || chance(40))
+    addBsdf(*plan, *members);
   program.materials.push_back(plan->name);
   if (plan->scratch.empty())
     program.meshMaterials.push_back(plan->name);
   return plan;
+}
+
+/// What who samples a surface asks of its material.
+void Generator::addBsdf(const ClassPlan &plan, Node &members) {
+  if (!likely(40))
+    return;
+  const Type *vec3 = types.vector(types.floatType, 3);
+  std::vector<Variable> read = named(vec3, {"RayDirection", "HitPoint", "GeometricNormal", "ShadingNormal"});
+  append(read, named(types.vector(types.floatType, 2), {"TextureUV"}));
+  append(read, plan.scratch);
+  for (Variable &variable : read)
+    variable.writable = false;
+  Context rules;
+  rules.rand = rules.lookup = rules.print = true;
+  auto add = [&](const char *name, std::vector<Variable> state, const std::string &result) {
+    append(state, read);
+    addMethod(plan, members, name, std::move(state), result, 1 + below(3), rules);
+  };
+  std::vector<Variable> sampled = named(types.color, {"BSDFValue"}, true);
+  append(sampled, named(vec3, {"LightDirection"}, true));
+  append(sampled, named(types.floatType, {"PDF"}, true));
+  append(sampled, named(types.vector(types.floatType, 2), {"BSDFSeed"}));
+  add("sampleBSDF", sampled, "rt_LightDirection = toVector(h); rt_BSDFValue = toColor(h); rt_PDF = toUnit(h); ");
+  std::vector<Variable> evaluated = named(types.color, {"BSDFValue"}, true);
+  append(evaluated, named(vec3, {"LightDirection"}));
+  add("BSDF", evaluated, "rt_BSDFValue = toColor(h); ");
+  evaluated = named(types.floatType, {"PDF"}, true);
+  append(evaluated, named(vec3, {"LightDirection"}));
+  add("evaluatePDF", evaluated, "rt_PDF = toUnit(h); ");
+  if (chance(50))
+    add("emission", named(types.color, {"EmissionColor"}, true), "rt_EmissionColor = toColor(h); ");
 }
 
 void Generator::makeClasses() {

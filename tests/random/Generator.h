@@ -54,6 +54,7 @@ struct ClassPlan {
 /// What may be done where code stands.
 struct Context {
   bool constantOnly = false;
+  bool ray = true; // is under way
   bool rand = false, lookup = false, illuminance = false, print = false;
   unsigned traces = 0;                    // rays that may still be sent
   const ClassPlan *self = nullptr;        // null: a free function
@@ -196,6 +197,7 @@ private:
   void makeMiss(const std::vector<const ClassPlan *> &textures);
   const ClassPlan *makeMaterial(const ClassPlan *base,
                                 const std::vector<const ClassPlan *> &targets);
+  void addBsdf(const ClassPlan &plan, Node &members);
   std::vector<Variable> around(const ClassPlan &plan);
 
   std::mt19937 random;

@@ -35,7 +35,7 @@ std::string kindOf(const Finding &finding) {
 void shrinkAndWrite(const FailedSeed &failed, const RunOptions &options, const std::string &folder) {
   Program program = generate(failed.seed);
   RunOptions alone = options;
-  alone.secondsLimit = 20;
+  alone.secondsLimit = std::min(options.secondsLimit, 60u); // a compiler of C++ takes its time
   const std::string kind = kindOf(failed.finding);
   if (kindOf(runAlone(program, alone)) != kind) {
     fmt::print("seed {} fails only beside others\n", failed.seed);

@@ -131,6 +131,7 @@ struct Checked {
         if ((primitive.empty() || module->findClass(primitive)) && module->findClass(material))
           request.surfaces.emplace_back(primitive, material);
     request.features = RTSL_FEATURE_PRINT;
+    request.isSampled = true;
   }
   /// The errors, without the warnings, of which there may be many.
   std::string errors() const {

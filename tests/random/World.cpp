@@ -366,6 +366,54 @@ static void begin(const runtime::Program &code) {
 
 static std::uint32_t wordOf(float component) { return std::isnan(component) ? 0x7fc00000u : bitsOf(component); }
 
+/// A state of a ray that hit something, with the bits of its variables made from a number.
+static RtslState someState(const RtslLaunch &launch, RtslEvents &events, std::uint32_t key) {
+  RtslState state{};
+  state.launch = &launch;
+  state.events = &events;
+  state.randomKey[0] = key;
+  auto fill = [&](auto *variable, std::size_t bytes) {
+    for (std::size_t word = 0; word != bytes / 4; ++word) {
+      const std::uint32_t bits = someFloat(key = mix(key, 17));
+      std::memcpy(reinterpret_cast<std::uint8_t *>(variable) + 4 * word, &bits, 4);
+    }
+  };
+#define RTSL_STATE_VARIABLE(name, type) fill(&state.name, sizeof state.name);
+#include "runtime/device/StateVariables.def"
+  std::fill_n(state.attributes, RTSL_MAX_ATTRIBUTE_WORDS, 1u); // true, 1 or nearly 0, wherever the compiler put which
+  return state;
+}
+
+void World::sampleObjects(std::vector<std::uint32_t> &words) {
+  using Method = void (*)(RtslState *, RtslRef);
+  const auto &slots = code.slots;
+  auto call = [&](Method method, RtslRef object, std::uint32_t number) {
+    RtslEvents events{};
+    RtslState state = someState(launch, events, mix(program.seed, number));
+    if (method) // that no class has may be null, or do nothing
+      method(&state, object);
+    auto note = [&](const float *values, unsigned count) {
+      for (unsigned i = 0; i != count; ++i)
+        words.push_back(wordOf(values[i]));
+    };
+    note(state.BSDFValue, code.colorComponents);
+    note(state.EmissionColor, code.colorComponents);
+    for (const float *vector : {state.LightDirection, state.HitPoint, state.GeometricNormal, state.BoundMin, state.BoundMax})
+      note(vector, 3);
+    note(&state.PDF, 1);
+    words.push_back(printed);
+  };
+  for (std::uint32_t number = 0; number != 2; ++number) {
+    for (RtslRef material : materials)
+      for (Method method : {slots.rt_Material_sampleBSDF, slots.rt_Material_BSDF, slots.rt_Material_evaluatePDF,
+                            slots.rt_Material_emission})
+        call(method, material, number);
+    for (RtslRef primitive : primitives)
+      for (Method method : {slots.rt_Primitive_generateSample, slots.rt_Primitive_samplePDF, slots.rt_Primitive_computeBounds})
+        call(method, primitive, number);
+  }
+}
+
 std::vector<std::uint32_t> World::run() {
   begin(code);
   std::vector<std::uint32_t> words;
@@ -380,6 +428,7 @@ std::vector<std::uint32_t> World::run() {
       words.push_back(printed);
     }
   }
+  sampleObjects(words);
   return words;
 }
 
@@ -424,6 +473,7 @@ std::vector<std::uint32_t> World::render() {
       words.push_back(wordOf(component));
     words.push_back(printed);
   }
+  sampleObjects(words);
   return words;
 }
 

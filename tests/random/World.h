@@ -24,7 +24,7 @@ public:
   runtime::SceneFacts facts() const;
 
   /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
-  /// are one), and what was printed until then.
+  /// are one), and what was printed until then. Behind them what methods leave that only the host calls.
   std::vector<std::uint32_t> run();
   /// The colors of a picture as whoever renders it makes it of one sample a pixel: a color that is not
   /// finite is black. With it, what was printed until its end. The program may be a megakernel.
@@ -43,6 +43,7 @@ private:
   RtslRef choose(const std::string &className, std::uint32_t key) const;
   bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
 
+  void sampleObjects(std::vector<std::uint32_t> &words);
   void renderBySample(std::vector<float> &pixels);
   void renderByLane(std::vector<float> &pixels);
 

@@ -2,6 +2,7 @@
 #include "codegen/passes/continuation/Names.h"
 
 #include "codegen/ir/Rtsl.h"
+#include "codegen/ir/SourcePlace.h"
 
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 #include "mlir/Interfaces/ControlFlowInterfaces.h"
@@ -107,6 +108,24 @@ std::string sourceName(mlir::Value value) {
 
 std::string authorsName(mlir::Value value) {
   return nameInLocation(value.getLoc());
+}
+
+std::string describeToAuthor(mlir::Value value) {
+  std::string name = authorsName(value);
+  if (auto argument = llvm::dyn_cast<mlir::BlockArgument>(value); argument && name.empty()) {
+    llvm::SmallPtrSet<mlir::Block *, 8> seen;
+    name = nameOfArgument(argument, seen);
+  }
+  if (auto load = value.getDefiningOp<ir::LoadOp>(); load && name.empty()) {
+    name = nameOfAddress(load.getAddress());
+    if (load.getAddress().getDefiningOp<ir::StateOp>())
+      name = "rt_" + name;
+  }
+  if (!name.empty())
+    return "`" + name + "`";
+  const ir::SourcePlace place = ir::placeOf(value.getLoc());
+  const char *does = value.getDefiningOp<ir::TraceResultOp>() ? "brings back" : "computes";
+  return place.isKnown() ? "what line " + std::to_string(place.line) + " " + does : "a value in between";
 }
 
 std::string UniqueNames::unique(const std::string &name) {

@@ -17,6 +17,9 @@ std::string sourceName(mlir::Value value);
 /// The variable that the value was; empty if it was none of the author's.
 std::string authorsName(mlir::Value value);
 
+/// What a message calls the value: "`sum`", "`rt_HitPoint`", or "what line 12 computes" where the author gave no name.
+std::string describeToAuthor(mlir::Value value);
+
 /// Names for values of one function, each different: the second "sum" is "sum.2".
 class UniqueNames {
 public:

@@ -55,6 +55,7 @@ struct TraceReport {
   std::vector<std::string> live;
   std::uint32_t liveBytes = 0;
   std::vector<std::string> saved;
+  std::vector<std::string> savedShown;     // what messages call them
   std::vector<std::uint32_t> savedSizes;   // bytes of each; 0 of a bool
   std::uint32_t savedBytes = 0;            // bools as bits of one word
   std::vector<std::string> rematerialised; // of what was live; not what it is made from

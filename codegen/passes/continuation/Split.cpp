@@ -114,6 +114,7 @@ mlir::LogicalResult FunctionSplitter::planAndRematerialise() {
     trace.savedBytes = bytesOf(plan.saved);
     for (mlir::Value value : plan.saved) {
       trace.saved.push_back(names.of(value));
+      trace.savedShown.push_back(describeToAuthor(value));
       trace.savedSizes.push_back(value.getType().isInteger(1) ? 0 : ir::sizeInBytes(value.getType()));
     }
     if (!options.explain)

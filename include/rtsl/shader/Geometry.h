@@ -9,6 +9,7 @@
 #pragma once
 
 #include "rtsl/shader/Common.h"
+#include "rtsl/shader/Integers.h"
 
 namespace rtsl {
 inline namespace RTSL_ARITHMETIC {
@@ -106,7 +107,7 @@ inline float distance(const T &a, const T &b) {
 }
 template <typename T>
 inline T faceforward(const T &n, const T &i, const T &reference) {
-  return rtsl::dot(reference, i) < 0.0f ? n : -n;
+  return rtsl::dot(reference, i) < 0.0f ? n : rtsl::negate(n);
 }
 template <typename T>
 inline T reflect(const T &i, const T &n) {

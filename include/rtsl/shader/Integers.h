@@ -39,7 +39,22 @@ constexpr auto multiply(const A &a, const B &b, const C &...more) {
 }
 template <typename T>
 constexpr auto negate(const T &a) {
-  return each([](int x) { return detail::wrap(0u - detail::unwrap(x)); }, a);
+  return each(
+      [](auto x) {
+        if constexpr (std::is_same_v<decltype(x), int>)
+          return detail::wrap(0u - detail::unwrap(x));
+        else
+          return -x;
+      },
+      a);
+}
+/// By component: GLM subtracts a vec4 from 0, and a zero keeps its sign then.
+template <int C, int R>
+inline glm::mat<C, R, float> negate(const glm::mat<C, R, float> &a) {
+  glm::mat<C, R, float> result;
+  for (int column = 0; column < C; ++column)
+    result[column] = rtsl::negate(a[column]);
+  return result;
 }
 
 template <typename A, typename B>

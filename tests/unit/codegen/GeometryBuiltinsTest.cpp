@@ -150,6 +150,15 @@ TEST(GeometryBuiltins, ReflectAndFaceforward) {
   EXPECT_EQ(run(inputs({i, n, {0, -1, 0}}))[4], -1.0F);
 }
 
+TEST(GeometryBuiltins, OppositesOfZeroHaveTheOtherSign) {
+  FloatFunction run("vec4 v = -vec4(x[0]); mat2x4 m = -mat2x4(x[0]);\n"
+                    "vec4 f = faceforward(vec4(x[0]), vec4(1.0), vec4(1.0));\n"
+                    "x[1] = v.w; x[2] = m[1].w; x[3] = f.x;");
+  auto result = run(inputs({{0, 0, 0}}));
+  for (int i = 1; i < 4; ++i)
+    EXPECT_TRUE(std::signbit(result[i])) << i;
+}
+
 TEST(GeometryBuiltins, RefractFollowsSnell) {
   FloatFunction run("vec3 r = refract(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]), x[6]);\n"
                     "x[0] = r.x; x[1] = r.y; x[2] = r.z;");

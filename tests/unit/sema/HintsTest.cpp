@@ -177,6 +177,8 @@ TEST(SureFixes, HabitsOfOtherLanguages) {
                "float f(const vec3 a, const vec3 b, const vec3 c, const vec3 d)\n{ return a.x + b.x + c.x + d.x; }");
   expectMended("class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = color(this.k); }\n};",
                "class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = color(k); }\n};");
+  expectMended("unsigned int f(unsigned x, const unsigned int y, signed int z)\n{ unsigned int k = x; return k + y + uint(z); }",
+               "uint f(uint x, const uint y, int z)\n{ uint k = x; return k + y + uint(z); }");
 }
 
 TEST(SureFixes, NumbersThatDoNotConvertByThemselves) {
@@ -188,6 +190,7 @@ TEST(SureFixes, NumbersThatDoNotConvertByThemselves) {
 TEST(SureFixes, AreNoGuesses) {
   expectLeft("float f(float radius) { return radus; }");
   expectLeft("double f() { return 1.0; }");
+  expectLeft("unsigned long f() { return 1u; }");
   expectLeft("vec3 f(mat3 m, vec3 a) { return mul(m, a); }");
   expectLeft("float f(float x) { return fmod(x, 2.0); }");
   expectLeft("bool f(float x) { return x; }");
