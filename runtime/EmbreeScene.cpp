@@ -58,6 +58,24 @@ void occludedUser(const RTCOccludedFunctionNArguments *arguments) {
 
 } // namespace
 
+/// Takes back what shadows a ray where it starts. Embree's t of the triangle that a ray leaves is off by roundings of the
+/// triangle's size, which may be more than Epsilon; ours is not (runtime/device/Triangle.h).
+void checkNearOccluder(const RTCFilterFunctionNArguments *arguments) {
+  auto &context = *reinterpret_cast<EmbreeContext *>(arguments->context);
+  const RtslState &state = *context.state;
+  constexpr float far = 32; // Epsilons; Embree's error is at most 10
+  const float t = reinterpret_cast<const RTCRay *>(arguments->ray)->tfar * context.fromEmbree;
+  if (!arguments->valid[0] || t > far * state.Epsilon)
+    return;
+  const auto &mesh = *static_cast<const RtslMesh *>(arguments->geometryUserPtr);
+  const auto [v0, v1, v2] = device::triangleVertices(mesh, RTCHitN_primID(arguments->hit, 1, 0));
+  device::TriangleHit hit;
+  if (device::intersectTriangle(device::makeTriangleRay(device::load(state.RayOrigin), device::load(state.RayDirection)), v0, v1,
+                                v2, hit) &&
+      !(hit.t > state.Epsilon))
+    arguments->valid[0] = 0;
+}
+
 EmbreeScene::Implementation::~Implementation() {
   if (scene)
     rtcReleaseScene(scene);
@@ -98,6 +116,8 @@ void addMesh(const Implementation &implementation, std::uint32_t instance, const
                              mesh.positions, 0, 3 * sizeof(float), mesh.vertexCount);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices, 0,
                              3 * sizeof(std::uint32_t), mesh.triangleCount);
+  rtcSetGeometryUserData(geometry, const_cast<RtslMesh *>(&mesh));
+  rtcSetGeometryOccludedFilterFunction(geometry, checkNearOccluder);
   attach(implementation, geometry, instance);
 }
 

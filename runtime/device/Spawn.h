@@ -17,10 +17,8 @@ namespace rtsl::device {
 // A point of a triangle is interpolated in double and rounded once a coordinate: within sqrt(3)
 // units of the largest coordinate from the plane, whatever the weights.
 constexpr float trianglePointUnits = 2;
-// The next test of the triangle sees its vertices from the ray's origin, so its roundings are those
-// of differences: units of the largest side. If all of them conspire there are 14; in 10^6 random
-// cases there were 6 at most (tests/numerics/robustness, triangles.* and spawning.needs).
-constexpr float triangleTestUnits = 7;
+// The next test of the triangle adds nothing to speak of: so near it computes in double
+// (depthNearOrigin in runtime/device/Triangle.h).
 // A point that an author made by arithmetic of his own, near coordinates of this size.
 constexpr float foreignPointUnits = 20;
 // A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t. A
@@ -33,11 +31,10 @@ inline float primitivePointError(Vec3 origin, Vec3 direction, float t) {
   return primitiveErrorUnits * roundingUnit * (largest(origin) + absolute(t) * largest(direction));
 }
 
-/// Bound of |p - surface| for a triangle's point, as the next test of the triangle sees it.
+/// Bound of |p - surface| for a triangle's point.
 inline float trianglePointError(Vec3 v0, Vec3 v1, Vec3 v2) {
   float coordinate = maximum(maximum(largest(v0), largest(v1)), largest(v2));
-  float side = maximum(maximum(largest(v1 - v0), largest(v2 - v0)), largest(v2 - v1));
-  return roundingUnit * (trianglePointUnits * coordinate + triangleTestUnits * side);
+  return trianglePointUnits * roundingUnit * coordinate;
 }
 
 /// Nearly along the surface epsilon would grow without bound: the cosine counts as this much.

@@ -71,6 +71,26 @@ inline float scaledBy(float a, int exponent) {
   return a * powerOfTwo(exponent);
 }
 
+/// The depth of a hit so near that the roundings of the differences would show in it: what a ray meets right where it starts,
+/// the triangle that it leaves above all. In double, from the plane, times `scale`; right to some units of itself over the
+/// cosine. `depth` is the answer for a plane through which the ray does not go.
+__attribute__((cold, noinline)) inline float depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale,
+                                                             float depth) {
+  int kx = ray.kx, ky = ray.ky, kz = ray.kz;
+  double ax = double(v0[kx]) - ray.origin[kx], ay = double(v0[ky]) - ray.origin[ky], az = double(v0[kz]) - ray.origin[kz];
+  double bx = double(v1[kx]) - v0[kx], by = double(v1[ky]) - v0[ky], bz = double(v1[kz]) - v0[kz];
+  double cx = double(v2[kx]) - v0[kx], cy = double(v2[ky]) - v0[ky], cz = double(v2[kz]) - v0[kz];
+  double nx = by * cz - bz * cy, ny = bz * cx - bx * cz, nz = bx * cy - by * cx;
+  double down = (nx * ray.sx + ny * ray.sy) + nz;
+  if (!(down != 0))
+    return depth;
+  return float(((nx * ax + ny * ay) + nz * az) / down * scale);
+}
+
+/// Hits nearer than this share of the triangle's distances are taken from depthNearOrigin: the error of the others is a
+/// smaller share of them, unless the ray goes within 2^-11 of the triangle's plane.
+constexpr float nearShare = 0x1p-9f;
+
 /// Where the line of `ray` meets the triangle; from both sides, edges and vertices belong to it.
 /// The caller compares t. t is in units of the direction given to makeTriangleRay and may have any
 /// sign.
@@ -87,6 +107,7 @@ inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2,
               maximum(absolute(cx), absolute(cy)));
   float depth = maximum(maximum(absolute(az), absolute(bz)), absolute(cz));
   int depthExponent = 0;
+  float depthScale = 1;
   if (!(size > 0x1p-30f && size < 0x1p30f)) {
     if (!(size > 0 && size < infinity))
       return false;
@@ -100,9 +121,10 @@ inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2,
       return false;
     depthExponent = exponentOf(depth);
     depthExponent = depthExponent > 126 ? 126 : depthExponent;
-    float scale = powerOfTwo(-depthExponent);
-    az *= scale, bz *= scale, cz *= scale;
+    depthScale = powerOfTwo(-depthExponent);
+    az *= depthScale, bz *= depthScale, cz *= depthScale;
   }
+  float near = nearShare * (size * depthScale + depth * depthScale);
 
   float e0 = differenceOfProducts(cx, by, cy, bx);
   float e1 = differenceOfProducts(ax, cy, ay, cx);
@@ -113,7 +135,10 @@ inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2,
   if (!(determinant != 0))
     return false;
   float reciprocal = 1.0f / determinant;
-  float t = ((e0 * az + e1 * bz) + e2 * cz) * reciprocal * ray.sz;
+  float z = ((e0 * az + e1 * bz) + e2 * cz) * reciprocal;
+  if (absolute(z) < near)
+    z = depthNearOrigin(ray, v0, v1, v2, depthScale, z);
+  float t = z * ray.sz;
   int exponent = depthExponent - ray.directionExponent;
   hit.t = exponent == 0 ? t : scaledBy(t, exponent);
   hit.u = e1 * reciprocal;

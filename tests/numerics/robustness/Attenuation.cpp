@@ -30,10 +30,11 @@ struct Transmittances {
 
 class Layers {
 public:
-  explicit Layers(FloatingPoint floatingPoint)
-      : shaders({"tests/numerics/robustness/shaders/Layers.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Layers", "Probe"}, {}, floatingPoint),
+  explicit Layers(Path path)
+      : shaders({"tests/numerics/robustness/shaders/Layers.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Layers", "Probe"}, {}, path),
         object(shaders.scene().addObject("Layers")) {
     shaders.scene().setCamera(shaders.scene().addObject("Probe"));
+    shaders.scene().setBackground(object);
     shaders.finish();
     sigmas = shaders.member(object, "sigmas");
     lengths = shaders.member(object, "lengths");
@@ -44,9 +45,8 @@ public:
       sigmas[i] = stack[std::size_t(i)].sigma;
       lengths[i] = stack[std::size_t(i)].length;
     }
-    RtslState state = shaders.ray();
-    shaders.slots().rt_Texture_lookup(&state, object);
-    return {state.TextureColor[0], state.TextureColor[1], state.TextureColor[2]};
+    const std::array<float, 3> color = shaders.look();
+    return {color[0], color[1], color[2]};
   }
 
 private:
@@ -55,8 +55,8 @@ private:
   float *sigmas, *lengths;
 };
 
-const Layers &layers(FloatingPoint floatingPoint) {
-  static const Layers only(floatingPoint);
+const Layers &layers(Path path) {
+  static const Layers only(path);
   return only;
 }
 
@@ -99,55 +99,55 @@ double errorOf(float value, const Precise &depth) {
   return roundingUnits(value, exp(-depth)) / (1 + static_cast<double>(depth));
 }
 
-Outcome runSingle(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runSingle(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
     Stack stack;
     stack[0] = randomLayer(random);
-    worst.add(errorOf(layers(floatingPoint)(stack).first, stack[0].depth()), [&] { return show(stack); });
+    worst.add(errorOf(layers(path)(stack).first, stack[0].depth()), [&] { return show(stack); });
   }
   return worst.outcome();
 }
 
-Outcome runProduct(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runProduct(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
     Precise depth;
     const Stack stack = randomStack(random, depth);
-    worst.add(errorOf(layers(floatingPoint)(stack).product, depth), [&] { return show(stack); });
+    worst.add(errorOf(layers(path)(stack).product, depth), [&] { return show(stack); });
   }
   return worst.outcome();
 }
 
-Outcome runAtOnce(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runAtOnce(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
     Precise depth;
     const Stack stack = randomStack(random, depth);
-    worst.add(errorOf(layers(floatingPoint)(stack).atOnce, depth), [&] { return show(stack); });
+    worst.add(errorOf(layers(path)(stack).atOnce, depth), [&] { return show(stack); });
   }
   return worst.outcome();
 }
 
 /// The same layers in another order.
-Outcome runOrder(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runOrder(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
     Precise depth;
     Stack stack = randomStack(random, depth);
-    const float first = layers(floatingPoint)(stack).product;
+    const float first = layers(path)(stack).product;
     for (int k = layerCount - 1; k > 0; --k)
       std::swap(stack[std::size_t(k)], stack[std::size_t(random.integer(0, k))]);
-    worst.add(roundingUnits(layers(floatingPoint)(stack).product, Precise(first)), [&] { return show(stack); });
+    worst.add(roundingUnits(layers(path)(stack).product, Precise(first)), [&] { return show(stack); });
   }
   return worst.outcome();
 }
 
-double nanosecondsAStack(FloatingPoint floatingPoint) {
+double nanosecondsAStack(Path path) {
   constexpr int count = 100'000;
   Random random(1);
   Precise depth;
@@ -155,17 +155,17 @@ double nanosecondsAStack(FloatingPoint floatingPoint) {
   return timeOf(count, [&] {
     float sum = 0;
     for (int i = 0; i < count; ++i)
-      sum += layers(floatingPoint)(stack).product;
+      sum += layers(path)(stack).product;
     return sum;
   });
 }
 
 } // namespace
 
-std::vector<Row> attenuationRows(FloatingPoint floatingPoint) {
+std::vector<Row> attenuationRows(Path path) {
   const auto row = [&](const char *name, const char *description, const char *unit, auto run) {
-    return Row{name, description, unit, 500'000, [=](std::uint64_t n, std::uint32_t seed) { return run(floatingPoint, n, seed); },
-               [=] { return nanosecondsAStack(floatingPoint); }};
+    return Row{name, description, unit, 500'000, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
+               [=] { return nanosecondsAStack(path); }};
   };
   const char *unit = "rounding units times 1 + optical depth";
   return {

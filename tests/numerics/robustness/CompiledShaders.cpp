@@ -1,12 +1,16 @@
 //===- CompiledShaders.cpp ------------------------------------------------===//
 #include "CompiledShaders.h"
 
+#include "codegen/driver/Compiler.h"
 #include "frontend/Parser.h"
+#include "rtsl/program.h"
 #include "runtime/AtomicFile.h"
 #include "runtime/Error.h"
 #include "sema/Sema.h"
 
-#include <limits>
+#include <algorithm>
+
+RTSL_DECLARE_SHADERS(numerics); // all files of all rows
 
 namespace rtsl::numerics {
 
@@ -14,9 +18,7 @@ std::string sourceRoot;
 
 namespace {
 
-std::shared_ptr<const runtime::Program> compile(const std::vector<std::string> &files, const LinkRequest &request, FloatingPoint floatingPoint) {
-  SourceManager sources;
-  Diagnostics diagnostics(sources);
+std::unique_ptr<typed::Module> checkFiles(const std::vector<std::string> &files, SourceManager &sources, Diagnostics &diagnostics) {
   std::vector<std::unique_ptr<ast::TranslationUnit>> trees;
   std::vector<const ast::TranslationUnit *> units;
   for (const std::string &file : files) {
@@ -25,46 +27,70 @@ std::shared_ptr<const runtime::Program> compile(const std::vector<std::string> &
     units.push_back(trees.back().get());
   }
   const auto noImports = [](const ast::ImportDecl &, FileId) -> const ast::TranslationUnit * { return nullptr; };
-  const std::unique_ptr<typed::Module> module = check(units, noImports, diagnostics);
-  CompileOptions options;
-  options.floatingPoint = floatingPoint;
-  std::shared_ptr<const runtime::Program> program;
-  if (!diagnostics.hasErrors())
-    program = compileProgram(*module, request, options, diagnostics);
-  if (!program)
-    throw runtime::Error(runtime::ErrorCode::Internal, renderText(diagnostics, false));
-  return program;
+  return check(units, noImports, diagnostics);
 }
 
-LinkRequest requestFor(std::vector<std::string> classes, std::vector<std::pair<std::string, std::string>> surfaces) {
-  LinkRequest request;
-  request.classes = std::move(classes);
-  request.surfaces = std::move(surfaces);
-  for (Item item : {Item::Methods, Item::States, Item::Outputs}) // rows call methods that no ray of a scene would start
-    request.keep.add(item);
-  return request;
+FloatingPoint floatingPointOf(Path path) {
+  return path == Path::Fast ? FloatingPoint::Fast : path == Path::Double ? FloatingPoint::Double : FloatingPoint::Strict;
 }
 
 } // namespace
 
-CompiledShaders::CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
-                                 std::vector<std::pair<std::string, std::string>> surfaces, FloatingPoint floatingPoint)
-    : theScene(compile(files, requestFor(std::move(classes), std::move(surfaces)), floatingPoint)) {}
+CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std::string> classes,
+                                                   std::vector<std::pair<std::string, std::string>> surfaces, Path path) {
+  if (path == Path::Cpp)
+    return {program(numerics_shaders()), "", nullptr};
+  SourceManager sources;
+  Diagnostics diagnostics(sources);
+  const std::unique_ptr<typed::Module> module = checkFiles(files, sources, diagnostics);
+  LinkRequest request;
+  request.classes = std::move(classes);
+  request.surfaces = std::move(surfaces);
+  CompileOptions options;
+  options.floatingPoint = floatingPointOf(path);
+  Compiled compiled;
+  if (!diagnostics.hasErrors() && path != Path::Gpu) {
+    options.target = path == Path::Megakernel ? Target::HostMegakernel : Target::Host;
+    compiled.program = compileProgram(*module, request, options, diagnostics);
+  } else if (!diagnostics.hasErrors()) {
+    compiled.program = compileProgram(*module, request, options, diagnostics);
+    compiled.ptx = emitScene(*module, request, Stage::Ptx, options, diagnostics).value_or("");
+    options.target = Target::HostMegakernel;
+    compiled.megakernel = compileProgram(*module, request, options, diagnostics);
+  }
+  if (!compiled.program || diagnostics.hasErrors())
+    throw runtime::Error(runtime::ErrorCode::Internal, renderText(diagnostics, false));
+  return compiled;
+}
 
-RtslState CompiledShaders::ray() const {
-  RtslState state{};
-  state.launch = &launch;
-  state.instance = state.primitive = RTSL_NO_HIT;
-  state.rayMask = ~0u;
-  state.HitDistance = std::numeric_limits<float>::infinity();
-  return state;
+CompiledShaders::CompiledShaders(Compiled made, Path path) : path(path), compiled(std::move(made)), theScene(compiled.program) {}
+
+CompiledShaders::CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
+                                 std::vector<std::pair<std::string, std::string>> surfaces, Path path)
+    : CompiledShaders(compile(files, std::move(classes), std::move(surfaces), path), path) {}
+
+void CompiledShaders::finish() {
+  switch (path) {
+  case Path::Megakernel:
+    eye = megakernelEye(theScene);
+    break;
+  case Path::Gpu:
+    eye = gpuEye(theScene, compiled.megakernel->megakernel, compiled.ptx);
+    break;
+  default:
+    eye = machineEye(theScene);
+  }
 }
 
 float *CompiledShaders::member(RtslRef object, const std::string &name) const {
   for (const runtime::MemberInfo &member : theScene.classOf(object).members)
     if (member.name == name)
-      return reinterpret_cast<float *>(launch.records + object + member.offset);
+      return reinterpret_cast<float *>(theScene.launch().records + object + member.offset);
   throw runtime::Error(runtime::ErrorCode::UnknownMember, "there is no member `" + name + "`");
+}
+
+void CompiledShaders::set(RtslRef object, const std::string &name, std::initializer_list<float> values) const {
+  std::copy(values.begin(), values.end(), member(object, name));
 }
 
 } // namespace rtsl::numerics

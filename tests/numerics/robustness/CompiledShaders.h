@@ -1,9 +1,10 @@
-//===- CompiledShaders.h - RTSL classes, called as a renderer calls them --===//
+//===- CompiledShaders.h - RTSL classes, asked by camera rays -------------===//
 #pragma once
 
-#include "codegen/driver/Compiler.h"
-#include "runtime/Scene.h"
+#include "Eye.h"
 
+#include <array>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,30 +12,41 @@
 
 namespace rtsl::numerics {
 
-/// The tree whose shaders are tested; a mutation has its own.
+/// The tree whose shaders are tested; a mutation has its own. Emitted C++ was compiled with the tests and has none.
 extern std::string sourceRoot;
 
-/// RTSL files, compiled in this process for a scene that is still empty.
+/// RTSL files, compiled for one of the paths, and a scene of them that is still empty.
 class CompiledShaders {
 public:
   /// Files are relative to sourceRoot; `surfaces` as in LinkRequest. Throws runtime::Error with the messages if the files have
   /// mistakes.
   CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
-                  std::vector<std::pair<std::string, std::string>> surfaces, FloatingPoint floatingPoint);
+                  std::vector<std::pair<std::string, std::string>> surfaces, Path path);
 
   runtime::Scene &scene() { return theScene; }
-  const runtime::Program::Slots &slots() const { return theScene.program().slots; }
 
-  /// Call it when the scene has all its objects; states and members are of this launch.
-  void finish() { launch = theScene.launch(); }
-  /// A ray that has hit nothing, with Epsilon 0 and no limit.
-  RtslState ray() const;
-  /// A member of an object, private or not, to be changed between calls.
+  /// Call it when the scene has all its objects, and before `set` and `look`.
+  void finish();
+  /// Changes a member of an object, private or not.
+  void set(RtslRef object, const std::string &name, std::initializer_list<float> values) const;
   float *member(RtslRef object, const std::string &name) const;
+  /// The color of a camera ray. It does not depend on `seed` unless a shader draws random numbers.
+  std::array<float, 3> look(std::uint32_t seed = 1) const { return eye->look(seed); }
 
 private:
+  struct Compiled {
+    std::shared_ptr<const runtime::Program> program;
+    std::string ptx;                                  // Path::Gpu
+    std::shared_ptr<const runtime::Program> megakernel; // the same program on the CPU
+  };
+  static Compiled compile(const std::vector<std::string> &files, std::vector<std::string> classes,
+                          std::vector<std::pair<std::string, std::string>> surfaces, Path path);
+  CompiledShaders(Compiled compiled, Path path);
+
+  Path path;
+  Compiled compiled;
   runtime::Scene theScene;
-  RtslLaunch launch{};
+  std::unique_ptr<Eye> eye;
 };
 
 } // namespace rtsl::numerics

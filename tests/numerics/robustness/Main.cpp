@@ -1,7 +1,7 @@
 //===- Main.cpp - stiff and extreme cases against their bounds ------------===//
 //
 //   numerics-robustness [ROW...] [--quick] [--json] --bounds bounds.json          rows of the runtime
-//   numerics-shaders [ROW...] [--fp strict|fast] ...                              rows of compiled shaders
+//   numerics-shaders [ROW...] [--path strict|fast|double|cpp|megakernel|gpu] ...  rows of compiled shaders
 //
 // Runs the rows whose names begin with one of the arguments, all of them if there are none. Exit status: 0 all bounds hold, 1
 // some do not, 2 wrong arguments.
@@ -17,7 +17,6 @@
 #include <fstream>
 #include <map>
 
-using rtsl::FloatingPoint;
 using namespace rtsl::numerics;
 
 namespace {
@@ -27,16 +26,19 @@ struct Options {
   std::string bounds;
   bool quick = false, json = false;
   std::uint32_t seed = 1;
-  FloatingPoint floatingPoint = FloatingPoint::Strict;
+  Path path = Path::Strict;
 };
 
 std::vector<Row> chosenRows(const Options &options) {
   std::vector<Row> rows;
-  for (Row &row : allRows(options.floatingPoint))
+  for (Row &row : allRows(options.path))
     if (options.rows.empty() || std::any_of(options.rows.begin(), options.rows.end(), [&](const std::string &name) { return std::string(row.name).rfind(name, 0) == 0; }))
       rows.push_back(std::move(row));
   return rows;
 }
+
+/// Paths that have the same bits have the same bounds.
+const char *boundSuffix(Path path) { return path == Path::Fast ? " fast" : path == Path::Double ? " double" : ""; }
 
 int run(const Options &options) {
   std::ifstream file(options.bounds);
@@ -56,7 +58,7 @@ int run(const Options &options) {
     // A row of sums needs its million samples for one case.
     const std::uint64_t cases = options.quick ? std::max<std::uint64_t>(row.cases / 100, 1000) : row.cases;
     const Outcome outcome = row.run(cases, options.seed);
-    const std::string key = options.floatingPoint == FloatingPoint::Fast ? std::string(row.name) + " fast" : row.name;
+    const std::string key = std::string(row.name) + boundSuffix(options.path);
     const bool hasBound = bounds.contains(key);
     const double bound = hasBound ? bounds[key].get<double>() : -1;
     const bool holds = hasBound && outcome.worst <= bound && outcome.cases > 0;
@@ -81,8 +83,7 @@ int main(int argc, char **argv) {
   app.add_option("ROW", options.rows, "rows, or beginnings of their names; all if not given");
   app.add_option("--bounds", options.bounds, "the bounds, as JSON")->required();
   app.add_option("--seed", options.seed, "of the random inputs");
-  app.add_option("--fp", options.floatingPoint, "how shaders are compiled")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, FloatingPoint>{{"strict", FloatingPoint::Strict}, {"fast", FloatingPoint::Fast}}));
+  app.add_option("--path", options.path, "how shaders run")->transform(CLI::CheckedTransformer(pathNames));
   addOptions(app);
   app.add_flag("--quick", options.quick, "a hundredth of the cases");
   app.add_flag("--json", options.json, "for scripts, with the time of a call");

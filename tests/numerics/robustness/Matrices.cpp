@@ -19,57 +19,50 @@ namespace {
 /// Columns one after the other, as in memory.
 template <int size> using Matrix = std::array<float, size * size>;
 
-class Inverses {
+/// The inverse and the determinant, which come three numbers a look.
+template <int size> class Inverses {
 public:
-  explicit Inverses(FloatingPoint floatingPoint)
-      : shaders({"tests/numerics/robustness/shaders/Inverses.rtsl", "tests/numerics/robustness/shaders/Reader.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"},
-                {"Inverse3", "Inverse4", "Reader", "Probe"}, {{"Inverse3", "Reader"}, {"Inverse4", "Reader"}}, floatingPoint) {
-    runtime::Scene &scene = shaders.scene();
-    const RtslRef reader = scene.addObject("Reader");
-    object3 = scene.addObject("Inverse3");
-    object4 = scene.addObject("Inverse4");
-    scene.addPrimitive(object3, reader);
-    scene.addPrimitive(object4, reader);
-    scene.setCamera(scene.addObject("Probe"));
+  explicit Inverses(Path path)
+      : shaders({"tests/numerics/robustness/shaders/Inverses.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Inverse3", "Inverse4", "Probe"}, {}, path),
+        object(shaders.scene().addObject(size == 3 ? "Inverse3" : "Inverse4")) {
+    shaders.scene().setCamera(shaders.scene().addObject("Probe"));
+    shaders.scene().setBackground(object);
     shaders.finish();
   }
 
-  Matrix<3> inverse(const Matrix<3> &m, float &determinant) const {
-    std::copy(m.begin(), m.end(), shaders.member(object3, "m"));
-    RtslState state = shaders.ray();
-    shaders.slots().rt_Primitive_computeDerivatives(&state, object3);
-    shaders.slots().rt_Primitive_computeNormal(&state, object3);
-    Matrix<3> result;
-    std::copy_n(state.dPdu, 3, &result[0]);
-    std::copy_n(state.dPdv, 3, &result[3]);
-    std::copy_n(state.GeometricNormal, 3, &result[6]);
-    determinant = state.ShadingNormal[0];
+  Matrix<size> inverse(const Matrix<size> &m) const {
+    place(m);
+    Matrix<size> result;
+    for (int column = 0; column < size; ++column) {
+      const std::array<float, 3> upper = part(column);
+      std::copy_n(upper.begin(), 3, &result[size * column]);
+    }
+    if constexpr (size == 4) {
+      const std::array<float, 3> last = part(4);
+      for (int column = 0; column < 3; ++column)
+        result[size * column + 3] = last[column];
+      result[15] = part(5)[0];
+    }
     return result;
   }
-  Matrix<4> inverse(const Matrix<4> &m, float &determinant) const {
-    std::copy(m.begin(), m.end(), shaders.member(object4, "m"));
-    RtslState state = shaders.ray();
-    shaders.slots().rt_Primitive_computeDerivatives(&state, object4);
-    shaders.slots().rt_Primitive_computeNormal(&state, object4);
-    shaders.slots().rt_Primitive_computeTextureCoordinates(&state, object4);
-    const float *columns[] = {state.dPdu, state.dPdv, state.GeometricNormal, state.ShadingNormal};
-    const float last[] = {state.TextureUV[0], state.TextureUV[1], state.TextureUVW[0], state.TextureUVW[1]};
-    Matrix<4> result;
-    for (int column = 0; column < 4; ++column) {
-      std::copy_n(columns[column], 3, &result[4 * column]);
-      result[4 * column + 3] = last[column];
-    }
-    determinant = state.TextureUVW[2];
-    return result;
+  float determinant(const Matrix<size> &m) const {
+    place(m);
+    return size == 3 ? part(3)[0] : part(5)[1];
   }
 
 private:
+  void place(const Matrix<size> &m) const { std::copy(m.begin(), m.end(), shaders.member(object, "m")); }
+  std::array<float, 3> part(int number) const {
+    shaders.set(object, "part", {float(number)});
+    return shaders.look();
+  }
+
   CompiledShaders shaders;
-  RtslRef object3, object4;
+  RtslRef object;
 };
 
-const Inverses &inverses(FloatingPoint floatingPoint) {
-  static const Inverses only(floatingPoint);
+template <int size> const Inverses<size> &inverses(Path path) {
+  static const Inverses<size> only(path);
   return only;
 }
 
@@ -141,7 +134,7 @@ template <int size> void scaleColumns(Random &random, Matrix<size> &m, float mos
 }
 
 /// Hilbert's matrix times a power of two, its columns in any order.
-Outcome runHilbert(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runHilbert(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
@@ -154,14 +147,13 @@ Outcome runHilbert(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32
     for (int column = 0; column < 4; ++column)
       for (int row = 0; row < 4; ++row)
         m[4 * column + row] = scale / float(order[column] + row + 1);
-    float determinant;
-    worst.add(residual<4>(m, inverses(floatingPoint).inverse(m, determinant)), [&] { return show<4>(m); });
+    worst.add(residual<4>(m, inverses<4>(path).inverse(m)), [&] { return show<4>(m); });
   }
   return worst.outcome();
 }
 
 /// A transform as scenes have them: a rotation, or any matrix, scaled by (1, 1, 1e-7) or worse, and moved.
-Outcome runScaled(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runScaled(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
@@ -175,15 +167,14 @@ Outcome runScaled(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_
       for (int row = 0; row < 3; ++row)
         m[12 + row] = random.between(-100, 100);
     }
-    float determinant;
-    worst.add(residual<4>(m, inverses(floatingPoint).inverse(m, determinant)), [&] { return show<4>(m); });
+    worst.add(residual<4>(m, inverses<4>(path).inverse(m)), [&] { return show<4>(m); });
   }
   return worst.outcome();
 }
 
 /// 3 x 3 matrices of any scale whose determinant keeps at least a hundredth of its terms. (The adjugate shares the determinant's
 /// relative error.)
-Outcome runThree(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runThree(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
@@ -192,57 +183,53 @@ Outcome runThree(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t
     Precise magnitudes;
     if (abs(determinantOf<3>(m, magnitudes)) < magnitudes / 100)
       continue;
-    float determinant;
-    worst.add(residual<3>(m, inverses(floatingPoint).inverse(m, determinant)), [&] { return show<3>(m); });
+    worst.add(residual<3>(m, inverses<3>(path).inverse(m)), [&] { return show<3>(m); });
   }
   return worst.outcome();
 }
 
 /// Determinants, in rounding units of the sum of the magnitudes of their terms.
-Outcome runDeterminants(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runDeterminants(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   const auto judge = [&](float value, const Precise &exact, const Precise &magnitudes, auto describe) {
     worst.add(static_cast<double>(abs(Precise(value) - exact) / (magnitudes * Precise(0x1p-24))), describe);
   };
   for (std::uint64_t i = 0; i < cases; ++i) {
-    float determinant;
     Precise magnitudes;
     if (i % 2) {
       Matrix<4> m = randomMatrix<4>(random);
       scaleColumns<4>(random, m, 4);
-      (void)inverses(floatingPoint).inverse(m, determinant);
       const Precise exact = determinantOf<4>(m, magnitudes);
-      judge(determinant, exact, magnitudes, [&] { return show<4>(m); });
+      judge(inverses<4>(path).determinant(m), exact, magnitudes, [&] { return show<4>(m); });
     } else {
       Matrix<3> m = randomMatrix<3>(random);
       scaleColumns<3>(random, m, 4);
-      (void)inverses(floatingPoint).inverse(m, determinant);
       const Precise exact = determinantOf<3>(m, magnitudes);
-      judge(determinant, exact, magnitudes, [&] { return show<3>(m); });
+      judge(inverses<3>(path).determinant(m), exact, magnitudes, [&] { return show<3>(m); });
     }
   }
   return worst.outcome();
 }
 
-double nanosecondsAnInverse(FloatingPoint floatingPoint) {
+double nanosecondsAnInverse(Path path) {
   constexpr int count = 100'000;
   Random random(1);
   const Matrix<4> m = randomMatrix<4>(random);
   return timeOf(count, [&] {
-    float sum = 0, determinant;
+    float sum = 0;
     for (int i = 0; i < count; ++i)
-      sum += inverses(floatingPoint).inverse(m, determinant)[0];
+      sum += inverses<4>(path).determinant(m);
     return sum;
   });
 }
 
 } // namespace
 
-std::vector<Row> matrixRows(FloatingPoint floatingPoint) {
+std::vector<Row> matrixRows(Path path) {
   const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(floatingPoint, n, seed); },
-               [=] { return nanosecondsAnInverse(floatingPoint); }};
+    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
+               [=] { return nanosecondsAnInverse(path); }};
   };
   const char *unit = "of A X - I, rounding units of the row of abs(A) abs(X)";
   return {

@@ -1,7 +1,7 @@
 //===- Row.h - one stiff or extreme case ----------------------------------===//
 #pragma once
 
-#include "codegen/emit/FloatingPoint.h"
+#include "Path.h"
 
 #include <cstdint>
 #include <functional>
@@ -37,15 +37,17 @@ std::vector<Row> spawnRows();
 std::vector<Row> sumRows();
 
 // Of compiled shaders.
-std::vector<Row> sphereRows(FloatingPoint floatingPoint);
-std::vector<Row> scatteringRows(FloatingPoint floatingPoint);
-std::vector<Row> matrixRows(FloatingPoint floatingPoint);
-std::vector<Row> attenuationRows(FloatingPoint floatingPoint);
+std::vector<Row> meshRows(Path path);
+std::vector<Row> sphereRows(Path path);
+std::vector<Row> quadricRows(Path path);
+std::vector<Row> scatteringRows(Path path);
+std::vector<Row> matrixRows(Path path);
+std::vector<Row> attenuationRows(Path path);
 
 /// What a program adds to the command line.
 void addOptions(CLI::App &app);
 
 /// Those that the program has. The runtime's own code is strict whatever is asked for.
-std::vector<Row> allRows(FloatingPoint floatingPoint);
+std::vector<Row> allRows(Path path);
 
 } // namespace rtsl::numerics

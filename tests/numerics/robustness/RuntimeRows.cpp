@@ -5,7 +5,7 @@ namespace rtsl::numerics {
 
 void addOptions(CLI::App &) {}
 
-std::vector<Row> allRows(FloatingPoint) {
+std::vector<Row> allRows(Path) {
   std::vector<Row> rows;
   for (const auto &family : {triangleRows(), boxRows(), spawnRows(), sumRows()})
     rows.insert(rows.end(), family.begin(), family.end());

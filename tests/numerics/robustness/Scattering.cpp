@@ -11,8 +11,6 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/Renderer.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -27,58 +25,57 @@ using runtime::Value;
 
 const std::string ownShaders = "tests/numerics/robustness/shaders/";
 
-/// A floor at y = 0 of examples/glass's Glass or Lambert, and one ray.
+/// A floor at y = 0 of one material.
 class Floor {
 public:
-  Floor(const char *materialClass, FloatingPoint floatingPoint)
-      : shaders({"examples/glass/Parallelogram.rtsl", std::string("examples/glass/") + materialClass + ".rtsl", "examples/glass/BallLight.rtsl",
-                 ownShaders + "White.rtsl", ownShaders + "Probe.rtsl", ownShaders + "Surroundings.rtsl"},
-                {"Parallelogram", materialClass, "BallLight", "White", "Probe", "Surroundings"}, {{"Parallelogram", materialClass}}, floatingPoint) {
+  Floor(const std::string &materialFile, const char *materialClass, Path path)
+      : shaders({"examples/glass/Parallelogram.rtsl", materialFile, "examples/glass/BallLight.rtsl", ownShaders + "White.rtsl", ownShaders + "Probe.rtsl",
+                 ownShaders + "Surroundings.rtsl"},
+                {"Parallelogram", materialClass, "BallLight", "White", "Probe", "Surroundings"}, {{"Parallelogram", materialClass}}, path) {
     runtime::Scene &scene = shaders.scene();
     camera = scene.addObject("Probe");
     surroundings = scene.addObject("Surroundings");
     light = scene.addObject("BallLight", runtime::ObjectValues{{}, {{"position", {0, 1, 0}}}, {}});
     if (std::string(materialClass) == "Glass")
       material = scene.addObject("Glass", std::vector<Value>{1.5, 1.0, {1, 1, 1}});
+    else if (std::string(materialClass) == "Lambert")
+      material = scene.addObject("Lambert", runtime::ObjectValues{{}, {{"albedo", Value::reference(scene.addObject("White"))}}, {}});
     else
-      material = scene.addObject(materialClass, runtime::ObjectValues{{}, {{"albedo", Value::reference(scene.addObject("White"))}}, {}});
+      material = scene.addObject(materialClass);
     const RtslRef floor = scene.addObject("Parallelogram", std::vector<Value>{{-1e4, 0, 1e4}, {2e4, 0, 0}, {0, 0, -2e4}});
     scene.addPrimitive(floor, material);
     scene.addLight(light);
     scene.setCamera(camera);
     scene.setBackground(surroundings);
     shaders.finish();
-    runtime::RenderOptions options;
-    options.width = options.height = 1;
-    options.maxDepth = 8;
-    options.traversal = runtime::Traversal::Device;
-    renderer = std::make_unique<runtime::Renderer>(scene, options);
   }
 
-  void set(RtslRef object, const char *name, std::initializer_list<float> values) const { std::copy(values.begin(), values.end(), shaders.member(object, name)); }
+  void set(RtslRef object, const char *name, std::initializer_list<float> values) const { shaders.set(object, name, values); }
 
   /// The color that comes from along the ray.
-  std::array<float, 3> look(Vec3 origin, Vec3 direction) const {
+  std::array<float, 3> look(Vec3 origin, Vec3 direction, std::uint32_t seed = 1) const {
     set(camera, "origin", {origin.x, origin.y, origin.z});
     set(camera, "direction", {direction.x, direction.y, direction.z});
-    std::array<float, RTSL_MAX_COLOR> color{};
-    shaders.scene().program().sample(&renderer->launch(), 0, 0, 0, color.data());
-    return {color[0], color[1], color[2]};
+    return shaders.look(seed);
   }
 
-  mutable CompiledShaders shaders;
-  RtslRef camera, surroundings, light, material;
-
 private:
-  std::unique_ptr<runtime::Renderer> renderer;
+  CompiledShaders shaders;
+
+public:
+  RtslRef camera, surroundings, light, material;
 };
 
-const Floor &glass(FloatingPoint floatingPoint) {
-  static const Floor only("Glass", floatingPoint);
+const Floor &glass(Path path) {
+  static const Floor only("examples/glass/Glass.rtsl", "Glass", path);
   return only;
 }
-const Floor &lambert(FloatingPoint floatingPoint) {
-  static const Floor only("Lambert", floatingPoint);
+const Floor &lambert(Path path) {
+  static const Floor only("examples/glass/Lambert.rtsl", "Lambert", path);
+  return only;
+}
+const Floor &lightReader(Path path) {
+  static const Floor only(ownShaders + "LightReader.rtsl", "LightReader", path);
   return only;
 }
 
@@ -111,10 +108,10 @@ Incidence incidence(float cosine, bool isAbove, float length) {
 }
 
 /// In a white furnace glass is invisible: what is reflected and what passes make 1, from both sides.
-Outcome runGlassFurnace(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runGlassFurnace(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
-  const Floor &floor = glass(floatingPoint);
+  const Floor &floor = glass(path);
   floor.set(floor.surroundings, "isWhite", {1});
   floor.set(floor.material, "transmission", {1, 1, 1});
   for (std::uint64_t i = 0; i < cases; ++i) {
@@ -129,10 +126,10 @@ Outcome runGlassFurnace(FloatingPoint floatingPoint, std::uint64_t cases, std::u
 
 /// The same share is reflected along a path and along the same path backwards. Where the outer ray grazes, the inner one's angle no
 /// longer tells the outer one's.
-Outcome runGlassReciprocity(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runGlassReciprocity(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
-  const Floor &floor = glass(floatingPoint);
+  const Floor &floor = glass(path);
   floor.set(floor.surroundings, "isWhite", {0});
   floor.set(floor.material, "transmission", {1, 1, 1});
   floor.set(floor.material, "outerIndex", {1});
@@ -150,10 +147,10 @@ Outcome runGlassReciprocity(FloatingPoint floatingPoint, std::uint64_t cases, st
 }
 
 /// Where the refracted ray goes: its sine against Snell's law.
-Outcome runGlassSnell(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runGlassSnell(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
-  const Floor &floor = glass(floatingPoint);
+  const Floor &floor = glass(path);
   floor.set(floor.surroundings, "isWhite", {0});
   floor.set(floor.material, "transmission", {1, 1, 1});
   floor.set(floor.material, "outerIndex", {1});
@@ -172,10 +169,10 @@ Outcome runGlassSnell(FloatingPoint floatingPoint, std::uint64_t cases, std::uin
 }
 
 /// What is left of white light that came through colored glass: the tint to the power of the way.
-Outcome runGlassTint(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runGlassTint(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
-  const Floor &floor = glass(floatingPoint);
+  const Floor &floor = glass(path);
   floor.set(floor.surroundings, "isWhite", {1});
   floor.set(floor.material, "innerIndex", {1.5f});
   floor.set(floor.material, "outerIndex", {1});
@@ -197,10 +194,10 @@ Outcome runGlassTint(FloatingPoint floatingPoint, std::uint64_t cases, std::uint
 
 /// A point light over a diffuse floor at any angle, right above and below, and in the floor's plane: cosine / distance^2 and the
 /// surroundings' nothing, in rounding units of 1 / distance^2.
-Outcome runLambert(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
+Outcome runLambert(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
-  const Floor &floor = lambert(floatingPoint);
+  const Floor &floor = lambert(path);
   floor.set(floor.light, "radius", {0});
   floor.set(floor.light, "intensity", {1, 1, 1});
   for (std::uint64_t i = 0; i < cases; ++i) {
@@ -221,19 +218,18 @@ Outcome runLambert(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32
 
 /// Pearson's chi-square of the points that BallLight draws, in 512 cells of equal area; as a deviation from its mean, 511, in its
 /// standard deviations.
-Outcome runBallLight(FloatingPoint floatingPoint, std::uint64_t cases, std::uint32_t seed) {
-  const Floor &floor = lambert(floatingPoint);
-  floor.set(floor.light, "position", {0, 0, 0});
-  floor.set(floor.light, "radius", {1});
+Outcome runBallLight(Path path, std::uint64_t cases, std::uint32_t seed) {
+  const Floor &floor = lightReader(path);
+  constexpr float radius = 1, above = 2;
+  floor.set(floor.light, "position", {0, above, 0});
+  floor.set(floor.light, "radius", {radius});
+  floor.set(floor.light, "intensity", {1, 1, 1});
   constexpr int heights = 16, turns = 32, cells = heights * turns;
   std::array<std::uint64_t, cells> counts{};
   for (std::uint64_t i = 0; i < cases; ++i) {
-    RtslState state = floor.shaders.ray();
-    state.randomKey[0] = std::uint32_t(i * 0x9E3779B9u);
-    state.randomKey[1] = seed;
-    floor.shaders.slots().rt_Light_illumination(&state, floor.light);
-    const float *d = state.LightDirection;
-    const double height = (double(d[1]) + 1) / 2 * heights, turn = (std::atan2(double(d[2]), double(d[0])) / 6.283185307179586 + 0.5) * turns;
+    const std::array<float, 3> direction = floor.look({0, 1, 0}, {0, -1, 0}, std::uint32_t(i * 0x9E3779B9u) + seed);
+    const double d[] = {direction[0] / radius, (double(direction[1]) - above) / radius, direction[2] / radius};
+    const double height = (d[1] + 1) / 2 * heights, turn = (std::atan2(d[2], d[0]) / 6.283185307179586 + 0.5) * turns;
     ++counts[std::size_t(std::clamp(int(height), 0, heights - 1) * turns + std::clamp(int(turn), 0, turns - 1))];
   }
   const double expected = double(cases) / cells;
@@ -259,10 +255,10 @@ double nanosecondsALook(const Floor &floor) {
 
 } // namespace
 
-std::vector<Row> scatteringRows(FloatingPoint floatingPoint) {
+std::vector<Row> scatteringRows(Path path) {
   const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run, auto floor) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(floatingPoint, n, seed); },
-               [=] { return nanosecondsALook(floor(floatingPoint)); }};
+    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
+               [=] { return nanosecondsALook(floor(path)); }};
   };
   return {
       row("scattering.glassFurnace", "glass in a white furnace, from both sides, at cosines from 2^-12 to 1: reflected and refracted light against 1", "rounding units", 500'000, runGlassFurnace, glass),
@@ -270,7 +266,7 @@ std::vector<Row> scatteringRows(FloatingPoint floatingPoint) {
       row("scattering.glassSnell", "the sine of the refracted ray against Snell's law", "rounding units of 1", 500'000, runGlassSnell, glass),
       row("scattering.glassTint", "white light through colored glass of thickness 1e-6 to 1e6", "rounding units times 1 + optical depth", 500'000, runGlassTint, glass),
       row("scattering.lambert", "a diffuse floor under a point light, at cosines 0, 1, -1 and between", "rounding units of the light's irradiance", 500'000, runLambert, lambert),
-      row("scattering.ballLight", "the points that the ball light draws: chi-square over 512 cells of equal area", "standard deviations", 5'000'000, runBallLight, lambert),
+      row("scattering.ballLight", "the points that the ball light draws: chi-square over 512 cells of equal area", "standard deviations", 5'000'000, runBallLight, lightReader),
   };
 }
 

@@ -11,9 +11,9 @@ void addOptions(CLI::App &app) {
   app.add_option("--root", sourceRoot, "the tree whose shaders are tested, if it is not this one");
 }
 
-std::vector<Row> allRows(FloatingPoint floatingPoint) {
+std::vector<Row> allRows(Path path) {
   std::vector<Row> rows;
-  for (const auto &family : {sphereRows(floatingPoint), scatteringRows(floatingPoint), matrixRows(floatingPoint), attenuationRows(floatingPoint)})
+  for (const auto &family : {meshRows(path), sphereRows(path), quadricRows(path), scatteringRows(path), matrixRows(path), attenuationRows(path)})
     rows.insert(rows.end(), family.begin(), family.end());
   return rows;
 }

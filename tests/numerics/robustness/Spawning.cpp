@@ -3,7 +3,9 @@
 #include "Row.h"
 #include "Timing.h"
 #include "Worst.h"
+#include "tests/unit/runtime/FakeProgram.h"
 
+#include "runtime/HostScene.h"
 #include "runtime/device/Spawn.h"
 #include "runtime/device/Surface.h"
 #include "runtime/device/Triangle.h"
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace rtsl::numerics {
 
@@ -119,6 +122,120 @@ Outcome skipUpwards(std::uint64_t cases, std::uint32_t seed, float largestRatio)
 Outcome runGaps(std::uint64_t cases, std::uint32_t seed) { return skipUpwards(cases, seed, 1 / 16.0f); }
 Outcome runGapsOfLargeTriangles(std::uint64_t cases, std::uint32_t seed) { return skipUpwards(cases, seed, 2); }
 
+using Vector = std::array<double, 3>; // 2^29 times as exact as what is measured
+
+Vector difference(Vec3 a, Vec3 b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
+Vector cross(const Vector &a, const Vector &b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+double dot(const Vector &a, const Vector &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// The plane of a triangle: `normal` has length 1. A sliver has no good one.
+struct Plane {
+  Vec3 base;
+  Vector normal;
+  bool isGood;
+
+  explicit Plane(const Target &target) : base(target.vertex(0)) {
+    const Vector e1 = difference(target.vertex(1), base), e2 = difference(target.vertex(2), base);
+    normal = cross(e1, e2);
+    const double length = std::sqrt(dot(normal, normal));
+    isGood = length > 1e-3 * std::sqrt(dot(e1, e1) * dot(e2, e2));
+    for (double &component : normal)
+      component /= length;
+  }
+  double distance(Vec3 point) const { return dot(difference(point, base), normal); }
+};
+
+/// A second triangle at a small distance from one that was hit, and a ray from the hit point through both.
+struct Gap {
+  Target ceiling;
+  Vec3 point, direction;
+  float epsilon;
+  double ulps; // between the two, along the normal where the ray goes; in the last place of the largest coordinate
+
+  std::string text() const { return "point " + show(point) + ", direction " + show(direction); }
+};
+
+/// Nothing for slivers, and where the ray passes the second triangle near its edges.
+std::optional<Gap> randomGap(Random &random, const Target &target, const RtslState &state) {
+  const Plane floor(target);
+  if (!floor.isGood)
+    return std::nullopt;
+  const float ulp = std::ldexp(1.0f, device::exponentOf(target.largestCoordinate()) - 23);
+  const float side = random.integer(0, 1) ? 1 : -1, height = side * ulp * random.between(0, 24);
+  const Vec3 up = {float(floor.normal[0]), float(floor.normal[1]), float(floor.normal[2])};
+  const auto above = [&](int i) { return target.vertex(i) + up * height; };
+  Gap gap{{above(0), above(1), above(2)}, device::load(state.HitPoint), {}, 0, 0};
+  Vec3 direction;
+  do
+    direction = random.direction();
+  while (!(device::dot(direction, up) * side > 0.125f));
+  gap.direction = direction * std::ldexp(1.0f, random.integer(-20, 20));
+  gap.epsilon = device::spawnEpsilon(state, gap.point, gap.direction);
+
+  const Plane plane(gap.ceiling);
+  const Vector along = {gap.direction.x, gap.direction.y, gap.direction.z};
+  const double t = -plane.distance(gap.point) / dot(along, plane.normal);
+  const Vector crossing = {gap.point.x + t * along[0], gap.point.y + t * along[1], gap.point.z + t * along[2]};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 from = gap.ceiling.vertex(i), to = gap.ceiling.vertex((i + 1) % 3), other = gap.ceiling.vertex((i + 2) % 3);
+    const Vector inward = cross(plane.normal, difference(to, from));
+    const Vector here = {crossing[0] - from.x, crossing[1] - from.y, crossing[2] - from.z};
+    if (!(dot(inward, here) > 0.02 * dot(inward, difference(other, from))))
+      return std::nullopt;
+  }
+  const double wide = std::ldexp(1.0, device::exponentOf(std::max(target.largestCoordinate(), gap.ceiling.largestCoordinate())) - 23);
+  gap.ulps = (dot(crossing, floor.normal) - (floor.normal[0] * floor.base.x + floor.normal[1] * floor.base.y + floor.normal[2] * floor.base.z)) * side / wide;
+  return gap;
+}
+
+/// The widest gap that is jumped, though the surface beyond it lies in front of the ray.
+Outcome runJumps(std::uint64_t cases, std::uint32_t seed) {
+  return forHits(cases, seed, [](Random &random, const Target &target, const RtslState &state, Worst &worst) {
+    const std::optional<Gap> gap = randomGap(random, target, state);
+    if (!gap)
+      return;
+    device::TriangleHit hit;
+    const bool isSeen = gap->ceiling.meet(gap->point, gap->direction, hit) && hit.t > gap->epsilon;
+    worst.add(isSeen ? 0 : gap->ulps, [&] { return gap->text(); });
+  });
+}
+
+/// The same through Embree, whose own t decides what is near; and neither the nearest hit nor a shadow is the triangle that
+/// the ray leaves.
+Outcome runEmbree(std::uint64_t cases, std::uint32_t seed) {
+  const auto program = runtime::test::fakeProgram();
+  return forHits(cases, seed, [&](Random &random, const Target &target, const RtslState &state, Worst &worst) {
+    const std::optional<Gap> gap = randomGap(random, target, state);
+    if (!gap)
+      return;
+    runtime::Scene scene(program);
+    scene.setCamera(scene.addObject("Camera", runtime::test::members({{"eye", runtime::test::vector(0, 0, 0)}, {"gaze", runtime::test::vector(0, 0, 1)}, {"up", runtime::test::vector(0, 1, 0)}})));
+    runtime::Mesh mesh;
+    for (const Target *each : {&target, &gap->ceiling})
+      mesh.positions.insert(mesh.positions.end(), each->positions.begin(), each->positions.end());
+    mesh.indices = {0, 1, 2, 3, 4, 5};
+    scene.addMeshInstance(scene.addMesh(std::move(mesh)), scene.addObject("Normal", runtime::test::members({})));
+    const runtime::HostScene host(scene, /*useEmbree=*/true, 1);
+    const RtslLaunch launch = scene.launch();
+
+    RtslState ray{};
+    ray.launch = &launch;
+    ray.rayMask = ~0u;
+    device::store(ray.RayOrigin, gap->point);
+    device::store(ray.RayDirection, gap->direction);
+    ray.Epsilon = gap->epsilon;
+    ray.HitDistance = device::infinity;
+    ray.instance = ray.primitive = RTSL_NO_HIT;
+    RtslState nearest = ray, shadow = ray;
+    const bool isHit = host.traverse(nearest, 0) == RTSL_HIT, isShadowed = host.traverse(shadow, RTSL_FIRST_HIT) == RTSL_HIT;
+    device::TriangleHit beyond;
+    const bool isInFront = gap->ceiling.meet(gap->point, gap->direction, beyond) && beyond.t > gap->epsilon;
+    if ((isHit && nearest.primitive == 0) || (isShadowed && !isInFront))
+      return worst.wrong(gap->text());
+    worst.add(isHit && isShadowed ? 0 : gap->ulps, [&] { return gap->text(); });
+  });
+}
+
 /// How far off its surface a ray that leaves a triangle would still meet it, if its epsilon were 0: what the bound has to
 /// cover, in rounding units of the largest coordinate.
 Outcome runNeeds(std::uint64_t cases, std::uint32_t seed) {
@@ -136,15 +253,10 @@ Outcome runNeeds(std::uint64_t cases, std::uint32_t seed) {
 /// bound in runtime/device/Spawn.h has to cover.
 Outcome runHitPoints(std::uint64_t cases, std::uint32_t seed) {
   return forHits(cases, seed, [](Random &, const Target &target, const RtslState &state, Worst &worst) {
-    // In double, whose error is 2^-29 of what is measured; slivers have no good normal there either.
-    const auto difference = [](Vec3 a, Vec3 b) { return std::array<double, 3>{double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; };
-    const auto e1 = difference(target.vertex(1), target.vertex(0)), e2 = difference(target.vertex(2), target.vertex(0));
-    const std::array<double, 3> n = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]};
-    const double length = std::hypot(n[0], n[1], n[2]);
-    if (!(length > 1e-3 * std::hypot(e1[0], e1[1], e1[2]) * std::hypot(e2[0], e2[1], e2[2])))
+    const Plane plane(target);
+    if (!plane.isGood)
       return;
-    const auto p = difference(device::load(state.HitPoint), target.vertex(0));
-    const double distance = std::abs(p[0] * n[0] + p[1] * n[1] + p[2] * n[2]) / length;
+    const double distance = std::abs(plane.distance(device::load(state.HitPoint)));
     worst.add(distance / (double(target.largestCoordinate()) * device::roundingUnit), [&] { return "point " + show(device::load(state.HitPoint)); });
   });
 }
@@ -173,6 +285,10 @@ std::vector<Row> spawnRows() {
       {"spawning.gaps", "what a ray that leaves a triangle straight up skips; the triangle's sides are at most 1/16 of its coordinates", "ulp of the largest coordinate", 10'000'000, runGaps,
        nanosecondsASpawn},
       {"spawning.gapsOfLargeTriangles", "the same for triangles as large as their coordinates", "ulp of the largest coordinate", 10'000'000, runGapsOfLargeTriangles, nanosecondsASpawn},
+      {"spawning.jumps", "gaps between two triangles that a ray from one of them to the other jumps, at any cosine above 1/8", "ulp of the largest coordinate, the widest gap",
+       10'000'000, runJumps, nanosecondsASpawn},
+      {"spawning.embree", "the same through Embree, and nearest hits and shadows by the triangle that the ray leaves", "ulp of the largest coordinate, the widest gap",
+       200'000, runEmbree, nanosecondsASpawn},
       {"spawning.needs", "how far off a triangle a ray that leaves it would meet it again without an epsilon", "rounding units of the largest coordinate", 10'000'000, runNeeds,
        nanosecondsASpawn},
       {"spawning.hitPoints", "the distance of the hit point from its triangle's plane", "rounding units of the largest coordinate", 10'000'000, runHitPoints, nanosecondsASpawn},

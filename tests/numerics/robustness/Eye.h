@@ -1,0 +1,34 @@
+//===- Eye.h - one ray through a scene, on each path ----------------------===//
+#pragma once
+
+#include "Path.h"
+
+#include "runtime/Scene.h"
+#include "runtime/device/Abi.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace rtsl::numerics {
+
+/// What a camera ray sees: a picture of one pixel and one sample, by our own traversal. Members of the scene's objects may be
+/// changed between looks, where scene.launch().records has them.
+class Eye {
+public:
+  virtual ~Eye() = default;
+  virtual std::array<float, 3> look(std::uint32_t seed) = 0;
+};
+
+/// Rays of at most this depth are followed.
+constexpr std::uint32_t eyeDepth = 8;
+
+/// By the program's `sample`.
+std::unique_ptr<Eye> machineEye(const runtime::Scene &scene);
+/// By the megakernel of the program.
+std::unique_ptr<Eye> megakernelEye(const runtime::Scene &scene);
+/// By the kernel in `ptx`, which is that of the scene's program; `code` says how much memory a ray takes. Throws NoDevice.
+std::unique_ptr<Eye> gpuEye(const runtime::Scene &scene, const runtime::MegakernelCode &code, const std::string &ptx);
+
+} // namespace rtsl::numerics

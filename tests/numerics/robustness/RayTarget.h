@@ -1,0 +1,110 @@
+//===- RayTarget.h - one thing alone in its scene -------------------------===//
+#pragma once
+
+#include "CompiledShaders.h"
+#include "Generators.h"
+#include "HighPrecision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace rtsl::numerics {
+
+/// Coordinates of everything are smaller: the tree knows no other bounds.
+constexpr float targetRoom = 3e7f;
+
+/// A primitive that a row places anew for each ray, or a mesh.
+class RayTarget {
+public:
+  /// `file` has the primitive's class; `values` are of an object that fills targetRoom.
+  RayTarget(const char *file, const char *className, std::vector<runtime::NamedValue> values, Path path)
+      : shaders({file, "tests/numerics/robustness/shaders/Reader.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"},
+                {className, "Reader", "Probe"}, {{className, "Reader"}}, path) {
+    object = shaders.scene().addObject(className, runtime::ObjectValues{{}, std::move(values), {}});
+    addWatchers();
+    shaders.scene().addPrimitive(object, reader);
+    shaders.finish();
+  }
+  RayTarget(runtime::Mesh mesh, Path path)
+      : shaders({"tests/numerics/robustness/shaders/Reader.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Reader", "Probe"}, {{"", "Reader"}}, path) {
+    addWatchers();
+    shaders.scene().addMeshInstance(shaders.scene().addMesh(std::move(mesh)), reader);
+    shaders.finish();
+  }
+
+  void set(const char *name, std::initializer_list<float> values) const { shaders.set(object, name, values); }
+
+  /// Where the ray meets it, in units of its direction; nothing if it does not.
+  std::optional<float> meet(device::Vec3 origin, device::Vec3 direction) const {
+    shaders.set(reader, "sendsOn", {0});
+    const std::array<float, 3> color = look(origin, direction);
+    return color[0] != 0 ? std::optional(color[1]) : std::nullopt;
+  }
+  /// The ray meets it; does one that is sent on from there meet it again?
+  bool meetsAgain(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
+    shaders.set(reader, "sendsOn", {1});
+    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
+    return look(origin, direction)[2] != 0;
+  }
+
+private:
+  std::array<float, 3> look(device::Vec3 origin, device::Vec3 direction) const {
+    shaders.set(camera, "origin", {origin.x, origin.y, origin.z});
+    shaders.set(camera, "direction", {direction.x, direction.y, direction.z});
+    return shaders.look();
+  }
+
+  void addWatchers() {
+    reader = shaders.scene().addObject("Reader");
+    camera = shaders.scene().addObject("Probe");
+    shaders.scene().setCamera(camera);
+  }
+
+  CompiledShaders shaders;
+  RtslRef object = 0, reader = 0, camera = 0;
+};
+
+struct Ray {
+  device::Vec3 origin, direction;
+
+  std::string text() const { return "origin " + show(origin) + ", direction " + show(direction); }
+};
+
+inline float powerOfTen(Random &random, float low, float high) { return std::pow(10.0f, random.between(low, high)); }
+
+/// A ray along an axis that passes the centre of something of this size at about `impact`, from `distance` away. Coordinates across
+/// are small in their own right, so that even a size of 1e-6 can be aimed at from 1e7.
+inline Ray aimedAlongAnAxis(Random &random, device::Vec3 center, float size, float distance, float impact) {
+  const float angle = random.between(0, 6.2831853f), tilt = random.between(-4, 4) * size, slant = random.between(-4, 4) * size;
+  const float across = impact * std::cos(angle), up = impact * std::sin(angle);
+  const float towards[3] = {-1, (across - tilt) / distance, (up - slant) / distance}, from[3] = {distance, tilt, slant};
+  const int axis = random.integer(0, 2);
+  const float sign = random.integer(0, 1) ? 1.0f : -1.0f, scale = random.between(1, 2) * std::ldexp(1.0f, random.integer(-10, 10));
+  float origin[3], direction[3];
+  for (int i = 0; i < 3; ++i) {
+    origin[(axis + i) % 3] = from[i] * (i == 0 ? sign : 1);
+    direction[(axis + i) % 3] = towards[i] * (i == 0 ? sign : 1) * scale;
+  }
+  return {center + device::load(origin), device::load(direction)};
+}
+
+/// The same along any direction, where the distance leaves digits for it.
+inline Ray aimedFrom(Random &random, device::Vec3 center, float size, float distance, float impact) {
+  if (distance > 1e5f * size || random.integer(0, 1))
+    return aimedAlongAnAxis(random, center, size, distance, impact);
+  const device::Vec3 towards = random.direction(), beside = device::normalized(device::cross(towards, random.direction()));
+  const device::Vec3 origin = center - towards * distance, aim = center + beside * impact;
+  return {origin, (aim - origin) * (random.between(1, 2) * std::ldexp(1.0f, random.integer(-10, 10)))};
+}
+
+/// A rounding unit of the largest coordinate of a ray up to t: what device::primitivePointError bounds is so many of them.
+inline Precise pointUnit(const Ray &ray, float t) {
+  return Precise(0x1p-24) * (Precise(device::largest(ray.origin)) + abs(Precise(t)) * Precise(device::largest(ray.direction)));
+}
+
+/// The point at t as the renderer computes it.
+inline device::Vec3 pointAt(const Ray &ray, float t) { return ray.origin + ray.direction * t; }
+
+} // namespace rtsl::numerics
