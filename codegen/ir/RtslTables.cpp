@@ -19,10 +19,9 @@ static mlir::Type pointee(mlir::Value address) {
   return llvm::cast<PtrType>(address.getType()).getPointee();
 }
 
-/// Numbers, and nothing that has a meaning in one process or one scene only.
-static bool isNumbers(mlir::Type type) {
+bool isNumbers(mlir::Type type) {
   if (auto structure = llvm::dyn_cast<StructType>(type))
-    return llvm::all_of(structure.getFieldTypes(), isNumbers);
+    return llvm::all_of(structure.getFieldTypes(), [](mlir::Type field) { return isNumbers(field); });
   if (auto array = llvm::dyn_cast<ArrayType>(type))
     return isNumbers(array.getElement());
   return isValueType(type) && !llvm::isa<RefType>(type);

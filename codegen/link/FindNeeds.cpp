@@ -71,6 +71,8 @@ std::uint32_t needsOf(mlir::func::FuncOp function, mlir::Operation *op) {
         llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
     return isRead ? needsOf(state.getName()) : 0;
   }
+  if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op); trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
+    return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(function) ? RTSL_NEEDS_NORMALS : 0);
   const bool sendsRay = llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp>(op);
   return sendsRay && mayStartAtHits(function) ? RTSL_NEEDS_NORMALS : 0;
 }

@@ -21,6 +21,9 @@ namespace {
 
 using Words = llvm::ArrayRef<int32_t>;
 
+/// Bytes of a member that is worth a table of its own. Tables are to fit into the nearest cache beside everything else.
+constexpr size_t largestTable = 4096;
+
 /// One scalar of a value from its word; null for a reference, which no constant stands for.
 mlir::TypedAttr scalarOf(mlir::Type type, int32_t word) {
   if (type.isF32()) {
@@ -105,6 +108,20 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
                         ambient.asArrayRef()));
       }
     });
+    getOperation().walk([](ir::MemberOp member) { placeInTable(member); });
+  }
+
+  /// What is read at an index that only the running shader knows.
+  static void placeInTable(ir::MemberOp member) {
+    const std::optional<Words> words = wordsAt(member);
+    const mlir::Type type = llvm::cast<ir::PtrType>(member.getType()).getPointee();
+    if (!words || !ir::isNumbers(type) || words->size() * sizeof(int32_t) > largestTable)
+      return;
+    if (llvm::none_of(member->getUsers(), [](mlir::Operation *user) { return llvm::isa<ir::ElementOp, ir::FieldOp>(user) && !user->use_empty(); }))
+      return;
+    OpBuilder builder(member);
+    member->replaceAllUsesWith(ir::TableOp::create(builder, member.getLoc(), member.getType(), member.getMember(), *words));
+    member->erase();
   }
 
   static void replace(mlir::Operation *op, mlir::TypedAttr value) {

@@ -182,7 +182,8 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType 
 #define RTSL_NEEDS_LAUNCH 64u             // LaunchIndex LaunchSize
 #define RTSL_NEEDS_LENS 128u              // LensCoord
 #define RTSL_NEEDS_NORMALS 256u           // GeometricNormal ShadingNormal; whoever sends rays from hits needs them too
-#define RTSL_NEEDS_ALL 511u
+#define RTSL_NEEDS_ANY_HIT 512u           // not read, but asked: some ray's hits may be refused
+#define RTSL_NEEDS_ALL 1023u
 
 // What rtsl_traverse answers.
 #define RTSL_MISS 0u

@@ -1,5 +1,5 @@
-// Loads of what is bound become constants, parts of aggregates too; what is computed from them folds. References, members
-// that differ and indices that are not constant stay loads.
+// Loads of what is bound become constants, parts of aggregates too; what is computed from them folds. What is read at an index
+// that is not constant lies in a table. References and members that differ stay loads.
 // RUN: rtsl-opt %s --rtsl-bind-members | FileCheck %s
 // RUN: rtsl-opt %s --rtsl-ssa | FileCheck %s --check-prefix=FOLDED
 
@@ -34,8 +34,11 @@ func.func @Glass.scalars(%self: !rtsl.ref<"Glass">) -> (f32, vector<3xf32>, i1, 
 }
 
 // CHECK-LABEL: func.func @Glass.parts(
+// CHECK: %[[TABLE:.*]] = rtsl.table "weights" [0, 0, 0, 1065353216, 1073741824, 1077936128]
 // CHECK: %[[B:.*]] = arith.constant dense<[2.000000e+00, 3.000000e+00]> : vector<2xf32>
-// CHECK: %[[OPEN:.*]] = rtsl.load
+// CHECK: %[[AT:.*]] = rtsl.element %[[TABLE]]
+// CHECK: %[[FIELD:.*]] = rtsl.field %[[AT]]["a"]
+// CHECK: %[[OPEN:.*]] = rtsl.load %[[FIELD]]
 // CHECK: return %[[B]], %[[OPEN]]
 func.func @Glass.parts(%self: !rtsl.ref<"Glass">, %i: i32) -> (vector<2xf32>, f32) {
   %one = arith.constant 1 : i32
