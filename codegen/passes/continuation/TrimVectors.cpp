@@ -87,11 +87,12 @@ void trimVectors(FuncOp function) {
   if (suspendsOf(function).empty())
     return;
   llvm::SmallVector<mlir::Operation *> operations;
-  function.walk([&](mlir::Operation *op) { operations.push_back(op); });
-  for (mlir::Operation *op :
-       llvm::reverse(operations))          // users first: what they read is extracts then
-    if (!llvm::isa<vector::ExtractOp>(op)) // those go with their operand
-      narrow(op);
+  function.walk([&](mlir::Operation *op) {
+    if (!llvm::isa<vector::ExtractOp>(op)) // those go with their operand, which may be looked at first
+      operations.push_back(op);
+  });
+  for (mlir::Operation *op : llvm::reverse(operations)) // users first: what they read is extracts then
+    narrow(op);
 
   Liveness liveness(function);
   liveness.compute();
@@ -107,7 +108,10 @@ void trimVectors(FuncOp function) {
                ? a->isBeforeInBlock(b)
                : blockNumbers.lookup(a->getBlock()) < blockNumbers.lookup(b->getBlock());
   };
-  for (mlir::Value whole : liveness.valuesOf(acrossTraces)) {
+  llvm::DenseMap<mlir::Value, mlir::Value> replaced; // parts may have parts
+  for (mlir::Value live : liveness.valuesOf(acrossTraces)) {
+    const auto other = replaced.find(live);
+    mlir::Value whole = other != replaced.end() ? other->second : live;
     llvm::SmallVector<mlir::Operation *> parts; // in program order: uses have none
     for (mlir::Operation *user : whole.getUsers())
       if (isPart(*user) && user->getOperand(0) == whole && user->getBlock() != whole.getParentBlock() &&
@@ -124,6 +128,7 @@ void trimVectors(FuncOp function) {
             user->getPropertiesAsAttribute() == part->getPropertiesAsAttribute())
           same = user;
       if (same) {
+        replaced[part->getResult(0)] = same->getResult(0);
         part->getResult(0).replaceAllUsesWith(same->getResult(0));
         part->erase();
       } else if (mlir::Operation *definition = whole.getDefiningOp()) {
