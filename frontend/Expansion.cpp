@@ -126,4 +126,9 @@ WrittenRange written(const ExpandedText &text, std::uint32_t begin, std::uint32_
   return result;
 }
 
+ShownPlace shownBegin(const SourceManager &sources, SourceRange range) {
+  const SourceRange place = sources.written(range).range;
+  return sources.shown(place.file, place.begin);
+}
+
 } // namespace rtsl

@@ -68,4 +68,7 @@ WrittenRange written(const ExpandedText &text, std::uint32_t begin, std::uint32_
 /// For a single word.
 WrittenRange written(const std::vector<Expansion> &expansions, const Origin &origin);
 
+/// Where a user looks for the beginning of a range: out of macros, as `#line` says.
+ShownPlace shownBegin(const SourceManager &sources, SourceRange range);
+
 } // namespace rtsl

@@ -22,25 +22,10 @@ constexpr std::uint32_t mostSamples = 1u << 20;
 std::string picturePath(const std::string &folder) { return folder + "/reference.exr"; }
 std::string factsPath(const std::string &folder) { return folder + "/reference.json"; }
 
-std::string describe(const Subject &subject, const Reference::OwnError &own) {
+std::string describe(const std::string &subject, const Reference::OwnError &own) {
   return fmt::format("the mean of {} runs with {} samples a pixel ({}), in {:.3g} s; its own RMSE is about {:.2g}, its relMSE {:.2g}; "
                      "single precision moves a run by {:.2g} (RMSE)",
-                     own.runs, own.samplesPerPixel, subject.name, own.seconds, own.rmse, own.relMse, own.rounding);
-}
-
-std::optional<Reference> readEarlier(const Subject &subject, const std::string &folder) {
-  if (::access(picturePath(folder).c_str(), R_OK) != 0 || ::access(factsPath(folder).c_str(), R_OK) != 0)
-    return std::nullopt;
-  const nlohmann::json facts = nlohmann::json::parse(runtime::readFile(factsPath(folder)), nullptr, false);
-  if (facts.is_discarded() || facts.value("subject", "") != subject.name)
-    return std::nullopt;
-  Reference reference;
-  reference.image = runtime::readImage(picturePath(folder));
-  reference.ownError = Reference::OwnError{facts.value("rmse", 0.0),     facts.value("relMse", 0.0),
-                                           facts.value("rounding", 0.0), facts.value("runs", 0u),
-                                           facts.value("spp", 0u),       facts.value("seconds", 0.0)};
-  reference.origin = describe(subject, *reference.ownError);
-  return reference;
+                     own.runs, own.samplesPerPixel, subject, own.seconds, own.rmse, own.relMse, own.rounding);
 }
 
 /// Samples a pixel so that one run takes about `seconds`, from runs that take less.
@@ -70,10 +55,23 @@ Reference readReference(const std::string &path, std::uint32_t width, std::uint3
   return reference;
 }
 
+std::optional<Reference> findReference(const std::string &subject, const std::string &folder) {
+  if (::access(picturePath(folder).c_str(), R_OK) != 0 || ::access(factsPath(folder).c_str(), R_OK) != 0)
+    return std::nullopt;
+  const nlohmann::json facts = nlohmann::json::parse(runtime::readFile(factsPath(folder)), nullptr, false);
+  if (facts.is_discarded() || facts.value("subject", "") != subject)
+    return std::nullopt;
+  Reference reference;
+  reference.image = runtime::readImage(picturePath(folder));
+  reference.ownError = Reference::OwnError{facts.value("rmse", 0.0),     facts.value("relMse", 0.0),
+                                           facts.value("rounding", 0.0), facts.value("runs", 0u),
+                                           facts.value("spp", 0u),       facts.value("seconds", 0.0)};
+  reference.origin = describe(subject, *reference.ownError);
+  return reference;
+}
+
 Reference makeReference(const Subject &subject, const Subject &single, const std::string &folder, std::uint32_t runs, double seconds,
                         const ProgressFunction &progress) {
-  if (std::optional<Reference> earlier = readEarlier(subject, folder))
-    return *std::move(earlier);
   Reference::OwnError own;
   own.runs = runs;
   own.samplesPerPixel = samplesFor(subject, seconds / runs);
@@ -91,7 +89,7 @@ Reference makeReference(const Subject &subject, const Subject &single, const std
   own.rmse = std::sqrt(spread.meanVariance() / runs);
   own.relMse = spread.meanRelativeVariance(relMseEpsilon) / runs;
   reference.ownError = own;
-  reference.origin = describe(subject, own);
+  reference.origin = describe(subject.name, own);
   runtime::writeImage(picturePath(folder), reference.image);
   const nlohmann::ordered_json facts = {{"version", 1},         {"subject", subject.name},
                                         {"runs", own.runs},     {"spp", own.samplesPerPixel},

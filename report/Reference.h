@@ -27,9 +27,12 @@ struct Reference {
 /// error but a `problem`. Throws as readImage.
 Reference readReference(const std::string &path, std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 
-/// Renders one as the mean of independent runs that take about `seconds` together, or takes the one that an earlier
-/// call left in `folder`. Its own error is estimated from the spread of the runs, and what rounding does from one run of
-/// `single`, which renders the same with less precision.
+/// The reference that makeReference left in `folder`, rendered by the subject of that name; nothing if there is none.
+std::optional<Reference> findReference(const std::string &subject, const std::string &folder);
+
+/// Renders one as the mean of independent runs that take about `seconds` together, and leaves it in `folder`. Its own error
+/// is estimated from the spread of the runs, and what rounding does from one run of `single`, which renders the same with
+/// less precision.
 Reference makeReference(const Subject &subject, const Subject &single, const std::string &folder, std::uint32_t runs, double seconds,
                         const ProgressFunction &progress);
 

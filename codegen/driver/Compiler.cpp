@@ -431,8 +431,9 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu) {
 void load(LlvmCode code, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
           runtime::Program &program) {
   symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
-  for (const codegen::HostSymbol &function : codegen::doubleFunctions())
-    symbols.push_back(function);
+  if (options.floatingPoint == FloatingPoint::Double)
+    for (const codegen::HostSymbol &function : codegen::doubleFunctions())
+      symbols.push_back(function);
   codegen::optimize(*code.module, *code.machine, code.options);
   std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
                                                                 std::move(code.machine), symbols));
@@ -528,8 +529,7 @@ void describeEvents(const typed::Module &module, const LinkRequest &request, con
   const SourceRange print = firstPrint(module, request);
   Finding printing = {Item::Events, "print", prints, prints ? "--print" : "no shader prints", {}};
   if (print.isValid()) {
-    const SourceRange written = sources.written(print).range;
-    const ShownPlace place = sources.shown(written.file, written.begin);
+    const ShownPlace place = shownBegin(sources, print);
     printing.place = {std::string(place.file), place.at.line, place.at.column};
     if (!prints)
       printing.reason = "--print is not given";

@@ -24,7 +24,12 @@ using Binary = double (*)(double, double);
 #define BINARY(name)                                                                               \
   { "rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Binary>(&std::name)) }
 
-const HostSymbol functions[] = {
+struct DoubleFunction {
+  const char *name;
+  void *address;
+};
+
+const DoubleFunction functions[] = {
     UNARY(sin),    UNARY(cos),   UNARY(tan),   UNARY(asin),  UNARY(acos),
     UNARY(atan),   UNARY(sinh),  UNARY(cosh),  UNARY(tanh),  UNARY(asinh),
     UNARY(acosh),  UNARY(atanh), UNARY(exp),   UNARY(exp2),  UNARY(expm1),
@@ -39,8 +44,8 @@ std::string doubleNameOf(const llvm::CallInst &call) {
   if (!name.consume_front("rtsl_"))
     return "";
   std::string wide = "rtsl_double_" + name.str();
-  for (const HostSymbol &symbol : functions)
-    if (wide == symbol.name)
+  for (const DoubleFunction &function : functions)
+    if (wide == function.name)
       return wide;
   return "";
 }
@@ -182,6 +187,11 @@ void widenArithmetic(llvm::Module &module) {
       Widening(function).run();
 }
 
-llvm::ArrayRef<HostSymbol> doubleFunctions() { return functions; }
+std::vector<HostSymbol> doubleFunctions() {
+  std::vector<HostSymbol> symbols;
+  for (const DoubleFunction &function : functions)
+    symbols.push_back({function.name, function.address});
+  return symbols;
+}
 
 } // namespace rtsl::codegen

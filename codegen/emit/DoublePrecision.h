@@ -3,7 +3,7 @@
 
 #include "codegen/emit/Jit.h"
 
-#include "llvm/ADT/ArrayRef.h"
+#include <vector>
 
 namespace llvm {
 class Module;
@@ -18,6 +18,6 @@ namespace rtsl::codegen {
 void widenArithmetic(llvm::Module &module);
 
 /// The elementary functions that it then calls: those of the C library.
-llvm::ArrayRef<HostSymbol> doubleFunctions();
+std::vector<HostSymbol> doubleFunctions();
 
 } // namespace rtsl::codegen

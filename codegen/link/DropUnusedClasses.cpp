@@ -20,9 +20,7 @@ bool isWanted(const LinkRequest &request, const std::string &name) {
 }
 
 void note(LinkContext &context, const LinkedClass &linked) {
-  const SourceManager &sources = context.diagnostics.sources();
-  const SourceRange range = sources.written(linked.info->range).range;
-  const ShownPlace declared = sources.shown(range.file, range.begin);
+  const ShownPlace declared = shownBegin(context.diagnostics.sources(), linked.info->range);
   Finding finding = {Item::Classes, linked.info->name, linked.hasObjects, "no object has it",
                      {std::string(declared.file), declared.at.line, declared.at.column}};
   if (linked.hasObjects) {

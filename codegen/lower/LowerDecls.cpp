@@ -25,9 +25,7 @@ ModuleLowering::ModuleLowering(const typed::Module &source, const LowerOptions &
 mlir::Location ModuleLowering::location(SourceRange range) {
   if (!range.isValid())
     return mlir::UnknownLoc::get(context());
-  const SourceManager &sources = options.diagnostics->sources();
-  const SourceRange written = sources.written(range).range;
-  const auto [file, at] = sources.shown(written.file, written.begin);
+  const auto [file, at] = shownBegin(options.diagnostics->sources(), range);
   return mlir::FileLineColLoc::get(context(), llvm::StringRef(file.data(), file.size()), at.line, at.column);
 }
 

@@ -317,11 +317,6 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
     evaluation.leaves.push_back(&expr);
     evaluation.operands.push_back(operand);
   };
-  auto all = [&](const std::vector<typed::ExprPtr> &parts) {
-    for (const typed::ExprPtr &part : parts)
-      gather(*part, evaluation, false);
-  };
-  auto one = [&](const typed::ExprPtr &part) { gather(*part, evaluation, false); };
   if (!isTop && expr.kind != ExprKind::String && !isKept(expr)) {
     if (!livesInMemory(expr.type))
       return leaf(value(expr));
@@ -348,44 +343,8 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
     if (!livesInMemory(expr.type) && !evaluation.states.count(cast<typed::StateExpr>(expr).variable))
       leaf(value(expr));
     return;
-  case ExprKind::Field:
-    return one(cast<typed::FieldExpr>(expr).base);
-  case ExprKind::Index:
-    one(cast<typed::IndexExpr>(expr).base);
-    return one(cast<typed::IndexExpr>(expr).index);
-  case ExprKind::Swizzle:
-    return one(cast<typed::SwizzleExpr>(expr).base);
-  case ExprKind::Length:
-    return one(cast<typed::LengthExpr>(expr).base);
-  case ExprKind::Unary:
-    return one(cast<typed::UnaryExpr>(expr).operand);
-  case ExprKind::Convert:
-    return one(cast<typed::ConvertExpr>(expr).operand);
-  case ExprKind::IncDec:
-    return one(cast<typed::IncDecExpr>(expr).target);
-  case ExprKind::Assign:
-    one(cast<typed::AssignExpr>(expr).target);
-    return one(cast<typed::AssignExpr>(expr).value);
-  case ExprKind::Binary:
-    one(cast<typed::BinaryExpr>(expr).left);
-    return one(cast<typed::BinaryExpr>(expr).right);
-  case ExprKind::Conditional: {
-    const auto &choice = cast<typed::ConditionalExpr>(expr);
-    one(choice.condition);
-    one(choice.whenTrue);
-    return one(choice.whenFalse);
-  }
-  case ExprKind::Construct:
-    return all(cast<typed::ConstructExpr>(expr).args);
-  case ExprKind::Builtin:
-    return all(cast<typed::BuiltinExpr>(expr).args);
-  case ExprKind::Call:
-    return all(cast<typed::CallExpr>(expr).args);
-  case ExprKind::MethodCall:
-    one(cast<typed::MethodCallExpr>(expr).receiver);
-    return all(cast<typed::MethodCallExpr>(expr).args);
   default:
-    return; // literals and members
+    forEachChild(expr, [&](const typed::Expr &part) { gather(part, evaluation, false); });
   }
 }
 

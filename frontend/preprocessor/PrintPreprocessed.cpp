@@ -34,8 +34,7 @@ std::string printPreprocessed(FileId text, const SourceManager &sources) {
     const std::string_view content = all.substr(begin, end - begin);
     const auto word = static_cast<std::uint32_t>(std::min(content.find_first_not_of(" \t\r"), content.size()) + begin);
     if (!isBlank(content)) {
-      const SourceRange written = sources.written({text, word, word + 1}).range;
-      const ShownPlace place = sources.shown(written.file, written.begin);
+      const ShownPlace place = shownBegin(sources, {text, word, word + 1});
       // Some empty lines read better than a directive.
       constexpr std::uint32_t maxEmptyLines = 8;
       if (place.file == file && place.at.line >= line && place.at.line - line <= maxEmptyLines) {

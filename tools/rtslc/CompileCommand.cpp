@@ -40,11 +40,6 @@ struct CompileCommandOptions {
   std::optional<TraceMode> trace; // if it was given
 };
 
-/// RTSL_FEATURE_* of the program.
-std::uint32_t features(const CompileCommandOptions &options) {
-  return (options.prints ? RTSL_FEATURE_PRINT : 0) | (options.exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
-}
-
 /// The text of the asked stage of a whole scene; nothing if there were errors.
 std::optional<std::string> translateScene(const CompileCommandOptions &options, SceneBuilder buildScene, Messages &messages,
                                           std::vector<std::string> &filesRead) {
@@ -54,7 +49,7 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options, 
     return std::nullopt;
   CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
-  request.features |= features(options);
+  request.features |= features(options.prints, options.exceptions);
   keep(options.common.keep, request, compile);
   std::optional<runtime::Scene> scene;
   const std::optional<std::string> text =
@@ -79,7 +74,7 @@ std::optional<std::string> translate(const CompileCommandOptions &options, const
     return emitReflection(module, options.common.compile, messages.diagnostics);
   if (*options.stage == Stage::Cpp) {
     const std::string &named = options.output == "-" ? options.files.front() : options.output;
-    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace, features(options),
+    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace, features(options.prints, options.exceptions),
                    options.common.compile, messages.diagnostics);
   }
   return emit(module, *options.stage, options.common.compile, messages.diagnostics);
@@ -125,7 +120,7 @@ void checkInputs(const CompileCommandOptions &options) {
   if (options.stage == Stage::Cpp && scenes > 0)
     throw CLI::ValidationError("--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
                                          "builds one");
-  if (scenes == 0 && options.stage != Stage::Cpp && features(options) != 0)
+  if (scenes == 0 && options.stage != Stage::Cpp && features(options.prints, options.exceptions) != 0)
     throw CLI::ValidationError(options.prints ? "--print" : "--exceptions", "is for C++ and for scenes");
   if ((options.stage == Stage::Cpp || options.stage == Stage::Ptx) && options.common.compile.floatingPoint == FloatingPoint::Double)
     throw CLI::ValidationError("--fp", "double is for machine code of this processor; give strict or fast");

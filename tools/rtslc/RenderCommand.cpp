@@ -145,7 +145,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
     return;
   CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
-  request.features |= (options.prints ? RTSL_FEATURE_PRINT : 0) | (options.exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
+  request.features |= features(options.prints, options.exceptions);
   keep(options.common.keep, request, compile);
   if (options.common.keep.has(Item::Events)) // the lines are thrown away
     request.features |= RTSL_FEATURE_PRINT;

@@ -113,9 +113,11 @@ std::function<report::Picture(std::uint32_t, std::uint32_t)> rendererOf(const Bu
   };
 }
 
-/// What a reference is rendered with, in the precision that is given: the shortest way.
-std::optional<report::Subject> referenceSubject(const LoadedScene &loaded, const ReportOptions &options, FloatingPoint precision,
-                                                Messages &messages) {
+/// What renders a reference, and what shows the rounding of single precision beside it: both go the shortest way.
+constexpr const char *referenceName = "double embree recurse", *singleName = "strict embree recurse";
+
+std::optional<report::Subject> compileShortest(const char *name, FloatingPoint precision, const LoadedScene &loaded,
+                                               const ReportOptions &options, Messages &messages) {
   CompileOptions compile = options.common.compile;
   compile.floatingPoint = precision;
   compile.trace = TraceMode::Recurse;
@@ -123,10 +125,30 @@ std::optional<report::Subject> referenceSubject(const LoadedScene &loaded, const
   if (!built)
     return std::nullopt;
   report::Subject subject;
-  subject.name = precision == FloatingPoint::Double ? "double embree recurse" : "strict embree recurse";
+  subject.name = name;
   subject.compileSeconds = built->compileSeconds;
   subject.render = rendererOf(*built, loaded.render, runtime::Traversal::Embree);
   return subject;
+}
+
+/// The one that was given, that the folder has, or that is rendered now; nothing if there were errors.
+std::optional<report::Reference> referenceFor(const LoadedScene &loaded, const ReportOptions &options,
+                                              const std::vector<report::Subject> &subjects, double seconds,
+                                              const report::ProgressFunction &progress, Messages &messages) {
+  if (!options.reference.empty())
+    return report::readReference(options.reference, loaded.render.width, loaded.render.height,
+                                 options.common.compile.colorComponents);
+  if (std::optional<report::Reference> earlier = report::findReference(referenceName, options.folder))
+    return earlier;
+  const std::optional<report::Subject> exact =
+      compileShortest(referenceName, FloatingPoint::Double, loaded, options, messages);
+  const auto measured = std::find_if(subjects.begin(), subjects.end(),
+                                     [](const report::Subject &subject) { return subject.name == singleName; });
+  const std::optional<report::Subject> single =
+      measured != subjects.end() ? *measured : compileShortest(singleName, FloatingPoint::Strict, loaded, options, messages);
+  if (!exact || !single)
+    return std::nullopt;
+  return report::makeReference(*exact, *single, options.folder, options.runs, seconds, progress);
 }
 
 /// Every way to render, the usual one first.
@@ -304,18 +326,12 @@ void makeReport(const ReportOptions &options, Messages &messages) {
   };
   constexpr double referenceShare = 4; // its time, in budgets
   const double total = referenceShare + double(subjects.size());
-  report::Reference reference;
-  if (options.reference.empty()) {
-    const std::optional<report::Subject> exact = referenceSubject(*loaded, options, FloatingPoint::Double, messages);
-    const std::optional<report::Subject> single = referenceSubject(*loaded, options, FloatingPoint::Strict, messages);
-    if (!exact || !single)
-      return;
-    reference = report::makeReference(*exact, *single, options.folder, options.runs, referenceShare * options.budget,
-                                      [&](double share, const std::string &) { show(share * referenceShare / total); });
-  } else {
-    reference = report::readReference(options.reference, loaded->render.width, loaded->render.height,
-                                      options.common.compile.colorComponents);
-  }
+  const std::optional<report::Reference> found =
+      referenceFor(*loaded, options, subjects, referenceShare * options.budget,
+                   [&](double share, const std::string &) { show(share * referenceShare / total); }, messages);
+  if (!found)
+    return;
+  const report::Reference &reference = *found;
   report::StudyOptions study;
   study.folder = options.folder;
   study.runs = options.runs;

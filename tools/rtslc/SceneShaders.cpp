@@ -90,4 +90,8 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   return request;
 }
 
+std::uint32_t features(bool prints, bool exceptions) {
+  return (prints ? RTSL_FEATURE_PRINT : 0) | (exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
+}
+
 } // namespace rtsl::tool

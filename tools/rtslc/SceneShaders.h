@@ -24,4 +24,7 @@ std::vector<std::string> withMeshes(const scene::SceneDescription &description, 
 /// Which classes the scene has objects of, and which materials meet which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);
 
+/// RTSL_FEATURE_* of a program that is to print and to raise exceptions.
+std::uint32_t features(bool prints, bool exceptions);
+
 } // namespace rtsl::tool

@@ -15,7 +15,7 @@
 #include <limits>
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -330,5 +330,5 @@ inline auto ldexp(const T &value, const E &exponents) {
       value, exponents);
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

@@ -25,7 +25,7 @@ extern "C" void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t
                                   float *color);
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 //===----------------------------------------------------------------------===//
 // Types
@@ -357,5 +357,5 @@ private:
   std::shared_ptr<runtime::Program> result;
 };
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

@@ -26,7 +26,7 @@ __m128 rtsl_pow4(__m128 x, __m128 y); // of each lane; the same bits in less tim
 }
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 #if defined(RTSL_FAST)
 #define RTSL_ELEMENTARY(name) std::name
@@ -139,5 +139,5 @@ inline auto degrees(const T &radians) {
               radians);
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

@@ -5,8 +5,9 @@
 // the same, but g++ does not know it. g++ also learns that nobody asks for floating-point exceptions:
 // then it may choose between two results instead of jumping, which changes none.
 //
-// A file that defines RTSL_FAST (--fp=fast, docs/fast.md) lets them. RTSL_ARITHMETIC is a namespace
-// that keeps the inline functions of both kinds of file apart where one program has both.
+// A file that defines RTSL_FAST (--fp=fast, docs/fast.md) lets them. One that defines RTSL_UNCHECKED (--unchecked) trusts
+// its indices (Types.h). RTSL_VARIANT is a namespace that keeps the inline functions of these kinds of file apart where
+// one program has several.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,19 +20,27 @@
 #endif
 
 #if defined(RTSL_FAST)
-#define RTSL_ARITHMETIC fast
 #if defined(__clang__)
 #pragma clang fp contract(fast)
 #elif defined(__GNUC__)
 #pragma GCC optimize("fp-contract=fast", "no-trapping-math")
 #endif
 #else
-#define RTSL_ARITHMETIC strict
 #if defined(__clang__)
 #pragma clang fp contract(off)
 #elif defined(__GNUC__)
 #pragma GCC optimize("fp-contract=off", "no-trapping-math")
 #endif
+#endif
+
+#if defined(RTSL_FAST) && defined(RTSL_UNCHECKED)
+#define RTSL_VARIANT fastUnchecked
+#elif defined(RTSL_FAST)
+#define RTSL_VARIANT fast
+#elif defined(RTSL_UNCHECKED)
+#define RTSL_VARIANT strictUnchecked
+#else
+#define RTSL_VARIANT strict
 #endif
 
 #include <glm/glm.hpp>

@@ -12,7 +12,7 @@
 #include "rtsl/shader/Integers.h"
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 /// a b - c d within 1.5 ulp, and exactly 0 for a b == c d (Jeannerod, Louvet, Muller, "Further
 /// analysis of Kahan's algorithm for the accurate computation of 2 x 2 determinants", 2013).
@@ -146,5 +146,5 @@ inline glm::vec3 perpendicularTo(const glm::vec3 &v) {
   return across == glm::vec3(0.0f) ? glm::vec3(1.0f, 0.0f, 0.0f) : across;
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

@@ -9,7 +9,7 @@
 #include "rtsl/shader/Common.h"
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 namespace detail {
 constexpr int wrap(uint x) { return static_cast<int>(x); }
@@ -246,5 +246,5 @@ constexpr auto bitfieldInsert(const T &base, const T &insert, int offset, int bi
       base, insert, offset, bits);
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

@@ -8,7 +8,7 @@
 #include "rtsl/shader/Geometry.h"
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 template <int C, int R>
 using Matrix = glm::mat<C, R, float, glm::defaultp>;
@@ -227,5 +227,5 @@ inline Matrix<N, N> inverse(Matrix<N, N> m) {
   return result;
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

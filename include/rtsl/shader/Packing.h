@@ -9,7 +9,7 @@
 #include "rtsl/shader/Integers.h"
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 namespace detail {
 
@@ -95,5 +95,5 @@ inline glm::vec2 unpackHalf2x16(uint word) {
   return {detail::floatFromHalf(halves.x), detail::floatFromHalf(halves.y)};
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

@@ -10,7 +10,7 @@
 #include "rtsl/shader/Rays.h"
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 // How hits are searched for; 0: the nearest counts, and nobody is asked.
 inline constexpr std::uint32_t firstHit = RTSL_FIRST_HIT;    // no `closestHit` wants to know which
@@ -38,36 +38,36 @@ struct RayOptions {
   template <int N>
   explicit RayOptions(State<N> &rt) : RayOptions(rt, rawState(rt)->rayRoot) {}
 };
+
+/// Hands a ray over to `send`, one of the three functions of the ABI that take one with a payload.
+template <int N, typename Payload, typename... More>
+inline void hand(decltype(rtsl_trace_payload) send, State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
+                 float tmax, Payload &payload, More... more) {
+  const RayOptions options(rt, more...);
+  send(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax, &payload,
+       options.root, options.mask, options.time, Payload::rayType.number, Payload::rayType.search);
+}
 } // namespace detail
 
 /// Sends a ray with a payload and waits for it. Behind the payload may stand its root, mask and time.
 template <int N, typename Payload, typename... More>
 inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
                   Payload &payload, More... more) {
-  const detail::RayOptions options(rt, more...);
-  rtsl_trace_payload(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax,
-                     &payload, options.root, options.mask, options.time, Payload::rayType.number,
-                     Payload::rayType.search);
+  detail::hand(rtsl_trace_payload, rt, origin, direction, tmin, tmax, payload, more...);
 }
 
 /// Prepares such a ray, which is traced when the state ends. Its payload lies in the frame.
 template <int N, typename Step, typename Payload, typename... More>
 inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
                       float tmax, Payload &payload, More... more) {
-  const detail::RayOptions options(rt, more...);
-  rtsl_spawn_payload(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax,
-                     &payload, options.root, options.mask, options.time, Payload::rayType.number,
-                     Payload::rayType.search);
+  detail::hand(rtsl_spawn_payload, rt, origin, direction, tmin, tmax, payload, more...);
   return static_cast<Next>(step);
 }
 /// One that takes the place of the ray that sends it, with the payload that this was given.
 template <int N, typename Payload, typename... More>
 inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
                       Payload &payload, More... more) {
-  const detail::RayOptions options(rt, more...);
-  rtsl_spawn_last_payload(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax,
-                          &payload, options.root, options.mask, options.time, Payload::rayType.number,
-                          Payload::rayType.search);
+  detail::hand(rtsl_spawn_last_payload, rt, origin, direction, tmin, tmax, payload, more...);
   return RTSL_NEXT_LAST;
 }
 
@@ -110,5 +110,5 @@ inline void endIfAnswered(State<N> &rt) {
     throw EndOfAnyHit();
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

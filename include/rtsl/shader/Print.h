@@ -5,7 +5,7 @@
 #include "runtime/PrintLog.h"
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 namespace detail {
 
@@ -37,5 +37,5 @@ inline void print(State<N> &rt, const Item &...items) {
   runtime::print(rawState(rt), format, words);
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

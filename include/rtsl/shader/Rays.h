@@ -5,7 +5,7 @@
 #include "rtsl/shader/State.h"
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 /// What arrives at `origin` from `direction`.
 template <int N>
@@ -131,5 +131,5 @@ private:
   int index = 0;
 };
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

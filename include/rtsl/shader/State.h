@@ -7,7 +7,7 @@
 #include <cstring>
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 /// A color of the state: room for the largest, of which N components count.
 template <int N>
@@ -145,5 +145,5 @@ inline void intersect(State<N> &rt, const Primitive &primitive) {
     scratch.visit([&](int word, const auto &value) { storeAttribute(rt, word, value); });
 }
 
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

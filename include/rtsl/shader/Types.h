@@ -15,7 +15,7 @@
 #include <utility>
 
 namespace rtsl {
-inline namespace RTSL_ARITHMETIC {
+inline namespace RTSL_VARIANT {
 
 using uint = std::uint32_t;
 
@@ -40,16 +40,13 @@ constexpr uint clampIndex(uint index, uint count) {
   return count == 0 ? 0u : std::min(index, count - 1);
 }
 
-// With RTSL_UNCHECKED the elements of arrays, vectors, matrices and buffers are taken as they are asked for. The namespace
-// keeps files with and without it apart.
+// With RTSL_UNCHECKED the elements of arrays, vectors, matrices and buffers are taken as they are asked for.
 #ifdef RTSL_UNCHECKED
-inline namespace unchecked {
 template <typename Index>
 constexpr Index elementIndex(Index index, uint) {
   return index;
 }
 #else
-inline namespace checkedIndices {
 template <typename Index>
 constexpr uint elementIndex(Index index, uint count) {
   return clampIndex(index, count);
@@ -77,8 +74,6 @@ struct array {
   }
   friend constexpr bool operator!=(const array &a, const array &b) { return !(a == b); }
 };
-
-} // namespace
 
 /// A color of N components: opaque, with the operations of RTSL.
 template <int N>
@@ -286,12 +281,6 @@ constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, T value) {
   return vector;
 }
 
-#ifdef RTSL_UNCHECKED
-inline namespace unchecked {
-#else
-inline namespace checkedIndices {
-#endif
-
 /// Component or column `index`, clamped into what there is.
 template <int L, typename T, glm::qualifier Q, typename Index>
 constexpr T &at(glm::vec<L, T, Q> &vector, Index index) {
@@ -310,8 +299,6 @@ constexpr glm::vec<R, T, Q> at(const glm::mat<C, R, T, Q> &matrix, Index index) 
   return matrix[static_cast<int>(elementIndex(index, uint(C)))];
 }
 
-} // namespace
-
 //===----------------------------------------------------------------------===//
 // References and buffers
 //===----------------------------------------------------------------------===//
@@ -326,12 +313,6 @@ struct Reference {
   friend constexpr bool operator==(Reference a, Reference b) { return a.object == b.object; }
   friend constexpr bool operator!=(Reference a, Reference b) { return a.object != b.object; }
 };
-
-#ifdef RTSL_UNCHECKED
-inline namespace unchecked {
-#else
-inline namespace checkedIndices {
-#endif
 
 /// `T name[]`, `[][]` or `[][][]`: what a scene gives. An index is clamped; an element of an empty
 /// buffer is zero.
@@ -365,7 +346,5 @@ private:
   RtslBuffer buffer = {};
 };
 
-} // namespace
-
-} // namespace RTSL_ARITHMETIC
+} // namespace RTSL_VARIANT
 } // namespace rtsl

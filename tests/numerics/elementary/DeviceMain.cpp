@@ -1,8 +1,9 @@
 // elementary-device: proves that the elementary functions give the same bits on a CUDA device as on
 // the host. Exit status 77, which CTest shows as skipped: there is no device.
 #include "Arguments.h"
-#include "CudaDriver.h"
 #include "Functions.h"
+
+#include "runtime/gpu/CudaDriver.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <thread>
 
 using namespace rtsl::elementary;
+namespace runtime = rtsl::runtime;
 
 namespace {
 
@@ -56,8 +58,10 @@ struct Comparison {
 class DeviceTest {
 public:
   DeviceTest(const std::string &ptx, const Options &chosen)
-      : module(ptx), options(chosen), results(chunkSize),
-        deviceResults(module.allocate(chunkSize * sizeof(float))) {}
+      : options(chosen), results(chunkSize) {
+    device.load(ptx);
+    deviceResults = device.allocate(chunkSize * sizeof(float), "results");
+  }
 
   /// Chunk c of n starts with argument number c 2^32 / n.
   bool run(const Unary &function) {
@@ -76,13 +80,14 @@ public:
   bool run(const Binary &function) {
     Comparison comparison;
     std::vector<Pair> pairs(chunkSize);
-    CudaModule::Address arguments = module.allocate(chunkSize * sizeof(Pair));
+    const runtime::CudaDevice::Address arguments = device.allocate(chunkSize * sizeof(Pair), "arguments");
     for (std::uint64_t chunk = 0; chunk < options.chunks; ++chunk) {
       std::uint64_t first = chunk * chunkSize;
       forEachOfChunk(options.threads,
                      [&](std::uint64_t i) { pairs[i] = argumentPair(function.name, first + i); });
-      module.upload(arguments, pairs.data(), chunkSize * sizeof(Pair));
-      launch(function.name, &arguments, comparison);
+      device.upload(arguments, pairs.data(), chunkSize * sizeof(Pair));
+      runtime::CudaDevice::Address argument = arguments;
+      launch(function.name, &argument, comparison);
       forEachOfChunk(options.threads, [&](std::uint64_t i) {
         comparison.compare(function.ours(pairs[i].first, pairs[i].second), results[i], first + i);
       });
@@ -93,11 +98,12 @@ public:
 private:
   void launch(const char *name, void *argument, Comparison &comparison) {
     auto start = std::chrono::steady_clock::now();
-    module.launch(fmt::format("evaluate_{}", name), argument, deviceResults,
-                  static_cast<unsigned>(chunkSize / threadsPerBlock), threadsPerBlock);
+    void *arguments[] = {argument, &deviceResults};
+    device.launch(device.kernel(fmt::format("evaluate_{}", name).c_str()), static_cast<unsigned>(chunkSize / threadsPerBlock),
+                  threadsPerBlock, arguments);
     std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     comparison.deviceSeconds += elapsed.count();
-    module.download(results.data(), deviceResults, chunkSize * sizeof(float));
+    device.download(results.data(), deviceResults, chunkSize * sizeof(float));
   }
 
   bool report(const char *name, const Comparison &comparison) {
@@ -110,10 +116,10 @@ private:
     return comparison.mismatches == 0;
   }
 
-  CudaModule module;
+  runtime::CudaDevice device;
   const Options &options;
   std::vector<float> results;
-  CudaModule::Address deviceResults;
+  runtime::CudaDevice::Address deviceResults = 0;
 };
 
 bool runAll(const Options &options) {
@@ -146,9 +152,10 @@ int main(int argc, char **argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     return runAll(options) ? 0 : 1;
-  } catch (const NoDevice &missing) {
-    fmt::print(stderr, "skipped: {}\n", missing.what());
-    return 77;
+  } catch (const runtime::Error &error) {
+    const bool isMissing = error.code == runtime::ErrorCode::NoDevice;
+    fmt::print(stderr, "{}: {}\n", isMissing ? "skipped" : "error", error.what());
+    return isMissing ? 77 : 2;
   } catch (const std::exception &error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return 2;
