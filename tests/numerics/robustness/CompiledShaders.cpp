@@ -39,7 +39,7 @@ FloatingPoint floatingPointOf(Path path) {
 CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std::string> classes,
                                                    std::vector<std::pair<std::string, std::string>> surfaces, Path path) {
   if (path == Path::Cpp)
-    return {program(numerics_shaders()), "", nullptr};
+    return {program(numerics_shaders()), ""};
   SourceManager sources;
   Diagnostics diagnostics(sources);
   const std::unique_ptr<typed::Module> module = checkFiles(files, sources, diagnostics);
@@ -49,14 +49,12 @@ CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string
   CompileOptions options;
   options.floatingPoint = floatingPointOf(path);
   Compiled compiled;
-  if (!diagnostics.hasErrors() && path != Path::Gpu) {
-    options.target = path == Path::Megakernel ? Target::HostMegakernel : Target::Host;
+  if (!diagnostics.hasErrors()) {
+    // On a GPU too this one makes the objects, and says how much memory a ray takes.
+    options.target = path == Path::Megakernel || path == Path::Gpu ? Target::HostMegakernel : Target::Host;
     compiled.program = compileProgram(*module, request, options, diagnostics);
-  } else if (!diagnostics.hasErrors()) {
-    compiled.program = compileProgram(*module, request, options, diagnostics);
-    compiled.ptx = emitScene(*module, request, Stage::Ptx, options, diagnostics).value_or("");
-    options.target = Target::HostMegakernel;
-    compiled.megakernel = compileProgram(*module, request, options, diagnostics);
+    if (path == Path::Gpu)
+      compiled.ptx = emitScene(*module, request, Stage::Ptx, options, diagnostics).value_or("");
   }
   if (!compiled.program || diagnostics.hasErrors())
     throw runtime::Error(runtime::ErrorCode::Internal, renderText(diagnostics, false));
@@ -75,7 +73,7 @@ void CompiledShaders::finish() {
     eye = megakernelEye(theScene);
     break;
   case Path::Gpu:
-    eye = gpuEye(theScene, compiled.megakernel->megakernel, compiled.ptx);
+    eye = gpuEye(theScene, compiled.ptx);
     break;
   default:
     eye = machineEye(theScene);

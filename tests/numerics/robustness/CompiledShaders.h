@@ -36,8 +36,7 @@ public:
 private:
   struct Compiled {
     std::shared_ptr<const runtime::Program> program;
-    std::string ptx;                                  // Path::Gpu
-    std::shared_ptr<const runtime::Program> megakernel; // the same program on the CPU
+    std::string ptx; // the same for a GPU; Path::Gpu alone has it
   };
   static Compiled compile(const std::vector<std::string> &files, std::vector<std::string> classes,
                           std::vector<std::pair<std::string, std::string>> surfaces, Path path);

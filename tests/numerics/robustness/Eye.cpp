@@ -60,9 +60,10 @@ public:
     flat.setLaunch(launch);
     return flat.bytes.data();
   }
-  std::uint64_t laneBytes(const runtime::MegakernelCode &code) const {
+  std::uint64_t laneBytes() const {
     constexpr std::uint64_t cacheLine = 64;
-    return (code.laneBytes(eyeDepth, flat.launch().referenceChain) + cacheLine - 1) / cacheLine * cacheLine;
+    const std::uint64_t bytes = scene.program().megakernel.laneBytes(eyeDepth, flat.launch().referenceChain);
+    return (bytes + cacheLine - 1) / cacheLine * cacheLine;
   }
 
 private:
@@ -79,12 +80,12 @@ std::vector<Line> linesFor(std::uint64_t bytes) { return std::vector<Line>((byte
 class MegakernelEye : public Eye {
 public:
   explicit MegakernelEye(const runtime::Scene &scene)
-      : code(scene.program().megakernel), flat(scene), memory(linesFor(flat.size())), lane(linesFor(flat.laneBytes(code))) {
+      : code(scene.program().megakernel), flat(scene), memory(linesFor(flat.size())), lane(linesFor(flat.laneBytes())) {
     flat.place(reinterpret_cast<std::uintptr_t>(memory.data()), &status);
     job.launch = reinterpret_cast<const RtslLaunch *>(memory.data());
     job.status = &status;
     job.lanes = lane.data()->bytes;
-    job.laneBytes = flat.laneBytes(code);
+    job.laneBytes = flat.laneBytes();
     job.pixels = pixel.data();
     job.samplesPerPixel = 1;
   }
@@ -109,7 +110,7 @@ private:
 
 class GpuEye : public Eye {
 public:
-  GpuEye(const runtime::Scene &scene, const runtime::MegakernelCode &code, const std::string &ptx) : flat(scene) {
+  GpuEye(const runtime::Scene &scene, const std::string &ptx) : flat(scene) {
     device.load(ptx);
     kernel = device.kernel("rtsl_render");
     sceneAddress = device.allocate(flat.size(), "the scene");
@@ -119,7 +120,7 @@ public:
     RtslJob job{};
     job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
     job.status = reinterpret_cast<RtslStatus *>(statusAddress);
-    job.laneBytes = flat.laneBytes(code);
+    job.laneBytes = flat.laneBytes();
     job.lanes = reinterpret_cast<std::uint8_t *>(device.allocate(warp * job.laneBytes, "rays in flight"));
     job.pixels = reinterpret_cast<float *>(pixelAddress);
     job.samplesPerPixel = 1;
@@ -153,8 +154,8 @@ private:
 
 std::unique_ptr<Eye> machineEye(const runtime::Scene &scene) { return std::make_unique<MachineEye>(scene); }
 std::unique_ptr<Eye> megakernelEye(const runtime::Scene &scene) { return std::make_unique<MegakernelEye>(scene); }
-std::unique_ptr<Eye> gpuEye(const runtime::Scene &scene, const runtime::MegakernelCode &code, const std::string &ptx) {
-  return std::make_unique<GpuEye>(scene, code, ptx);
+std::unique_ptr<Eye> gpuEye(const runtime::Scene &scene, const std::string &ptx) {
+  return std::make_unique<GpuEye>(scene, ptx);
 }
 
 } // namespace rtsl::numerics

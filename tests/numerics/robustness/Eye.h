@@ -28,7 +28,7 @@ constexpr std::uint32_t eyeDepth = 8;
 std::unique_ptr<Eye> machineEye(const runtime::Scene &scene);
 /// By the megakernel of the program.
 std::unique_ptr<Eye> megakernelEye(const runtime::Scene &scene);
-/// By the kernel in `ptx`, which is that of the scene's program; `code` says how much memory a ray takes. Throws NoDevice.
-std::unique_ptr<Eye> gpuEye(const runtime::Scene &scene, const runtime::MegakernelCode &code, const std::string &ptx);
+/// By the kernel in `ptx`, made of the same shaders as the megakernel of the scene's program. Throws NoDevice.
+std::unique_ptr<Eye> gpuEye(const runtime::Scene &scene, const std::string &ptx);
 
 } // namespace rtsl::numerics
