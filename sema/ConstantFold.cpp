@@ -293,7 +293,9 @@ namespace {
 
 class Evaluator {
 public:
-  explicit Evaluator(const typed::Expr **obstacle) : obstacle(obstacle) {}
+  using Parts = std::map<const typed::Expr *, Constant>;
+  explicit Evaluator(const typed::Expr **obstacle, const Parts *parts = nullptr)
+      : obstacle(obstacle), parts(parts) {}
 
   std::optional<Constant> evaluate(const typed::Expr &expr);
 
@@ -308,6 +310,7 @@ private:
   }
 
   const typed::Expr **obstacle;
+  const Parts *parts; // what is known already; null: nothing
 };
 
 } // namespace
@@ -344,6 +347,9 @@ std::optional<Constant> Evaluator::evaluateIndex(const typed::IndexExpr &expr) {
 std::optional<Constant> Evaluator::evaluate(const typed::Expr &expr) {
   if (expr.type->isError())
     return std::nullopt;
+  if (parts)
+    if (auto known = parts->find(&expr); known != parts->end())
+      return known->second;
   switch (expr.kind) {
   case typed::ExprKind::Literal:
     return cast<typed::LiteralExpr>(expr).value;
@@ -448,6 +454,11 @@ std::optional<Constant> evaluate(const typed::Expr &expr, const typed::Expr **ob
   if (obstacle)
     *obstacle = nullptr;
   return Evaluator(obstacle).evaluate(expr);
+}
+
+std::optional<Constant> evaluate(const typed::Expr &expr,
+                                 const std::map<const typed::Expr *, Constant> &parts) {
+  return Evaluator(nullptr, &parts).evaluate(expr);
 }
 
 std::optional<std::int64_t> evaluateInteger(const typed::Expr &expr, const typed::Expr **obstacle) {

@@ -10,6 +10,7 @@
 #include "sema/TypedAst.h"
 
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace rtsl {
@@ -18,6 +19,10 @@ namespace rtsl {
 /// for) is the innermost part that is not constant.
 std::optional<typed::Constant> evaluate(const typed::Expr &expr,
                                         const typed::Expr **obstacle = nullptr);
+
+/// The value of `expr` if it follows from those of some of its parts.
+std::optional<typed::Constant>
+evaluate(const typed::Expr &expr, const std::map<const typed::Expr *, typed::Constant> &parts);
 
 /// Is `expr` constant, whether or not its value is known here? What a color is, and a few
 /// functions, only the code generator knows. If not, `obstacle` is the innermost part that is not

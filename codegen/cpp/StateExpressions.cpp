@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace rtsl::cpp {
 
@@ -129,6 +130,65 @@ Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange o
   }
   }
   return {"0"};
+}
+
+namespace {
+
+/// A comparison's sign, and that of the opposite.
+struct Signs {
+  const char *own, *opposite;
+};
+
+} // namespace
+
+/// None where the opposite of an order would answer differently for a NaN.
+static std::optional<Signs> oppositeOf(const typed::BinaryExpr &expr) {
+  using ast::BinaryOp;
+  const Type *type = expr.left->type;
+  const bool isWhole = type->is(TypeKind::Int) || type->is(TypeKind::UInt);
+  static const std::map<BinaryOp, Signs> orders = {{BinaryOp::Less, {"<", ">="}},
+                                                   {BinaryOp::LessEqual, {"<=", ">"}},
+                                                   {BinaryOp::Greater, {">", "<="}},
+                                                   {BinaryOp::GreaterEqual, {">=", "<"}}};
+  if (expr.op == BinaryOp::Equal)
+    return Signs{"==", "!="};
+  if (expr.op == BinaryOp::NotEqual)
+    return Signs{"!=", "=="};
+  const auto order = orders.find(expr.op);
+  return isWhole && order != orders.end() ? std::optional(order->second) : std::nullopt;
+}
+
+/// Where a text has ` sign `, once and outside of parentheses; npos: it has not.
+static std::size_t findOutside(const std::string &text, const std::string &sign) {
+  std::size_t found = std::string::npos;
+  int depth = 0;
+  for (std::size_t at = 0; at != text.size(); ++at) {
+    if (std::strchr("([{", text[at]))
+      ++depth;
+    else if (std::strchr(")]}", text[at]))
+      --depth;
+    else if (depth == 0 && text.compare(at, sign.size() + 2, " " + sign + " ") == 0)
+      found = found == std::string::npos ? at : text.size();
+  }
+  return found == text.size() ? std::string::npos : found;
+}
+
+/// `i >= 3` for `i < 3`, which is the code of `condition`.
+Code StateWriter::opposite(mlir::Value condition, const Code &code) {
+  auto whole = condition.getDefiningOp<ir::ExpressionOp>();
+  const SourceTable::Entry *entry = whole ? &source.entries[whole.getSource()] : nullptr;
+  auto *binary = entry && entry->kind == SourceTable::Kind::Value
+                     ? dynCast<typed::BinaryExpr>(entry->expr)
+                     : nullptr;
+  if (!binary || (code.binding != Binding::Relation && code.binding != Binding::Equality))
+    return negated(code);
+  const std::optional<Signs> signs = oppositeOf(*binary);
+  const std::size_t at = signs ? findOutside(code.text, signs->own) : std::string::npos;
+  if (at == std::string::npos)
+    return negated(code);
+  return {code.text.substr(0, at + 1) + signs->opposite +
+              code.text.substr(at + 1 + std::strlen(signs->own)),
+          code.binding};
 }
 
 Code negated(const Code &code) {

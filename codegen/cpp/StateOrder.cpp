@@ -112,7 +112,7 @@ void StateWriter::emit(Statements &out, std::string text) {
     statement.comment = module.commentText(comment->second);
     comments.erase(comment);
   }
-  statement.hasSpace = spaces.erase(currentLine) != 0 && !out.empty();
+  statement.hasSpace = !out.empty() && spaces.erase(currentLine) != 0;
   if (currentLine != 0)
     statement.comment += module.lineDirective(machine.method->range, currentLine);
   statement.text = std::move(text);
@@ -133,6 +133,9 @@ void StateWriter::materialise(mlir::Value value, Statements &out) {
   const std::string name = freshName(nameFor(value));
   mentioned = std::move(waiting.mentions);
   emit(out, fmt::format("{} {};", type, declarator(type, name, waiting.code.text)));
+  out.back().isDeclaration = true;
+  out.back().made = value;
+  out.back().value = waiting.code.text;
   declared[value] = name;
   mentioned = before;
 }
@@ -180,8 +183,9 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
     return llvm::isa<ir::FrameStoreOp>(user) ||
            (llvm::isa<ir::StoreOp>(user) && user->getBlock() == op.getBlock());
   };
+  const std::string given = continuation::authorsName(value);
   const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
-                       !continuation::authorsName(value).empty();
+                       !given.empty() && !(uses == 1 && isOwnName(given));
   const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
   const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||

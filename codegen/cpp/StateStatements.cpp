@@ -17,11 +17,80 @@ namespace arith = mlir::arith;
 // Constructs
 //===----------------------------------------------------------------------===//
 
+/// What a condition asks for, without negations.
+static ir::VarOp variableAskedBy(mlir::Value condition, bool &isOpposite) {
+  while (auto negation = condition.getDefiningOp<arith::XOrIOp>()) {
+    condition = negation.getLhs();
+    isOpposite = !isOpposite;
+  }
+  auto load = condition.getDefiningOp<ir::LoadOp>();
+  return load ? load.getAddress().getDefiningOp<ir::VarOp>() : ir::VarOp();
+}
+
+/// `bool either = a || b; if (either)`, where nobody else asks: what the condition is then. The
+/// assignment leaves `out`.
+std::optional<Code> StateWriter::takeCondition(ir::IfOp op, Statements &out, Statement &taken) {
+  bool isOpposite = false;
+  ir::VarOp variable = variableAskedBy(op.getCondition(), isOpposite);
+  if (!variable || !isOwnName(variable.getName()) || out.empty() ||
+      out.back().assigns != variable || out.back().value.empty())
+    return std::nullopt;
+  for (mlir::Operation *user : variable->getUsers()) {
+    auto load = llvm::dyn_cast<ir::LoadOp>(user);
+    if (!load || load.getResult() == op.getCondition())
+      continue;
+    for (mlir::Operation *asking : load->getUsers()) {
+      if (llvm::isa<arith::XOrIOp>(asking) && asking->hasOneUse())
+        asking = *asking->user_begin();
+      auto choice = llvm::dyn_cast<ir::IfOp>(asking);
+      const bool isPart =
+          choice && choice != op && llvm::any_of(variable->getUsers(), [&](mlir::Operation *other) {
+            return llvm::isa<ir::StoreOp>(other) && choice->isProperAncestor(other);
+          });
+      if (!isPart && choice != op)
+        return std::nullopt;
+    }
+  }
+  taken = std::move(out.back());
+  out.pop_back();
+  Code value = {taken.value, Binding::Assignment};
+  return isOpposite ? negated(value) : value;
+}
+
+/// One side of `&&` or `||`.
+static std::string sideOf(const std::string &part) {
+  const bool isSimple = part.find("&&") == std::string::npos &&
+                        part.find("||") == std::string::npos && part.find('?') == std::string::npos;
+  return isSimple ? part : "(" + part + ")";
+}
+
+/// What has the name, if the compiler gave it and nobody else asks: its declaration leaves `out`
+/// then. Otherwise the name.
+std::string StateWriter::takeName(ir::IfOp op, const std::string &name, Statements &out) {
+  auto last = std::find_if(out.rbegin(), out.rend(),
+                           [](const Statement &statement) { return !statement.text.empty(); });
+  if (last == out.rend() || !last->made || declared[last->made] != name || !isOwnName(name))
+    return name;
+  for (mlir::Operation *user : last->made.getUsers())
+    if (!op->isAncestor(user) && !llvm::is_contained(user->getUsers(), op.getOperation()))
+      return name;
+  const std::string value = sideOf(last->value);
+  mentioned.insert(last->mentions.begin(), last->mentions.end());
+  out.erase(std::next(last).base());
+  return value;
+}
+
 void StateWriter::choice(ir::IfOp op, Statements &out) {
   const unsigned line = currentLine;
-  const Code condition = use(op.getCondition());
-  const std::set<mlir::Operation *> inCondition = std::move(mentioned);
+  Code condition = use(op.getCondition());
+  std::set<mlir::Operation *> inCondition = std::move(mentioned);
   mentioned.clear();
+  Statement taken;
+  if (std::optional<Code> whole = takeCondition(op, out, taken)) {
+    condition = *whole;
+    inCondition.insert(taken.mentions.begin(), taken.mentions.end());
+    inCondition.erase(taken.assigns);
+  }
   flushBefore(*op, out);
   Statements thenPart, elsePart;
   block(op.getThenRegion().front(), thenPart);
@@ -35,11 +104,14 @@ void StateWriter::choice(ir::IfOp op, Statements &out) {
     const std::string name = nameOf(llvm::cast<ir::VarOp>(target));
     const std::string first = thenPart.front().value, second = elsePart.front().value;
     std::string value = bind(condition, Binding::Or) + " ? " + first + " : " + second;
-    if (second == "false")
+    if (condition.text == second || condition.text == "!" + second)
+      value =
+          takeName(op, second, out) + (condition.text == second ? " && " : " || ") + sideOf(first);
+    else if (second == "false")
       value = bind(condition, Binding::And) + " && (" + first + ")";
     if (first == "true")
       value = "(" + condition.text + ") || (" + second + ")";
-    mentioned = inCondition;
+    mentioned.insert(inCondition.begin(), inCondition.end());
     currentLine = line;
     for (const Statements *part : {&thenPart, &elsePart})
       mentioned.insert(part->front().mentions.begin(), part->front().mentions.end());
@@ -55,13 +127,8 @@ void StateWriter::choice(ir::IfOp op, Statements &out) {
     const bool isAnd = condition.text == name, isOr = condition.text == "!" + name;
     if (isAnd || isOr) {
       const std::string second = thenPart.front().value;
-      auto side = [](const std::string &part) {
-        return part.find("&&") == std::string::npos && part.find("||") == std::string::npos &&
-                       part.find('?') == std::string::npos
-                   ? part
-                   : "(" + part + ")";
-      };
-      const std::string value = side(out.back().value) + (isAnd ? " && " : " || ") + side(second);
+      const std::string value =
+          sideOf(out.back().value) + (isAnd ? " && " : " || ") + sideOf(second);
       out.back().mentions.insert(thenPart.front().mentions.begin(), thenPart.front().mentions.end());
       out.back().text = name + " = " + value + ";";
       out.back().value = value;
@@ -79,6 +146,8 @@ void StateWriter::choice(ir::IfOp op, Statements &out) {
     for (const Statement &statement : *part)
       mentioned.insert(statement.mentions.begin(), statement.mentions.end());
   emit(out, text);
+  out.back().comment = taken.comment + out.back().comment;
+  out.back().hasSpace |= taken.hasSpace;
 }
 
 /// The head of a `for`, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nobody else asks
@@ -191,9 +260,10 @@ void StateWriter::loop(ir::LoopOp op, Statements &out) {
     mlir::Block &test = op.getCondition().front();
     block(test, head);
     consumed = {};
-    const Code asked = use(llvm::cast<ir::ConditionOp>(test.back()).getCondition());
+    const mlir::Value goesOn = llvm::cast<ir::ConditionOp>(test.back()).getCondition();
+    const Code asked = use(goesOn);
     condition = asked.text;
-    opposite = negated(asked).text;
+    opposite = this->opposite(goesOn, asked).text;
     inCondition = std::move(mentioned);
     mentioned.clear();
   }
@@ -231,7 +301,9 @@ void StateWriter::switchOver(ir::SwitchOp op, Statements &out) {
     block(arm.front(), statements);
     for (const Statement &statement : statements)
       inside.insert(statement.mentions.begin(), statement.mentions.end());
-    text += "{\n" + this->text(statements) + "}\n";
+    const bool declares = std::any_of(statements.begin(), statements.end(),
+                                      [](const auto &one) { return one.isDeclaration; });
+    text += declares ? "{\n" + this->text(statements) + "}\n" : this->text(statements);
   }
   if (!op.getDefaultArm())
     text += "default:\nbreak;\n";
@@ -269,6 +341,7 @@ void StateWriter::joinDeclarations(Statements &statements) {
     if (first->assigns == variable.getOperation()) {
       first->text = type + " " + declarator(type, name, first->value) + ";";
       first->declares = nullptr;
+      first->isDeclaration = true;
       statements.erase(statements.begin() + static_cast<std::ptrdiff_t>(i--));
       continue;
     }
@@ -277,6 +350,7 @@ void StateWriter::joinDeclarations(Statements &statements) {
     statements[i].text = isNumber ? fmt::format("{} {} = {};", type, name, zero)
                                   : fmt::format("{} {}{{}};", type, name);
     statements[i].declares = nullptr;
+    statements[i].isDeclaration = true;
     statements[i].mentions.insert(variable);
   }
 }

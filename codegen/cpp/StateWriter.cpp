@@ -170,7 +170,7 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
       .Case([&](arith::XOrIOp negation) {
         if (!op.getResult(0).getType().isInteger(1) || !mlir::matchPattern(negation.getRhs(), mlir::m_One()))
           return unsupported(op);
-        pure(negated(use(negation.getLhs())));
+        pure(opposite(negation.getLhs(), use(negation.getLhs())));
       })
       .Case([&](arith::AndIOp) {
         op.getResult(0).getType().isInteger(1) ? infix("&&", Binding::And) : unsupported(op);

@@ -60,6 +60,9 @@ unsigned lineOf(mlir::Location location);
 /// What a value is called among people: as the author calls it, or after the operation that makes it.
 std::string nameFor(mlir::Value value);
 
+/// Is it the compiler's name for what `&&` or `||` has come to?
+bool isOwnName(llvm::StringRef name);
+
 /// The opposite of a condition.
 Code negated(const Code &code);
 
@@ -98,6 +101,8 @@ private:
     mlir::Operation *declares = nullptr; // a variable whose declaration this is, to be joined with its first assignment
     mlir::Operation *assigns = nullptr;  // `x = value;`
     std::string value;
+    bool isDeclaration = false;
+    mlir::Value made;        // what `type name = value;` is the variable of
     std::string whole, from; // a field of `whole` gets that of `from`, or zero
     std::set<mlir::Operation *> mentions;
   };
@@ -112,6 +117,8 @@ private:
 
   // StateStatements.cpp
   void block(mlir::Block &block, Statements &out);
+  std::optional<Code> takeCondition(ir::IfOp op, Statements &out, Statement &taken);
+  std::string takeName(ir::IfOp op, const std::string &name, Statements &out);
   void choice(ir::IfOp op, Statements &out);
   void loop(ir::LoopOp op, Statements &out);
   void switchOver(ir::SwitchOp op, Statements &out);
@@ -142,6 +149,7 @@ private:
   Code use(mlir::Value value, const std::string &type = {});
   Code constant(mlir::Value value, const std::string &type);
   Code place(mlir::Value address);
+  Code opposite(mlir::Value condition, const Code &code);
   Code expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound);
   void nameConstants(const typed::Expr &expr);
 

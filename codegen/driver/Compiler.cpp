@@ -13,6 +13,7 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/BindScene.h"
 #include "codegen/link/Link.h"
+#include "codegen/lower/KnownConditions.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
@@ -327,7 +328,10 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
   if (!ir)
     return std::nullopt;
   continuation::callThroughFrames(*ir);
-  runToSsa(*ir, options, TraceMode::Split, /*dispatch=*/false);
+  SplitOptions split = splitOptions(options);
+  split.dispatch = false;
+  split.isKnown = [&source](mlir::Value condition) { return knownCondition(condition, source); };
+  runToStates(*ir, split);
   mlir::ModuleOp program = *ir;
   for (auto function : program.getOps<mlir::func::FuncOp>())
     if (function->hasAttr("rtsl.state"))

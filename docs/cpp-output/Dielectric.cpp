@@ -41,6 +41,7 @@ struct Dielectric : rtsl::Material {
     glm::vec3 normal = entering ? rt.ShadingNormal : -rt.ShadingNormal;
     float ratio = entering ? 1.0f / index : index;
     float cosine = rtsl::clamp(-rtsl::dot(direction, normal), 0.0f, 1.0f);
+
     glm::vec3 next = rtsl::rand(rt) < reflectance(cosine, ratio)
                          ? rtsl::reflect(direction, normal)
                          : rtsl::refract(direction, normal, ratio);

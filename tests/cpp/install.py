@@ -23,6 +23,10 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     glass.mkdir()
     for shader in pathlib.Path(source, "examples/glass").glob("*.rtsl"):
         (glass / shader.name).write_text(shader.read_text())
+    sky = glass / "Sky.rtsl"
+    palette = glass / "palette.inc"
+    palette.write_text("#define ZENITH color(0.25, 0.45, 0.8)\n")
+    sky.write_text('#include "palette.inc"\n' + sky.read_text().replace("color(0.25, 0.45, 0.8)", "ZENITH"))
     example = folder / "build"
     run(cmake, "-S", f"{source}/examples/cpp-api", "-B", example, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DGLASS={glass}",
         "-DCMAKE_BUILD_TYPE=Release")
@@ -30,11 +34,24 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     picture = folder / "glass.png"
     run(example / "cpp-api", f"{source}/examples/glass/knot.obj", picture, "48", "1")
     assert picture.stat().st_size > 500
+
+    def builds_anew():
+        """Does a build compile the shaders again? That shows in the file's time, for it is written anew even if it is the same."""
+        before = (example / "glass.cpp").stat().st_mtime_ns
+        run(cmake, "--build", example)
+        return (example / "glass.cpp").stat().st_mtime_ns != before
+
     first = (example / "glass.cpp").read_text()
-    text = (glass / "Sky.rtsl").read_text()
-    (glass / "Sky.rtsl").write_text(text.replace("0.25, 0.45, 0.8", "0.5, 0.25, 0.125"))
-    run(cmake, "--build", example)
-    assert (example / "glass.cpp").read_text() != first, "a changed shader was not compiled again"
+    assert "0.45f" in first
+    assert not builds_anew(), "nothing has changed"
+    palette.write_text("#define ZENITH color(0.5, 0.625, 0.75)\n")
+    assert builds_anew(), "an included file has changed"
+    second = (example / "glass.cpp").read_text()
+    assert "0.45f" not in second and "0.625f" in second
+    palette.touch()
+    assert builds_anew(), "an included file was touched"
+    sky.write_text(sky.read_text().replace("0.9, 0.95, 1.0", "0.5, 0.25, 0.125"))
+    assert builds_anew() and (example / "glass.cpp").read_text() != second, "a changed shader was not compiled again"
 
     # pkg-config and C.
     environment = dict(os.environ, PKG_CONFIG_PATH=":".join(str(p.parent) for p in prefix.rglob("rtsl.pc")))

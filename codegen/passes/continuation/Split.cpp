@@ -51,6 +51,7 @@ public:
 
 private:
   mlir::LogicalResult check(llvm::StringRef step);
+  void decide(FuncOp function);
   void listTraces();
   mlir::LogicalResult reportPlainLiveness(const char *step);
   mlir::LogicalResult planAndRematerialise();
@@ -70,6 +71,12 @@ mlir::LogicalResult FunctionSplitter::check(llvm::StringRef step) {
     return mlir::success();
   return function.emitError() << "`" << function.getSymName() << "` is broken after the step `"
                               << step << "`";
+}
+
+/// A branch that is decided may decide others.
+void FunctionSplitter::decide(FuncOp function) {
+  while (options.isKnown && codegen::decideBranches(function, options.isKnown))
+    simplify.run(function);
 }
 
 void FunctionSplitter::listTraces() {
@@ -151,6 +158,7 @@ mlir::LogicalResult FunctionSplitter::cleanUp(llvm::ArrayRef<FuncOp> states) {
       cleaned.add(state);
     sinkLoads(state);
     simplify.run(state);
+    decide(state);
     if (mlir::failed(check("clean-up")))
       return mlir::failure();
   }
@@ -207,6 +215,7 @@ mlir::LogicalResult FunctionSplitter::run() {
   report.name = function.getSymName().str();
   report.endings = endingsOf(function);
 
+  decide(function);
   insertSuspends(function);
   for (mlir::Location last : endAtLastTraces(function))
     report.lastTraces.push_back(ir::placeOf(last));

@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/passes/DecideBranches.h"
 #include "codegen/passes/continuation/Report.h"
 
 #include "mlir/IR/BuiltinOps.h"
@@ -24,6 +25,9 @@ struct SplitOptions {
   bool explain = false;
   /// Number the states and make the functions that the machine calls. Off: for looking at.
   bool dispatch = true;
+  /// Decides branches that folding cannot, for people who read the states. None: branches stay as
+  /// they are.
+  codegen::KnownCondition isKnown;
   /// The verifier after each step, not only at the end.
 #ifdef NDEBUG
   bool verifyEach = false;

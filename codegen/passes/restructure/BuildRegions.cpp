@@ -329,11 +329,11 @@ bool Builder::putTerminator(mlir::Operation *terminator, Block *at, const Contex
 
 /// Nobody asks for the flag of a loop with no other way out, or where both ways are the same.
 void Builder::dropUnaskedFlags() {
-  for (ir::VarOp flag : allFlags) {
+  llvm::erase_if(allFlags, [](ir::VarOp flag) {
     if (llvm::any_of(flag->getUsers(), [](mlir::Operation *user) {
           return !llvm::isa<ir::StoreOp>(user) && !user->use_empty();
         }))
-      continue;
+      return false;
     for (mlir::Operation *user : llvm::make_early_inc_range(flag->getUsers())) {
       auto store = llvm::dyn_cast<ir::StoreOp>(user);
       mlir::Operation *value = store ? store.getValue().getDefiningOp() : nullptr;
@@ -342,7 +342,8 @@ void Builder::dropUnaskedFlags() {
         value->erase();
     }
     flag.erase();
-  }
+    return true;
+  });
 }
 
 mlir::LogicalResult Builder::run() {
@@ -361,6 +362,7 @@ mlir::LogicalResult Builder::run() {
   for (Block *block : old)
     block->erase();
   dropUnaskedFlags();
+  joinFlags(allFlags);
   return mlir::failure(failed);
 }
 

@@ -62,4 +62,7 @@ private:
 /// BuildRegions.cpp: replaces the blocks, which have no arguments any more, by regions.
 mlir::LogicalResult buildRegions(FuncOp function, const Plan &plan);
 
+/// JoinFlags.cpp: makes one flag of those that say the same. Those that go leave the list.
+void joinFlags(llvm::SmallVectorImpl<ir::VarOp> &flags);
+
 } // namespace rtsl::restructuring
