@@ -394,6 +394,7 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
   const std::string base =
       definition.base ? names.of(definition.base) : "rtsl::" + definition.root.substr(3);
   text += "struct " + names.of(&definition) + " : " + base + " {\n";
+  const std::size_t begin = text.size();
   bool isFirst = true;
   SourceRange previous;
   for (const auto &member : definition.members) {
@@ -427,7 +428,10 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
             (isMachine ? stateMachine(definition, *function) : this->function(*function, true));
     isFirst = false;
   }
-  return text + inheritedStateMachines(definition) + "};\n";
+  text += inheritedStateMachines(definition);
+  if (begin < text.size() && text[begin] == '\n')
+    text.erase(begin, 1);
+  return text + "};\n";
 }
 
 //===----------------------------------------------------------------------===//

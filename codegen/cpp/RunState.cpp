@@ -89,10 +89,7 @@ std::string ModulePrinter::runState() {
       return object(definition) + names.of(method) + "(" + arguments + ");\nreturn rtsl::done";
     });
   };
-  std::string text = fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object, "
-                                 "[[maybe_unused]] void *frame) {{\nState &rt = rtsl::stateOf<{}>(ray);\n"
-                                 "switch (static_cast<Step>(step)) {{\n",
-                                 options.colorComponents);
+  std::string text;
   auto returns = [](const std::string &body) {
     return body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
   };
@@ -114,7 +111,12 @@ std::string ModulePrinter::runState() {
     text += runCalledMethod(called);
   for (const Step &step : steps)
     text += "case Step::" + step.name + ":\nreturn " + object(*step.definition) + step.call + ";\n";
-  return text + "}\nreturn rtsl::done;\n}\n";
+  const bool hasFrames = text.find("(frame)") != std::string::npos;
+  return fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef "
+                     "object, void *{}) {{\n"
+                     "State &rt = rtsl::stateOf<{}>(ray);\nswitch (static_cast<Step>(step)) {{\n",
+                     hasFrames ? "frame" : "/*frame*/", options.colorComponents) +
+         text + "}\nreturn rtsl::done;\n}\n";
 }
 
 std::string ModulePrinter::describeStates() const {

@@ -7,6 +7,7 @@
 
 #include "sema/Casting.h"
 
+#include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/IR/Matchers.h"
 
 #include <fmt/format.h>
@@ -141,12 +142,14 @@ struct Signs {
 
 } // namespace
 
+static constexpr Signs below = {"<", ">="};
+
 /// None where the opposite of an order would answer differently for a NaN.
 static std::optional<Signs> oppositeOf(const typed::BinaryExpr &expr) {
   using ast::BinaryOp;
   const Type *type = expr.left->type;
   const bool isWhole = type->is(TypeKind::Int) || type->is(TypeKind::UInt);
-  static const std::map<BinaryOp, Signs> orders = {{BinaryOp::Less, {"<", ">="}},
+  static const std::map<BinaryOp, Signs> orders = {{BinaryOp::Less, below},
                                                    {BinaryOp::LessEqual, {"<=", ">"}},
                                                    {BinaryOp::Greater, {">", "<="}},
                                                    {BinaryOp::GreaterEqual, {">=", "<"}}};
@@ -180,9 +183,12 @@ Code StateWriter::opposite(mlir::Value condition, const Code &code) {
   auto *binary = entry && entry->kind == SourceTable::Kind::Value
                      ? dynCast<typed::BinaryExpr>(entry->expr)
                      : nullptr;
-  if (!binary || (code.binding != Binding::Relation && code.binding != Binding::Equality))
+  const bool isOfLights =
+      condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr; // below their count
+  if ((!binary && !isOfLights) ||
+      (code.binding != Binding::Relation && code.binding != Binding::Equality))
     return negated(code);
-  const std::optional<Signs> signs = oppositeOf(*binary);
+  const std::optional<Signs> signs = isOfLights ? below : oppositeOf(*binary);
   const std::size_t at = signs ? findOutside(code.text, signs->own) : std::string::npos;
   if (at == std::string::npos)
     return negated(code);

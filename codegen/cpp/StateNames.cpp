@@ -76,9 +76,24 @@ std::string nameFor(mlir::Value value) {
 
 const std::string &StateWriter::nameOf(ir::VarOp variable) {
   std::string &name = variableNames[variable];
-  if (name.empty())
-    name = freshName(variable.getName().str());
+  if (name.empty()) { // "sum.2" is another sum
+    const auto [base, number] = variable.getName().rsplit('.');
+    const bool isNumbered = !number.empty() && llvm::all_of(number, llvm::isDigit);
+    name = freshName((isNumbered ? base : variable.getName()).str());
+  }
   return name;
+}
+
+std::string StateWriter::nameOfValue(mlir::Value value) {
+  if (auto whole = value.getDefiningOp<ir::ExpressionOp>();
+      whole && source.entries[whole.getSource()].kind == SourceTable::Kind::AngleCosine)
+    return "cosine";
+  if (auto load = value.getDefiningOp<ir::FrameLoadOp>();
+      load && continuation::authorsName(value).empty())
+    for (const FrameField &field : machine.frame)
+      if (!field.isObject && field.slot == load.getName())
+        return field.name;
+  return nameFor(value);
 }
 
 static std::string scalarType(mlir::Type type) {

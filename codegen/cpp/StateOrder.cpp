@@ -130,7 +130,7 @@ void StateWriter::materialise(mlir::Value value, Statements &out) {
   const std::string type = typeOf(value);
   if (type.empty())
     unsupported(*value.getDefiningOp());
-  const std::string name = freshName(nameFor(value));
+  const std::string name = freshName(nameOfValue(value));
   mentioned = std::move(waiting.mentions);
   emit(out, fmt::format("{} {};", type, declarator(type, name, waiting.code.text)));
   out.back().isDeclaration = true;
@@ -184,8 +184,10 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
            (llvm::isa<ir::StoreOp>(user) && user->getBlock() == op.getBlock());
   };
   const std::string given = continuation::authorsName(value);
+  const bool isLoose =
+      isOwnName(given) || (value.getType().isInteger(1) && continuation::isNamedByCaller(value));
   const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
-                       !given.empty() && !(uses == 1 && isOwnName(given));
+                       !given.empty() && !(uses == 1 && isLoose);
   const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
   const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||

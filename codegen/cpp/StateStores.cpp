@@ -1,6 +1,7 @@
 //===- StateStores.cpp - what a state writes -------------------------------===//
 #include "codegen/cpp/StateWriter.h"
 
+#include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 
 #include <fmt/format.h>
@@ -141,6 +142,9 @@ void StateWriter::store(ir::StoreOp op, Statements &out) {
   flush(touchesOf(op), out);
   if (value == target)
     return;
+  if (value == target + " + 1" &&
+      op.getValue().getDefiningOp<mlir::arith::AddIOp>()) // the next light
+    return emit(out, "++" + target + ";");
   if (isPart) {
     const std::string part = target + "." + "xyzw"[insertion->second.component];
     mlir::Value scalar = op.getValue().getDefiningOp<mlir::vector::InsertOp>().getValueToStore();

@@ -74,6 +74,8 @@ public:
   std::string body(mlir::func::FuncOp state);
   /// The C++ type of a value; empty if it cannot be told.
   std::string typeOf(mlir::Value value);
+  /// What a value is called: as nameFor() says, or in the frame.
+  std::string nameOfValue(mlir::Value value);
   bool usesScratch = false; // of the state that was written last
   /// The author's type of a variable that stays whole, or of a part of one; null: it is not known.
   const Type *declaredType(mlir::Value address);

@@ -425,7 +425,7 @@ std::string FunctionPrinter::illuminance(const typed::IlluminanceStmt &stmt) {
     if (const auto *angle = dynCast<typed::LiteralExpr>(stmt.angle.get())) {
       constexpr float pi = 3.14159265358979323846F;
       const float known = std::min(std::max(angle->value.scalars.front().f, 0.0F), pi);
-      args.push_back(floatText(device::cos(known)));
+      args.push_back("/*cosine=*/" + floatText(device::cos(known)));
     }
   return "for (rtsl::Lights lights(rt, " + join(args, ", ") + "); lights.next();)\n" + nested(stmt.body);
 }

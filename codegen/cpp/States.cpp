@@ -142,7 +142,8 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
     taken.insert(machine.called->fields.begin(), machine.called->fields.end());
     taken.insert({"begin", machine.called->returned});
   }
-  auto field = [&](llvm::StringRef slot, bool isObject = false) -> FrameField & {
+  auto field = [&](llvm::StringRef slot, bool isObject = false,
+                   mlir::Value value = {}) -> FrameField & {
     for (FrameField &known : machine.frame)
       if (known.slot == slot && known.isObject == isObject)
         return known;
@@ -153,7 +154,7 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
       else if (at + 1 == slot.size() || !std::isdigit(static_cast<unsigned char>(slot[at + 1])))
         name += '_';
     if (name == "evaluate" || name == "expression" || name == "call_returned") // what the IR calls it
-      name = "value";
+      name = value ? writer.nameOfValue(value) : "value";
     machine.frame.push_back({slot.str(), unique(name, taken), "", 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
@@ -168,7 +169,7 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
     });
   for (mlir::func::FuncOp state : machine.states) {
     state.walk([&](ir::FrameStoreOp store) {
-      FrameField &saved = field(store.getName());
+      FrameField &saved = field(store.getName(), /*isObject=*/false, store.getValue());
       if (unsigned line = lineOf(store.getLoc()); saved.madeIn == 0)
         saved.madeIn = line;
       saved.isTraced &= store.getValue().getDefiningOp<ir::TraceResultOp>() != nullptr;

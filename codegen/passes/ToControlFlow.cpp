@@ -141,7 +141,7 @@ void Lowering::lower(ir::IlluminanceOp op, const Targets &targets, Block *rest) 
   Value count = ir::LightCountOp::create(builder, location, i32);
   Value zero = mlir::arith::ConstantOp::create(builder, location, builder.getI32IntegerAttr(0));
   Value one = mlir::arith::ConstantOp::create(builder, location, builder.getI32IntegerAttr(1));
-  const Location named = mlir::NameLoc::get(builder.getStringAttr("light"), location);
+  const Location named = mlir::NameLoc::get(builder.getStringAttr("lightIndex"), location);
   Block *cond = builder.createBlock(rest, {i32}, {named});
   Block *test = builder.createBlock(rest);
   Block *step = builder.createBlock(rest);

@@ -65,8 +65,7 @@ struct Dielectric : rtsl::Material {
 
 namespace slots {
 
-inline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object,
-                           [[maybe_unused]] void *frame) {
+inline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object, void *frame) {
   State &rt = rtsl::stateOf<3>(ray);
   switch (static_cast<Step>(step)) {
   case Step::shade:

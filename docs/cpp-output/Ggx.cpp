@@ -36,7 +36,8 @@ struct Ggx : rtsl::Material {
     float viewCosine = rtsl::max(rtsl::dot(normal, view), 1e-4f);
     Color sum = reflectance * rtsl::ambient(rt);
 
-    for (rtsl::Lights lights(rt, rt.HitPoint, normal, 1.5707963f, 7.54979e-08f); lights.next();) {
+    for (rtsl::Lights lights(rt, rt.HitPoint, normal, 1.5707963f, /*cosine=*/7.54979e-08f);
+         lights.next();) {
       glm::vec3 light = rtsl::normalize(rt.LightDirection);
       glm::vec3 halfway = rtsl::normalize(view + light);
       float lightCosine = rtsl::dot(normal, light);

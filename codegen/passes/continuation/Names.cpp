@@ -106,6 +106,11 @@ std::string sourceName(mlir::Value value) {
   return op->getName().stripDialect().str();
 }
 
+bool isNamedByCaller(mlir::Value value) {
+  auto call = llvm::dyn_cast<mlir::CallSiteLoc>(value.getLoc());
+  return call && nameInLocation(call.getCallee()).empty();
+}
+
 std::string authorsName(mlir::Value value) {
   return nameInLocation(value.getLoc());
 }

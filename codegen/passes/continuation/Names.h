@@ -17,6 +17,10 @@ std::string sourceName(mlir::Value value);
 /// The variable that the value was; empty if it was none of the author's.
 std::string authorsName(mlir::Value value);
 
+/// Is that name of what an inlined function was called for? It fits what the function returns, and
+/// not its conditions.
+bool isNamedByCaller(mlir::Value value);
+
 /// What a message calls the value: "`sum`", "`rt_HitPoint`", or "what line 12 computes" where the author gave no name.
 std::string describeToAuthor(mlir::Value value);
 

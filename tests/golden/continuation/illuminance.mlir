@@ -34,13 +34,13 @@ func.func @Lit.shade(%self: !rtsl.ref<"Lit">) attributes {rtsl.class = "Lit", rt
 // CHECK-LABEL: func.func private @Lit.shade.state1
 // CHECK-DAG:     %[[C:.*]] = rtsl.trace_result
 // CHECK-DAG:     %[[SUM:.*]] = rtsl.frame_load "sum"
-// CHECK-DAG:     %[[I:.*]] = rtsl.frame_load "light"
+// CHECK-DAG:     %[[I:.*]] = rtsl.frame_load "lightIndex"
 // CHECK:         %[[PLACE:.*]] = rtsl.state "LightColor"
 // CHECK:         %[[L:.*]] = rtsl.load %[[PLACE]]
 // CHECK:         %[[LIT:.*]] = arith.mulf %[[C]], %[[L]]
 // CHECK:         %[[MORE:.*]] = arith.addf %[[SUM]], %[[LIT]]
 // CHECK:         rtsl.illuminate
-// CHECK-DAG:     rtsl.frame_store %{{.*}}, "light"
+// CHECK-DAG:     rtsl.frame_store %{{.*}}, "lightIndex"
 // CHECK-DAG:     rtsl.frame_store %[[MORE]], "sum"
 // CHECK:         rtsl.spawn
 // CHECK:         rtsl.next trace @Lit.shade.state1
