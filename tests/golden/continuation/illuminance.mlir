@@ -46,4 +46,4 @@ func.func @Lit.shade(%self: !rtsl.ref<"Lit">) attributes {rtsl.class = "Lit", rt
 // CHECK:         rtsl.next trace @Lit.shade.state1
 
 // REPORT: Lit.shade: 2 states, frame of 16 bytes
-// REPORT: saved          16 bytes: light, sum
+// REPORT: saved          16 bytes: lightIndex, sum
