@@ -2,9 +2,8 @@
 #include "CompiledShaders.h"
 
 #include "codegen/driver/Compiler.h"
-#include "frontend/Parser.h"
+#include "codegen/driver/SourceLoader.h"
 #include "rtsl/program.h"
-#include "runtime/AtomicFile.h"
 #include "runtime/Error.h"
 #include "sema/Sema.h"
 
@@ -19,15 +18,12 @@ std::string sourceRoot;
 namespace {
 
 std::unique_ptr<typed::Module> checkFiles(const std::vector<std::string> &files, SourceManager &sources, Diagnostics &diagnostics) {
-  std::vector<std::unique_ptr<ast::TranslationUnit>> trees;
+  SourceLoader loader(sources, diagnostics);
   std::vector<const ast::TranslationUnit *> units;
-  for (const std::string &file : files) {
-    const std::string path = sourceRoot + "/" + file;
-    trees.push_back(parse(sources.add(path, runtime::readFile(path)), diagnostics));
-    units.push_back(trees.back().get());
-  }
-  const auto noImports = [](const ast::ImportDecl &, FileId) -> const ast::TranslationUnit * { return nullptr; };
-  return check(units, noImports, diagnostics);
+  for (const std::string &file : files)
+    if (const ast::TranslationUnit *unit = loader.load(sourceRoot + "/" + file))
+      units.push_back(unit);
+  return check(units, [&](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); }, diagnostics);
 }
 
 FloatingPoint floatingPointOf(Path path) {
@@ -68,16 +64,15 @@ CompiledShaders::CompiledShaders(const std::vector<std::string> &files, std::vec
     : CompiledShaders(compile(files, std::move(classes), std::move(surfaces), path), path) {}
 
 void CompiledShaders::finish() {
-  switch (path) {
-  case Path::Megakernel:
-    eye = megakernelEye(theScene);
-    break;
-  case Path::Gpu:
-    eye = gpuEye(theScene, compiled.ptx);
-    break;
-  default:
-    eye = machineEye(theScene);
-  }
+  if (!eye)
+    eye = path == Path::Megakernel ? megakernelEye() : path == Path::Gpu ? gpuEye(compiled.ptx) : machineEye();
+  eye->turnTo(theScene);
+}
+
+runtime::Image CompiledShaders::picture(runtime::RenderOptions options) const {
+  options.maxDepth = eyeDepth;
+  options.traversal = runtime::Traversal::Device;
+  return eye->picture(options);
 }
 
 float *CompiledShaders::member(RtslRef object, const std::string &name) const {

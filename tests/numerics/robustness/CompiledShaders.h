@@ -25,6 +25,8 @@ public:
 
   runtime::Scene &scene() { return theScene; }
 
+  /// Begins another scene.
+  void restart() { theScene = runtime::Scene(compiled.program); }
   /// Call it when the scene has all its objects, and before `set` and `look`.
   void finish();
   /// Changes a member of an object, private or not.
@@ -32,6 +34,8 @@ public:
   float *member(RtslRef object, const std::string &name) const;
   /// The color of a camera ray. It does not depend on `seed` unless a shader draws random numbers.
   std::array<float, 3> look(std::uint32_t seed = 1) const { return eye->look(seed); }
+  /// A picture of the scene. Its depth is eyeDepth, whatever the options say.
+  runtime::Image picture(runtime::RenderOptions options) const;
 
 private:
   struct Compiled {

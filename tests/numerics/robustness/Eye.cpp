@@ -5,9 +5,14 @@
 #include "runtime/HostMegakernel.h"
 #include "runtime/Renderer.h"
 #include "runtime/gpu/CudaDriver.h"
+#include "runtime/gpu/GpuRenderer.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace rtsl::numerics {
@@ -23,22 +28,37 @@ runtime::RenderOptions onePixel() {
   return options;
 }
 
+using Color = std::array<float, 3>;
+
+/// What a renderer leaves out of its sums.
+Color unlessNotFinite(const Color &color) {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  return std::all_of(color.begin(), color.end(), [](float c) { return std::isfinite(c); }) ? color : Color{none, none, none};
+}
+
 class MachineEye : public Eye {
 public:
-  explicit MachineEye(const runtime::Scene &scene)
-      : renderer(scene, onePixel()), launch(renderer.launch()), sample(scene.program().sample) {}
+  void turnTo(const runtime::Scene &target) override {
+    scene = &target;
+    renderer.emplace(target, onePixel());
+    launch = renderer->launch();
+    sample = target.program().sample;
+  }
 
-  std::array<float, 3> look(std::uint32_t seed) override {
+  Color look(std::uint32_t seed) override {
     launch.seed = seed;
     float color[RTSL_MAX_COLOR];
     sample(&launch, 0, 0, 0, color);
-    return {color[0], color[1], color[2]};
+    return unlessNotFinite({color[0], color[1], color[2]});
   }
 
+  runtime::Image picture(const runtime::RenderOptions &options) override { return runtime::render(*scene, options); }
+
 private:
-  runtime::Renderer renderer;
-  RtslLaunch launch;
-  decltype(runtime::Program::sample) sample;
+  const runtime::Scene *scene = nullptr;
+  std::optional<runtime::Renderer> renderer;
+  RtslLaunch launch{};
+  decltype(runtime::Program::sample) sample = nullptr;
 };
 
 /// The scene in one block of bytes, as whole programs take it, and kept up with the members of its objects.
@@ -47,6 +67,7 @@ public:
   explicit FlatCopy(const runtime::Scene &scene)
       : scene(scene), flat(runtime::flatten(scene)), records(reinterpret_cast<std::uintptr_t>(flat.launch().records)) {}
 
+  const runtime::Scene &source() const { return scene; }
   std::size_t size() const { return flat.bytes.size(); }
   void place(std::uint64_t address, RtslStatus *status) {
     runtime::setOptions(flat, onePixel(), status);
@@ -72,6 +93,13 @@ private:
   std::uint64_t records; // where they begin
 };
 
+/// The pixel, as the status says; a sample that was not finite was left out of it.
+Color seen(const RtslStatus &status, const Color &pixel) {
+  runtime::RenderStatistics statistics;
+  runtime::readStatus(status, onePixel(), statistics);
+  return statistics.samplesNotFinite ? unlessNotFinite({std::numeric_limits<float>::infinity()}) : pixel;
+}
+
 struct alignas(64) Line {
   std::uint8_t bytes[64];
 };
@@ -79,83 +107,120 @@ std::vector<Line> linesFor(std::uint64_t bytes) { return std::vector<Line>((byte
 
 class MegakernelEye : public Eye {
 public:
-  explicit MegakernelEye(const runtime::Scene &scene)
-      : code(scene.program().megakernel), flat(scene), memory(linesFor(flat.size())), lane(linesFor(flat.laneBytes())) {
-    flat.place(reinterpret_cast<std::uintptr_t>(memory.data()), &status);
+  void turnTo(const runtime::Scene &scene) override {
+    flat.emplace(scene);
+    code = scene.program().megakernel;
+    memory = linesFor(flat->size());
+    lane = linesFor(flat->laneBytes());
+    flat->place(reinterpret_cast<std::uintptr_t>(memory.data()), &status);
     job.launch = reinterpret_cast<const RtslLaunch *>(memory.data());
     job.status = &status;
     job.lanes = lane.data()->bytes;
-    job.laneBytes = flat.laneBytes();
+    job.laneBytes = flat->laneBytes();
     job.pixels = pixel.data();
     job.samplesPerPixel = 1;
   }
 
-  std::array<float, 3> look(std::uint32_t seed) override {
-    std::memcpy(memory.data(), flat.update(seed), flat.size());
+  Color look(std::uint32_t seed) override {
+    std::memcpy(memory.data(), flat->update(seed), flat->size());
     status = {};
     code.runLane(&job, 0);
-    runtime::RenderStatistics statistics;
-    runtime::readStatus(status, onePixel(), statistics);
-    return pixel;
+    return seen(status, pixel);
+  }
+
+  runtime::Image picture(const runtime::RenderOptions &options) override {
+    return runtime::renderOnHost(code, runtime::flatten(flat->source()), options);
   }
 
 private:
   runtime::MegakernelCode code;
-  FlatCopy flat;
+  std::optional<FlatCopy> flat;
   std::vector<Line> memory, lane;
   RtslStatus status{};
   RtslJob job{};
-  std::array<float, 3> pixel{};
+  Color pixel{};
+};
+
+/// Memory of the device that grows when more is needed.
+class DeviceMemory {
+public:
+  DeviceMemory(runtime::CudaDevice &device, const char *what) : device(device), what(what) {}
+
+  runtime::CudaDevice::Address of(std::size_t bytes) {
+    if (bytes > size) {
+      size = 2 * bytes;
+      address = device.allocate(size, what);
+    }
+    return address;
+  }
+
+private:
+  runtime::CudaDevice &device;
+  const char *what;
+  std::size_t size = 0;
+  runtime::CudaDevice::Address address = 0;
 };
 
 class GpuEye : public Eye {
 public:
-  GpuEye(const runtime::Scene &scene, const std::string &ptx) : flat(scene) {
+  explicit GpuEye(const std::string &ptx) : ptx(ptx) {
     device.load(ptx);
     kernel = device.kernel("rtsl_render");
-    sceneAddress = device.allocate(flat.size(), "the scene");
     statusAddress = device.allocate(sizeof(RtslStatus), "the launch");
-    pixelAddress = device.allocate(sizeof(float) * 3, "the picture");
-    flat.place(sceneAddress, reinterpret_cast<RtslStatus *>(statusAddress));
+    pixelAddress = device.allocate(sizeof(Color), "the picture");
+    jobAddress = device.allocate(sizeof(RtslJob), "the launch");
+  }
+
+  void turnTo(const runtime::Scene &scene) override {
+    flat.emplace(scene);
+    sceneAddress = sceneMemory.of(flat->size());
+    flat->place(sceneAddress, reinterpret_cast<RtslStatus *>(statusAddress));
     RtslJob job{};
     job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
     job.status = reinterpret_cast<RtslStatus *>(statusAddress);
-    job.laneBytes = flat.laneBytes();
-    job.lanes = reinterpret_cast<std::uint8_t *>(device.allocate(warp * job.laneBytes, "rays in flight"));
+    job.laneBytes = flat->laneBytes();
+    job.lanes = reinterpret_cast<std::uint8_t *>(laneMemory.of(warp * job.laneBytes));
     job.pixels = reinterpret_cast<float *>(pixelAddress);
     job.samplesPerPixel = 1;
-    jobAddress = device.allocate(sizeof job, "the launch");
     device.upload(jobAddress, &job, sizeof job);
   }
 
-  std::array<float, 3> look(std::uint32_t seed) override {
-    device.upload(sceneAddress, flat.update(seed), flat.size());
+  Color look(std::uint32_t seed) override {
+    device.upload(sceneAddress, flat->update(seed), flat->size());
     device.clear(statusAddress, sizeof(RtslStatus));
     void *arguments[] = {&jobAddress};
     device.launch(kernel, 1, warp, arguments);
     RtslStatus status;
     device.download(&status, statusAddress, sizeof status);
-    runtime::RenderStatistics statistics;
-    runtime::readStatus(status, onePixel(), statistics);
-    std::array<float, 3> pixel;
+    Color pixel;
     device.download(pixel.data(), pixelAddress, sizeof pixel);
-    return pixel;
+    return seen(status, pixel);
+  }
+
+  runtime::Image picture(const runtime::RenderOptions &options) override {
+    runtime::Package package;
+    package.ptx = ptx;
+    package.scene = runtime::flatten(flat->source());
+    package.laneBytes[options.maxDepth] = std::uint32_t(flat->laneBytes());
+    runtime::RenderStatistics statistics;
+    runtime::GpuStatistics gpu;
+    return runtime::renderOnGpu(package, options, /*maxRegisters=*/0, statistics, gpu);
   }
 
 private:
   static constexpr unsigned warp = 32;
+  std::string ptx;
   runtime::CudaDevice device;
   runtime::CudaDevice::Kernel kernel;
-  FlatCopy flat;
+  DeviceMemory sceneMemory{device, "the scene"}, laneMemory{device, "rays in flight"};
+  std::optional<FlatCopy> flat;
   runtime::CudaDevice::Address sceneAddress = 0, statusAddress = 0, pixelAddress = 0, jobAddress = 0;
 };
 
 } // namespace
 
-std::unique_ptr<Eye> machineEye(const runtime::Scene &scene) { return std::make_unique<MachineEye>(scene); }
-std::unique_ptr<Eye> megakernelEye(const runtime::Scene &scene) { return std::make_unique<MegakernelEye>(scene); }
-std::unique_ptr<Eye> gpuEye(const runtime::Scene &scene, const std::string &ptx) {
-  return std::make_unique<GpuEye>(scene, ptx);
-}
+std::unique_ptr<Eye> machineEye() { return std::make_unique<MachineEye>(); }
+std::unique_ptr<Eye> megakernelEye() { return std::make_unique<MegakernelEye>(); }
+std::unique_ptr<Eye> gpuEye(const std::string &ptx) { return std::make_unique<GpuEye>(ptx); }
 
 } // namespace rtsl::numerics

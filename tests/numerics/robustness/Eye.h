@@ -3,6 +3,8 @@
 
 #include "Path.h"
 
+#include "runtime/Image.h"
+#include "runtime/RenderOptions.h"
 #include "runtime/Scene.h"
 #include "runtime/device/Abi.h"
 
@@ -18,17 +20,22 @@ namespace rtsl::numerics {
 class Eye {
 public:
   virtual ~Eye() = default;
+  /// Looks at this scene from now on, which must be of the eye's program and stay where it is.
+  virtual void turnTo(const runtime::Scene &scene) = 0;
+  /// A color that is not finite has no finite component.
   virtual std::array<float, 3> look(std::uint32_t seed) = 0;
+  /// A picture of the scene, by the renderer of the path.
+  virtual runtime::Image picture(const runtime::RenderOptions &options) = 0;
 };
 
 /// Rays of at most this depth are followed.
 constexpr std::uint32_t eyeDepth = 8;
 
 /// By the program's `sample`.
-std::unique_ptr<Eye> machineEye(const runtime::Scene &scene);
+std::unique_ptr<Eye> machineEye();
 /// By the megakernel of the program.
-std::unique_ptr<Eye> megakernelEye(const runtime::Scene &scene);
+std::unique_ptr<Eye> megakernelEye();
 /// By the kernel in `ptx`, made of the same shaders as the megakernel of the scene's program. Throws NoDevice.
-std::unique_ptr<Eye> gpuEye(const runtime::Scene &scene, const std::string &ptx);
+std::unique_ptr<Eye> gpuEye(const std::string &ptx);
 
 } // namespace rtsl::numerics

@@ -45,4 +45,10 @@ private:
 /// "(x, y, z)" with hexadecimal floats, which read back the same.
 std::string show(device::Vec3 v);
 
+struct Ray {
+  device::Vec3 origin, direction;
+
+  std::string text() const { return "origin " + show(origin) + ", direction " + show(direction); }
+};
+
 } // namespace rtsl::numerics

@@ -32,7 +32,7 @@ struct Options {
 std::vector<Row> chosenRows(const Options &options) {
   std::vector<Row> rows;
   for (Row &row : allRows(options.path))
-    if (options.rows.empty() || std::any_of(options.rows.begin(), options.rows.end(), [&](const std::string &name) { return std::string(row.name).rfind(name, 0) == 0; }))
+    if (options.rows.empty() || std::any_of(options.rows.begin(), options.rows.end(), [&](const std::string &name) { return row.name.rfind(name, 0) == 0; }))
       rows.push_back(std::move(row));
   return rows;
 }
@@ -58,7 +58,7 @@ int run(const Options &options) {
     // A row of sums needs its million samples for one case.
     const std::uint64_t cases = options.quick ? std::max<std::uint64_t>(row.cases / 100, 1000) : row.cases;
     const Outcome outcome = row.run(cases, options.seed);
-    const std::string key = std::string(row.name) + boundSuffix(options.path);
+    const std::string key = row.name + boundSuffix(options.path);
     const bool hasBound = bounds.contains(key);
     const double bound = hasBound ? bounds[key].get<double>() : -1;
     const bool holds = hasBound && outcome.worst <= bound && outcome.cases > 0;

@@ -27,8 +27,14 @@ public:
     shaders.scene().addPrimitive(object, reader);
     shaders.finish();
   }
-  RayTarget(runtime::Mesh mesh, Path path)
-      : shaders({"tests/numerics/robustness/shaders/Reader.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Reader", "Probe"}, {{"", "Reader"}}, path) {
+  RayTarget(runtime::Mesh mesh, Path path) : RayTarget(path) { replaceBy(std::move(mesh)); }
+  /// Nothing yet.
+  explicit RayTarget(Path path)
+      : shaders({"tests/numerics/robustness/shaders/Reader.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Reader", "Probe"}, {{"", "Reader"}}, path) {}
+
+  /// Puts another mesh in the place of the one that there was.
+  void replaceBy(runtime::Mesh mesh) {
+    shaders.restart();
     addWatchers();
     shaders.scene().addMeshInstance(shaders.scene().addMesh(std::move(mesh)), reader);
     shaders.finish();
@@ -36,18 +42,25 @@ public:
 
   void set(const char *name, std::initializer_list<float> values) const { shaders.set(object, name, values); }
 
-  /// Where the ray meets it, in units of its direction; nothing if it does not.
+  /// Where the ray meets it, in units of its direction; nothing if it does not. Not a number if the answer is none.
   std::optional<float> meet(device::Vec3 origin, device::Vec3 direction) const {
-    shaders.set(reader, "sendsOn", {0});
+    shaders.set(reader, "asks", {0});
     const std::array<float, 3> color = look(origin, direction);
     return color[0] != 0 ? std::optional(color[1]) : std::nullopt;
   }
-  /// The ray meets it; does one that is sent on from there meet it again?
-  bool meetsAgain(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
-    shaders.set(reader, "sendsOn", {1});
-    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
-    return look(origin, direction)[2] != 0;
+  /// The hit point of a ray that meets it.
+  device::Vec3 hitPoint(device::Vec3 origin, device::Vec3 direction) const {
+    shaders.set(reader, "asks", {2});
+    return device::load(look(origin, direction).data());
   }
+  /// The ray meets it; does one that is sent on from there meet it again? The triangle that it meets, or 0 of what is no mesh.
+  std::optional<int> meetsNext(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
+    shaders.set(reader, "asks", {1});
+    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
+    const float next = look(origin, direction)[2];
+    return next != 0 ? std::optional(int(std::lround(next)) - 1) : std::nullopt;
+  }
+  bool meetsAgain(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const { return meetsNext(origin, direction, onwards).has_value(); }
 
 private:
   std::array<float, 3> look(device::Vec3 origin, device::Vec3 direction) const {
@@ -64,12 +77,6 @@ private:
 
   CompiledShaders shaders;
   RtslRef object = 0, reader = 0, camera = 0;
-};
-
-struct Ray {
-  device::Vec3 origin, direction;
-
-  std::string text() const { return "origin " + show(origin) + ", direction " + show(direction); }
 };
 
 inline float powerOfTen(Random &random, float low, float high) { return std::pow(10.0f, random.between(low, high)); }

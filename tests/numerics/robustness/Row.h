@@ -23,8 +23,8 @@ struct Outcome {
 
 /// A generator of hard inputs, an exact oracle, and the measure of error. The bound lies in bounds.json.
 struct Row {
-  const char *name;        // family.case
-  const char *description; // what is done, to what, compared with what
+  std::string name;        // family.case
+  std::string description; // what is done, to what, compared with what
   const char *unit;        // of `worst`
   std::uint64_t cases;     // of a full run; --quick runs a hundredth, at least 1000
   std::function<Outcome(std::uint64_t cases, std::uint32_t seed)> run;
@@ -38,6 +38,10 @@ std::vector<Row> sumRows();
 
 // Of compiled shaders.
 std::vector<Row> meshRows(Path path);
+std::vector<Row> meshTriangleRows(Path path);
+std::vector<Row> meshSpawnRows(Path path);
+std::vector<Row> primitiveBoxRows(Path path);
+std::vector<Row> pixelRows(Path path);
 std::vector<Row> sphereRows(Path path);
 std::vector<Row> quadricRows(Path path);
 std::vector<Row> scatteringRows(Path path);

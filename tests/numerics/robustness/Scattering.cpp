@@ -1,11 +1,5 @@
-//===- Scattering.cpp - the materials and lights of the examples ----------===//
-//
-// The examples' materials scatter inside of `shade`, so each is asked by rays: a floor of the material under surroundings whose
-// color says where light came from.
-//
-//===----------------------------------------------------------------------===//
-#include "CompiledShaders.h"
-#include "Generators.h"
+//===- Scattering.cpp - glass, diffuse floors and lights of the examples --===//
+#include "Floor.h"
 #include "HighPrecision.h"
 #include "Row.h"
 #include "Timing.h"
@@ -21,50 +15,6 @@ namespace rtsl::numerics {
 namespace {
 
 using device::Vec3;
-using runtime::Value;
-
-const std::string ownShaders = "tests/numerics/robustness/shaders/";
-
-/// A floor at y = 0 of one material.
-class Floor {
-public:
-  Floor(const std::string &materialFile, const char *materialClass, Path path)
-      : shaders({"examples/glass/Parallelogram.rtsl", materialFile, "examples/glass/BallLight.rtsl", ownShaders + "White.rtsl", ownShaders + "Probe.rtsl",
-                 ownShaders + "Surroundings.rtsl"},
-                {"Parallelogram", materialClass, "BallLight", "White", "Probe", "Surroundings"}, {{"Parallelogram", materialClass}}, path) {
-    runtime::Scene &scene = shaders.scene();
-    camera = scene.addObject("Probe");
-    surroundings = scene.addObject("Surroundings");
-    light = scene.addObject("BallLight", runtime::ObjectValues{{}, {{"position", {0, 1, 0}}}, {}});
-    if (std::string(materialClass) == "Glass")
-      material = scene.addObject("Glass", std::vector<Value>{1.5, 1.0, {1, 1, 1}});
-    else if (std::string(materialClass) == "Lambert")
-      material = scene.addObject("Lambert", runtime::ObjectValues{{}, {{"albedo", Value::reference(scene.addObject("White"))}}, {}});
-    else
-      material = scene.addObject(materialClass);
-    const RtslRef floor = scene.addObject("Parallelogram", std::vector<Value>{{-1e4, 0, 1e4}, {2e4, 0, 0}, {0, 0, -2e4}});
-    scene.addPrimitive(floor, material);
-    scene.addLight(light);
-    scene.setCamera(camera);
-    scene.setBackground(surroundings);
-    shaders.finish();
-  }
-
-  void set(RtslRef object, const char *name, std::initializer_list<float> values) const { shaders.set(object, name, values); }
-
-  /// The color that comes from along the ray.
-  std::array<float, 3> look(Vec3 origin, Vec3 direction, std::uint32_t seed = 1) const {
-    set(camera, "origin", {origin.x, origin.y, origin.z});
-    set(camera, "direction", {direction.x, direction.y, direction.z});
-    return shaders.look(seed);
-  }
-
-private:
-  CompiledShaders shaders;
-
-public:
-  RtslRef camera, surroundings, light, material;
-};
 
 const Floor &glass(Path path) {
   static const Floor only("examples/glass/Glass.rtsl", "Glass", path);
@@ -79,33 +29,8 @@ const Floor &lightReader(Path path) {
   return only;
 }
 
-/// A cosine in (0, 1]: 1, nearly 1, nearly 0, or anything.
-float randomCosine(Random &random) {
-  switch (random.integer(0, 5)) {
-  case 0:
-    return 1;
-  case 1:
-    return 1 - std::ldexp(1.0f, -random.integer(2, 24));
-  case 2:
-    return std::ldexp(1.0f, -random.integer(1, 12));
-  default:
-    return random.between(0x1p-12f, 1);
-  }
-}
-float sineOf(float cosine) { return std::sqrt((1 - cosine) * (1 + cosine)); }
-
 /// Relative to air, from nearly nothing to more than any glass has.
 float randomIndex(Random &random) { return random.integer(0, 3) ? random.between(1.01f, 4) : 1 + std::ldexp(1.0f, -random.integer(1, 20)); }
-
-/// A ray to the origin in the plane of x and y, from above or from below.
-struct Incidence {
-  Vec3 origin, direction;
-};
-Incidence incidence(float cosine, bool isAbove, float length) {
-  const float sine = sineOf(cosine), side = isAbove ? 1.0f : -1.0f;
-  const Vec3 direction = Vec3{sine, -side * cosine, 0} * length;
-  return {Vec3{-sine, side * cosine, 0}, direction};
-}
 
 /// In a white furnace glass is invisible: what is reflected and what passes make 1, from both sides.
 Outcome runGlassFurnace(Path path, std::uint64_t cases, std::uint32_t seed) {

@@ -13,8 +13,9 @@ void addOptions(CLI::App &app) {
 
 std::vector<Row> allRows(Path path) {
   std::vector<Row> rows;
-  for (const auto &family : {meshRows(path), sphereRows(path), quadricRows(path), scatteringRows(path), matrixRows(path), attenuationRows(path)})
-    rows.insert(rows.end(), family.begin(), family.end());
+  for (const auto &family : {meshRows, meshTriangleRows, meshSpawnRows, primitiveBoxRows, pixelRows, sphereRows, quadricRows, scatteringRows, matrixRows, attenuationRows})
+    for (Row &row : family(path))
+      rows.push_back(std::move(row));
   return rows;
 }
 
