@@ -45,6 +45,7 @@ std::vector<Row> pixelRows(Path path);
 std::vector<Row> sphereRows(Path path);
 std::vector<Row> quadricRows(Path path);
 std::vector<Row> scatteringRows(Path path);
+std::vector<Row> metalRows(Path path);
 std::vector<Row> matrixRows(Path path);
 std::vector<Row> attenuationRows(Path path);
 
