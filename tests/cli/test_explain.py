@@ -144,7 +144,7 @@ class Explain(Case):
                          lights=[{"class": "Lamp", "position": [3, 1, 2]}])
         (self.folder / "scene.json").rename(self.folder / "lit.json")
         self.write_scene()
-        scenes = [self.folder / "scene.json", self.folder / "lit.json", EXAMPLES / "glass" / "scene.json", EXAMPLES / "whitted-programs" / "scene.json"]
+        scenes = [self.folder / "scene.json", self.folder / "lit.json", *sorted(EXAMPLES.glob("*/scene.json"))]
         for scene in scenes:
             for trace in ("recurse", "split"):
                 self.run_rtslc("render", scene, "-o", "a.exr", *SMALL, f"--trace={trace}")
