@@ -10,7 +10,6 @@
 #include "Worst.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -26,20 +25,25 @@ public:
       : shaders({"tests/numerics/robustness/shaders/Entered.rtsl", "tests/numerics/robustness/shaders/Reader.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"},
                 {"Entered", "Reader", "Probe"}, {{"Entered", "Reader"}}, path) {}
 
-  /// The tree's box is the given one: that of a primitive is an ulp larger than its bounds, unless there is no room for that.
-  /// Among boxes that lie round about it, some of them without thickness too.
-  void place(Random &random, const Box &box) {
+  /// Among boxes that lie round about it, some of them without thickness too. Gives the tree's box for it, which is some ulps
+  /// larger.
+  Box place(Random &random, const Box &box) {
     shaders.restart();
     reader = shaders.scene().addObject("Reader");
     camera = shaders.scene().addObject("Probe");
     shaders.scene().setCamera(camera);
     const float around = 2 * std::max(device::largest(box.lower), device::largest(box.upper));
     const int number = random.integer(0, 7);
+    std::uint32_t instance = 0;
     for (int i = 0; i < 8; ++i) {
       const Vec3 corner = random.inBox(around), other = random.inBox(around);
-      add(i == number ? inwards(box) : boxAround(corner, {random.integer(0, 1) ? corner.x : other.x, other.y, other.z}), i == number);
+      const Box another = boxAround(corner, {random.integer(0, 1) ? corner.x : other.x, other.y, other.z});
+      const std::uint32_t added = add(i == number ? box : another, i == number);
+      instance = i == number ? added : instance;
     }
     shaders.finish();
+    const runtime::Bounds &bounds = shaders.scene().primitiveBounds(instance);
+    return {device::load(bounds.lower), device::load(bounds.upper)};
   }
 
   bool isEntered(const Ray &ray) const {
@@ -49,22 +53,10 @@ public:
   }
 
 private:
-  static Box inwards(const Box &box) {
-    float lower[3], upper[3];
-    for (int i = 0; i < 3; ++i) {
-      lower[i] = std::nextafter(box.lower[i], box.upper[i]);
-      upper[i] = std::nextafter(box.upper[i], box.lower[i]);
-      if (!(lower[i] < upper[i])) {
-        lower[i] = box.lower[i];
-        upper[i] = box.upper[i];
-      }
-    }
-    return {device::load(lower), device::load(upper)};
-  }
-  void add(const Box &box, bool isThere) {
+  std::uint32_t add(const Box &box, bool isThere) {
     const auto value = [](Vec3 v) { return runtime::Value{v.x, v.y, v.z}; };
     const RtslRef object = shaders.scene().addObject("Entered", runtime::ObjectValues{{}, {{"lower", value(box.lower)}, {"upper", value(box.upper)}, {"isThere", isThere ? 1.0 : 0.0}}, {}});
-    shaders.scene().addPrimitive(object, reader);
+    return shaders.scene().addPrimitive(object, reader);
   }
 
   CompiledShaders shaders;
@@ -76,12 +68,21 @@ BoxTarget &target(Path path) {
   return only;
 }
 
+/// The origin stays in the planes of sides where it was in them.
+Vec3 movedWithSides(Vec3 origin, const Box &from, const Box &to) {
+  float moved[3];
+  for (int i = 0; i < 3; ++i)
+    moved[i] = origin[i] == from.lower[i] ? to.lower[i] : origin[i] == from.upper[i] ? to.upper[i] : origin[i];
+  return device::load(moved);
+}
+
 Outcome runKind(Path path, const BoxKind &kind, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed), others(seed + 1);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
-    const BoxCase given = kind.make(random, i);
-    target(path).place(others, given.box);
+    BoxCase given = kind.make(random, i);
+    const Box inTree = target(path).place(others, given.box);
+    given = {{movedWithSides(given.ray.origin, given.box, inTree), given.ray.direction}, inTree};
     worst.count(!target(path).isEntered(given.ray) && given.meetsExactly(), [&] { return given.text(); });
   }
   return worst.outcome();

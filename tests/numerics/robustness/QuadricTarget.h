@@ -43,16 +43,19 @@ public:
     else
       worst.wrong("missed: " + show(ray));
   }
-  /// Ellipsoids: is a ray told rightly whether it meets one? Scaled to a sphere of radius 1, the line passes the centre at some
-  /// distance; that one moves by at most a shortest half axis' inverse when the ray moves by 1. In rounding units of the
-  /// distance; nothing is wrong with an answer that is right.
-  void judgeSilhouette(const Ray &ray, float shortestAxis, Worst &worst) const {
-    const bool isHit = meet(ray.origin, ray.direction).has_value();
+  /// How near to the centre of an ellipsoid the line passes, when the ellipsoid is scaled to a sphere of radius 1.
+  Precise passing(const Ray &ray) const {
     const PreciseVec3 f = fromCenter(ray.origin), d = precise(ray.direction);
     const PreciseVec3 nearest = along(f, -form(f, d) / form(d, d), d);
-    const Precise passes = sqrt(form(nearest, nearest) / level);
+    return sqrt(form(nearest, nearest) / level);
+  }
+  /// Ellipsoids: is a ray told rightly whether it meets one? What `passing` says moves by at most a shortest half axis' inverse
+  /// when the ray moves by 1. In rounding units of the distance; nothing is wrong with an answer that is right.
+  void judgeSilhouette(const Ray &ray, float shortestAxis, Worst &worst) const {
+    const bool isHit = meet(ray.origin, ray.direction).has_value();
+    const Precise passes = passing(ray), distance = length(fromCenter(ray.origin));
     const bool isWrong = isHit != (passes < 1);
-    worst.add(isWrong ? static_cast<double>(abs(passes - 1) * Precise(shortestAxis) / (length(f) * Precise(0x1p-24))) : 0, [&] { return show(ray); });
+    worst.add(isWrong ? static_cast<double>(abs(passes - 1) * Precise(shortestAxis) / (distance * Precise(0x1p-24))) : 0, [&] { return show(ray); });
   }
   /// A ray that leaves the point of an ellipsoid where `ray` met it: outwards it meets nothing, inwards the other side.
   void judgeLeaving(const Ray &ray, device::Vec3 onwards, Worst &worst) const {

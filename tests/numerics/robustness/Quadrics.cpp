@@ -15,11 +15,11 @@ namespace {
 
 using device::Vec3;
 
-/// shaders/Quadric.rtsl, in a box.
+/// examples/quadrics/Quadric.rtsl, in a box.
 class Quadric : public QuadricTarget {
 public:
   explicit Quadric(Path path)
-      : QuadricTarget("tests/numerics/robustness/shaders/Quadric.rtsl", "Quadric", {{"extent", {targetRoom, targetRoom, targetRoom}}}, path) {}
+      : QuadricTarget("examples/quadrics/Quadric.rtsl", "Quadric", {{"extent", {targetRoom, targetRoom, targetRoom}}}, path) {}
 
   /// The box is a cube with sides of 2 `theReach`.
   void place(Vec3 at, Vec3 theCoefficients, float theLevel, float theReach) {
@@ -111,6 +111,28 @@ Outcome runSilhouettes(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
+/// Rays that touch an ellipsoid but for rounding.
+Outcome runTangents(Path path, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  Quadric &target = quadric(path);
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    const float size = powerOfTen(random, -6, 6), distance = std::min(1e7f, size * powerOfTen(random, 2, 13));
+    const float shortest = placeEllipsoid(random, target, random.integer(0, 1) ? Vec3{0, 0, 0} : random.inBox(size), size, 10);
+    // How near a ray passes is in proportion to where it is aimed, nearly.
+    float impact = size;
+    const Random before = random;
+    for (int step = 0; step < 3; ++step) {
+      random = before;
+      impact /= static_cast<float>(target.passing(aimedFrom(random, target.center, size, distance, impact)));
+    }
+    impact += impact * random.between(-1, 1) * 1e-6f;
+    Random again = before;
+    target.judgeSilhouette(aimedFrom(again, target.center, size, distance, impact), shortest, worst);
+  }
+  return worst.outcome();
+}
+
 Outcome runInside(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -162,6 +184,7 @@ std::vector<Row> quadricRows(Path path) {
       row("quadrics.points", "ellipsoids, cylinders, cones and hyperboloids of size 1e-6 to 1e6 at distances up to 1e7: hit points", off, 200'000, runPoints),
       row("quadrics.silhouettes", "the same for ellipsoids with axes of 1/3 to 3: how near to the silhouette a ray passes that is told the wrong answer",
           "between hit and miss, rounding units of the distance", 200'000, runSilhouettes),
+      row("quadrics.tangents", "the same for axes of 1/10 to 10 and rays that pass within about 1e-6 of the silhouette", "between hit and miss, rounding units of the distance", 200'000, runTangents),
       row("quadrics.inside", "rays from inside of ellipsoids with axes of 1/30 to 30: all of them meet it", off, 200'000, runInside),
       row("quadrics.surface", "rays that leave a hit point of an ellipsoid: those that meet it outwards, or miss it inwards", "rays", 1'000'000, runSurface),
   };
