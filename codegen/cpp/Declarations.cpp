@@ -479,6 +479,8 @@ std::string ModulePrinter::run() {
   add(structs);
   add(constants);
   add(functions);
+  if (!module.classes.empty()) // what is called once only is inlined then, however long it is
+    add("namespace {\n");
   if (!module.classes.empty() && (!methods.empty() || !entries.empty()))
     add(fmt::format("enum class Id : std::uint32_t {{ {} }};\n", [&] {
       std::vector<std::string> ids;
@@ -490,6 +492,8 @@ std::string ModulePrinter::run() {
   if (calledMethods.empty())
     add(stepNumbers());
   add(classes);
+  if (!module.classes.empty())
+    add("} // namespace\n");
   add(methods);
   add(entries);
   text += "\n} // namespace " + options.name + "\n";

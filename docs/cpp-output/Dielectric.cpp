@@ -7,6 +7,8 @@ namespace Dielectric {
 using State = rtsl::State<3>;
 using Color = rtsl::Color<3>;
 
+namespace {
+
 enum class Id : std::uint32_t { Dielectric = 1 };
 
 // Where a method goes on: `shade` begins, the others run when a ray is back.
@@ -58,6 +60,8 @@ struct Dielectric : rtsl::Material {
     return rtsl::done;
   }
 };
+
+} // namespace
 
 //===----------------------------------------------------------------------===//
 // What the runtime asks for

@@ -7,6 +7,8 @@ namespace Dielectric {
 using State = rtsl::State<3>;
 using Color = rtsl::Color<3>;
 
+namespace {
+
 enum class Id : std::uint32_t { Dielectric = 1 };
 
 // Glass with the exact reflectance (Fresnel's equations for unpolarised light). Chance decides
@@ -43,6 +45,8 @@ struct Dielectric : rtsl::Material {
     rt.SampleColor = attenuation * rtsl::trace(rt, rt.HitPoint, next);
   }
 };
+
+} // namespace
 
 //===----------------------------------------------------------------------===//
 // What the runtime asks for

@@ -7,6 +7,8 @@ namespace Ggx {
 using State = rtsl::State<3>;
 using Color = rtsl::Color<3>;
 
+namespace {
+
 enum class Id : std::uint32_t { Ggx = 1 };
 
 // A rough conductor: microfacets with the distribution GGX (Walter et al., "Microfacet Models for
@@ -53,6 +55,8 @@ struct Ggx : rtsl::Material {
     rt.SampleColor = sum;
   }
 };
+
+} // namespace
 
 //===----------------------------------------------------------------------===//
 // What the runtime asks for

@@ -7,6 +7,8 @@ namespace Julia {
 using State = rtsl::State<3>;
 using Color = rtsl::Color<3>;
 
+namespace {
+
 enum class Id : std::uint32_t { Julia = 1 };
 
 // A quaternion Julia set, found by walking along the ray as far as a bound of the distance allows
@@ -95,6 +97,8 @@ struct Julia : rtsl::Primitive {
     rt.GeometricNormal = rtsl::normalize(scratch.gradient);
   }
 };
+
+} // namespace
 
 //===----------------------------------------------------------------------===//
 // What the runtime asks for

@@ -7,6 +7,8 @@ namespace LensCamera {
 using State = rtsl::State<3>;
 using Color = rtsl::Color<3>;
 
+namespace {
+
 enum class Id : std::uint32_t { LensCamera = 1 };
 
 // A camera with a thin lens: what lies at the distance of focus is sharp.
@@ -48,6 +50,8 @@ struct LensCamera : rtsl::Camera {
     rt.RayDirection = rtsl::mul(frame, target - lens);
   }
 };
+
+} // namespace
 
 //===----------------------------------------------------------------------===//
 // What the runtime asks for

@@ -7,6 +7,8 @@ namespace NoiseTexture {
 using State = rtsl::State<3>;
 using Color = rtsl::Color<3>;
 
+namespace {
+
 enum class Id : std::uint32_t { NoiseTexture = 1 };
 
 // Turbulence: several octaves of gradient noise in space (Perlin, "Improving Noise", 2002, with a
@@ -64,6 +66,8 @@ struct NoiseTexture : rtsl::Texture {
     rt.TextureColor = rtsl::mix(dark, light, rtsl::clamp(sum, 0.0f, 1.0f));
   }
 };
+
+} // namespace
 
 //===----------------------------------------------------------------------===//
 // What the runtime asks for

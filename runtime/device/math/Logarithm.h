@@ -28,7 +28,7 @@ inline float log(float x) {
   using namespace detail;
   if (isPositiveNormal(x)) {
     LogarithmReduction reduced = reduceLogarithmOfNormal(x);
-    double y = plainLogarithm(reduced, reduced.exponent);
+    double y = quickLogarithm(reduced, reduced.exponent);
     if (roundsSafely(y))
       return float(y);
   }
@@ -40,7 +40,7 @@ inline float log2(float x) {
   using namespace detail;
   if (isPositiveNormal(x)) {
     LogarithmReduction reduced = reduceLogarithmOfNormal(x);
-    double y = fma(plainLogarithm(reduced, 0.0), inverseLn2.hi, double(reduced.exponent));
+    double y = fma(quickLogarithm(reduced, 0.0), inverseLn2.hi, double(reduced.exponent));
     if (roundsSafely(y))
       return float(y);
   }
