@@ -20,10 +20,10 @@ def sphere(center, radius, material):
     return {"primitive": {"class": "Sphere", "center": center, "radius": radius}, "material": material}
 
 
-def whitted():
-    folder = pathlib.Path(source, "examples/whitted-programs")
+def example(name):
+    folder = pathlib.Path(source, "examples", name)
     scene = json.loads((folder / "scene.json").read_text())
-    scene["import"] = [str(folder / name) for name in scene["import"]]
+    scene["import"] = [str((folder / name).resolve()) for name in scene["import"]]
     scene["render"].update(size=[64, 36], spp=4)
     return scene
 
@@ -97,7 +97,8 @@ def names():
 
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
-    ("g++", ["-O2"], [], [whitted()]),
+    ("g++", ["-O2"], [], [example("whitted-programs")]),
+    ("clang++-22", ["-O1"], [], [example("metal"), example("quadrics")]),
     ("clang++-22", ["-O1"], ["--exceptions"], [answers("programs"), answers("classic")]),
     ("g++", ["-O1"], ["--print"], [events(False)]),
     ("g++", ["-O1"], ["--exceptions"], [events(False), events(True)]),

@@ -33,7 +33,7 @@ FloatingPoint floatingPointOf(Path path) {
 } // namespace
 
 CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std::string> classes,
-                                                   std::vector<std::pair<std::string, std::string>> surfaces, Path path) {
+                                                   std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled) {
   if (path == Path::Cpp)
     return {program(numerics_shaders()), ""};
   SourceManager sources;
@@ -42,6 +42,7 @@ CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string
   LinkRequest request;
   request.classes = std::move(classes);
   request.surfaces = std::move(surfaces);
+  request.isSampled = isSampled;
   CompileOptions options;
   options.floatingPoint = floatingPointOf(path);
   Compiled compiled;
@@ -60,8 +61,8 @@ CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string
 CompiledShaders::CompiledShaders(Compiled made, Path path) : path(path), compiled(std::move(made)), theScene(compiled.program) {}
 
 CompiledShaders::CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
-                                 std::vector<std::pair<std::string, std::string>> surfaces, Path path)
-    : CompiledShaders(compile(files, std::move(classes), std::move(surfaces), path), path) {}
+                                 std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled)
+    : CompiledShaders(compile(files, std::move(classes), std::move(surfaces), path, isSampled), path) {}
 
 void CompiledShaders::finish() {
   if (!eye)

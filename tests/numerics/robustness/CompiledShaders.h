@@ -19,11 +19,12 @@ extern std::string sourceRoot;
 class CompiledShaders {
 public:
   /// Files are relative to sourceRoot; `surfaces` as in LinkRequest. Throws runtime::Error with the messages if the files have
-  /// mistakes.
+  /// mistakes. `isSampled`: the program has SamplingSlots.def, for a host to call.
   CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
-                  std::vector<std::pair<std::string, std::string>> surfaces, Path path);
+                  std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled = false);
 
   runtime::Scene &scene() { return theScene; }
+  const runtime::Scene &scene() const { return theScene; }
 
   /// Begins another scene.
   void restart() { theScene = runtime::Scene(compiled.program); }
@@ -43,7 +44,7 @@ private:
     std::string ptx; // the same for a GPU; Path::Gpu alone has it
   };
   static Compiled compile(const std::vector<std::string> &files, std::vector<std::string> classes,
-                          std::vector<std::pair<std::string, std::string>> surfaces, Path path);
+                          std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled);
   CompiledShaders(Compiled compiled, Path path);
 
   Path path;

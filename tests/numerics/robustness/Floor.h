@@ -22,10 +22,10 @@ inline const std::string ownShaders = "tests/numerics/robustness/shaders/";
 /// A floor at y = 0 of one material.
 class Floor {
 public:
-  Floor(const std::string &materialFile, const char *materialClass, Path path)
+  Floor(const std::string &materialFile, const char *materialClass, Path path, bool isSampled = false)
       : shaders({"examples/glass/Parallelogram.rtsl", materialFile, "examples/glass/BallLight.rtsl", ownShaders + "White.rtsl", ownShaders + "Probe.rtsl",
                  ownShaders + "Surroundings.rtsl"},
-                {"Parallelogram", materialClass, "BallLight", "White", "Probe", "Surroundings"}, {{"Parallelogram", materialClass}}, path) {
+                {"Parallelogram", materialClass, "BallLight", "White", "Probe", "Surroundings"}, {{"Parallelogram", materialClass}}, path, isSampled) {
     runtime::Scene &scene = shaders.scene();
     camera = scene.addObject("Probe");
     surroundings = scene.addObject("Surroundings");
@@ -44,6 +44,7 @@ public:
     shaders.finish();
   }
 
+  const runtime::Scene &scene() const { return shaders.scene(); }
   void set(RtslRef object, const char *name, std::initializer_list<float> values) const { shaders.set(object, name, values); }
 
   /// The color that comes from along the ray.

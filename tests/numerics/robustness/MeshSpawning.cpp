@@ -17,24 +17,20 @@ namespace {
 
 using device::Vec3;
 
-RayTarget &target(Path path) {
-  static RayTarget only(path); // a program has one
-  return only;
-}
-
 /// Rays that leave in every direction, along the surface too: those that meet it again.
 Outcome runSelfHits(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
+  RayTarget &target = changingMesh(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const Triangle triangle = triangleToLeave(random);
     const Ray ray = rayTowards(random, triangle, -8, 8);
     const Vec3 onwards = random.direction() * std::ldexp(1.0f, random.integer(-20, 20));
     if (std::fabs(Plane(triangle).cosine(onwards)) < 2 * device::smallestCosine)
       continue; // where the bound is given up (runtime/device/Spawn.h)
-    target(path).replaceBy(meshOf({triangle}));
-    if (target(path).meet(ray.origin, ray.direction))
-      worst.count(target(path).meetsAgain(ray.origin, ray.direction, onwards), [&] { return ray.text() + ", " + triangle.text() + ", onwards " + show(onwards); });
+    target.replaceBy(meshOf({triangle}));
+    if (target.meet(ray.origin, ray.direction))
+      worst.count(target.meetsAgain(ray.origin, ray.direction, onwards), [&] { return ray.text() + ", " + triangle.text() + ", onwards " + show(onwards); });
   }
   return worst.outcome();
 }
@@ -42,12 +38,13 @@ Outcome runSelfHits(Path path, std::uint64_t cases, std::uint32_t seed) {
 Outcome runHitPoints(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
+  RayTarget &target = changingMesh(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const Triangle triangle = triangleToLeave(random);
     const Ray ray = rayTowards(random, triangle, -8, 8);
-    target(path).replaceBy(meshOf({triangle}));
-    if (target(path).meet(ray.origin, ray.direction))
-      worst.add(pointOffPlane(triangle, target(path).hitPoint(ray.origin, ray.direction)), [&] { return ray.text() + ", " + triangle.text(); });
+    target.replaceBy(meshOf({triangle}));
+    if (target.meet(ray.origin, ray.direction))
+      worst.add(pointOffPlane(triangle, target.hitPoint(ray.origin, ray.direction)), [&] { return ray.text() + ", " + triangle.text(); });
   }
   return worst.outcome();
 }
@@ -57,32 +54,34 @@ Outcome runHitPoints(Path path, std::uint64_t cases, std::uint32_t seed) {
 Outcome runJumps(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
+  RayTarget &target = changingMesh(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const Triangle triangle = triangleToLeave(random);
     const Ray ray = rayTowards(random, triangle, -8, 0);
-    target(path).replaceBy(meshOf({triangle}));
-    if (!target(path).meet(ray.origin, ray.direction))
+    target.replaceBy(meshOf({triangle}));
+    if (!target.meet(ray.origin, ray.direction))
       continue;
-    const Vec3 point = target(path).hitPoint(ray.origin, ray.direction);
+    const Vec3 point = target.hitPoint(ray.origin, ray.direction);
     const std::optional<Gap> gap = gapAbove(random, triangle, point, Plane(triangle).cosine(ray.direction) > 0 ? 1 : -1);
     if (!gap)
       continue;
-    target(path).replaceBy(meshOf({triangle, gap->ceiling}));
-    const Vec3 seen = target(path).hitPoint(ray.origin, ray.direction);
+    target.replaceBy(meshOf({triangle, gap->ceiling}));
+    const Vec3 seen = target.hitPoint(ray.origin, ray.direction);
     if (!(seen.x == point.x && seen.y == point.y && seen.z == point.z))
       continue; // from there the second one is the nearer
-    worst.add(target(path).meetsNext(ray.origin, ray.direction, gap->direction) == 1 ? 0 : gap->ulps, [&] { return ray.text() + ", " + gap->text(); });
+    worst.add(target.meetsNext(ray.origin, ray.direction, gap->direction) == 1 ? 0 : gap->ulps, [&] { return ray.text() + ", " + gap->text(); });
   }
   return worst.outcome();
 }
 
 double nanosecondsAWay(Path path) {
-  target(path).replaceBy(meshOf({{{{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}}}}));
+  RayTarget &target = changingMesh(path);
+  target.replaceBy(meshOf({{{{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}}}}));
   constexpr int count = 100'000;
   return timeOf(count, [&] {
     int found = 0;
     for (int i = 0; i < count; ++i)
-      found += target(path).meetsAgain({0.001f * float(i & 255), 0.25f, 5}, {0, 0, -1}, {1, 2, 3});
+      found += target.meetsAgain({0.001f * float(i & 255), 0.25f, 5}, {0, 0, -1}, {1, 2, 3});
     return found;
   });
 }

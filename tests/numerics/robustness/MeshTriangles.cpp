@@ -16,11 +16,6 @@ namespace {
 
 using device::Vec3;
 
-RayTarget &target(Path path) {
-  static RayTarget only(path); // a program has one
-  return only;
-}
-
 /// The triangle is one of eight, so that there is a tree with its box in it. The others have no area and are met by nobody.
 runtime::Mesh amongPoints(Random &random, const Triangle &triangle) {
   const float around = 4 * triangle.largestCoordinate();
@@ -36,10 +31,11 @@ runtime::Mesh amongPoints(Random &random, const Triangle &triangle) {
 Outcome runKind(Path path, const TriangleKind &kind, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed), others(seed + 1);
   Worst worst;
+  RayTarget &target = changingMesh(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const TriangleCase given = kind.make(random, i);
-    target(path).replaceBy(amongPoints(others, given.triangle));
-    judgeTriangle(given, Asked::Ray, target(path).meet(given.ray.origin, given.ray.direction), worst);
+    target.replaceBy(amongPoints(others, given.triangle));
+    judgeTriangle(given, Asked::Ray, target.meet(given.ray.origin, given.ray.direction), worst);
   }
   return worst.outcome();
 }
@@ -48,12 +44,13 @@ Outcome runKind(Path path, const TriangleKind &kind, std::uint64_t cases, std::u
 Outcome runHitPoints(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed), others(seed + 1);
   Worst worst;
+  RayTarget &target = changingMesh(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const std::vector<TriangleKind> &kinds = triangleKinds();
     const TriangleCase given = kinds[i % kinds.size()].make(random, i / kinds.size());
-    target(path).replaceBy(amongPoints(others, given.triangle));
-    if (target(path).meet(given.ray.origin, given.ray.direction))
-      worst.add(pointOffPlane(given.triangle, target(path).hitPoint(given.ray.origin, given.ray.direction)), [&] { return given.text(); });
+    target.replaceBy(amongPoints(others, given.triangle));
+    if (target.meet(given.ray.origin, given.ray.direction))
+      worst.add(pointOffPlane(given.triangle, target.hitPoint(given.ray.origin, given.ray.direction)), [&] { return given.text(); });
   }
   return worst.outcome();
 }
@@ -82,10 +79,11 @@ double offTheSegment(const TriangleCase &given, float t) {
 Outcome runDegenerate(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
+  RayTarget &target = changingMesh(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const TriangleCase given = degenerateTriangle(random, i);
-    target(path).replaceBy(meshOf({given.triangle, given.triangle, given.triangle, given.triangle, given.triangle}));
-    const auto t = target(path).meet(given.ray.origin, given.ray.direction);
+    target.replaceBy(meshOf({given.triangle, given.triangle, given.triangle, given.triangle, given.triangle}));
+    const auto t = target.meet(given.ray.origin, given.ray.direction);
     worst.add(t ? offTheSegment(given, *t) : 0, [&] { return given.text(); });
   }
   return worst.outcome();
@@ -117,13 +115,14 @@ bool meetInDouble(const Ray &ray, const Triangle &triangle, double &t, double &w
 Outcome runEqualCentroids(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
+  RayTarget &target = changingMesh(path);
   std::vector<Triangle> triangles;
   for (std::uint64_t i = 0; i < cases; ++i) {
     const Vec3 corner = random.inBox(1);
     const Vec3 third = {corner.x * random.between(-1, 1), corner.y * random.between(-1, 1), corner.z * random.between(-1, 1)};
     triangles.push_back({{corner, corner * -1.0f, third}});
   }
-  target(path).replaceBy(meshOf(triangles));
+  target.replaceBy(meshOf(triangles));
   for (int look = 0; look < 100; ++look) {
     const Vec3 origin = random.direction() * 3.0f;
     const Ray ray = {origin, random.inBox(0.5f) - origin};
@@ -145,19 +144,20 @@ Outcome runEqualCentroids(Path path, std::uint64_t cases, std::uint32_t seed) {
       }
     }
     if (nearest && best < doubtful)
-      judgeTriangle(*nearest, Asked::Ray, target(path).meet(ray.origin, ray.direction), worst);
+      judgeTriangle(*nearest, Asked::Ray, target.meet(ray.origin, ray.direction), worst);
   }
   return worst.outcome();
 }
 
 double nanosecondsAMeeting(Path path) {
+  RayTarget &target = changingMesh(path);
   Random random(1);
-  target(path).replaceBy(amongPoints(random, {{{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}}}));
+  target.replaceBy(amongPoints(random, {{{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}}}));
   constexpr int count = 100'000;
   return timeOf(count, [&] {
     float sum = 0;
     for (int i = 0; i < count; ++i)
-      sum += *target(path).meet({0.001f * float(i & 255), 0.25f, 5}, {0, 0, -1});
+      sum += *target.meet({0.001f * float(i & 255), 0.25f, 5}, {0, 0, -1});
     return sum;
   });
 }

@@ -22,7 +22,7 @@ namespace {
 
 using device::Vec3;
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = 3.14159265358979323846; // within 2^-54 of itself
 
 /// What the functions of examples/metal/RoughMetal.rtsl say.
 class Metal {
@@ -84,6 +84,10 @@ const Floor &furnace(Path path) {
   static const Floor only("examples/metal/RoughMetal.rtsl", "RoughMetal", path);
   return only;
 }
+const Floor &sampled(Path path) {
+  static const Floor only("examples/metal/RoughMetal.rtsl", "RoughMetal", path, /*isSampled=*/true);
+  return only;
+}
 const Floor &matte(Path path) {
   static const Floor only(ownShaders + "MatteReader.rtsl", "MatteReader", path);
   return only;
@@ -97,7 +101,9 @@ Vec3 directionWith(Random &random, float cosine) {
   return {sine * std::cos(turn), sine * std::sin(turn), cosine};
 }
 
-/// The textbooks' functions, of vectors of any length: of the slope tan, squared.
+using Vector = std::array<double, 3>;
+
+/// The textbooks' functions, of vectors of any length. The tangent of the angle with the normal, squared.
 template <typename Number> Number slopeSquare(const std::array<Number, 3> &v) { return (v[0] * v[0] + v[1] * v[1]) / (v[2] * v[2]); }
 /// Walter et al. 2007, equation 33.
 template <typename Number> Number distribution(const Number &alpha, const std::array<Number, 3> &normal) {
@@ -110,15 +116,13 @@ template <typename Number> Number lambda(const Number &alpha, const std::array<N
   return (sqrt(1 + alpha * alpha * slopeSquare<Number>(v)) - 1) / 2;
 }
 
-const Precise precisePi("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211706798");
-
 /// F D G2 / (4 cosine cosine) without F, and the density G1 D / (4 cosine).
-struct Exact {
+struct Answer {
   Precise value, density, cosine; // the last one is that with the half vector
 };
-Exact exactly(float alpha, Vec3 toLight, Vec3 toEye) {
+Answer exactly(float alpha, Vec3 toLight, Vec3 toEye) {
   const PreciseVec3 light = precise(toLight), eye = precise(toEye), h = {light[0] + eye[0], light[1] + eye[1], light[2] + eye[2]};
-  const Precise a(alpha), d = distribution<Precise>(a, h) * Precise(pi) / precisePi, seen = lambda<Precise>(a, eye), lit = lambda<Precise>(a, light);
+  const Precise a(alpha), d = distribution<Precise>(a, h), seen = lambda<Precise>(a, eye), lit = lambda<Precise>(a, light);
   return {d / (4 * light[2] * eye[2] * (1 + seen + lit)), d / (4 * eye[2] * (1 + seen)), length(h) / 2};
 }
 Precise fresnel(float reflectance, const Precise &cosine) {
@@ -150,7 +154,7 @@ Outcome runValues(Path path, std::uint64_t cases, std::uint32_t seed) {
       worst.add(isNothing ? 0 : std::numeric_limits<double>::infinity(), where);
       continue;
     }
-    const Exact exact = exactly(target.alpha, toLight, toEye);
+    const Answer exact = exactly(target.alpha, toLight, toEye);
     worst.add(roundingUnits(density, exact.density), where);
     for (std::size_t c = 0; c < 3; ++c)
       worst.add(roundingUnits(value[c], exact.value * fresnel(target.reflectance[c], exact.cosine)), where);
@@ -198,10 +202,58 @@ Outcome runWeights(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
+/// The material's methods, as a host calls them that samples for itself, on surfaces in any position. Of what sampleBSDF draws, and BSDF and
+/// evaluatePDF say of it once more, value * cosine / density is F G2 / G1, and the densities are the same. A direction's rounding moves the
+/// half vector, and the distribution by as much over the slope of the mirrors; and a small cosine is moved by much of itself.
+Outcome runMethods(Path path, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  const Floor &floor = sampled(path);
+  const runtime::Program::Slots &slots = floor.scene().program().slots;
+  const RtslLaunch launch = floor.scene().launch();
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    const float alpha = randomAlpha(random);
+    const std::array<float, 3> reflectance = randomReflectance(random);
+    floor.set(floor.material, "alpha", {alpha});
+    floor.set(floor.material, "reflectance", {reflectance[0], reflectance[1], reflectance[2]});
+    const Vec3 normal = random.direction(), toEye = random.direction();
+    RtslState state{};
+    state.launch = &launch;
+    device::store(state.ShadingNormal, normal);
+    device::store(state.GeometricNormal, normal);
+    device::store(state.RayDirection, toEye * -std::ldexp(1.0f, random.integer(-10, 10)));
+    state.BSDFSeed[0] = random.between(0, 1);
+    state.BSDFSeed[1] = random.between(0, 1);
+    slots.rt_Material_sampleBSDF(&state, floor.material);
+    RtslState again = state;
+    slots.rt_Material_BSDF(&again, floor.material);
+    slots.rt_Material_evaluatePDF(&again, floor.material);
+
+    const auto unit = [](const PreciseVec3 &v) { return PreciseVec3{v[0] / length(v), v[1] / length(v), v[2] / length(v)}; };
+    const PreciseVec3 n = unit(precise(normal)), eye = unit(precise(toEye)), light = unit(precise(device::load(state.LightDirection)));
+    const Precise faces = dot(n, eye), seen = abs(faces), lit = faces < 0 ? Precise(-dot(n, light)) : dot(n, light), least = std::min(seen, lit);
+    if (least < 1e-3)
+      continue;
+    const Precise a(alpha), half = length(PreciseVec3{eye[0] + light[0], eye[1] + light[1], eye[2] + light[2]}) / 2;
+    const double steepness = 1 + 1 / static_cast<double>(a * half);
+    const auto times = [&](const Precise &cosine) { return sqrt(cosine * cosine + a * a * (1 - cosine * cosine)); };
+    const Precise share = lit * (seen + times(seen)) / (times(seen) * lit + times(lit) * seen);
+    const auto where = [&] { return fmt::format("alpha {:a}, normal {}, to eye {}, seed {:a} {:a}", alpha, show(normal), show(toEye), state.BSDFSeed[0], state.BSDFSeed[1]); };
+    for (const RtslState *each : {&state, &again})
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Precise exact = share * fresnel(reflectance[c], half);
+        const bool isNumber = std::isfinite(each->BSDFValue[c]) && std::isfinite(each->PDF) && each->PDF > 0;
+        const Precise weight = isNumber ? Precise(Precise(each->BSDFValue[c]) * lit / Precise(each->PDF)) : Precise(-1);
+        worst.add(isNumber ? static_cast<double>(abs(weight - exact) / exact * least) / 0x1p-24 / steepness : std::numeric_limits<double>::infinity(), where);
+      }
+    worst.add(roundingUnits(again.PDF, Precise(state.PDF)) * static_cast<double>(least) / steepness, where);
+  }
+  return worst.outcome();
+}
+
 /// Integrates over the mirrors of the metal that an eye sees, by their share: calls add(share, mirror) for the middles of a grid over
 /// [from, to) of both parameters, each in [0, 1). The first is the cosine's parameter 1 - sqrt(1 - u), where u is what the distribution's
 /// sampling by D (Walter et al. 2007, equation 35) draws uniformly; the second the turn.
-using Vector = std::array<double, 3>;
 template <typename Add>
 void overSeenMirrors(double alpha, const Vector &eye, std::array<double, 2> from, std::array<double, 2> to, std::array<int, 2> steps, Add add) {
   const double dw = (to[0] - from[0]) / steps[0], dt = (to[1] - from[1]) / steps[1];
@@ -370,6 +422,7 @@ std::vector<Row> metalRows(Path path) {
       row("metal.values", "rough metal of alpha 1e-3 to 1, near the mirror's direction and anywhere, at cosines of 0, 1, -1 and from 2^-40: BRDF and density", "rounding units", 200'000, runValues),
       row("metal.reciprocity", "the BRDF with light and eye exchanged: the difference", "rounding units", 200'000, runReciprocity),
       row("metal.weights", "the weights of directions that are drawn, at cosines of 0 to 1: value * cosine / density", "rounding units", 200'000, runWeights),
+      row("metal.methods", "sampleBSDF, BSDF and evaluatePDF as a host calls them, on surfaces in any position: value * cosine / density", "rounding units (1 + 1 / (alpha * half vector)) / cosine", 200'000, runMethods),
       row("metal.directions", "the directions themselves, of mirrors that an eye sees: chi-square over 160 cells, for many alphas and cosines", "standard deviations", 5'000'000, runDirections),
       row("metal.furnace", "path-traced metal in a white furnace: samples in [0, 1], and their mean against the integral of the BRDF, for many alphas and cosines", "standard errors", 2'000'000, runFurnace),
       row("metal.matte", "the directions that the matte surface draws: chi-square over 256 cells of equal shares", "standard deviations", 2'000'000, runMatte),

@@ -79,6 +79,12 @@ private:
   RtslRef object = 0, reader = 0, camera = 0;
 };
 
+/// For all rows that make meshes of their own.
+inline RayTarget &changingMesh(Path path) {
+  static RayTarget only(path); // a program has one
+  return only;
+}
+
 inline float powerOfTen(Random &random, float low, float high) { return std::pow(10.0f, random.between(low, high)); }
 
 /// A ray along an axis that passes the centre of something of this size at about `impact`, from `distance` away. Coordinates across
