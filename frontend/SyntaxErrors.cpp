@@ -89,17 +89,24 @@ void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expect
     return index >= back ? word(index - back).type : Token::endOfFile;
   };
   // Habits from C.
-  if (type(0) == RtslLexer::ELSE) {
+  const bool followsName = type(1) == RtslLexer::IDENTIFIER && type(2) == RtslLexer::IDENTIFIER;
+  if (type(0) == RtslLexer::ELSE)
     diagnostic.note("there is no `if` that it could belong to");
-  } else if (type(0) == RtslLexer::GREATER && type(1) == RtslLexer::MINUS &&
-             word(index - 1).end == word(index).begin) {
-    diagnostic.fix(rangeOf(index - 1).to(rangeOf(index)), ".", true);
-  } else if (type(1) == RtslLexer::RIGHT_PAREN && type(2) == RtslLexer::IDENTIFIER &&
-             type(3) == RtslLexer::LEFT_PAREN && type(4) != RtslLexer::IDENTIFIER &&
-             type(4) != RtslLexer::IF && type(4) != RtslLexer::WHILE) {
+  else if (type(0) == RtslLexer::STRUCT)
+    diagnostic.note("structs are declared outside of functions");
+  else if (type(1) == RtslLexer::IF || type(1) == RtslLexer::WHILE || type(1) == RtslLexer::SWITCH)
+    diagnostic.note("conditions stand in parentheses");
+  else if (textOf(index) == "extends" || textOf(index) == "implements")
+    diagnostic.fix(rangeOf(index), ":", true);
+  else if (type(0) == RtslLexer::LEFT_PAREN && followsName)
+    diagnostic.note("a variable gets its value from `=`; functions are declared outside of others");
+  else if (type(0) == RtslLexer::LEFT_BRACE && followsName && expected == "`;`")
     diagnostic.note(
-        fmt::format("there are no casts: a value is converted by `{0}(...)`", textOf(index - 2)));
-  }
+        fmt::format("a variable gets its value from `=`, a function has parentheses: `{}()`",
+                    textOf(index - 1)));
+  else if (type(0) == RtslLexer::COLON && followsName && type(3) == RtslLexer::LEFT_PAREN &&
+           type(4) == RtslLexer::FOR)
+    diagnostic.note("a loop counts: `for (int i = 0; i < array.length(); ++i)`");
 }
 
 void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t index) {
@@ -144,8 +151,11 @@ void SyntaxErrors::reportInDeclaration(antlr4::Parser *parser, std::size_t start
   } else if (word(index).type == RtslLexer::LEFT_PAREN && index > 0 &&
              word(index - 1).type == RtslLexer::IDENTIFIER) {
     const SourceRange name = rangeOf(index - 1);
-    diagnostics.report(Code::missingReturnType, name, textOf(index - 1))
-        .fix({file, name.begin, name.begin}, "void ", textOf(index - 1) == "constructor");
+    Diagnostic &diagnostic = diagnostics.report(Code::missingReturnType, name, textOf(index - 1));
+    if (textOf(index - 1) == "rtDeclareVariable")
+      diagnostic.note("what a scene sets is a member: `public float roughness;`");
+    else
+      diagnostic.fix({file, name.begin, name.begin}, "void ", textOf(index - 1) == "constructor");
   } else {
     reportUnexpected(index, "a name");
   }

@@ -10,6 +10,8 @@
 //===----------------------------------------------------------------------===//
 #include "frontend/TokenCheck.h"
 
+#include "frontend/ForeignWords.h"
+
 #include "grammar/RtslLexer.h"
 
 #include <algorithm>
@@ -58,10 +60,6 @@ bool isKeyword(unsigned type) {
          type == RtslLexer::PRECISION_QUALIFIER;
 }
 
-bool isQualifier(unsigned type) {
-  return type >= RtslLexer::PUBLIC && type <= RtslLexer::INOUT;
-}
-
 bool isOperator(unsigned type) {
   return (type >= RtslLexer::PLUS_PLUS && type <= RtslLexer::OR_ASSIGN) || type == RtslLexer::DOT;
 }
@@ -72,28 +70,11 @@ bool isPrefixStatement(unsigned type) {
          type == RtslLexer::DO || type == RtslLexer::SWITCH || type == RtslLexer::ILLUMINANCE;
 }
 
-/// Qualifiers of GLSL and its relatives, and what RTSL says instead (nothing: leave it out).
-struct ForeignQualifier {
-  std::string_view name, replacement;
-};
-constexpr ForeignQualifier foreignQualifiers[] = {
-    {"uniform", "public"}, {"varying", "scratch"}, {"attribute", "scratch"}, {"static", ""},
-    {"inline", ""},        {"extern", ""},         {"volatile", ""},         {"flat", ""},
-    {"smooth", ""},        {"noperspective", ""},  {"centroid", ""},         {"invariant", ""},
-    {"precise", ""},       {"virtual", ""},        {"constexpr", "const"},
-};
-
-/// Words of which C makes the names of its types, `unsigned int` say.
-bool isWordOfType(std::string_view word) {
-  return word == "unsigned" || word == "signed" || word == "long" || word == "short" || word == "int" || word == "char" ||
-         word == "double";
-}
-
 class TokenChecker {
 public:
   TokenChecker(FileId file, TokenList &list, Diagnostics &diagnostics)
       : file(file), diagnostics(diagnostics), sources(diagnostics.sources()), list(list),
-        in(list.tokens) {}
+        in(list.tokens), foreign(file, in, out, diagnostics) {}
 
   void run();
 
@@ -128,9 +109,6 @@ private:
   std::string_view textOf(const Token &token) const { return sources.text(rangeOf(token)); }
   std::uint32_t endOfPrevious() const { return out.empty() ? 0 : out.back().end; }
 
-  bool isDeclarationStart() const;
-  std::size_t skipForeignWords(std::size_t index);
-  std::size_t wordsOfType(std::size_t index) const;
   void retag(Token &token, std::size_t index);
 
   void put(Token token);
@@ -149,102 +127,15 @@ private:
   const SourceManager &sources;
   TokenList &list;
   std::vector<Token> in, out;
+  ForeignWords foreign;
   std::vector<Level> levels{1};
   Token lastOuterClose; // the last brace that closed all
   bool isStatementBroken = false;
 };
 
 //===----------------------------------------------------------------------===//
-// Words that do not belong here
+// Words that are not what they look like
 //===----------------------------------------------------------------------===//
-
-/// True if what comes next may be the first word of a declaration, of a parameter too.
-bool TokenChecker::isDeclarationStart() const {
-  const unsigned previous = before();
-  return previous == Token::endOfFile || previous == RtslLexer::SEMICOLON ||
-         previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE ||
-         previous == RtslLexer::LEFT_PAREN || previous == RtslLexer::RIGHT_PAREN ||
-         previous == RtslLexer::COMMA || previous == RtslLexer::COLON || isQualifier(previous);
-}
-
-/// Number of words from `index` on that are reported and left out; 0: none.
-std::size_t TokenChecker::skipForeignWords(std::size_t index) {
-  const Token &token = at(index);
-  const auto removal = [&](std::size_t count) { // the words and the space behind them
-    const Token &next = at(index + count);
-    const std::uint32_t lastEnd = at(index + count - 1).end;
-    return SourceRange{file, token.begin, next.startsLine ? lastEnd : next.begin};
-  };
-  if (token.type == RtslLexer::PRECISION) {
-    std::size_t count = 1;
-    while (count < 4 && typeAt(index + count) != RtslLexer::SEMICOLON &&
-           typeAt(index + count) != Token::endOfFile)
-      ++count;
-    if (typeAt(index + count) == RtslLexer::SEMICOLON)
-      ++count;
-    diagnostics.report(Code::precisionQualifier, rangeOf(token).to(rangeOf(at(index + count - 1))))
-        .fix(removal(count), "", true);
-    return count;
-  }
-  if (token.type == RtslLexer::PRECISION_QUALIFIER) {
-    diagnostics.report(Code::precisionQualifier, rangeOf(token)).fix(removal(1), "", true);
-    return 1;
-  }
-  const bool isAccess = token.type == RtslLexer::PUBLIC || token.type == RtslLexer::PRIVATE;
-  if (isAccess && before() == RtslLexer::COLON && before(3) == RtslLexer::CLASS) {
-    diagnostics
-        .report(Code::misplacedQualifier, rangeOf(token), textOf(token),
-                "a class derives in one way only")
-        .fix(removal(1), "", true);
-    return 1;
-  }
-  if ((isAccess || token.type == RtslLexer::SCRATCH) && typeAt(index + 1) == RtslLexer::COLON) {
-    diagnostics.report(Code::misplacedQualifier, rangeOf(token).to(rangeOf(at(index + 1))),
-                       fmt::format("{}:", textOf(token)),
-                       fmt::format("write `{}` in front of each member", textOf(token)));
-    return 2;
-  }
-  // `const T &x`: values are passed as if they were copied.
-  if (token.type == RtslLexer::AMPERSAND && before() == RtslLexer::IDENTIFIER &&
-      before(2) == RtslLexer::CONST && typeAt(index + 1) == RtslLexer::IDENTIFIER) {
-    Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), "&");
-    const bool isBetween = out.back().end < token.begin && token.end < at(index + 1).begin;
-    if (out.back().end == token.begin && token.end == at(index + 1).begin)
-      diagnostic.fix(rangeOf(token), " ", true);
-    else
-      diagnostic.fix(isBetween ? removal(1) : rangeOf(token), "", true);
-    diagnostic.note("a parameter is a copy; `inout` gives a value back");
-    return 1;
-  }
-  // Two names in a row are a type and what it declares; three begin with a qualifier.
-  if (token.type == RtslLexer::IDENTIFIER && isDeclarationStart() &&
-      (typeAt(index + 1) == RtslLexer::IDENTIFIER || isQualifier(typeAt(index + 1)) ||
-       typeAt(index + 1) == RtslLexer::PRECISION_QUALIFIER) &&
-      typeAt(index + 2) == RtslLexer::IDENTIFIER) {
-    const std::string_view word = textOf(token);
-    for (const ForeignQualifier &foreign : foreignQualifiers) {
-      if (word != foreign.name)
-        continue;
-      Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), word);
-      if (foreign.replacement.empty())
-        diagnostic.fix(removal(1), "", true);
-      else
-        diagnostic.fix(rangeOf(token), std::string(foreign.replacement));
-      return 1;
-    }
-  }
-  return 0;
-}
-
-/// Number of words from `index` on that C takes for one type and that stand one space apart: one name, which the checker
-/// does not know and can replace. 1: it is none of those.
-std::size_t TokenChecker::wordsOfType(std::size_t index) const {
-  const auto isPart = [&](std::size_t at) { return typeAt(at) == RtslLexer::IDENTIFIER && isWordOfType(textOf(in[at])); };
-  std::size_t count = 1;
-  while (isPart(index) && isPart(index + count) && in[index + count].begin == in[index + count - 1].end + 1)
-    ++count;
-  return count;
-}
 
 /// Turns keywords that stand where a name must stand into names, and `illuminance` into a keyword.
 void TokenChecker::retag(Token &token, std::size_t index) {
@@ -268,7 +159,7 @@ void TokenChecker::retag(Token &token, std::size_t index) {
   if (before() == RtslLexer::IDENTIFIER && out.size() >= 2) {
     const Token type = out.back();
     out.pop_back();
-    isDeclared = isDeclarationStart();
+    isDeclared = foreign.isDeclarationStart();
     out.push_back(type);
   } else if (before() == RtslLexer::IDENTIFIER) {
     isDeclared = true;
@@ -509,14 +400,14 @@ void TokenChecker::run() {
   out.reserve(in.size());
   bool followsMistake = false;
   for (std::size_t index = 0; index < in.size(); ++index) {
-    if (const std::size_t count = skipForeignWords(index)) {
+    if (const std::size_t count = foreign.skip(index)) {
       index += count - 1;
       if (index + 1 < in.size())
         in[index + 1].startsLine |= in[index + 1 - count].startsLine;
       continue;
     }
     Token token = in[index];
-    const std::size_t words = wordsOfType(index);
+    const std::size_t words = foreign.wordsOfType(index);
     index += words - 1;
     token.end = in[index].end;
     token.followsMistake |= followsMistake;

@@ -124,8 +124,16 @@ std::string_view lookAlike(char32_t codePoint) {
   }
 }
 
+/// Of what stands between apostrophes, with them: `'\x7f'`.
+constexpr std::size_t longestCharacter = 6;
+
 /// Reports each of some characters in a row that begin no word.
 void Tokenizer::refuseCharacters(std::uint32_t begin, std::uint32_t end) {
+  // `'c'` is one mistake, not two with a name between.
+  if (text[begin] == '\'')
+    if (const std::size_t close = text.find_first_of("'\n", begin + 1);
+        close != std::string_view::npos && text[close] == '\'' && close - begin <= longestCharacter)
+      end = static_cast<std::uint32_t>(close + 1);
   const Utf8Character first = decodeUtf8(text.substr(begin, end - begin));
   const std::string_view replacement = lookAlike(first.codePoint);
   const std::size_t size = replacement.empty() ? end - begin : first.size;

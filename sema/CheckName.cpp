@@ -90,17 +90,25 @@ ExprPtr FunctionChecker::checkName(const ast::NameExpr &expr, Access access) {
     diagnostics.report(Code::notAValue, expr.range, expr.name, "a built-in function");
     return errorExpr(expr.range);
   }
+  if (program.types.named(expr.name)) {
+    diagnostics.report(Code::notAValue, expr.range, expr.name, "a type");
+    return errorExpr(expr.range);
+  }
   reportUnknownName(expr.name, expr.range);
   return errorExpr(expr.range);
 }
 
 void FunctionChecker::reportUnknownName(const std::string &name, SourceRange range) {
+  const ForeignSpelling *foreign = foreignSpelling(name);
+  const bool isThis = name == "this" || name == "self";
+  if (!unknownNames.insert(name).second && !isThis && !(foreign && foreign->sure))
+    return; // once in a function says enough, if there is nothing to mend at each place
   Diagnostic &diagnostic = diagnostics.report(Code::unknownName, range, name);
-  if (const ForeignSpelling *foreign = foreignSpelling(name)) {
+  if (foreign) {
     suggestSpelling(diagnostic, *foreign, range);
     const SourceRange dot{range.file, range.end, range.end + 1};
-    if ((name == "this" || name == "self") &&
-        range.end < diagnostics.sources().text(range.file).size() && sourceText(dot) == ".")
+    if (isThis && range.end < diagnostics.sources().text(range.file).size() &&
+        sourceText(dot) == ".")
       diagnostic.fix(range.to(dot), "", true);
     return;
   }

@@ -157,6 +157,24 @@ StmtPtr FunctionChecker::checkDeclaration(const ast::DeclarationStmt &stmt) {
   return node;
 }
 
+/// `auto x = value;`
+bool FunctionChecker::isDeduced(const ast::VariableDecl &declaration) const {
+  const std::string &type = declaration.type.name.text;
+  return (type == "auto" || type == "let" || type == "var") && declaration.init &&
+         declaration.init->kind != ast::ExprKind::InitializerList &&
+         declaration.type.dimensions.empty() && !program.findSymbol(type);
+}
+
+/// The type that was left out can be seen, and written.
+const Type *FunctionChecker::reportDeduced(const ast::VariableDecl &declaration, ExprPtr &init) {
+  init = checkValue(*declaration.init);
+  const ast::Name &name = declaration.type.name;
+  Diagnostic &diagnostic = diagnostics.report(Code::unknownType, name.range, name.text);
+  if (!init->type->isError() && !init->type->is(TypeKind::Void))
+    diagnostic.fix(name.range, toString(init->type), true);
+  return init->type->is(TypeKind::Void) ? types.error : init->type;
+}
+
 const typed::Variable *FunctionChecker::checkVariable(const ast::VariableDecl &declaration) {
   auto owned = std::make_unique<typed::Variable>();
   typed::Variable &variable = *owned;
@@ -173,6 +191,8 @@ const typed::Variable *FunctionChecker::checkVariable(const ast::VariableDecl &d
                   [](const ast::ArrayDimension &dimension) { return !dimension.size; });
   if (unsized) {
     variable.type = deduceUnsized(declaration, variable.init);
+  } else if (isDeduced(declaration)) {
+    variable.type = reportDeduced(declaration, variable.init);
   } else {
     variable.type = resolveType(declaration.type, &declaration.name);
     if (variable.type->is(TypeKind::Void)) {
@@ -190,7 +210,7 @@ const typed::Variable *FunctionChecker::checkVariable(const ast::VariableDecl &d
   if (variable.isConst && variable.init && !variable.type->isError())
     if (std::optional<typed::Constant> value = evaluate(*variable.init))
       variable.constant = std::make_unique<typed::Constant>(std::move(*value));
-  if (variable.name.compare(0, 3, "rt_") == 0)
+  if (variable.name.compare(0, 3, "rt_") == 0 && !variable.type->isError())
     diagnostics.report(Code::reservedName, variable.range, variable.name);
   checkLocalSize(variable);
   if (const typed::Variable *other = locals.declare(&variable))

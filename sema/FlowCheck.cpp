@@ -394,7 +394,8 @@ void FlowCheck::run() {
     if (!local->init)
       track(*local);
   visit(*function.body);
-  if (state.reachable && !function.returnType->is(TypeKind::Void))
+  if (state.reachable && !function.returnType->is(TypeKind::Void) &&
+      !function.returnType->isError())
     diagnostics
         .report(Code::missingReturn, function.range, function.name, toString(function.returnType))
         .note("control reaches the end of its body");

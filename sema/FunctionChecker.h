@@ -169,6 +169,8 @@ private:
   typed::StmtPtr checkReturn(const ast::ReturnStmt &stmt);
   typed::StmtPtr checkIlluminance(const ast::IlluminanceStmt &stmt);
   typed::StmtPtr checkJump(const ast::Stmt &stmt);
+  bool isDeduced(const ast::VariableDecl &declaration) const;
+  const Type *reportDeduced(const ast::VariableDecl &declaration, typed::ExprPtr &init);
   void checkLocalSize(const typed::Variable &variable);
 
   Program &program;
@@ -180,6 +182,7 @@ private:
   FunctionFacts *facts = nullptr;
   LocalScopes locals;
   std::unordered_set<const typed::Variable *> mentioned;
+  std::unordered_set<std::string> unknownNames; // that were reported
   unsigned recursion = 0, treeDepth = 0;
   unsigned loops = 0, switches = 0, illuminances = 0;
 };

@@ -16,6 +16,7 @@ struct ForeignSpelling {
   bool sure = false;
   std::string append = {}; // at the end of the call's arguments
   std::string behind = {}; // behind the call
+  bool isVariable = false; // a call of it becomes a name
 };
 /// Null if `name` is not known from HLSL, CUDA, OptiX, GLSL's rasteriser or the RenderMan language.
 const ForeignSpelling *foreignSpelling(const std::string &name);

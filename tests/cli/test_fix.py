@@ -28,6 +28,43 @@ void shade() {
 """
 
 
+# A shader in which somebody thinks in CUDA, HLSL, OptiX and C++ at once; each slip has one sure fix.
+HABITS = """using namespace optix;
+class Clay extends rt_Material {
+  layout(location = 0) public float3 tint;
+  __device__ __forceinline__ static float weight(const float &x, int n) const {
+    auto sum = x;
+    [unroll] for (int i = 0; i < n; ++i)
+      sum += (float) i * std::abs(x);
+    return sum;
+  }
+  virtual void shade() override {
+    auto d = optixGetWorldRayDirection();
+    let far = d.x > 1.0 and d->y > 1.0 or not isnan(d.z);
+    if (not far and d.x < FLT_MAX)
+      rt_SampleColor = color((float)(int) d.x, __sinf(d->y), fminf(RayTCurrent(), 1.0));
+  }
+};
+"""
+PLAIN = """
+class Clay : rt_Material {
+  public vec3 tint;
+  float weight(const float x, int n) {
+    float sum = x;
+    for (int i = 0; i < n; ++i)
+      sum += float(i) * abs(x);
+    return sum;
+  }
+  void shade() {
+    vec3 d = rt_RayDirection;
+    bool far = d.x > 1.0 && d.y > 1.0 || !isnan(d.z);
+    if (!far && d.x < 3.40282347e38)
+      rt_SampleColor = color(float(int(d.x)), sin(d.y), min(rt_HitDistance, 1.0));
+  }
+};
+"""
+
+
 class Fixes(Case):
     def fix(self, *files, status=DIAGNOSED):
         return self.run_rtslc("check", "--fix", *files, status=status)
@@ -42,6 +79,13 @@ class Fixes(Case):
         self.assertEqual(path.read_text(), AFTER)
         out, error = self.fix("grey.rtsl", status=0)
         self.assertEqual((out, error, path.read_text()), ("", "", AFTER))
+
+    def test_habits_of_other_languages(self):
+        path = self.write("clay.rtsl", HABITS)
+        before = ""
+        while before != (before := path.read_text()):
+            self.fix("clay.rtsl", status=0 if before == PLAIN else DIAGNOSED)
+        self.assertEqual(before, PLAIN)
 
     def test_standard_input_goes_to_standard_output(self):
         out, _ = self.run_rtslc("check", "--fix", "-", stdin=b"float3 f() { return float3(1); }\n", status=DIAGNOSED)

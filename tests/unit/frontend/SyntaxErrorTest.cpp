@@ -190,8 +190,8 @@ TEST(Words, UnknownCharacters) {
   EXPECT_EQ(inFunction("a = b @ c;"), "E0103 2:7-2:8 unknown character `@`\n");
   EXPECT_EQ(inFunction("a = $b + c;"), "E0103 2:5-2:6 unknown character `$`\n");
   EXPECT_EQ(inFunction("a = \xCF\x80 * 2;"), "E0103 2:5-2:7 unknown character `\xCF\x80`\n");
-  EXPECT_EQ(inFunction("'c';"), "E0103 2:1-2:2 unknown character `'`\n"
-                                "E0103 2:3-2:4 unknown character `'`\n");
+  EXPECT_EQ(inFunction("'c';"), "E0103 2:1-2:4 unknown character `'c'`\n");
+  EXPECT_EQ(inFunction("a = 'b + c;"), "E0103 2:5-2:6 unknown character `'`\n");
   EXPECT_EQ(Parsed("void f() {\n  a = b \xE2\x80\x93 c;\n}\n").shown(),
             "test.rtsl:2:9: error[E0103]: unknown character `\xE2\x80\x93`\n"
             "  |\n"
@@ -317,7 +317,7 @@ TEST(DeclarationErrors, MethodsWithoutBody) {
   EXPECT_EQ(messages("class A : rt_Material { void shade(vec3 a) };"),
             "E0117 1:30-1:35 method `shade` has no body\n");
   EXPECT_EQ(messages("void f() const { a; }\nvoid g() { }\n"),
-            "E0111 1:10-1:15 expected `{`, found `const`\n");
+            "E0121 1:10-1:15 `const` is not a qualifier of RTSL\n");
 }
 
 TEST(DeclarationErrors, FunctionsWithoutReturnType) {
@@ -474,21 +474,28 @@ TEST(ExpressionErrors, AreReportedOnceEach) {
 
 TEST(ExpressionErrors, HabitsOfC) {
   EXPECT_EQ(Parsed("void f() {\n  a->b = c;\n}\n").shown(),
-            "test.rtsl:2:5: error[E0111]: expected an expression, found `>`\n"
+            "test.rtsl:2:4: error[E0111]: expected `.`, found `->`\n"
             "  |\n"
             "2 |   a->b = c;\n"
-            "  |     ^\n"
+            "  |    ^^\n"
             "help: replace `->` by `.`\n"
             "  |\n"
             "2 |   a.b = c;\n"
             "  |    ~\n"
             "\n");
   EXPECT_EQ(Parsed("void f() {\n  a = (float)b;\n}\n").shown(),
-            "test.rtsl:2:14: error[E0111]: expected `;`, found `b`\n"
+            "test.rtsl:2:7: error[E0127]: RTSL has no casts\n"
             "  |\n"
             "2 |   a = (float)b;\n"
-            "  |              ^\n"
-            "  = note: there are no casts: a value is converted by `float(...)`\n"
+            "  |       ^^^^^^^\n"
+            "help: replace `(float)` by `float(`\n"
+            "  |\n"
+            "2 |   a = float(b;\n"
+            "  |       ~~~~~~\n"
+            "help: insert `)`\n"
+            "  |\n"
+            "2 |   a = (float)b);\n"
+            "  |               +\n"
             "\n");
 }
 

@@ -240,7 +240,8 @@ TEST(Limits, TenThousandFunctionsInAChain) {
 }
 
 TEST(Limits, ManyErrorsInOneRun) {
-  const std::unique_ptr<Checked> checked = checkText("void f() {\n" + repeat(50, "  x;\n") + "}\n");
+  const std::unique_ptr<Checked> checked =
+      checkText("void f() {\n" + numbered(50, "  x@;\n") + "}\n");
   EXPECT_EQ(checked->diagnostics.errorCount(), 50u);
 }
 

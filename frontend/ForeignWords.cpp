@@ -1,0 +1,510 @@
+//===- ForeignWords.cpp - habits of other languages, seen before parsing -----===//
+#include "frontend/ForeignWords.h"
+
+#include "grammar/RtslLexer.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+namespace {
+
+using generated::RtslLexer;
+
+/// Qualifiers of GLSL, HLSL, CUDA and C++, and what RTSL says instead (nothing: leave it out).
+struct ForeignQualifier {
+  std::string_view name, replacement;
+};
+constexpr ForeignQualifier foreignQualifiers[] = {
+    {"uniform", "public"},   {"varying", "scratch"},  {"attribute", "scratch"},
+    {"constexpr", "const"},  {"static", ""},          {"inline", ""},
+    {"extern", ""},          {"volatile", ""},        {"flat", ""},
+    {"smooth", ""},          {"noperspective", ""},   {"nointerpolation", ""},
+    {"centroid", ""},        {"invariant", ""},       {"precise", ""},
+    {"coherent", ""},        {"restrict", ""},        {"readonly", ""},
+    {"writeonly", ""},       {"row_major", ""},       {"column_major", ""},
+    {"groupshared", ""},     {"virtual", ""},         {"override", ""},
+    {"register", ""},        {"mutable", ""},         {"explicit", ""},
+    {"friend", ""},          {"__host__", ""},        {"__device__", ""},
+    {"__global__", ""},      {"__constant__", ""},    {"__shared__", ""},
+    {"__forceinline__", ""}, {"__noinline__", ""},    {"__inline__", ""},
+    {"__restrict__", ""},    {"RT_PROGRAM", ""},      {"RT_CALLABLE_PROGRAM", ""},
+    {"rayPayloadEXT", ""},   {"rayPayloadInEXT", ""}, {"hitAttributeEXT", "scratch"},
+};
+
+/// Words of which C makes the names of its types, `unsigned int` say.
+bool isWordOfType(std::string_view word) {
+  return word == "unsigned" || word == "signed" || word == "long" || word == "short" ||
+         word == "int" || word == "char" || word == "double";
+}
+
+/// A type of a number, or of several, in RTSL or elsewhere.
+bool isTypeOfNumbers(std::string_view word) {
+  if (isWordOfType(word))
+    return true;
+  for (std::string_view scalar : {"void", "bool", "float", "uint", "half", "color"})
+    if (word == scalar)
+      return true;
+  const std::size_t digit = word.find_first_of("234");
+  if (digit == std::string_view::npos ||
+      word.find_first_not_of("234x", digit) != std::string_view::npos)
+    return false;
+  for (std::string_view vector :
+       {"vec", "ivec", "uvec", "bvec", "mat", "float", "int", "uint", "half"})
+    if (word.substr(0, digit) == vector)
+      return true;
+  return false;
+}
+
+bool isQualifier(unsigned type) {
+  return type >= RtslLexer::PUBLIC && type <= RtslLexer::INOUT;
+}
+
+bool isLiteral(unsigned type) {
+  return type == RtslLexer::TRUE || type == RtslLexer::FALSE || type == RtslLexer::INT_LITERAL ||
+         type == RtslLexer::FLOAT_LITERAL;
+}
+
+/// What an expression may begin with, but for signs and brackets.
+bool isPlainOperand(unsigned type) {
+  return type == RtslLexer::IDENTIFIER || isLiteral(type);
+}
+
+bool isOpening(unsigned type) {
+  return type == RtslLexer::LEFT_PAREN || type == RtslLexer::LEFT_BRACKET ||
+         type == RtslLexer::LEFT_BRACE;
+}
+bool isClosing(unsigned type) {
+  return type == RtslLexer::RIGHT_PAREN || type == RtslLexer::RIGHT_BRACKET ||
+         type == RtslLexer::RIGHT_BRACE;
+}
+
+/// Rewriting what a cast converts must not take long, however casts are nested.
+constexpr std::size_t longestOperand = 200;
+
+} // namespace
+
+//===----------------------------------------------------------------------===//
+// Where words stand
+//===----------------------------------------------------------------------===//
+
+/// The words and the space behind them.
+SourceRange ForeignWords::removal(std::size_t index, std::size_t count) const {
+  const Token &next = at(index + count);
+  const std::uint32_t lastEnd = at(index + count - 1).end;
+  const bool isLast = next.startsLine || next.type == Token::endOfFile;
+  return {file, at(index).begin, isLast ? lastEnd : next.begin};
+}
+
+bool ForeignWords::isDeclarationStart() const {
+  const unsigned previous = before();
+  return isStatementStart() || previous == RtslLexer::LEFT_PAREN ||
+         previous == RtslLexer::RIGHT_PAREN || previous == RtslLexer::COMMA ||
+         previous == RtslLexer::COLON || isQualifier(previous);
+}
+
+bool ForeignWords::isStatementStart() const {
+  const unsigned previous = before();
+  return previous == Token::endOfFile || previous == RtslLexer::SEMICOLON ||
+         previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE;
+}
+
+/// True if the word in front cannot be the end of an expression.
+bool ForeignWords::expectsOperand() const {
+  const unsigned previous = before();
+  return !isPlainOperand(previous) && previous != RtslLexer::RIGHT_PAREN &&
+         previous != RtslLexer::RIGHT_BRACKET && previous != RtslLexer::PLUS_PLUS &&
+         previous != RtslLexer::MINUS_MINUS && previous != RtslLexer::STRING_LITERAL;
+}
+
+/// Are there two such words at `index`, without a space between?
+bool ForeignWords::touches(std::size_t index, unsigned first, unsigned second) const {
+  return typeAt(index) == first && typeAt(index + 1) == second &&
+         at(index).end == at(index + 1).begin;
+}
+
+/// Index of the word behind the brackets that open at `index`, or of the end of the file.
+std::size_t ForeignWords::behindBrackets(std::size_t index) const {
+  std::size_t depth = 0;
+  for (; typeAt(index) != Token::endOfFile; ++index) {
+    depth += isOpening(typeAt(index));
+    if (isClosing(typeAt(index)) && --depth == 0)
+      return index + 1;
+  }
+  return index;
+}
+
+/// Index of the word behind the statement or declaration that goes on at `index`: behind its
+/// semicolon or block.
+std::size_t ForeignWords::behindStatement(std::size_t index) const {
+  while (typeAt(index) != Token::endOfFile && !isClosing(typeAt(index))) {
+    if (typeAt(index) == RtslLexer::SEMICOLON)
+      return index + 1;
+    const bool isBlock = typeAt(index) == RtslLexer::LEFT_BRACE;
+    index = isOpening(typeAt(index)) ? behindBrackets(index) : index + 1;
+    if (isBlock)
+      return typeAt(index) == RtslLexer::SEMICOLON ? index + 1 : index;
+  }
+  return index;
+}
+
+/// Index of the word behind `p.x`, `f(a)[i]` and the like.
+std::size_t ForeignWords::behindOperand(std::size_t index) const {
+  for (std::size_t begin = index; isCast(index); index += 3)
+    if (index - begin > longestOperand)
+      return in.size();
+  index = typeAt(index) == RtslLexer::LEFT_PAREN ? behindBrackets(index) : index + 1;
+  for (;;) {
+    if (typeAt(index) == RtslLexer::LEFT_PAREN || typeAt(index) == RtslLexer::LEFT_BRACKET)
+      index = behindBrackets(index);
+    else if (typeAt(index) == RtslLexer::DOT && typeAt(index + 1) == RtslLexer::IDENTIFIER)
+      index += 2;
+    else
+      return index;
+  }
+}
+
+std::size_t ForeignWords::wordsOfType(std::size_t index) const {
+  const auto isPart = [&](std::size_t word) {
+    return typeAt(word) == RtslLexer::IDENTIFIER && isWordOfType(textOf(at(word)));
+  };
+  std::size_t count = 1;
+  while (isPart(index) && isPart(index + count) &&
+         at(index + count).begin == at(index + count - 1).end + 1)
+    ++count;
+  return count;
+}
+
+//===----------------------------------------------------------------------===//
+// Qualifiers and attributes
+//===----------------------------------------------------------------------===//
+
+std::size_t ForeignWords::skipPrecision(std::size_t index) {
+  if (typeAt(index) == RtslLexer::PRECISION_QUALIFIER) {
+    diagnostics.report(Code::precisionQualifier, rangeOf(at(index)))
+        .fix(removal(index, 1), "", true);
+    return 1;
+  }
+  if (typeAt(index) != RtslLexer::PRECISION)
+    return 0;
+  std::size_t count = 1;
+  while (count < 4 && typeAt(index + count) != RtslLexer::SEMICOLON &&
+         typeAt(index + count) != Token::endOfFile)
+    ++count;
+  if (typeAt(index + count) == RtslLexer::SEMICOLON)
+    ++count;
+  diagnostics
+      .report(Code::precisionQualifier, rangeOf(at(index)).to(rangeOf(at(index + count - 1))))
+      .fix(removal(index, count), "", true);
+  return count;
+}
+
+std::size_t ForeignWords::skipAccess(std::size_t index) {
+  const Token &token = at(index);
+  const bool isAccess = token.type == RtslLexer::PUBLIC || token.type == RtslLexer::PRIVATE;
+  if (isAccess && before() == RtslLexer::COLON && before(3) == RtslLexer::CLASS) {
+    diagnostics
+        .report(Code::misplacedQualifier, rangeOf(token), textOf(token),
+                "a class derives in one way only")
+        .fix(removal(index, 1), "", true);
+    return 1;
+  }
+  if ((isAccess || token.type == RtslLexer::SCRATCH) && typeAt(index + 1) == RtslLexer::COLON) {
+    diagnostics.report(Code::misplacedQualifier, rangeOf(token).to(rangeOf(at(index + 1))),
+                       fmt::format("{}:", textOf(token)),
+                       fmt::format("write `{}` in front of each member", textOf(token)));
+    return 2;
+  }
+  return 0;
+}
+
+std::size_t ForeignWords::skipQualifier(std::size_t index) {
+  const Token &token = at(index);
+  const std::string_view word = textOf(token);
+  // `[unroll]`, `[[nodiscard]]`: no statement begins with a bracket.
+  if (token.type == RtslLexer::LEFT_BRACKET && isStatementStart()) {
+    const std::size_t count = behindBrackets(index) - index;
+    diagnostics
+        .report(Code::foreignConstruct, rangeOf(token).to(rangeOf(at(index + count - 1))),
+                "attributes")
+        .fix(removal(index, count), "", true);
+    return count;
+  }
+  // `const T &x`: values are passed as if they were copied.
+  if (token.type == RtslLexer::AMPERSAND && before() == RtslLexer::IDENTIFIER &&
+      before(2) == RtslLexer::CONST && typeAt(index + 1) == RtslLexer::IDENTIFIER) {
+    Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), "&");
+    const bool isBetween = out.back().end < token.begin && token.end < at(index + 1).begin;
+    if (out.back().end == token.begin && token.end == at(index + 1).begin)
+      diagnostic.fix(rangeOf(token), " ", true);
+    else
+      diagnostic.fix(isBetween ? removal(index, 1) : rangeOf(token), "", true);
+    diagnostic.note("a parameter is a copy; `inout` gives a value back");
+    return 1;
+  }
+  // Behind the parameters of a method.
+  const auto isSuffix = [&](std::size_t at) {
+    const std::string_view suffix = textOf(this->at(at));
+    return typeAt(at) == RtslLexer::CONST || suffix == "override" || suffix == "final" ||
+           suffix == "noexcept";
+  };
+  if (isSuffix(index) && before() == RtslLexer::RIGHT_PAREN &&
+      (typeAt(index + 1) == RtslLexer::LEFT_BRACE || typeAt(index + 1) == RtslLexer::SEMICOLON ||
+       isSuffix(index + 1))) {
+    diagnostics.report(Code::foreignQualifier, rangeOf(token), word)
+        .fix(removal(index, 1), "", true);
+    return 1;
+  }
+  if (token.type != RtslLexer::IDENTIFIER || !isDeclarationStart())
+    return 0;
+  const unsigned next = typeAt(index + 1);
+  if (word == "extern" && next == RtslLexer::STRING_LITERAL) {
+    diagnostics
+        .report(Code::foreignQualifier, rangeOf(token).to(rangeOf(at(index + 1))), "extern \"C\"")
+        .fix(removal(index, 2), "", true);
+    return 2;
+  }
+  if (word == "layout" && next == RtslLexer::LEFT_PAREN) {
+    const std::size_t behind = behindBrackets(index + 1);
+    if (typeAt(behind) != RtslLexer::IDENTIFIER && !isQualifier(typeAt(behind)))
+      return 0; // a call
+    diagnostics.report(Code::foreignQualifier, rangeOf(token), word)
+        .fix(removal(index, behind - index), "", true);
+    return behind - index;
+  }
+  // Two names in a row are a type and what it declares; three begin with a qualifier.
+  if ((next != RtslLexer::IDENTIFIER && !isQualifier(next) &&
+       next != RtslLexer::PRECISION_QUALIFIER) ||
+      typeAt(index + 2) != RtslLexer::IDENTIFIER)
+    return 0;
+  for (const ForeignQualifier &foreign : foreignQualifiers) {
+    if (word != foreign.name)
+      continue;
+    Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), word);
+    if (foreign.replacement.empty())
+      diagnostic.fix(removal(index, 1), "", true);
+    else
+      diagnostic.fix(rangeOf(token), std::string(foreign.replacement));
+    return 1;
+  }
+  return 0;
+}
+
+//===----------------------------------------------------------------------===//
+// Constructs
+//===----------------------------------------------------------------------===//
+
+/// `std::`
+std::size_t ForeignWords::skipNamespace(std::size_t index) {
+  const bool isNamed = typeAt(index) == RtslLexer::IDENTIFIER;
+  const std::size_t colons = index + (isNamed ? 1 : 0);
+  if (!touches(colons, RtslLexer::COLON, RtslLexer::COLON) ||
+      typeAt(colons + 2) != RtslLexer::IDENTIFIER)
+    return 0;
+  const std::string_view word = isNamed ? textOf(at(index)) : std::string_view();
+  bool isKnown = false;
+  for (std::string_view name : {"std", "glm", "optix", "optixu", "rtsl", "metal", "hlsl", "vk"})
+    isKnown |= word == name;
+  diagnostics
+      .report(Code::foreignConstruct, rangeOf(at(index)).to(rangeOf(at(colons + 1))), "namespaces")
+      .fix({file, at(index).begin, at(colons + 2).begin}, "", isKnown);
+  return colons + 2 - index;
+}
+
+/// The word in front, which may be a type, begins a declaration. A variable may have such a name,
+/// too: `f(half * x)`.
+bool ForeignWords::isBehindType() const {
+  const unsigned previous = before(2);
+  if (previous == RtslLexer::LEFT_PAREN || previous == RtslLexer::COMMA)
+    for (std::string_view name : {"half", "color", "short", "long"})
+      if (textOf(out.back()) == name)
+        return false;
+  return previous == Token::endOfFile || previous == RtslLexer::SEMICOLON ||
+         previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE ||
+         previous == RtslLexer::LEFT_PAREN || previous == RtslLexer::COMMA || isQualifier(previous);
+}
+
+/// `float *p`, `&x` and `*p`
+std::size_t ForeignWords::skipPointer(std::size_t index) {
+  const unsigned type = typeAt(index);
+  if (type != RtslLexer::STAR && type != RtslLexer::AMPERSAND)
+    return 0;
+  const unsigned next = typeAt(index + 1);
+  if (type == RtslLexer::STAR && before() == RtslLexer::STAR && out.back().end == at(index).begin) {
+    diagnostics
+        .report(Code::foreignConstruct, rangeOf(out.back()).to(rangeOf(at(index))), "operator `**`")
+        .note("write `pow(x, y)`");
+    return 1;
+  }
+  if (type == RtslLexer::STAR && touches(index, RtslLexer::STAR, RtslLexer::STAR) &&
+      !expectsOperand())
+    return 0; // the next one is reported
+  const bool isDeclared = before() == RtslLexer::IDENTIFIER && next == RtslLexer::IDENTIFIER &&
+                          isTypeOfNumbers(textOf(out.back())) && isBehindType();
+  const bool isPrefix = expectsOperand() && !isDeclarationStart() && next == RtslLexer::IDENTIFIER;
+  const bool isArgument = expectsOperand() &&
+                          (before() == RtslLexer::LEFT_PAREN || before() == RtslLexer::COMMA) &&
+                          next == RtslLexer::IDENTIFIER;
+  const bool isStatement =
+      type == RtslLexer::STAR && isStatementStart() && next == RtslLexer::IDENTIFIER;
+  if (!isDeclared && !isPrefix && !isArgument && !isStatement)
+    return 0;
+  const bool isReference = isDeclared && type == RtslLexer::AMPERSAND;
+  diagnostics
+      .report(Code::foreignConstruct, rangeOf(at(index)),
+              isReference ? "references to values" : "pointers")
+      .fix(rangeOf(at(index)), "")
+      .note("a parameter is a copy; `inout` gives a value back");
+  return 1;
+}
+
+/// What begins a statement or declaration of another language.
+std::size_t ForeignWords::skipConstruct(std::size_t index) {
+  const Token &token = at(index);
+  const unsigned next = typeAt(index + 1);
+  // `float4 main() : SV_Target {`
+  if (token.type == RtslLexer::COLON && before() == RtslLexer::RIGHT_PAREN &&
+      next == RtslLexer::IDENTIFIER && typeAt(index + 2) == RtslLexer::LEFT_BRACE) {
+    diagnostics
+        .report(Code::foreignConstruct, rangeOf(token).to(rangeOf(at(index + 1))), "semantics")
+        .fix(removal(index, 2), "", true);
+    return 2;
+  }
+  if (token.type != RtslLexer::IDENTIFIER || !isStatementStart())
+    return 0;
+  const std::string_view word = textOf(token);
+  const bool opensBlock =
+      next == RtslLexer::LEFT_BRACE ||
+      (next == RtslLexer::IDENTIFIER &&
+       (typeAt(index + 2) == RtslLexer::LEFT_BRACE || typeAt(index + 2) == RtslLexer::COLON));
+  const auto report = [&](const char *what, const char *instead, bool sure = false) {
+    const std::size_t behind = behindStatement(index + 1);
+    Diagnostic &diagnostic = diagnostics.report(Code::foreignConstruct, rangeOf(token), what);
+    if (sure)
+      diagnostic.fix(removal(index, behind - index), "", true);
+    if (*instead)
+      diagnostic.note(instead);
+    return behind - index;
+  };
+  if (word == "using" && next == RtslLexer::IDENTIFIER && textOf(at(index + 1)) == "namespace")
+    return report("namespaces", "", true);
+  if (word == "namespace" && opensBlock)
+    return report("namespaces", "all files share one space of names");
+  if (word == "typedef" && next == RtslLexer::IDENTIFIER &&
+      typeAt(index + 2) == RtslLexer::IDENTIFIER)
+    return report("other names for types", "");
+  if (word == "typedef" && next == RtslLexer::STRUCT) { // struct S { ... } T;
+    const std::size_t count = report("other names for types", "write `struct Name { ... };`");
+    return typeAt(index + count) == RtslLexer::IDENTIFIER ? behindStatement(index + count) - index
+                                                          : count;
+  }
+  if (word == "enum" && (opensBlock || next == RtslLexer::CLASS))
+    return report("enumerations", "write constants: `const int A = 0, B = 1;`");
+  if (word == "union" && opensBlock)
+    return report("unions", "`floatBitsToInt` and its relatives give the bits of a number");
+  if ((word == "cbuffer" || word == "tbuffer") && opensBlock)
+    return report("constant buffers", "what a scene sets is a member: `public float roughness;`");
+  if (word == "template" && next == RtslLexer::LESS)
+    return report("templates", "write a function for each type: they may have one name");
+  if (word == "try" && next == RtslLexer::LEFT_BRACE) {
+    diagnostics.report(Code::foreignConstruct, rangeOf(token), "`try`");
+    return 1;
+  }
+  if (word == "catch" && next == RtslLexer::LEFT_PAREN &&
+      typeAt(behindBrackets(index + 1)) == RtslLexer::LEFT_BRACE)
+    return behindStatement(index + 1) - index; // behind a `try`, which is reported
+  if (word == "throw" && isLiteral(next))
+    return report("`throw`", "");
+  for (std::string_view buffer :
+       {"rtBuffer", "StructuredBuffer", "RWStructuredBuffer", "Buffer", "RWBuffer", "vector"})
+    if (word == buffer && next == RtslLexer::LESS && typeAt(index + 2) == RtslLexer::IDENTIFIER)
+      return report("templates", "a buffer is an unsized array member: `public vec3 vertices[];`");
+  return 0;
+}
+
+//===----------------------------------------------------------------------===//
+// Operators and casts, which are put right
+//===----------------------------------------------------------------------===//
+
+void ForeignWords::rewriteOperator(std::size_t index) {
+  Token &token = in[index];
+  const auto report = [&](const char *expected, SourceRange replaced) {
+    diagnostics
+        .report(Code::unexpectedToken, rangeOf(token), fmt::format("`{}`", expected),
+                fmt::format("`{}`", textOf(token)))
+        .fix(replaced, expected, true);
+  };
+  if (token.type != RtslLexer::IDENTIFIER || !isPlainOperand(typeAt(index + 1)))
+    return;
+  const std::string_view word = textOf(token);
+  const bool isBehindOperand =
+      isLiteral(before()) || before() == RtslLexer::RIGHT_PAREN ||
+      (before() == RtslLexer::IDENTIFIER && typeAt(index + 1) != Token::endOfFile);
+  if ((word == "and" || word == "or") && isBehindOperand) {
+    report(word == "and" ? "&&" : "||", rangeOf(token));
+    token.type = word == "and" ? RtslLexer::AND_AND : RtslLexer::OR_OR;
+    return;
+  }
+  const unsigned previous = before();
+  const bool isInExpression = previous == RtslLexer::ASSIGN || previous == RtslLexer::AND_AND ||
+                              previous == RtslLexer::OR_OR || previous == RtslLexer::RETURN ||
+                              (previous == RtslLexer::LEFT_PAREN &&
+                               (before(2) == RtslLexer::IF || before(2) == RtslLexer::WHILE));
+  if (word == "not" && isInExpression) {
+    report("!", removal(index, 1));
+    token.type = RtslLexer::NOT;
+  }
+}
+
+/// Is it `(float)`, with something behind it that it could convert?
+bool ForeignWords::isCast(std::size_t index) const {
+  return typeAt(index) == RtslLexer::LEFT_PAREN && typeAt(index + 1) == RtslLexer::IDENTIFIER &&
+         typeAt(index + 2) == RtslLexer::RIGHT_PAREN && isTypeOfNumbers(textOf(at(index + 1))) &&
+         (isPlainOperand(typeAt(index + 3)) || typeAt(index + 3) == RtslLexer::LEFT_PAREN);
+}
+
+/// `(float) x` is read as `float(x)`.
+void ForeignWords::rewriteCast(std::size_t index) {
+  if (!isCast(index) || !expectsOperand() || before() == Token::endOfFile)
+    return;
+  const std::size_t behind = behindOperand(index + 3);
+  if (typeAt(behind) == Token::endOfFile || behind - index > longestOperand)
+    return;
+  const Token opening = at(index), type = at(index + 1), closing = at(index + 2);
+  const std::uint32_t end = at(behind - 1).end;
+  diagnostics.report(Code::foreignConstruct, rangeOf(opening).to(rangeOf(closing)), "casts")
+      .fix({file, opening.begin, at(index + 3).begin}, fmt::format("{}(", textOf(type)), true)
+      .fix({file, end, end}, ")", true);
+  in[index] = type;
+  in[index].startsLine = opening.startsLine;
+  in[index + 1] = opening;
+  in[index + 1].begin = closing.begin;
+  in[index + 1].end = closing.end;
+  in[index + 1].startsLine = false;
+  std::copy(in.begin() + static_cast<std::ptrdiff_t>(index) + 3,
+            in.begin() + static_cast<std::ptrdiff_t>(behind),
+            in.begin() + static_cast<std::ptrdiff_t>(index) + 2);
+  in[behind - 1] = closing;
+  in[behind - 1].begin = in[behind - 1].end = end;
+  in[behind - 1].startsLine = false;
+}
+
+std::size_t ForeignWords::skip(std::size_t index) {
+  if (touches(index, RtslLexer::MINUS, RtslLexer::GREATER) && !expectsOperand() &&
+      typeAt(index + 2) == RtslLexer::IDENTIFIER) {
+    const SourceRange arrow = rangeOf(at(index)).to(rangeOf(at(index + 1)));
+    diagnostics.report(Code::unexpectedToken, arrow, "`.`", "`->`").fix(arrow, ".", true);
+    in[index + 1].type = RtslLexer::DOT;
+    return 1;
+  }
+  rewriteCast(index);
+  rewriteOperator(index);
+  for (auto part :
+       {&ForeignWords::skipPrecision, &ForeignWords::skipAccess, &ForeignWords::skipConstruct,
+        &ForeignWords::skipQualifier, &ForeignWords::skipNamespace, &ForeignWords::skipPointer})
+    if (const std::size_t count = (this->*part)(index))
+      return count;
+  return 0;
+}
+
+} // namespace rtsl
