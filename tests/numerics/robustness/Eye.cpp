@@ -61,6 +61,13 @@ private:
   decltype(runtime::Program::sample) sample = nullptr;
 };
 
+/// What megakernels want to begin at: a line of the cache.
+struct alignas(64) Line {
+  std::uint8_t bytes[64];
+};
+std::uint64_t inLines(std::uint64_t bytes) { return (bytes + sizeof(Line) - 1) / sizeof(Line) * sizeof(Line); }
+std::vector<Line> linesFor(std::uint64_t bytes) { return std::vector<Line>(inLines(bytes) / sizeof(Line)); }
+
 /// The scene in one block of bytes, as whole programs take it, and kept up with the members of its objects.
 class FlatCopy {
 public:
@@ -82,9 +89,7 @@ public:
     return flat.bytes.data();
   }
   std::uint64_t laneBytes() const {
-    constexpr std::uint64_t cacheLine = 64;
-    const std::uint64_t bytes = scene.program().megakernel.laneBytes(eyeDepth, flat.launch().referenceChain);
-    return (bytes + cacheLine - 1) / cacheLine * cacheLine;
+    return inLines(scene.program().megakernel.laneBytes(eyeDepth, flat.launch().referenceChain));
   }
 
 private:
@@ -99,11 +104,6 @@ Color seen(const RtslStatus &status, const Color &pixel) {
   runtime::readStatus(status, onePixel(), statistics);
   return statistics.samplesNotFinite ? unlessNotFinite({std::numeric_limits<float>::infinity()}) : pixel;
 }
-
-struct alignas(64) Line {
-  std::uint8_t bytes[64];
-};
-std::vector<Line> linesFor(std::uint64_t bytes) { return std::vector<Line>((bytes + sizeof(Line) - 1) / sizeof(Line)); }
 
 class MegakernelEye : public Eye {
 public:
@@ -166,35 +166,34 @@ public:
   explicit GpuEye(const std::string &ptx) : ptx(ptx) {
     device.load(ptx);
     kernel = device.kernel("rtsl_render");
-    statusAddress = device.allocate(sizeof(RtslStatus), "the launch");
-    pixelAddress = device.allocate(sizeof(Color), "the picture");
     jobAddress = device.allocate(sizeof(RtslJob), "the launch");
   }
 
   void turnTo(const runtime::Scene &scene) override {
     flat.emplace(scene);
-    sceneAddress = sceneMemory.of(flat->size());
-    flat->place(sceneAddress, reinterpret_cast<RtslStatus *>(statusAddress));
+    const std::size_t answerPlace = inLines(flat->size());
+    block.assign(answerPlace + sizeof(Answer), 0);
+    blockAddress = blockMemory.of(block.size());
+    answerAddress = blockAddress + answerPlace;
+    flat->place(blockAddress, reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status)));
     RtslJob job{};
-    job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
-    job.status = reinterpret_cast<RtslStatus *>(statusAddress);
+    job.launch = reinterpret_cast<const RtslLaunch *>(blockAddress);
+    job.status = reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status));
     job.laneBytes = flat->laneBytes();
     job.lanes = reinterpret_cast<std::uint8_t *>(laneMemory.of(warp * job.laneBytes));
-    job.pixels = reinterpret_cast<float *>(pixelAddress);
+    job.pixels = reinterpret_cast<float *>(answerAddress + offsetof(Answer, pixel));
     job.samplesPerPixel = 1;
     device.upload(jobAddress, &job, sizeof job);
   }
 
   Color look(std::uint32_t seed) override {
-    device.upload(sceneAddress, flat->update(seed), flat->size());
-    device.clear(statusAddress, sizeof(RtslStatus));
+    std::memcpy(block.data(), flat->update(seed), flat->size());
+    device.upload(blockAddress, block.data(), block.size());
     void *arguments[] = {&jobAddress};
     device.launch(kernel, 1, warp, arguments);
-    RtslStatus status;
-    device.download(&status, statusAddress, sizeof status);
-    Color pixel;
-    device.download(pixel.data(), pixelAddress, sizeof pixel);
-    return seen(status, pixel);
+    Answer answer;
+    device.download(&answer, answerAddress, sizeof answer);
+    return seen(answer.status, answer.pixel);
   }
 
   runtime::Image picture(const runtime::RenderOptions &options) override {
@@ -208,13 +207,20 @@ public:
   }
 
 private:
+  /// What a launch writes.
+  struct Answer {
+    RtslStatus status;
+    Color pixel;
+  };
+
   static constexpr unsigned warp = 32;
   std::string ptx;
   runtime::CudaDevice device;
   runtime::CudaDevice::Kernel kernel;
-  DeviceMemory sceneMemory{device, "the scene"}, laneMemory{device, "rays in flight"};
+  DeviceMemory blockMemory{device, "the scene"}, laneMemory{device, "rays in flight"};
   std::optional<FlatCopy> flat;
-  runtime::CudaDevice::Address sceneAddress = 0, statusAddress = 0, pixelAddress = 0, jobAddress = 0;
+  std::vector<std::uint8_t> block; // the scene, and behind it an Answer that is empty: both go up at once
+  runtime::CudaDevice::Address blockAddress = 0, answerAddress = 0, jobAddress = 0;
 };
 
 } // namespace
