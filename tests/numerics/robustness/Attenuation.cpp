@@ -163,16 +163,13 @@ double nanosecondsAStack(Path path) {
 } // namespace
 
 std::vector<Row> attenuationRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, auto run) {
-    return Row{name, description, unit, 500'000, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
-               [=] { return nanosecondsAStack(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAStack);
   const char *unit = "rounding units times 1 + optical depth";
   return {
-      row("attenuation.single", "exp(-sigma t), sigma from 1e-8 to 1e8, t from 1e-6 to 1e6", unit, runSingle),
-      row("attenuation.layers", "up to 16 such layers, one after the other", unit, runProduct),
-      row("attenuation.atOnce", "the same by the sum of their depths", unit, runAtOnce),
-      row("attenuation.order", "the same layers in another order: the difference", "rounding units", runOrder),
+      row("attenuation.single", "exp(-sigma t), sigma from 1e-8 to 1e8, t from 1e-6 to 1e6", unit, 500'000, runSingle),
+      row("attenuation.layers", "up to 16 such layers, one after the other", unit, 500'000, runProduct),
+      row("attenuation.atOnce", "the same by the sum of their depths", unit, 500'000, runAtOnce),
+      row("attenuation.order", "the same layers in another order: the difference", "rounding units", 500'000, runOrder),
   };
 }
 

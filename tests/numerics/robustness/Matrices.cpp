@@ -227,10 +227,7 @@ double nanosecondsAnInverse(Path path) {
 } // namespace
 
 std::vector<Row> matrixRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
-               [=] { return nanosecondsAnInverse(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAnInverse);
   const char *unit = "of A X - I, rounding units of the row of abs(A) abs(X)";
   return {
       row("matrices.hilbert", "the inverse of Hilbert's 4 x 4 matrix, its columns in any order", unit, 10'000, runHilbert),

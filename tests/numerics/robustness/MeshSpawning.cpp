@@ -89,9 +89,7 @@ double nanosecondsAWay(Path path) {
 } // namespace
 
 std::vector<Row> meshSpawnRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); }, [=] { return nanosecondsAWay(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAWay);
   return {
       row("surfaces.selfHits", "rendered: rays that leave a triangle in any direction but within 2^-11 of its plane: those that meet it again", "hits", 1'000'000, runSelfHits),
       row("surfaces.hitPoints", "rendered: the distance of the hit point from its triangle's plane", "rounding units of the largest coordinate", 500'000, runHitPoints),

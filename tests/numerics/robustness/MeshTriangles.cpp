@@ -165,9 +165,7 @@ double nanosecondsAMeeting(Path path) {
 } // namespace
 
 std::vector<Row> meshTriangleRows(Path path) {
-  const auto row = [&](const std::string &name, const std::string &description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); }, [=] { return nanosecondsAMeeting(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAMeeting);
   std::vector<Row> rows;
   for (const TriangleKind &kind : triangleKinds())
     rows.push_back(row(std::string("meshes.") + kind.name, std::string("rendered: ") + kind.description, planeUnits, 200'000,

@@ -120,9 +120,7 @@ double nanosecondsAMeeting(Path path) {
 } // namespace
 
 std::vector<Row> meshRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); }, [=] { return nanosecondsAMeeting(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAMeeting);
   return {
       row("meshes.edges", "camera rays from inside a closed mesh of 512 triangles, through its edges and vertices, with directions of length 2^-30 to 2^30: those that see through it", "misses", 1'000'000, runEdges),
       row("meshes.leaving", "rays that leave such points towards the inside: those that do not meet the mesh again", "misses", 200'000, runLeaving),

@@ -3,6 +3,7 @@
 // The oracles are the textbooks' formulas, in MPFR or, where they are integrated, in double.
 //
 //===----------------------------------------------------------------------===//
+#include "ChiSquare.h"
 #include "Floor.h"
 #include "HighPrecision.h"
 #include "Row.h"
@@ -271,9 +272,8 @@ void overSeenMirrors(double alpha, const Vector &eye, std::array<double, 2> from
   }
 }
 
-/// Pearson's chi-square of the mirrors by which directions are drawn, against the density of those that an eye sees, in cells that are
-/// alike where the eye looks straight down; as a deviation from its mean in its standard deviations. The largest of some
-/// roughnesses and angles.
+/// The mirrors by which directions are drawn, against the density of those that an eye sees, in cells that are alike where the eye looks
+/// straight down. The largest deviation of some roughnesses and angles.
 Outcome runDirections(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -295,33 +295,19 @@ Outcome runDirections(Path path, std::uint64_t cases, std::uint32_t seed) {
       const double turn = (std::atan2(h[1], h[0]) / (2 * pi) + 1) * turns;
       ++counts[std::size_t(std::clamp(int(ring), 0, rings - 1) * turns + int(turn) % turns)];
     }
-    double chiSquare = 0, pooled = 0, whole = 0;
-    std::uint64_t pooledCount = 0;
-    int cells = 0;
-    const auto addCell = [&](double expected, std::uint64_t count) {
-      chiSquare += (double(count) - expected) * (double(count) - expected) / expected;
-      ++cells;
-    };
+    ChiSquare chiSquare;
+    double whole = 0;
     for (int ring = 0; ring < rings; ++ring)
       for (int turn = 0; turn < turns; ++turn) {
         double share = 0;
         overSeenMirrors(alpha, {toEye.x, toEye.y, toEye.z}, {double(ring) / rings, double(turn) / turns}, {double(ring + 1) / rings, double(turn + 1) / turns}, {24, 24},
                         [&](double part, const Vector &) { share += part; });
         whole += share;
-        const std::uint64_t count = counts[std::size_t(ring * turns + turn)];
-        if (share * samples >= 8) {
-          addCell(share * samples, count);
-        } else {
-          pooled += share * samples;
-          pooledCount += count;
-        }
+        chiSquare.add(share * samples, counts[std::size_t(ring * turns + turn)]);
       }
-    if (pooled >= 1)
-      addCell(pooled, pooledCount);
-    const auto where = [&] { return fmt::format("alpha {}, cosine {}: chi-square {} of {} cells", alpha, cosine, chiSquare, cells); };
     if (std::fabs(whole - 1) > 2e-3)
       worst.wrong(fmt::format("the oracle's density at alpha {}, cosine {} is {} in all", alpha, cosine, whole));
-    worst.add(std::fabs(chiSquare - (cells - 1)) / std::sqrt(2.0 * (cells - 1)), where);
+    worst.add(chiSquare.deviation(), [&] { return fmt::format("alpha {}, cosine {}", alpha, cosine); });
   }
   Outcome outcome = worst.outcome();
   outcome.cases *= samples;
@@ -380,7 +366,7 @@ Outcome runMatte(Path path, std::uint64_t cases, std::uint32_t seed) {
   Worst worst;
   const Floor &floor = matte(path);
   constexpr int rings = 16, turns = 16, cells = rings * turns;
-  std::array<std::uint64_t, cells> counts{};
+  std::vector<std::uint64_t> counts(cells);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const float u = random.between(0, 1), v = random.between(0, 1);
     floor.set(floor.material, "seed", {u, v});
@@ -390,11 +376,7 @@ Outcome runMatte(Path path, std::uint64_t cases, std::uint32_t seed) {
       worst.wrong(fmt::format("seed {:a} {:a}", u, v));
     ++counts[std::size_t(std::clamp(int(across * rings), 0, rings - 1) * turns + int(turn) % turns)];
   }
-  const double expected = double(cases) / cells;
-  double chiSquare = 0;
-  for (std::uint64_t count : counts)
-    chiSquare += (double(count) - expected) * (double(count) - expected) / expected;
-  worst.add(std::fabs(chiSquare - (cells - 1)) / std::sqrt(2.0 * (cells - 1)), [&] { return fmt::format("chi-square {}", chiSquare); });
+  worst.add(ChiSquare::ofEqualShares(counts), [&] { return fmt::format("{} cells", cells); });
   Outcome outcome = worst.outcome();
   outcome.cases = cases;
   return outcome;
@@ -415,9 +397,7 @@ double nanosecondsAValue(Path path) {
 } // namespace
 
 std::vector<Row> metalRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); }, [=] { return nanosecondsAValue(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAValue);
   return {
       row("metal.values", "rough metal of alpha 1e-3 to 1, near the mirror's direction and anywhere, at cosines of 0, 1, -1 and from 2^-40: BRDF and density", "rounding units", 200'000, runValues),
       row("metal.reciprocity", "the BRDF with light and eye exchanged: the difference", "rounding units", 200'000, runReciprocity),

@@ -176,9 +176,7 @@ double nanosecondsAMeeting(Path path) {
 } // namespace
 
 std::vector<Row> quadricRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); }, [=] { return nanosecondsAMeeting(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAMeeting);
   const char *off = "off the surface, rounding units of the largest coordinate";
   return {
       row("quadrics.points", "ellipsoids, cylinders, cones and hyperboloids of size 1e-6 to 1e6 at distances up to 1e7: hit points", off, 200'000, runPoints),

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -30,6 +31,13 @@ struct Row {
   std::function<Outcome(std::uint64_t cases, std::uint32_t seed)> run;
   std::function<double()> nanoseconds; // a call of the code under test, on easy inputs
 };
+
+/// Makes rows of one path from functions of (path, cases, seed); `nanoseconds(path)` is what a call costs.
+template <typename Nanoseconds> auto rowsOf(Path path, Nanoseconds nanoseconds) {
+  return [=](std::string name, std::string description, const char *unit, std::uint64_t cases, auto run) {
+    return Row{std::move(name), std::move(description), unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); }, [=] { return nanoseconds(path); }};
+  };
+}
 
 std::vector<Row> triangleRows();
 std::vector<Row> boxRows();

@@ -1,4 +1,5 @@
 //===- Scattering.cpp - glass, diffuse floors and lights of the examples --===//
+#include "ChiSquare.h"
 #include "Floor.h"
 #include "HighPrecision.h"
 #include "Row.h"
@@ -9,6 +10,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace rtsl::numerics {
 
@@ -141,8 +143,7 @@ Outcome runLambert(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
-/// Pearson's chi-square of the points that BallLight draws, in 512 cells of equal area; as a deviation from its mean, 511, in its
-/// standard deviations.
+/// The points that BallLight draws, in 512 cells of equal area.
 Outcome runBallLight(Path path, std::uint64_t cases, std::uint32_t seed) {
   const Floor &floor = lightReader(path);
   constexpr float radius = 1, above = 2;
@@ -150,19 +151,15 @@ Outcome runBallLight(Path path, std::uint64_t cases, std::uint32_t seed) {
   floor.set(floor.light, "radius", {radius});
   floor.set(floor.light, "intensity", {1, 1, 1});
   constexpr int heights = 16, turns = 32, cells = heights * turns;
-  std::array<std::uint64_t, cells> counts{};
+  std::vector<std::uint64_t> counts(cells);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const std::array<float, 3> direction = floor.look({0, 1, 0}, {0, -1, 0}, std::uint32_t(i * 0x9E3779B9u) + seed);
     const double d[] = {direction[0] / radius, (double(direction[1]) - above) / radius, direction[2] / radius};
     const double height = (d[1] + 1) / 2 * heights, turn = (std::atan2(d[2], d[0]) / 6.283185307179586 + 0.5) * turns;
     ++counts[std::size_t(std::clamp(int(height), 0, heights - 1) * turns + std::clamp(int(turn), 0, turns - 1))];
   }
-  const double expected = double(cases) / cells;
-  double chiSquare = 0;
-  for (std::uint64_t count : counts)
-    chiSquare += (double(count) - expected) * (double(count) - expected) / expected;
   Worst worst;
-  worst.add(std::fabs(chiSquare - (cells - 1)) / std::sqrt(2.0 * (cells - 1)), [&] { return fmt::format("chi-square {}", chiSquare); });
+  worst.add(ChiSquare::ofEqualShares(counts), [&] { return fmt::format("{} cells", cells); });
   Outcome outcome = worst.outcome();
   outcome.cases = cases;
   return outcome;
@@ -181,17 +178,14 @@ double nanosecondsALook(const Floor &floor) {
 } // namespace
 
 std::vector<Row> scatteringRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run, auto floor) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
-               [=] { return nanosecondsALook(floor(path)); }};
-  };
+  const auto of = [&](const Floor &(*floor)(Path)) { return rowsOf(path, [=](Path p) { return nanosecondsALook(floor(p)); }); };
   return {
-      row("scattering.glassFurnace", "glass in a white furnace, from both sides, at cosines from 2^-12 to 1: reflected and refracted light against 1", "rounding units", 500'000, runGlassFurnace, glass),
-      row("scattering.glassReciprocity", "what is reflected along a path and along its reverse, at outer cosines from 0.05 to 1", "rounding units times index / outer cosine", 500'000, runGlassReciprocity, glass),
-      row("scattering.glassSnell", "the sine of the refracted ray against Snell's law", "rounding units of 1", 500'000, runGlassSnell, glass),
-      row("scattering.glassTint", "white light through colored glass of thickness 1e-6 to 1e6", "rounding units times 1 + optical depth", 500'000, runGlassTint, glass),
-      row("scattering.lambert", "a diffuse floor under a point light, at cosines 0, 1, -1 and between", "rounding units of the light's irradiance", 500'000, runLambert, lambert),
-      row("scattering.ballLight", "the points that the ball light draws: chi-square over 512 cells of equal area", "standard deviations", 5'000'000, runBallLight, lightReader),
+      of(glass)("scattering.glassFurnace", "glass in a white furnace, from both sides, at cosines from 2^-12 to 1: reflected and refracted light against 1", "rounding units", 500'000, runGlassFurnace),
+      of(glass)("scattering.glassReciprocity", "what is reflected along a path and along its reverse, at outer cosines from 0.05 to 1", "rounding units times index / outer cosine", 500'000, runGlassReciprocity),
+      of(glass)("scattering.glassSnell", "the sine of the refracted ray against Snell's law", "rounding units of 1", 500'000, runGlassSnell),
+      of(glass)("scattering.glassTint", "white light through colored glass of thickness 1e-6 to 1e6", "rounding units times 1 + optical depth", 500'000, runGlassTint),
+      of(lambert)("scattering.lambert", "a diffuse floor under a point light, at cosines 0, 1, -1 and between", "rounding units of the light's irradiance", 500'000, runLambert),
+      of(lightReader)("scattering.ballLight", "the points that the ball light draws: chi-square over 512 cells of equal area", "standard deviations", 5'000'000, runBallLight),
   };
 }
 

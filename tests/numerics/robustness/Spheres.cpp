@@ -125,10 +125,7 @@ double nanosecondsAMeeting(Path path) {
 } // namespace
 
 std::vector<Row> sphereRows(Path path) {
-  const auto row = [&](const char *name, const char *description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{name, description, unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
-               [=] { return nanosecondsAMeeting(path); }};
-  };
+  const auto row = rowsOf(path, nanosecondsAMeeting);
   const char *near = "between hit and miss, rounding units of the distance";
   const char *off = "off the sphere, rounding units of the largest coordinate";
   return {
