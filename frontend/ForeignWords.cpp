@@ -370,9 +370,14 @@ std::size_t ForeignWords::skipConstruct(std::size_t index) {
         .fix(removal(index, 2), "", true);
     return 2;
   }
+  const std::string_view word = textOf(token);
+  if (word == "new" && expectsOperand() && !isDeclarationStart() && next == RtslLexer::IDENTIFIER) {
+    diagnostics.report(Code::foreignConstruct, rangeOf(token), "`new`")
+        .fix(removal(index, 1), "", true);
+    return 1;
+  }
   if (token.type != RtslLexer::IDENTIFIER || !isStatementStart())
     return 0;
-  const std::string_view word = textOf(token);
   const bool opensBlock =
       next == RtslLexer::LEFT_BRACE ||
       (next == RtslLexer::IDENTIFIER &&

@@ -81,8 +81,13 @@ void Tokenizer::addNumber(std::uint32_t begin, std::uint32_t end) {
   const std::string_view rest = digits == std::string_view::npos ? "" : number.substr(digits);
   if (rest == "f" || rest == "F" || rest == "lf" || rest == "LF")
     diagnostic.fix(range(begin + digits, begin + digits), ".0", true);
-  else if (rest == "h" || rest == "L" || rest == "l" || rest == "ul" || rest == "UL")
+  else if (rest == "L" || rest == "l" || rest == "ul" || rest == "UL" || number.back() == 'h' ||
+           number.back() == 'H')
     diagnostic.note("the suffixes are `u` for `uint`, and `f` and `lf` for `float`");
+  else if (number.substr(0, 2) == "0b" || number.substr(0, 2) == "0B")
+    diagnostic.note("numbers are decimal, octal with a `0` in front, or hexadecimal with `0x`");
+  else if (number.find('_') != std::string_view::npos)
+    diagnostic.note("digits stand together");
   else if (number.substr(0, 2) == "0x" || number.substr(0, 2) == "0X")
     diagnostic.note("behind `0x` stand the digits 0-9 and a-f");
   else if (number.size() > 1 && number[0] == '0' && rest.empty())

@@ -213,7 +213,7 @@ const typed::Variable *FunctionChecker::checkVariable(const ast::VariableDecl &d
   if (variable.name.compare(0, 3, "rt_") == 0 && !variable.type->isError())
     diagnostics.report(Code::reservedName, variable.range, variable.name);
   checkLocalSize(variable);
-  if (const typed::Variable *other = locals.declare(&variable))
+  if (const typed::Variable *other = locals.declare(&variable); other && !variable.type->isError())
     diagnostics.report(Code::redefinition, variable.range, variable.name)
         .label(other->range, "first defined here");
   function->locals.push_back(std::move(owned));

@@ -95,7 +95,14 @@ void Program::resolveFields(StructEntry &entry) {
     }
     entry.definition->fields.push_back(std::move(field));
   }
-  if (entry.declaration->fields.empty())
+  // A mistake inside may have been a field.
+  const auto isInside = [&](const Diagnostic &other) {
+    const SourceRange whole = entry.declaration->range;
+    return other.range.file == whole.file && other.range.begin >= whole.begin &&
+           other.range.end <= whole.end;
+  };
+  if (entry.declaration->fields.empty() &&
+      std::none_of(diagnostics.all().begin(), diagnostics.all().end(), isInside))
     diagnostics.report(Code::emptyStruct, entry.definition->range, entry.definition->name);
 }
 
