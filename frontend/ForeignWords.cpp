@@ -311,17 +311,22 @@ std::size_t ForeignWords::skipNamespace(std::size_t index) {
   return colons + 2 - index;
 }
 
-/// The word in front, which may be a type, begins a declaration. A variable may have such a name,
-/// too: `f(half * x)`.
+/// The word in front, which may be a type, begins a declaration. Variables may have such names,
+/// too: `f(x, double * y)`.
 bool ForeignWords::isBehindType() const {
   const unsigned previous = before(2);
-  if (previous == RtslLexer::LEFT_PAREN || previous == RtslLexer::COMMA)
-    for (std::string_view name : {"half", "color", "short", "long"})
-      if (textOf(out.back()) == name)
-        return false;
-  return previous == Token::endOfFile || previous == RtslLexer::SEMICOLON ||
-         previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE ||
-         previous == RtslLexer::LEFT_PAREN || previous == RtslLexer::COMMA || isQualifier(previous);
+  if (previous != RtslLexer::LEFT_PAREN && previous != RtslLexer::COMMA)
+    return previous == Token::endOfFile || previous == RtslLexer::SEMICOLON ||
+           previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE ||
+           isQualifier(previous);
+  // Of parameters: a type, a name and a parenthesis stand in front.
+  std::size_t open = 2, depth = 0;
+  for (; open < longestOperand && open < out.size() &&
+         (depth != 0 || before(open) != RtslLexer::LEFT_PAREN);
+       ++open)
+    depth += isClosing(before(open)) ? 1u : isOpening(before(open)) ? -1u : 0u;
+  return before(open) == RtslLexer::LEFT_PAREN && before(open + 1) == RtslLexer::IDENTIFIER &&
+         before(open + 2) == RtslLexer::IDENTIFIER;
 }
 
 /// `float *p`, `&x` and `*p`

@@ -130,30 +130,35 @@ std::string ModulePrinter::callStructures(const std::string &className) {
 /// The method of an object's class begins, or runs at once if that does not trace.
 std::string ModulePrinter::runCalledMethod(const CalledMethod &called) {
   bool isPlain = false;
-  const std::string body = dispatch(classesBelow(called.definition->name), [&](const typed::Class &definition) -> std::string {
-    const typed::Function *method = findMethod(definition, *called.function);
-    if (!method)
-      return {};
-    const std::string object = "rtsl::object<" + names.of(&definition) + ">(rt, object).";
-    for (const typed::Class *at = &definition; at != method->owner->base; at = at->base) // a base of that has others
-      if (auto first = firstCalls.find({at, called.slot}); first != firstCalls.end())
-        return "return " + object + first->second;
-    isPlain = true;
-    std::vector<std::string> arguments;
-    if (takesState(*method))
-      arguments.emplace_back("rt");
-    if (takesScratch(*method))
-      arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
-    for (std::size_t i = 0; i < called.given.size(); ++i)
-      if (called.given[i])
-        arguments.push_back((isAddress(called.given[i]) ? "*call." : "call.") + called.fields[i]);
-    std::string result;
-    if (!called.returned.empty())
-      result = "call." + called.returned + " = ";
-    else if (!called.given.empty() && !called.given.front())
-      result = "*call." + called.fields.front() + " = ";
-    return result + object + names.of(method) + "(" + join(arguments, ", ") + ")";
-  });
+  const std::string body = dispatch(
+      classesBelow(called.definition->name),
+      [&](const typed::Class &definition) -> std::string {
+        const typed::Function *method = findMethod(definition, *called.function);
+        if (!method)
+          return {};
+        const std::string object = "rtsl::object<" + names.of(&definition) + ">(rt, object).";
+        for (const typed::Class *at = &definition; at != method->owner->base;
+             at = at->base) // a base of that has others
+          if (auto first = firstCalls.find({at, called.slot}); first != firstCalls.end())
+            return "return " + object + first->second;
+        isPlain = true;
+        std::vector<std::string> arguments;
+        if (takesState(*method))
+          arguments.emplace_back("rt");
+        if (takesScratch(*method))
+          arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+        for (std::size_t i = 0; i < called.given.size(); ++i)
+          if (called.given[i])
+            arguments.push_back((isAddress(called.given[i]) ? "*call." : "call.") +
+                                called.fields[i]);
+        std::string result;
+        if (!called.returned.empty())
+          result = "call." + called.returned + " = ";
+        else if (!called.given.empty() && !called.given.front())
+          result = "*call." + called.fields.front() + " = ";
+        return result + object + names.of(method) + "(" + join(arguments, ", ") + ")";
+      },
+      mayReferToNothing);
   const std::string call =
       isPlain ? fmt::format("auto &call = rtsl::calledFrameAt<{}>(frame);\n", structureOf(called)) : std::string();
   const bool isOver = body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();

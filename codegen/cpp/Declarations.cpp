@@ -13,10 +13,12 @@
 
 namespace rtsl::cpp {
 
-ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
-                             const StateProgram *states)
+ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options,
+                             Diagnostics &diagnostics, const StateProgram *states)
     : module(module), options(options), names(module),
-      effects(module, options.prints, options.exceptions && options.checkIndices), notes(diagnostics.sources()), tracing(module), states(states),
+      effects(module, options.prints, options.exceptions && options.checkIndices),
+      notes(diagnostics.sources()), tracing(module),
+      mayReferToNothing(lowering::mayReferToNothing(module)), states(states),
       diagnostics(diagnostics) {
   if (states)
     findCalledMethods();

@@ -39,9 +39,10 @@ const typed::Function *ModulePrinter::findMethod(const typed::Class &definition,
 }
 
 // A switch over the classes, or a plain call if there is one. `call` gives "" for a class that has
-// no such method.
+// no such method. `mayBeNone`: nothing happens if there is no object.
 std::string ModulePrinter::dispatch(const std::vector<const typed::Class *> &classes,
-                                    const std::function<std::string(const typed::Class &)> &call) {
+                                    const std::function<std::string(const typed::Class &)> &call,
+                                    bool mayBeNone) {
   std::string arms;
   std::string only;
   for (const typed::Class *definition : classes) {
@@ -56,7 +57,7 @@ std::string ModulePrinter::dispatch(const std::vector<const typed::Class *> &cla
   if (arms.empty())
     return {};
   if (classes.size() == 1)
-    return only + ";\n";
+    return (mayBeNone ? "if (object != 0)\n" : "") + only + ";\n";
   return "switch (static_cast<Id>(rtsl::classOf(rt, object))) {\n" + arms + "default:\nbreak;\n}\n";
 }
 
@@ -114,12 +115,16 @@ std::string ModulePrinter::referenceMethods() {
         text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n{} = {};\n", isColor ? "Color" : "float",
                             names.reference(className), through.method, state,
                             isColor ? "Color(0.0f)" : "0.0f");
-        text += dispatch(classes, [&](const typed::Class &definition) -> std::string {
-          const typed::Function *lookup = definition.findMethod("lookup");
-          if (!lookup)
-            return {};
-          return "rtsl::object<" + names.of(&definition) + ">(rt, object)." + names.of(lookup) + "(rt)";
-        });
+        text += dispatch(
+            classes,
+            [&](const typed::Class &definition) -> std::string {
+              const typed::Function *lookup = definition.findMethod("lookup");
+              if (!lookup)
+                return {};
+              return "rtsl::object<" + names.of(&definition) + ">(rt, object)." + names.of(lookup) +
+                     "(rt)";
+            },
+            mayReferToNothing);
         text += "return " + state + ";\n}\n";
         continue;
       }
@@ -127,24 +132,27 @@ std::string ModulePrinter::referenceMethods() {
       const bool isVoid = function.returnType->is(TypeKind::Void);
       text += fmt::format("\ninline {} {}::{}({}) const {{\n", type(function.returnType), names.reference(className),
                           names.of(&function), parameterList(*this, function));
-      const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
-        const typed::Function *method = findMethod(definition, function);
-        if (!method)
-          return {};
-        std::vector<std::string> args;
-        if (takesState(*method))
-          args.push_back("rt");
-        if (takesScratch(*method)) // what the hit so far has stored
-          args.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
-        std::size_t unnamed = 1;
-        for (const auto &parameter : function.parameters) {
-          const std::string &name = names.of(parameter.get());
-          args.push_back(name.empty() ? fmt::format("unnamed{}", unnamed) : name);
-          ++unnamed;
-        }
-        return std::string(isVoid ? "" : "return ") + "rtsl::object<" + names.of(&definition) + ">(rt, object)." +
-               names.of(method) + "(" + join(args, ", ") + ")";
-      });
+      const std::string body = dispatch(
+          classes,
+          [&](const typed::Class &definition) -> std::string {
+            const typed::Function *method = findMethod(definition, function);
+            if (!method)
+              return {};
+            std::vector<std::string> args;
+            if (takesState(*method))
+              args.push_back("rt");
+            if (takesScratch(*method)) // what the hit so far has stored
+              args.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+            std::size_t unnamed = 1;
+            for (const auto &parameter : function.parameters) {
+              const std::string &name = names.of(parameter.get());
+              args.push_back(name.empty() ? fmt::format("unnamed{}", unnamed) : name);
+              ++unnamed;
+            }
+            return std::string(isVoid ? "" : "return ") + "rtsl::object<" + names.of(&definition) +
+                   ">(rt, object)." + names.of(method) + "(" + join(args, ", ") + ")";
+          },
+          mayReferToNothing);
       text += body;
       if (!isVoid && (body.compare(0, 6, "return") != 0))
         text += "return {};\n";

@@ -176,7 +176,8 @@ private:
   std::string needs(const Effects &reads) const;
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
   std::string dispatch(const std::vector<const typed::Class *> &classes,
-                       const std::function<std::string(const typed::Class &)> &call);
+                       const std::function<std::string(const typed::Class &)> &call,
+                       bool mayBeNone = false);
   const typed::Function *findMethod(const typed::Class &definition, const typed::Function &like) const;
 
   /// A state that runs when a ray is back.
@@ -191,6 +192,7 @@ private:
   std::map<std::pair<const typed::Class *, std::string>, std::string> firstCalls; // by class and method
   std::vector<std::string> frames, calledFrames;                                   // the structs
   TracingFunctions tracing;
+  const bool mayReferToNothing; // some reference
   std::vector<CalledMethod> calledMethods;
 
   struct RayType {

@@ -7,6 +7,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
+#include "codegen/lower/Analysis.h"
 
 namespace rtsl::linking {
 
@@ -44,16 +45,20 @@ void buildZeroReturn(mlir::OpBuilder &builder, mlir::func::FuncOp function) {
 
 } // namespace
 
-void noteDispatch(LinkContext &context, const std::string &subject, const std::vector<const LinkedClass *> &classes,
-                  const ir::SourcePlace &place) {
+void noteDispatch(LinkContext &context, const std::string &subject,
+                  const std::vector<const LinkedClass *> &classes, const ir::SourcePlace &place,
+                  bool mayBeNone) {
   if (classes.empty())
     return;
   std::string names;
   for (const LinkedClass *linked : classes)
     names += (names.empty() ? "`" : ", `") + linked->info->name + "`";
-  const bool isNeeded = classes.size() > 1;
+  const bool isNeeded = classes.size() > 1 || mayBeNone;
   context.findings.push_back({Item::Dispatch, subject, isNeeded,
-                              isNeeded ? "one of " + names : "always " + names + ", called directly", place});
+                              classes.size() > 1 ? "one of " + names
+                              : mayBeNone        ? names + ", or no object"
+                                                 : "always " + names + ", called directly",
+                              place});
 }
 
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method) {
@@ -62,7 +67,8 @@ mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &lin
 }
 
 void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
-                   const std::vector<const LinkedClass *> &classes, const std::string &method) {
+                   const std::vector<const LinkedClass *> &classes, const std::string &method,
+                   bool mayBeNone) {
   std::vector<std::pair<const LinkedClass *, mlir::func::FuncOp>> targets;
   for (const LinkedClass *linked : classes)
     if (mlir::func::FuncOp target = findMethod(context, *linked, method))
@@ -71,7 +77,7 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
   mlir::Block *entry = function.addEntryBlock();
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(entry);
   const bool oneForAll = targets.size() == 1 && classes.size() == 1;
-  if (oneForAll && !context.request.keep.has(Item::Dispatch)) {
+  if (oneForAll && !mayBeNone && !context.request.keep.has(Item::Dispatch)) {
     buildCall(builder, *targets.front().first, targets.front().second, function);
     return;
   }
@@ -115,6 +121,8 @@ void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, m
 }
 
 void resolveSlots(LinkContext &context) {
+  const bool mayBeNone =
+      lowering::mayReferToNothing(context.module); // then nothing happens, and zero is returned
   replaceSlots(context.ir, [&](const SlotCall &slot, mlir::func::FuncOp function) {
     std::vector<const LinkedClass *> classes;
     for (const LinkedClass &linked : context.classes) {
@@ -124,8 +132,9 @@ void resolveSlots(LinkContext &context) {
       if (linked.hasObjects && !findMethod(context, linked, slot.method))
         context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method, linked.info->name);
     }
-    noteDispatch(context, slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()));
-    buildDispatch(context, function, classes, slot.method);
+    noteDispatch(context, slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()),
+                 mayBeNone);
+    buildDispatch(context, function, classes, slot.method, mayBeNone);
   });
 }
 

@@ -110,13 +110,16 @@ std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked);
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);
 
 /// Notes between which classes a call through a reference or from the runtime chooses.
-void noteDispatch(LinkContext &context, const std::string &subject, const std::vector<const LinkedClass *> &classes,
-                  const ir::SourcePlace &place);
+void noteDispatch(LinkContext &context, const std::string &subject,
+                  const std::vector<const LinkedClass *> &classes, const ir::SourcePlace &place,
+                  bool mayBeNone = false);
 
-/// Fills the empty `function`, whose first argument is an object of class or base `base`: it calls `method` of whatever
-/// class the object has, with the remaining arguments. A class in `classes` that does not define the method does
-/// nothing there and gives zeros.
+/// Fills the empty `function`, whose first argument is an object of class or base `base`: it calls
+/// `method` of whatever class the object has, with the remaining arguments. A class in `classes`
+/// that does not define the method does nothing there and gives zeros; so does no object, if that
+/// `mayBeNone`.
 void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
-                   const std::vector<const LinkedClass *> &classes, const std::string &method);
+                   const std::vector<const LinkedClass *> &classes, const std::string &method,
+                   bool mayBeNone = false);
 
 } // namespace rtsl::linking

@@ -2,6 +2,7 @@
 #include "codegen/lower/Analysis.h"
 
 #include "sema/Casting.h"
+#include "sema/TypeProperties.h"
 
 namespace rtsl::lowering {
 
@@ -239,6 +240,29 @@ std::string slotName(const typed::Module &module, const typed::Function &method)
       if (other->name == method.name && !sameParameters(*other, method) && !method.isConstructor)
         return method.name + parameterWords(method);
   return method.name;
+}
+
+bool mayReferToNothing(const typed::Module &module) {
+  const auto refers = [](const Type *type) { return contains(type, TypeKind::Class); };
+  const auto inFunction = [&](const auto &function) {
+    return std::any_of(function->locals.begin(), function->locals.end(),
+                       [&](const auto &local) { return !local->init && refers(local->type); }) ||
+           std::any_of(function->parameters.begin(), function->parameters.end(),
+                       [&](const auto &parameter) {
+                         return parameter->direction == ast::Direction::Out &&
+                                refers(parameter->type);
+                       });
+  };
+  const auto inMember = [&](const auto &member) {
+    const bool isSet = member->access == ast::Access::Public && !member->type->is(TypeKind::Buffer);
+    return !isSet && refers(member->type);
+  };
+  return std::any_of(module.functions.begin(), module.functions.end(), inFunction) ||
+         std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
+           return std::any_of(definition->members.begin(), definition->members.end(), inMember) ||
+                  std::any_of(definition->functions.begin(), definition->functions.end(),
+                              inFunction);
+         });
 }
 
 } // namespace rtsl::lowering

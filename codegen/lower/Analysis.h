@@ -42,6 +42,10 @@ std::string parameterWords(const typed::Function &function);
 /// What the IR calls a method, whatever class has it: its name, with its parameters' types where others have that name.
 std::string slotName(const typed::Module &module, const typed::Function &method);
 
+/// May a reference of the module refer to no object? The scene sets all public members, so that it
+/// takes a variable or a private member that nobody has written, or a buffer without elements.
+bool mayReferToNothing(const typed::Module &module);
+
 /// Does the expression stand for a place in memory (and not for a value)?
 bool isPlace(const typed::Expr &expr);
 
