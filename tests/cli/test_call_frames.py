@@ -45,6 +45,22 @@ class CallFrames(Case):
             self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", *way)
             self.run_rtslc("compare", "0.exr", f"{i}.exr", "--threshold", "0")
 
+    def test_no_object_does_nothing_whatever_is_left_out(self):
+        self.write("nothing.rtsl", (SHADERS.parent / "Nothing.rtsl").read_text())
+        self.write("scene.json", json.dumps({
+            "rtsl": 1, "import": ["nothing.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl"), str(EXAMPLES / "glass" / "PinholeCamera.rtsl")],
+            "camera": {"class": "PinholeCamera", "constructor": [[0, 0, 6], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1]},
+            "textures": {"filter": {"class": "Filter"}, "half": {"class": "Scale"}},
+            "materials": {"mirror": {"class": "Mirror", "filter": "filter", "scales": ["half", "half"]}},
+            "objects": [{"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 1.5}, "material": "mirror"}],
+            "background": {"class": "Sky"},
+            "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 2}}))
+        for i, way in enumerate([*WAYS, ["--keep=all"], ["--keep=all", *WAYS[1]]]):
+            self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", *way)
+            self.run_rtslc("compare", "0.exr", f"{i}.exr", "--threshold", "0")
+        said = self.run_rtslc("explain", "scene.json")[0]
+        self.assertIn("`Filter`, or no object", said)
+
     def test_a_package_holds_them(self):
         self.scene(3, 2)
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")

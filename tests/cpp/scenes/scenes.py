@@ -79,6 +79,20 @@ def chains(length, depth, branches=True):
     }
 
 
+def nothing():
+    """References to no object (Nothing.rtsl)."""
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Nothing.rtsl"), str(glass / "Sphere.rtsl"), str(glass / "PinholeCamera.rtsl")],
+        "camera": {"class": "PinholeCamera", "constructor": [[0, 0, 6], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1]},
+        "textures": {"filter": {"class": "Filter"}, "half": {"class": "Scale"}, "twice": {"class": "Twice"}},
+        "materials": {"mirror": {"class": "Mirror", "filter": "filter", "scales": ["half", "twice"]}},
+        "objects": [sphere([0, 0, 0], 1.5, "mirror"), sphere([1, 1.5, -1], 1, "mirror")],
+        "background": {"class": "Sky"},
+        "render": {"engine": "classic", "size": [32, 32], "spp": 2, "depth": 3},
+    }
+
+
 def names():
     """Whose names C++ cannot have (Names.rtsl)."""
     return {
@@ -105,6 +119,8 @@ CASES = [
     ("g++", ["-O1"], ["--unchecked"], [answers("programs")]),
     ("g++", ["-O1"], [], [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)]),
     ("clang++-22", ["-O1"], ["--trace=recurse"], [chains(3, 2)]),
+    ("g++", ["-O1"], [], [nothing()]),
+    ("clang++-22", ["-O1"], ["--trace=recurse"], [nothing()]),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),
     ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]
