@@ -1,5 +1,7 @@
 #include "codegen/cpp/SourceNotes.h"
 
+#include "frontend/Expansion.h"
+
 #include <algorithm>
 #include <cctype>
 
@@ -80,6 +82,10 @@ bool SourceNotes::followsEmptyLine(SourceRange range, SourceRange previous) cons
 }
 
 std::string SourceNotes::file(SourceRange range) const { return std::string(sources.name(range.file)); }
+
+std::string SourceNotes::shownFile(SourceRange range) const {
+  return std::string(shownBegin(sources, range).file);
+}
 
 std::string SourceNotes::textOfLine(SourceRange range, unsigned line) const {
   if (!range.isValid() || line == 0)

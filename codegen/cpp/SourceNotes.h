@@ -29,6 +29,8 @@ public:
   /// File and line, for #line.
   std::string file(SourceRange range) const;
   unsigned line(SourceRange range) const;
+  /// The name of the file that messages about a range would show.
+  std::string shownFile(SourceRange range) const;
   /// The text of a line of the file in which the range is, without comment and white space around it.
   std::string textOfLine(SourceRange range, unsigned line) const;
 

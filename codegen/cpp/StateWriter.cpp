@@ -12,16 +12,18 @@ namespace rtsl::cpp {
 
 namespace arith = mlir::arith;
 
-unsigned lineOf(mlir::Location location) {
-  if (auto file = llvm::dyn_cast<mlir::FileLineColLoc>(location))
-    return file.getLine();
+unsigned lineOf(mlir::Location location, llvm::StringRef file) {
+  if (auto place = llvm::dyn_cast<mlir::FileLineColLoc>(location))
+    return place.getFilename() == file ? place.getLine() : 0;
   if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
-    return lineOf(name.getChildLoc());
-  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location))
-    return lineOf(call.getCallee());
+    return lineOf(name.getChildLoc(), file);
+  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location)) {
+    const unsigned line = lineOf(call.getCallee(), file);
+    return line != 0 ? line : lineOf(call.getCaller(), file);
+  }
   if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location))
     for (mlir::Location part : fused.getLocations())
-      if (unsigned line = lineOf(part))
+      if (unsigned line = lineOf(part, file))
         return line;
   return 0;
 }
@@ -45,7 +47,7 @@ void StateWriter::unsupported(mlir::Operation &op) {
   std::string what = op.getName().stripDialect().str();
   if (llvm::isa<ir::VarOp, ir::TableOp>(op))
     what = "an array or a struct";
-  const unsigned line = lineOf(op.getLoc());
+  const unsigned line = lineOf(op.getLoc(), machine.file);
   module.unsupported(machine.method->range,
                      fmt::format("{} in states in C++{} (--trace=recurse keeps `trace` as a call)", what,
                                  line ? fmt::format(", of line {}", line) : ""));
@@ -57,7 +59,7 @@ void StateWriter::unsupported(mlir::Operation &op) {
 
 void StateWriter::operation(mlir::Operation &op, Statements &out) {
   consumed = {};
-  if (unsigned line = lineOf(op.getLoc()))
+  if (unsigned line = lineOf(op.getLoc(), machine.file))
     currentLine = line;
   auto pure = [&](Code code) { define(op, std::move(code), consumed, true, out); };
   auto infix = [&](const char *sign, Binding binding) {

@@ -32,6 +32,7 @@ struct FrameField {
 struct Machine {
   const typed::Class *definition = nullptr;
   const typed::Function *method = nullptr;
+  std::string file; // that has the method
   std::vector<mlir::func::FuncOp> states;
   std::vector<FrameField> frame;
   std::string frameName = "frame", callName = "call"; // of the parameters
@@ -54,8 +55,9 @@ bool changes(ir::EvaluateOp op, std::size_t operand);
 /// Does the operation write what lies at an address, or in a part of it?
 bool writesTo(mlir::Operation *op, mlir::Value address);
 
-/// The line of an operation in the author's file; 0: unknown.
-unsigned lineOf(mlir::Location location);
+/// The line of an operation in a file of the author's; of one of a function in another file, the
+/// line that calls it. 0: unknown.
+unsigned lineOf(mlir::Location location, llvm::StringRef file);
 
 /// What a value is called among people: as the author calls it, or after the operation that makes it.
 std::string nameFor(mlir::Value value);

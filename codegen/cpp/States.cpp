@@ -116,11 +116,12 @@ static std::string uncapitalised(std::string word) {
 }
 
 /// The first line that asks for what lies at an address.
-static unsigned lineOfAccess(mlir::Value address) {
+static unsigned lineOfAccess(mlir::Value address, llvm::StringRef file) {
   unsigned line = 0;
   for (mlir::Operation *user : address.getUsers()) {
     const bool isPart = llvm::isa<ir::FieldOp, ir::ElementOp>(user);
-    const unsigned at = isPart ? lineOfAccess(user->getResult(0)) : lineOf(user->getLoc());
+    const unsigned at =
+        isPart ? lineOfAccess(user->getResult(0), file) : lineOf(user->getLoc(), file);
     if (at != 0 && (line == 0 || at < line))
       line = at;
   }
@@ -128,10 +129,10 @@ static unsigned lineOfAccess(mlir::Value address) {
 }
 
 /// The line where what is in the frame is needed: that of the first thing that is made of it.
-static unsigned lineOfUse(ir::FrameLoadOp load) {
+static unsigned lineOfUse(ir::FrameLoadOp load, llvm::StringRef file) {
   unsigned line = 0;
   for (mlir::Operation *user : load->getUsers())
-    if (unsigned at = lineOf(user->getLoc()); at != 0 && (line == 0 || at < line))
+    if (unsigned at = lineOf(user->getLoc(), file); at != 0 && (line == 0 || at < line))
       line = at;
   return line;
 }
@@ -162,22 +163,23 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
     state.walk([&](ir::FrameObjectOp object) {
       FrameField &saved = field(object.getName(), /*isObject=*/true);
       saved.type = writer.typeOf(object);
-      saved.madeIn = lineOf(object.getLoc());
-      const unsigned line = lineOfAccess(object);
+      saved.madeIn = lineOf(object.getLoc(), machine.file);
+      const unsigned line = lineOfAccess(object, machine.file);
       if (number != 0 && line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
         saved.neededBy = line;
     });
   for (mlir::func::FuncOp state : machine.states) {
     state.walk([&](ir::FrameStoreOp store) {
       FrameField &saved = field(store.getName(), /*isObject=*/false, store.getValue());
-      if (unsigned line = lineOf(store.getLoc()); saved.madeIn == 0)
+      if (unsigned line = lineOf(store.getLoc(), machine.file); saved.madeIn == 0)
         saved.madeIn = line;
       saved.isTraced &= store.getValue().getDefiningOp<ir::TraceResultOp>() != nullptr;
       saved.isReturned &= store.getValue().getDefiningOp<ir::CallReturnedOp>() != nullptr;
     });
     state.walk([&](ir::FrameLoadOp load) {
       FrameField &saved = field(load.getName());
-      if (unsigned line = lineOfUse(load); line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
+      if (unsigned line = lineOfUse(load, machine.file);
+          line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
         saved.neededBy = line;
     });
   }
@@ -241,6 +243,7 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   Machine machine;
   machine.definition = &definition;
   machine.method = &method;
+  machine.file = notes.shownFile(method.range);
   machine.called = method.isStateMethod ? nullptr : calledMethod(definition, method);
   const std::string slot = lowering::slotName(module, method);
   machine.states = statesOf(*states, definition.name, slot, machine.called != nullptr);
@@ -327,7 +330,7 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
       unsigned line = 0;
       machine.states[i].walk([&](mlir::Operation *op) {
         if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp, ir::CallReturnedOp>(op) && line == 0)
-          line = lineOf(op->getLoc());
+          line = lineOf(op->getLoc(), machine.file);
       });
       const bool isCall = before != machine.callBefore.end();
       text += line ? fmt::format(isCall ? "\n// When the call of line {} is over.\n" : "\n// When the ray of line {} is back.\n", line)
