@@ -2,6 +2,7 @@
 #include "codegen/cpp/StateWriter.h"
 
 #include "codegen/passes/continuation/Names.h"
+#include "sema/Casting.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -88,12 +89,27 @@ std::string StateWriter::nameOfValue(mlir::Value value) {
   if (auto whole = value.getDefiningOp<ir::ExpressionOp>();
       whole && source.entries[whole.getSource()].kind == SourceTable::Kind::AngleCosine)
     return "cosine";
-  if (auto load = value.getDefiningOp<ir::FrameLoadOp>();
-      load && continuation::authorsName(value).empty())
+  const std::string name = nameFor(value);
+  const bool isOfIr = name == "expression" || name == "evaluate" || name == "call_returned";
+  if (auto load = value.getDefiningOp<ir::FrameLoadOp>(); load && isOfIr)
     for (const FrameField &field : machine.frame)
       if (!field.isObject && field.slot == load.getName())
         return field.name;
-  return nameFor(value);
+  auto call = value.getDefiningOp<ir::EvaluateOp>();
+  if (!call || name != "value")
+    return name;
+  const typed::Expr *expr = source.entries[call.getSource()].expr;
+  const typed::Function *callee = nullptr;
+  if (auto *direct = dynCast<typed::CallExpr>(expr))
+    callee = direct->function;
+  else if (auto *method = dynCast<typed::MethodCallExpr>(expr))
+    callee = method->function;
+  if (!callee)
+    return name;
+  unsigned number = 1; // `bounce1` is what the first call of `bounce` gives
+  while (taken.count(module.names.of(callee) + std::to_string(number)))
+    ++number;
+  return module.names.of(callee) + std::to_string(number);
 }
 
 static std::string scalarType(mlir::Type type) {
