@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rtsl::test {
@@ -44,6 +45,29 @@ TEST(ColorBasis, ProjectsBackToWhatItWasMadeOf) {
       EXPECT_NEAR(row[0] + row[1] + row[2], 1, 1e-12) << "white is flat";
       for (double weight : row)
         EXPECT_GE(weight, count == 3 ? 0 : -1e-12);
+    }
+  }
+}
+
+/// docs/language.md, `color.bands`, once more.
+TEST(ColorBasis, IsWhatTheLanguageSays) {
+  const auto step = [](double a, double b, double x) {
+    const double t = std::min(std::max((x - a) / (b - a), 0.0), 1.0);
+    return 3 * t * t - 2 * t * t * t;
+  };
+  for (std::uint32_t count : {4u, 5u, 16u}) {
+    ColorFunction run("c = color(x[0], x[1], x[2]);", count);
+    run.x = {0.9F, 0.2F, 0.4F, 0};
+    run();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      double red = 0, blue = 0;
+      for (unsigned part = 0; part < 64; ++part) {
+        const double wavelength = 380 + (720.0 - 380) * (i + (part + 0.5) / 64) / count;
+        red += step(550, 610, wavelength) / 64;
+        blue += (1 - step(460, 520, wavelength)) / 64;
+      }
+      const double green = 1 - red - blue;
+      EXPECT_NEAR(run.c[i], 0.9F * red + 0.2F * green + 0.4F * blue, 1e-7) << count << " " << i;
     }
   }
 }
