@@ -200,26 +200,19 @@ static bool isLinearAlgebra(BinaryOp op, const Type *left, const Type *right) {
                                  (left->isVector() && right->isMatrix()));
 }
 
-/// Colors fold only where the result does not depend on how many components the target gives them:
-/// grey with grey, and anything times or divided by a number.
-static std::optional<Constant> foldColor(BinaryOp op, bool leftIsColor, const Constant &left,
-                                         bool rightIsColor, const Constant &right) {
-  if (leftIsColor && rightIsColor && left.scalars.size() + right.scalars.size() > 2)
+/// Colors fold only where the result does not depend on how many components the target gives them, to the last bit: grey
+/// with grey or with a number. The components of another color are rounded after the conversion.
+static std::optional<Constant> foldColor(BinaryOp op, const Constant &left, const Constant &right) {
+  if (left.scalars.size() != 1 || right.scalars.size() != 1)
     return std::nullopt;
-  Constant result;
-  const std::size_t count = std::max(left.scalars.size(), right.scalars.size());
-  for (std::size_t i = 0; i != count; ++i)
-    result.scalars.push_back(foldFloat(op, left.scalars[left.scalars.size() == 1 ? 0 : i].f,
-                                       right.scalars[right.scalars.size() == 1 ? 0 : i].f));
-  return result;
+  return Constant{{foldFloat(op, left.scalars[0].f, right.scalars[0].f)}};
 }
 
 static std::optional<Constant> foldBinary(const typed::BinaryExpr &expr, const Constant &left,
                                           const Constant &right) {
   const Type *leftType = expr.left->type, *rightType = expr.right->type;
   if (leftType->is(TypeKind::Color) || rightType->is(TypeKind::Color))
-    return foldColor(expr.op, leftType->is(TypeKind::Color), left, rightType->is(TypeKind::Color),
-                     right);
+    return foldColor(expr.op, left, right);
   if (expr.op == BinaryOp::Equal || expr.op == BinaryOp::NotEqual) {
     const bool equal = equalValues(leftType, left.scalars.data(), right.scalars.data());
     return Constant{{makeBool(equal == (expr.op == BinaryOp::Equal))}};
@@ -392,6 +385,8 @@ std::optional<Constant> Evaluator::evaluate(const typed::Expr &expr) {
     const auto &unary = cast<typed::UnaryExpr>(expr);
     std::optional<Constant> operand = evaluate(*unary.operand);
     if (!operand)
+      return std::nullopt;
+    if (expr.type->is(TypeKind::Color) && operand->scalars.size() != 1) // as foldColor says
       return std::nullopt;
     return foldUnary(unary.op, expr.type, *operand);
   }
