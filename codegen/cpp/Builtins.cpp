@@ -36,13 +36,18 @@ Code FunctionPrinter::withOutputs(const std::string &callee, const typed::Builti
   std::vector<std::string> texts = operands(inputs, Binding::Assignment);
   std::vector<std::string> after;
   for (std::size_t i = firstOutput; i < expr.args.size(); ++i) {
-    if (canBind(*expr.args[i])) {
+    const bool isBindable = canBind(*expr.args[i]);
+    if (isBindable && after.empty()) { // later ones are written last
       texts.push_back(place(*expr.args[i], !indexEffects(*expr.args[i]).isPure()).text);
       continue;
     }
     const std::string name = temporaryName("result");
     before->push_back(fmt::format("{} {}{{}};", module.type(expr.args[i]->type), name));
     texts.push_back(name);
+    if (isBindable) {
+      after.push_back(place(*expr.args[i], true).text + " = " + name + ";");
+      continue;
+    }
     const typed::Expr *vector = nullptr;
     const std::vector<std::uint8_t> parts = components(*expr.args[i], vector);
     const std::string where = place(*vector, true).text;

@@ -136,22 +136,12 @@ std::string declarator(const std::string &type, const std::string &name, const s
 //===----------------------------------------------------------------------===//
 
 /// The method that this one overrides, at the top: what one of them takes, all take.
-const typed::Function &ModulePrinter::overridden(const typed::Function &function) const {
-  const typed::Function *top = &function;
-  if (function.owner && !function.isConstructor && !function.isStateMethod)
-    for (const typed::Class *base = function.owner->base; base; base = base->base)
-      for (const auto &method : base->functions)
-        if (method->name == function.name && lowering::sameParameters(*method, function))
-          top = method.get();
-  return *top;
-}
-
 bool ModulePrinter::takesState(const typed::Function &function) {
-  return function.isStateMethod || effects.function(overridden(function)).usesRay;
+  return function.isStateMethod || effects.function(function).usesRay;
 }
 
 bool ModulePrinter::takesScratch(const typed::Function &function) {
-  const Effects &inside = effects.function(overridden(function));
+  const Effects &inside = effects.function(function);
   if (!function.owner)
     return inside.reportsHit;
   if (!hasScratch(*function.owner))
@@ -183,6 +173,41 @@ bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed:
   });
 }
 
+/// Does what the statement does say nothing of the parameter?
+static bool leavesAlone(const typed::Stmt &stmt, const typed::Variable &parameter) {
+  bool found = stmt.kind != ast::StmtKind::Expression && stmt.kind != ast::StmtKind::Declaration;
+  forEachExpr(stmt, [&](const typed::Expr &expr) {
+    auto *named = dynCast<typed::VariableExpr>(&expr);
+    found = found || (named && named->variable == &parameter);
+  });
+  return !found;
+}
+
+bool ModulePrinter::beginsAsZero(const typed::Variable &parameter, const typed::Function &function) const {
+  if (parameter.direction != ast::Direction::Out || !function.body)
+    return false;
+  for (const typed::StmtPtr &stmt : cast<typed::CompoundStmt>(*function.body).body) {
+    if (!stmt || leavesAlone(*stmt, parameter))
+      continue;
+    auto *expression = dynCast<typed::ExpressionStmt>(stmt);
+    auto *assign = expression ? dynCast<typed::AssignExpr>(expression->expr) : nullptr;
+    auto *target = assign ? dynCast<typed::VariableExpr>(assign->target) : nullptr;
+    bool isRead = false;
+    if (target)
+      forEachExpr(*assign->value, [&](const typed::Expr &expr) {
+        auto *named = dynCast<typed::VariableExpr>(&expr);
+        isRead = isRead || (named && named->variable == &parameter);
+      });
+    return !target || target->variable != &parameter || assign->compound || isRead;
+  }
+  return true;
+}
+
+std::string ModulePrinter::parameterName(const typed::Function &function, std::size_t number) const {
+  const std::string &name = names.of(function.parameters[number].get());
+  return name.empty() ? fmt::format("unnamed{}", number + 1) : name;
+}
+
 std::string ModulePrinter::signature(const typed::Function &function, bool isMethod) {
   std::set<const typed::Variable *> mentioned, read;
   std::set<const typed::Expr *> onlyWritten;
@@ -212,21 +237,25 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
   if (takesState(function))
     parameters.push_back(mentionsRay ? "State &rt" : "State &");
   if (takesScratch(function)) {
-    const Effects &inside = effects.function(overridden(function));
+    const Effects &inside = effects.function(function);
     const bool writes = inside.writesScratch || inside.reportsHit || function.name == "intersect";
     const std::string scratch = function.owner ? "Scratch" : "rtsl::Scratch";
     parameters.push_back(std::string(writes ? "" : "const ") + scratch + (mentionsScratch ? " &scratch" : " &"));
   }
-  for (const auto &parameter : function.parameters) {
+  for (std::size_t number = 0; number != function.parameters.size(); ++number) {
+    const auto &parameter = function.parameters[number];
     std::string name = names.of(parameter.get());
     std::string text = type(parameter->type);
+    const bool isSet = beginsAsZero(*parameter, function);
+    if (isSet)
+      name = parameterName(function, number);
     if (parameter->direction != ast::Direction::In)
       text += " &";
     else if (isByReference(*parameter, function))
       text = "const " + text + " &";
     else
       text = (parameter->isConst ? "const " : "") + text + " ";
-    if (!mentioned.count(parameter.get()))
+    if (!mentioned.count(parameter.get()) && !isSet)
       name = name.empty() ? "" : "/*" + name + "*/";
     else if (!read.count(parameter.get()) && parameter->direction == ast::Direction::In)
       text = "[[maybe_unused]] " + text;
@@ -235,7 +264,7 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
 
   std::string text = type(function.returnType) + " " + names.of(&function) + "(" + join(parameters, ", ") + ")";
   if (isMethod) {
-    if (!function.isConstructor && !effects.function(overridden(function)).writesMembers)
+    if (!function.isConstructor && !effects.function(function).writesMembers)
       text += " const";
     if (overrides(function))
       text += " override";

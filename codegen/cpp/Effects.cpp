@@ -58,7 +58,19 @@ EffectsOf::EffectsOf(const typed::Module &module, bool prints, bool raises)
           });
 }
 
-const Effects &EffectsOf::function(const typed::Function &function) {
+const typed::Function &overridden(const typed::Function &function) {
+  const typed::Function *top = &function;
+  if (function.owner && !function.isConstructor && !function.isStateMethod)
+    for (const typed::Class *base = function.owner->base; base; base = base->base)
+      for (const auto &method : base->functions)
+        if (method->name == function.name && lowering::sameParameters(*method, function))
+          top = method.get();
+  return *top;
+}
+
+// All methods of the name are alike, whichever class has them: they have one signature, and a call may run any of them.
+const Effects &EffectsOf::function(const typed::Function &named) {
+  const typed::Function &function = overridden(named);
   if (auto found = known.find(&function); found != known.end())
     return found->second;
   known[&function]; // a method through a reference may lead back here

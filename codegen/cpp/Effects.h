@@ -35,6 +35,9 @@ struct Effects {
 /// Would it show if `second` were evaluated before `first`?
 bool conflicts(const Effects &first, const Effects &second);
 
+/// The first definition of a method, in the farthest base that has it.
+const typed::Function &overridden(const typed::Function &function);
+
 class EffectsOf {
 public:
   /// `prints`: does `print` print? `raises`: does an index ask the state whether it is in range?

@@ -67,11 +67,10 @@ std::string ModulePrinter::dispatch(const std::vector<const typed::Class *> &cla
 
 static std::string parameterList(ModulePrinter &printer, const typed::Function &function) {
   std::vector<std::string> parameters = {"State &rt"};
-  for (const auto &parameter : function.parameters) {
-    std::string text = printer.type(parameter->type);
-    text += parameter->direction == ast::Direction::In ? " " : " &";
-    const std::string &name = printer.names.of(parameter.get());
-    parameters.push_back(text + (name.empty() ? fmt::format("unnamed{}", parameters.size()) : name));
+  for (std::size_t i = 0; i != function.parameters.size(); ++i) {
+    const typed::Variable &parameter = *function.parameters[i];
+    parameters.push_back(printer.type(parameter.type) + (parameter.direction == ast::Direction::In ? " " : " &") +
+                         printer.parameterName(function, i));
   }
   return join(parameters, ", ");
 }
@@ -143,19 +142,21 @@ std::string ModulePrinter::referenceMethods() {
               args.push_back("rt");
             if (takesScratch(*method)) // what the hit so far has stored
               args.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
-            std::size_t unnamed = 1;
-            for (const auto &parameter : function.parameters) {
-              const std::string &name = names.of(parameter.get());
-              args.push_back(name.empty() ? fmt::format("unnamed{}", unnamed) : name);
-              ++unnamed;
-            }
+            for (std::size_t i = 0; i != function.parameters.size(); ++i)
+              args.push_back(parameterName(function, i));
             return std::string(isVoid ? "" : "return ") + "rtsl::object<" + names.of(&definition) +
                    ">(rt, object)." + names.of(method) + "(" + join(args, ", ") + ")";
           },
           mayReferToNothing);
-      text += body;
-      if (!isVoid && (body.compare(0, 6, "return") != 0))
-        text += "return {};\n";
+      const bool isDirect = classes.size() == 1 && !body.empty() && !mayReferToNothing;
+      std::string zeros; // what the method of no object gives
+      for (std::size_t i = 0; i != function.parameters.size() && !isDirect; ++i)
+        if (const typed::Variable &parameter = *function.parameters[i]; parameter.direction == ast::Direction::Out)
+          zeros += parameterName(function, i) + " = " + zero(parameter.type) + ";\n";
+      if (isVoid)
+        text += zeros + body;
+      else
+        text += body + (isDirect ? "" : zeros + "return {};\n");
       text += "}\n";
     }
   }

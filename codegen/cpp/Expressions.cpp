@@ -80,7 +80,7 @@ std::vector<std::string> FunctionPrinter::operands(const std::vector<const typed
     all.push_back(module.effects.expression(*expr));
     anyEffects |= !all.back().isPure();
   }
-  anyEffects &= replaced.empty(); // what has effects stands elsewhere
+  anyEffects &= isNested;
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < exprs.size(); ++i) {
     bool shows = false;
@@ -215,8 +215,6 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
 }
 
 bool isInMemory(const typed::Expr &expr) {
-  if (auto *swizzle = dynCast<typed::SwizzleExpr>(&expr))
-    return isInMemory(*swizzle->base);
   if (auto *index = dynCast<typed::IndexExpr>(&expr))
     return !index->base->type->isVector() || isInMemory(*index->base);
   if (auto *assignment = dynCast<typed::AssignExpr>(&expr))

@@ -408,14 +408,15 @@ Code FunctionPrinter::incDec(const typed::IncDecExpr &expr, bool resultIsUsed) {
 
 Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   const Effects value = module.effects.expression(*expr.value);
-  const bool storeIndices = conflicts(indexEffects(*expr.target), value);
   const typed::Expr *vector = nullptr;
   const std::vector<std::uint8_t> parts = components(*expr.target, vector);
+  const Effects indices = indexEffects(*expr.target);
+  const bool storeIndices = conflicts(indices, value) || (parts.size() > 1 && !indices.isPure());
 
   // Indices that do something are evaluated once; the old value is kept if evaluating the new one changes it.
   std::string stored, old;
   const bool changesOld = expr.compound && conflicts(module.effects.expression(*expr.target), value);
-  if (expr.compound && (changesOld || !indexEffects(*expr.target).isPure())) {
+  if (expr.compound && (changesOld || !indices.isPure())) {
     stored = place(parts.size() > 1 ? *vector : *expr.target, true).text;
     std::vector<std::string> texts;
     for (std::uint8_t part : parts)

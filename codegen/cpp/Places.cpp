@@ -122,7 +122,10 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
                       this->index(index, storeIndices));
       return {fmt::format("rtsl::at({}, {})", place(*vector, storeIndices).text, table)};
     }
-    const std::string base = lowering::isPlace(*index.base) ? place(*index.base, storeIndices).text
+    // An outer index comes first.
+    const bool changes = isNested && conflicts(module.effects.expression(*index.base), module.effects.expression(*index.index));
+    const std::string base = lowering::isPlace(*index.base) ? place(*index.base, storeIndices || changes).text
+                             : changes                      ? hoist(index.base->type, "value", argument(*index.base))
                                                             : operand(*index.base, Binding::Primary);
     return element(index, base, storeIndices);
   }

@@ -88,6 +88,10 @@ public:
   bool takesScratch(const typed::Function &function);
   /// `in` parameters that C++ takes by reference to const.
   bool isByReference(const typed::Variable &parameter, const typed::Function &function);
+  /// Is it an `out` parameter that the function may leave, or read, as it is? Then that is zero.
+  bool beginsAsZero(const typed::Variable &parameter, const typed::Function &function) const;
+  /// The parameter's name, or one for a parameter that has none.
+  std::string parameterName(const typed::Function &function, std::size_t number) const;
   /// A method that is called through references of a class; declares it there.
   void useThroughReference(const std::string &className, const std::string &method,
                            const typed::Function *function);
@@ -126,7 +130,6 @@ private:
   std::string member(const typed::Member &member);
   std::string scratchStructure(const typed::Class &definition);
   bool isOverridden(const typed::Function &function) const;
-  const typed::Function &overridden(const typed::Function &function) const;
   bool overrides(const typed::Function &function) const;
 
   // Attributes.cpp
@@ -320,6 +323,7 @@ private:
   std::map<const typed::Variable *, Interval> counters;
 
   std::map<const typed::Expr *, Code> replaced; // parts that stand elsewhere, as what they are here
+  bool isNested = true; // parts with effects are not among them
 
   friend class ModulePrinter;
   friend class StateWriter;

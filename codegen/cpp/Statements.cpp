@@ -42,7 +42,11 @@ std::string FunctionPrinter::body() {
       if (auto *named = static_cast<const typed::Variable *>(namedConstant(*literal)))
         readVariables.insert(named);
   });
-  return "{\n" + block(statements) + "}";
+  std::string zeros;
+  for (std::size_t i = 0; i != function->parameters.size(); ++i)
+    if (const typed::Variable &parameter = *function->parameters[i]; module.beginsAsZero(parameter, *function))
+      zeros += module.parameterName(*function, i) + " = " + module.zero(parameter.type) + ";\n";
+  return "{\n" + zeros + block(statements) + "}";
 }
 
 std::string FunctionPrinter::block(const std::vector<typed::StmtPtr> &statements) {

@@ -255,9 +255,9 @@ template <typename X, typename Y>
 inline auto mod(const X &value, const Y &divisor) {
   return each([](float x, float y) { return x - y * std::floor(x / y); }, value, divisor);
 }
-/// Both parts have the sign of x; the fraction of an infinity is 0.
+/// Both parts have the sign of x; the fraction of an infinity is 0. `whole` may be where the value comes from.
 template <typename T>
-inline T modf(const T &value, T &whole) {
+inline T modf(T value, T &whole) {
   whole = rtsl::trunc(value);
   return each(
       [](float x, float w) { return std::copysign(x == w ? 0.0f : x - w, x); }, value, whole);

@@ -125,6 +125,10 @@ struct ScalarOf<Color<N>> {
 template <typename T>
 using Scalar = typename ScalarOf<T>::type;
 
+/// What a scalar is where it does not lie in memory.
+template <typename T>
+using Value = std::conditional_t<std::is_same_v<T, Bool>, bool, T>;
+
 /// Component I; a scalar has itself in every component.
 template <int I, typename T>
 constexpr auto part(const T &value) {
@@ -145,7 +149,7 @@ constexpr auto part(const T &value) {
 template <bool Colors, typename Function, int... I, typename... T>
 constexpr auto eachOf(Function function, std::integer_sequence<int, I...>, const T &...operands) {
   auto at = [&](auto index) { return function(part<decltype(index)::value>(operands)...); };
-  using Result = decltype(at(std::integral_constant<int, 0>()));
+  using Result = Value<decltype(at(std::integral_constant<int, 0>()))>;
   if constexpr (Colors) {
     Color<int(sizeof...(I))> result;
     ((result.components[I] = at(std::integral_constant<int, I>())), ...);
@@ -271,7 +275,7 @@ inline float luminance(const Color<N> &color) {
 /// `v.zx` is swizzle<2, 0>(v).
 template <int... I, typename T>
 constexpr auto swizzle(const T &value) {
-  return glm::vec<int(sizeof...(I)), Scalar<T>>(part<I>(value)...);
+  return glm::vec<int(sizeof...(I)), Value<Scalar<T>>>(part<I>(value)...);
 }
 
 /// `vector` with component I replaced.
