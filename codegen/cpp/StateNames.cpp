@@ -122,6 +122,27 @@ static std::string scalarType(mlir::Type type) {
   return {};
 }
 
+static std::string vectorOf(const std::string &scalar, std::size_t width) {
+  const std::string letter = scalar == "unsigned" ? "u" : scalar == "int" ? "i" : scalar == "bool" ? "b" : "";
+  return "glm::" + letter + "vec" + std::to_string(width);
+}
+
+/// Of a vector's components; `known` is their type in the IR.
+static std::string scalarOf(const std::string &vector, mlir::Type known) {
+  if (vector.compare(0, 5, "glm::") == 0 && vector.size() > 6)
+    switch (vector[5]) {
+    case 'u':
+      return "unsigned";
+    case 'i':
+      return "int";
+    case 'b':
+      return "bool";
+    default:
+      return "float";
+    }
+  return known ? scalarType(known) : std::string();
+}
+
 static std::string stateType(llvm::StringRef name) {
   static const std::map<std::string, std::string> types = {
 #define RTSL_STATE_VARIABLE(name, type) {#name, #type},
@@ -172,6 +193,34 @@ std::string StateWriter::varType(ir::VarOp variable) {
   return variableTypes[variable] = type;
 }
 
+std::string StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
+  auto vector = llvm::dyn_cast<mlir::VectorType>(type);
+  const mlir::Type scalar = vector ? vector.getElementType() : type;
+  const auto width = vector ? static_cast<unsigned>(vector.getNumElements()) : 1u;
+  const std::string name = slot.substr(0, slot.find('.')); // "sum.2" is another sum
+  std::string found;
+  auto look = [&](const typed::Function &function) {
+    for (const auto *variables : {&function.parameters, &function.locals})
+      for (const auto &variable : *variables) {
+        const Type *part = variable->type->scalar();
+        const bool isAlike = variable->name == name && part && variable->type->componentCount() == width &&
+                             part->is(TypeKind::Float) == scalar.isF32() && part->is(TypeKind::Bool) == scalar.isInteger(1);
+        if (isAlike && found.empty())
+          found = module.type(variable->type);
+      }
+  };
+  look(*machine.method);
+  for (const auto &function : module.module.functions)
+    look(*function);
+  for (const auto &definition : module.module.classes)
+    for (const auto &function : definition->functions)
+      look(*function);
+  const bool isKnown = scalar.isF32() || scalar.isInteger(1); // the rest may be unsigned
+  if (!found.empty() || !isKnown)
+    return found;
+  return vector ? vectorOf(scalarType(scalar), width) : scalarType(scalar);
+}
+
 std::string StateWriter::typeOf(mlir::Value value) {
   mlir::Operation *op = value.getDefiningOp();
   if (!op)
@@ -213,7 +262,29 @@ std::string StateWriter::typeOf(mlir::Value value) {
         std::string type = typeOf(select.getTrueValue());
         return type.empty() ? typeOf(select.getFalseValue()) : type;
       })
-      .Case([&](mlir::vector::InsertOp insert) { return typeOf(insert.getDest()); })
+      .Case([&](mlir::vector::InsertOp insert) {
+        const std::string type = typeOf(insert.getDest());
+        const std::string scalar = typeOf(insert.getValueToStore());
+        const auto width = static_cast<std::size_t>(insert.getDestVectorType().getNumElements());
+        return !type.empty() || scalar.empty() ? type : vectorOf(scalar, width);
+      })
+      .Case([&](mlir::vector::ExtractOp part) { return scalarOf(typeOf(part.getSource()), value.getType()); })
+      .Case([&](mlir::vector::FromElementsOp made) {
+        std::string scalar = scalarType(made.getElements().front().getType());
+        for (mlir::Value part : made.getElements()) // constants do not say whether they are unsigned
+          if (std::string type = typeOf(part); !type.empty() && part.getDefiningOp<arith::ConstantOp>() == nullptr)
+            scalar = type;
+        return vectorOf(scalar, static_cast<std::size_t>(made.getElements().size()));
+      })
+      .Case([&](mlir::vector::BroadcastOp same) {
+        const auto width = static_cast<std::size_t>(same.getResultVectorType().getNumElements());
+        const std::string scalar = typeOf(same.getSource());
+        return scalar.empty() ? std::string() : vectorOf(scalar, width);
+      })
+      .Case([&](mlir::vector::ShuffleOp chosen) {
+        const std::string scalar = scalarOf(typeOf(chosen.getV1()), {});
+        return scalar.empty() ? std::string() : vectorOf(scalar, chosen.getMask().size());
+      })
       .Default([&](mlir::Operation *) { return scalarType(value.getType()); });
 }
 

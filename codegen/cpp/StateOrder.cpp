@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace rtsl::cpp {
 
@@ -94,7 +95,7 @@ StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
       if (!call->hasAttr("rtsl.plain")) {
         touches.readsAny = true;
         touches.writes.insert("random");
-        touches.writesAny = !call.getWrites();
+        touches.writesAny |= !call.getWrites();
       }
       if (call.getWrites())
         for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
@@ -140,6 +141,13 @@ void StateWriter::materialise(mlir::Value value, Statements &out) {
   mentioned = before;
 }
 
+/// A value for a text that has it more than once.
+std::string StateWriter::named(mlir::Value value, Statements &out) {
+  if (auto waiting = pending.find(value); waiting != pending.end() && !waiting->second.isTrivial)
+    materialise(value, out);
+  return bind(use(value, typeOf(value)), Binding::Primary);
+}
+
 /// Before something that touches this happens, what waits and would notice is evaluated.
 void StateWriter::flush(const Touches &touches, Statements &out) {
   llvm::SmallVector<mlir::Value> first;
@@ -174,8 +182,10 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
   mlir::Value value = op.getResult(0);
   const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
   if (uses == 0) {
-    if (!isPure)
-      emit(out, code.text + ";");
+    const bool isName = std::all_of(code.text.begin(), code.text.end(),
+                                    [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
+    if (!isPure) // a name: of what a call returned that stands before
+      emit(out, (isName ? "static_cast<void>(" + code.text + ")" : code.text) + ";");
     return;
   }
   auto *user = *value.user_begin();

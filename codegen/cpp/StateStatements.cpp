@@ -181,8 +181,9 @@ std::string StateWriter::counter(ir::LoopOp op, const std::string &condition, St
   return head;
 }
 
-/// The head of the loop that an `illuminance` was, and what runs for each light; nothing if the loop is none.
-std::string StateWriter::lights(ir::LoopOp op, mlir::Block *&lit) {
+/// The head of the loop that an `illuminance` was, what runs for each light, and the name of its variable; nothing if the
+/// loop is none.
+std::string StateWriter::lights(ir::LoopOp op, mlir::Block *&lit, std::string &name) {
   if (op.getCondition().empty())
     return {};
   auto condition = llvm::cast<ir::ConditionOp>(op.getCondition().front().back());
@@ -227,13 +228,18 @@ std::string StateWriter::lights(ir::LoopOp op, mlir::Block *&lit) {
     const std::string function = "rtsl::cosOfAngle(";
     arguments += ", " + angle.substr(function.size(), angle.size() - function.size() - 1);
   }
-  return "for (rtsl::Lights lights(" + arguments + "); lights.next();)";
+  name = "lights"; // within another loop over lights it is another
+  for (unsigned i = 2; always.count(name) || !taken.insert(name).second; ++i)
+    name = "lights" + std::to_string(i);
+  variableNames[variable] = name + ".number()"; // for what goes on with the next light later
+  return fmt::format("for (rtsl::Lights {0}({1}); {0}.next();)", name, arguments);
 }
 
 void StateWriter::loop(ir::LoopOp op, Statements &out) {
   const unsigned line = currentLine;
   mlir::Block *lit = nullptr;
-  if (const std::string head = lights(op, lit); !head.empty()) {
+  std::string name;
+  if (const std::string head = lights(op, lit, name); !head.empty()) {
     auto load = llvm::cast<ir::LoadOp>(op.getCondition().front().front());
     mlir::Operation *number = load.getAddress().getDefiningOp();
     std::set<mlir::Operation *> inHead = std::move(mentioned);
@@ -246,6 +252,7 @@ void StateWriter::loop(ir::LoopOp op, Statements &out) {
               out.end());
     Statements body;
     block(*lit, body);
+    taken.erase(name);
     mentioned = inHead;
     for (const Statement &statement : body)
       mentioned.insert(statement.mentions.begin(), statement.mentions.end());

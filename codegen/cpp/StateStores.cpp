@@ -45,7 +45,11 @@ void StateWriter::evaluate(ir::EvaluateOp op, Statements &out) {
   const SourceTable::Entry &entry = source.entries[op.getSource()];
   usesScratch |= module.effects.expression(*entry.expr).usesScratch;
   bool isCompound;
-  const bool isWrite = entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec;
+  const bool isWrite = op.getNumResults() == 0 && entry.kind == SourceTable::Kind::Value &&
+                       (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);
+  printer.isNested = op->hasAttr("rtsl.nested");
+  if (printer.isNested) // its first part may change what waits for its last
+    flush(touchesOf(op), out);
   std::vector<std::string> before;
   printer.before = &before;
   Code code;
@@ -61,6 +65,7 @@ void StateWriter::evaluate(ir::EvaluateOp op, Statements &out) {
     code = expression(entry, op.getOperands(), isCompound);
   }
   printer.before = nullptr;
+  printer.isNested = false;
   Touches touches = touchesOf(op);
   if (entry.kind == SourceTable::Kind::Into) {
     auto variable = op.getOperand(0).getDefiningOp<ir::VarOp>();
@@ -70,9 +75,12 @@ void StateWriter::evaluate(ir::EvaluateOp op, Statements &out) {
     auto isItsClear = [&](const Statement &statement) { return statement.text == target + " = {};"; };
     if (!out.empty() && isItsClear(out.back()) && !mentions(code.text, target))
       out.pop_back();
-    for (std::string &statement : before)
+    std::set<mlir::Operation *> used = mentioned;
+    for (std::string &statement : before) {
       emit(out, std::move(statement));
-    mentioned = {};
+      out.back().isDeclaration = true; // mostly
+    }
+    mentioned = std::move(used);
     for (mlir::Value operand : op.getOperands())
       for (mlir::Value at = operand; at;) {
         mlir::Operation *defining = at.getDefiningOp();
@@ -92,6 +100,7 @@ void StateWriter::evaluate(ir::EvaluateOp op, Statements &out) {
   for (std::string &statement : before) {
     mentioned = mentionedHere;
     emit(out, std::move(statement));
+    out.back().isDeclaration = true; // mostly
   }
   mentioned = mentionedHere;
   touches.add(consumed);

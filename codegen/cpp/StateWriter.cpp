@@ -30,6 +30,7 @@ unsigned lineOf(mlir::Location location, llvm::StringRef file) {
 
 StateWriter::StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine)
     : module(module), source(source), machine(machine), printer(module, machine.method) {
+  printer.isNested = false;
   always = module.namesInScope(*machine.definition);
   for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
     always.insert(machine.addressName(module, at));
@@ -164,10 +165,37 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
         auto position = part.getStaticPosition();
         if (part.hasDynamicPosition() || position.size() != 1 || position.front() > 3)
           return unsupported(op);
-        const std::string vector = use(part.getDest(), typeOf(part.getDest())).text;
+        const std::string vector = use(part.getDest(), typeOf(part.getResult())).text;
         const std::string value = bind(use(part.getValueToStore()), Binding::Assignment);
         insertions[part.getResult()] = {vector, value, static_cast<unsigned>(position.front())};
         pure({fmt::format("rtsl::with<{}>({}, {})", position.front(), vector, value)});
+      })
+      .Case([&](mlir::vector::FromElementsOp made) {
+        const std::string type = typeOf(made.getResult());
+        if (type.empty())
+          return unsupported(op);
+        std::vector<std::string> parts;
+        for (mlir::Value part : made.getElements())
+          parts.push_back(bind(use(part), Binding::Assignment));
+        pure({type + "(" + join(parts, ", ") + ")"});
+      })
+      .Case([&](mlir::vector::BroadcastOp same) {
+        const std::string type = typeOf(same.getResult());
+        if (type.empty() || !same.getSourceType().isIntOrFloat())
+          return unsupported(op);
+        pure({type + "(" + bind(use(same.getSource()), Binding::Assignment) + ")"});
+      })
+      .Case([&](mlir::vector::ShuffleOp chosen) {
+        const std::string type = typeOf(chosen.getResult());
+        if (type.empty())
+          return unsupported(op);
+        const std::string first = named(chosen.getV1(), out);
+        const std::string second = chosen.getV1() == chosen.getV2() ? first : named(chosen.getV2(), out);
+        const std::int64_t width = chosen.getV1VectorType().getNumElements();
+        std::vector<std::string> parts;
+        for (std::int64_t component : chosen.getMask())
+          parts.push_back(component < width ? first + "." + "xyzw"[component] : second + "." + "xyzw"[component - width]);
+        pure({type + "(" + join(parts, ", ") + ")"});
       })
       .Case([&](arith::XOrIOp negation) {
         if (!op.getResult(0).getType().isInteger(1) || !mlir::matchPattern(negation.getRhs(), mlir::m_One()))

@@ -76,6 +76,8 @@ public:
   std::string body(mlir::func::FuncOp state);
   /// The C++ type of a value; empty if it cannot be told.
   std::string typeOf(mlir::Value value);
+  /// The same by the name that a value has in the frame, where all that is saved are constants.
+  std::string typeOfSlot(const std::string &slot, mlir::Type type);
   /// What a value is called: as nameFor() says, or in the frame.
   std::string nameOfValue(mlir::Value value);
   bool usesScratch = false; // of the state that was written last
@@ -128,7 +130,7 @@ private:
   void switchOver(ir::SwitchOp op, Statements &out);
   std::string text(const Statements &statements);
   std::string under(const Statements &statements);
-  std::string lights(ir::LoopOp op, mlir::Block *&lit);
+  std::string lights(ir::LoopOp op, mlir::Block *&lit, std::string &name);
   std::string counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body);
   void joinDeclarations(Statements &statements);
 
@@ -145,6 +147,7 @@ private:
   Touches touchesOf(mlir::Operation *op);
   void emit(Statements &out, std::string text);
   void materialise(mlir::Value value, Statements &out);
+  std::string named(mlir::Value value, Statements &out);
   void flush(const Touches &touches, Statements &out);
   void flushBefore(mlir::Operation &op, Statements &out);
   void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out);

@@ -194,6 +194,14 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
         changed |= !saved.type.empty();
       });
   }
+  auto name = [&](llvm::StringRef slot, mlir::Type type) {
+    if (FrameField &saved = field(slot); saved.type.empty())
+      saved.type = writer.typeOfSlot(saved.slot, type);
+  };
+  for (mlir::func::FuncOp state : machine.states) {
+    state.walk([&](ir::FrameStoreOp store) { name(store.getName(), store.getValue().getType()); });
+    state.walk([&](ir::FrameLoadOp load) { name(load.getName(), load.getType()); });
+  }
   for (FrameField &saved : machine.frame)
     if (saved.neededBy == 0) // by what is called
       saved.neededBy = saved.madeIn;

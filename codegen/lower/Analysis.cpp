@@ -35,6 +35,39 @@ bool isPureBuiltin(typed::Builtin builtin) {
   }
 }
 
+std::pair<std::size_t, std::size_t> outputsOf(typed::Builtin builtin) {
+  switch (builtin) {
+  case typed::Builtin::Modf:
+  case typed::Builtin::Frexp:
+    return {1, 1};
+  case typed::Builtin::UaddCarry:
+  case typed::Builtin::UsubBorrow:
+    return {2, 1};
+  case typed::Builtin::UmulExtended:
+  case typed::Builtin::ImulExtended:
+    return {2, 2};
+  default:
+    return {0, 0};
+  }
+}
+
+bool isLocal(const typed::Expr &expr) {
+  auto *variable = dynCast<typed::VariableExpr>(&expr);
+  return variable && variable->variable->kind != typed::Variable::Kind::Global;
+}
+
+const typed::Expr &rootOf(const typed::Expr &expr) {
+  const typed::Expr *root = &expr;
+  for (;;) {
+    if (auto *field = dynCast<typed::FieldExpr>(root))
+      root = field->base.get();
+    else if (auto *index = dynCast<typed::IndexExpr>(root))
+      root = index->base.get();
+    else
+      return *root;
+  }
+}
+
 bool hasSideEffects(const typed::Expr &expr) {
   bool found = false;
   forEachExpr(expr, [&](const typed::Expr &inner) {

@@ -4,11 +4,21 @@
 #include "sema/Walk.h"
 
 #include <string>
+#include <utility>
 
 namespace rtsl::lowering {
 
 /// Does the function change nothing and give the same for the same arguments?
 bool isPureBuiltin(typed::Builtin builtin);
+
+/// The arguments that a built-in function writes: the first of them, and how many; none: 0, 0.
+std::pair<std::size_t, std::size_t> outputsOf(typed::Builtin builtin);
+
+/// Is it a variable or a parameter of the function?
+bool isLocal(const typed::Expr &expr);
+
+/// The place that a field or an element is part of.
+const typed::Expr &rootOf(const typed::Expr &expr);
 
 /// May evaluation change something, or end in another way than with a value?
 bool hasSideEffects(const typed::Expr &expr);

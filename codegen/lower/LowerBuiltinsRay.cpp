@@ -1,4 +1,5 @@
 //===- LowerBuiltinsRay.cpp - trace, hit, rand and ambient ----------------===//
+#include "codegen/lower/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
 #include "sema/Casting.h"
@@ -59,11 +60,10 @@ void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
       continue;
     }
     target = place(*expr.args[i]);
-    if (module.options.source && target.address.getDefiningOp<ir::VarOp>()) { // in its own place: nobody else looks
-      arguments.push_back(target.address);
-      continue;
-    }
-    if (module.options.source && target.address.getDefiningOp<ir::PayloadOp>()) {
+    const bool isOfItsOwn = llvm::isa_and_nonnull<ir::VarOp, ir::PayloadOp>(target.address.getDefiningOp());
+    const bool isLeftAlone =
+        std::none_of(expr.args.begin() + first, expr.args.end(), [](const auto &arg) { return hasSideEffects(*arg); });
+    if (module.options.source && isOfItsOwn && isLeftAlone) { // in its own place: nobody else looks
       arguments.push_back(target.address);
       continue;
     }

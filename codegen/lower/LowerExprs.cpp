@@ -96,7 +96,7 @@ Parts FunctionLowering::lower(const typed::Expr &expr) {
   case ExprKind::Conditional:
     return lowerConditional(cast<typed::ConditionalExpr>(expr));
   case ExprKind::Comma:
-    lower(*cast<typed::CommaExpr>(expr).left);
+    lowerDiscarded(*cast<typed::CommaExpr>(expr).left);
     return lower(*cast<typed::CommaExpr>(expr).right);
   case ExprKind::Convert: {
     const typed::Expr &operand = *cast<typed::ConvertExpr>(expr).operand;
@@ -131,7 +131,11 @@ void FunctionLowering::lowerInto(const typed::Expr &expr, Value address) {
         [&] { lowerInto(*choice->whenFalse, address); });
   }
   if (livesInMemory(expr.type)) {
-    if (module.options.source && lowerEvaluation(expr, address))
+    if (auto *comma = dynCast<typed::CommaExpr>(&expr)) {
+      lowerDiscarded(*comma->left);
+      return lowerInto(*comma->right, address);
+    }
+    if (module.options.source && (lowerEvaluation(expr, address) || lowerOneByOne(expr, address)))
       return;
     if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && isAggregate(expr.type)) {
       if (ir::leafCount(module.type(expr.type)) > mostStores)
@@ -341,6 +345,9 @@ Parts FunctionLowering::lowerLength(const typed::LengthExpr &expr) {
 //===----------------------------------------------------------------------===//
 
 Parts FunctionLowering::lowerIncDec(const typed::IncDecExpr &expr) {
+  if (hasSideEffects(*expr.target)) // only once
+    if (std::optional<Parts> whole = lowerNested(expr, /*hasResult=*/true))
+      return *whole;
   if (module.options.source && staysWhole(*expr.target)) {
     const Parts before = expr.prefix ? Parts() : lower(*expr.target);
     if (lowerEvaluation(expr))
@@ -361,6 +368,9 @@ Parts FunctionLowering::lowerIncDec(const typed::IncDecExpr &expr) {
 }
 
 Parts FunctionLowering::lowerAssign(const typed::AssignExpr &expr) {
+  if (hasSideEffects(*expr.target)) // only once
+    if (std::optional<Parts> whole = lowerNested(expr, /*hasResult=*/true))
+      return *whole;
   if (module.options.source && staysWhole(*expr.target) && lowerEvaluation(expr))
     return lower(*expr.target);
   Place target = place(*expr.target);

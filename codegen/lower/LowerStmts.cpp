@@ -75,6 +75,8 @@ void FunctionLowering::lowerDeclaration(const typed::Variable &variable) {
       variables[&variable].address = constant;
       return;
     }
+  if (!address && module.options.source && isNamedMatrix(variable))
+    return;
   if (!address)
     address = variables[&variable].address = variableOf(variable.name, variable.type);
   if (variable.init)

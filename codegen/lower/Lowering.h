@@ -155,29 +155,41 @@ private:
   std::optional<Parts> lowerWhole(const typed::Expr &expr);
   bool collectLeaves(const typed::Expr &expr, std::vector<const typed::Expr *> &leaves) const;
   bool isKept(const typed::Expr &expr) const;
+  Value wholeExpression(SourceTable::Kind kind, const typed::Expr &expr,
+                        std::vector<const typed::Expr *> leaves, llvm::ArrayRef<Value> operands,
+                        mlir::Type type);
+
+  // LowerEvaluations.cpp
   /// What an evaluation works on: operands, what they stand for, and what is copied back.
   struct Evaluation {
+    /// `into`: where the value goes; null: nowhere yet.
+    explicit Evaluation(Value into);
+
     std::vector<const typed::Expr *> leaves;
     llvm::SmallVector<Value, 8> operands;
     llvm::SmallVector<std::int32_t, 4> changed; // numbers of operands
     llvm::DenseMap<const typed::Variable *, Value> places; // of variables that are written
     std::set<typed::StateVariable> states;                 // that are written
     std::vector<std::pair<Place, Value>> outputs;
+    bool isNested = false; // parts with effects stay where they are
+    bool hasResult = true;
   };
   /// The expression as one operation that reads and writes variables where they lie; nothing if that is not possible. With
   /// `into` its value goes there.
   std::optional<Parts> lowerEvaluation(const typed::Expr &expr, Value into = nullptr);
-  std::optional<Parts> lowerOneByOne(const typed::Expr &expr);
+  Parts makeEvaluation(const typed::Expr &expr, const Evaluation &evaluation, Value into);
+  /// The same for parts that change what others look at; nothing if the expression traces.
+  std::optional<Parts> lowerNested(const typed::Expr &expr, bool hasResult, Value into = nullptr);
+  std::optional<Parts> lowerOneByOne(const typed::Expr &expr, Value into = nullptr);
   bool openPlaces(const typed::Expr &expr, Evaluation &evaluation);
   void gather(const typed::Expr &expr, Evaluation &evaluation, bool isTop);
   bool mentionsMemory(const typed::Expr &expr);
+  /// Is it a constant matrix? Expressions have it under its name, as they have constant structs and arrays.
+  static bool isNamedMatrix(const typed::Variable &variable);
   bool staysWhole(const typed::Expr &target);
   /// An expression whose value nobody asks for.
   void lowerDiscarded(const typed::Expr &expr);
   Value variableOf(llvm::StringRef name, const Type *type);
-  Value wholeExpression(SourceTable::Kind kind, const typed::Expr &expr,
-                        std::vector<const typed::Expr *> leaves, llvm::ArrayRef<Value> operands,
-                        mlir::Type type);
 
   // LowerPlaces.cpp
   Place place(const typed::Expr &expr);

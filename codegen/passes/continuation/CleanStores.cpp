@@ -32,6 +32,12 @@ private:
   /// Does the slot hold `value` just before `op`, however control came there?
   bool holdsBefore(mlir::Operation *op, mlir::Value value);
   bool overlaps(std::uint32_t offset, mlir::Type type, std::optional<std::uint32_t> bit);
+  /// Is it of the slot that is stored to? Of its name too: where a frame is printed for people, slots that share words are
+  /// fields of their own.
+  template <typename Op>
+  bool isSame(Op op) {
+    return op.getOffset() == store.getOffset() && op.getBit() == store.getBit() && op.getName() == store.getName();
+  }
 
   ir::FrameStoreOp store;
   // What is being asked: true round a loop, for then it is what came into the loop.
@@ -55,11 +61,10 @@ bool SlotContents::holdsBefore(mlir::Operation *op, mlir::Value value) {
   for (mlir::Operation *at = op->getPrevNode(); at; at = at->getPrevNode()) {
     if (auto load = llvm::dyn_cast<ir::FrameLoadOp>(at)) {
       if (load.getResult() == value)
-        return load.getOffset() == store.getOffset() && load.getBit() == store.getBit();
+        return isSame(load);
     } else if (auto earlier = llvm::dyn_cast<ir::FrameStoreOp>(at)) {
       if (overlaps(earlier.getOffset(), earlier.getValue().getType(), earlier.getBit()))
-        return earlier.getValue() == value && earlier.getOffset() == store.getOffset() &&
-               earlier.getBit() == store.getBit();
+        return earlier.getValue() == value && isSame(earlier);
     }
   }
   if (value.getParentBlock() == block && !llvm::isa<mlir::BlockArgument>(value))

@@ -123,6 +123,8 @@ public:
         return true;
     return false;
   }
+  /// Which of the scene's lights it is.
+  int number() const { return index - 1; }
 
 private:
   State<N> &rt;

@@ -74,3 +74,15 @@ func.func @shared() -> i32 {
   %n = rtsl.next trace @s
   rtsl.end %n
 }
+
+// From another slot at the same place: where frames are printed these are two fields.
+// CHECK-LABEL: func.func @renamed
+// CHECK:        rtsl.frame_store %{{.*}}, "w.2"[0]
+func.func @renamed() -> i32 {
+  %c = rtsl.trace_result : vector<3xf32>
+  %w = rtsl.frame_load "w"[0] : f32
+  rtsl.frame_store %w, "w.2"[0] : f32
+  rtsl.spawn %c, %c
+  %n = rtsl.next trace @s
+  rtsl.end %n
+}

@@ -1,0 +1,360 @@
+//===- LowerEvaluations.cpp - on variables where they lie -----------------===//
+//
+// For C++ (SourceTable.h), of what cannot be an expression of values (LowerSource.cpp).
+//
+// Structs, arrays and matrices stay whole, and so does what a call writes through its parameters: the operation has their
+// addresses. A number or a vector that is written so is a variable of its own for the time, under the same name.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/lower/Analysis.h"
+#include "codegen/lower/Lowering.h"
+
+#include "sema/Casting.h"
+
+#include <algorithm>
+
+namespace rtsl::lowering {
+
+using typed::ExprKind;
+
+/// What a place is part of: like rootOf, and through components too.
+static const typed::Expr &wholeOf(const typed::Expr &place) {
+  const typed::Expr *root = &rootOf(place);
+  while (auto *swizzle = dynCast<typed::SwizzleExpr>(root))
+    root = &rootOf(*swizzle->base);
+  return *root;
+}
+
+FunctionLowering::Evaluation::Evaluation(Value into) {
+  if (!into)
+    return;
+  leaves.push_back(nullptr);
+  operands.push_back(into);
+  changed.push_back(0);
+}
+
+Value FunctionLowering::variableOf(llvm::StringRef name, const Type *type) {
+  Value variable = emitter.variable(name, module.type(type));
+  if (SourceTable *table = module.options.source) {
+    variable.getDefiningOp()->setAttr(
+        "rtsl.declared", emitter.getI32IntegerAttr(static_cast<std::int32_t>(table->types.size())));
+    table->types.push_back(type);
+  }
+  return variable;
+}
+
+bool FunctionLowering::isNamedMatrix(const typed::Variable &variable) {
+  return variable.isConst && variable.constant && variable.type->isMatrix();
+}
+
+bool FunctionLowering::mentionsMemory(const typed::Expr &expr) {
+  bool found = false;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    found = found || (isLocal(inner) && livesInMemory(inner.type)) ||
+            (inner.kind == ExprKind::Call && livesInMemory(inner.type));
+  });
+  return found;
+}
+
+/// Is the target part of a variable that stays whole, or a component that is found at run time?
+bool FunctionLowering::staysWhole(const typed::Expr &target) {
+  const typed::Expr &whole = wholeOf(target);
+  if (isLocal(whole) && livesInMemory(whole.type))
+    return true;
+  auto *index = dynCast<typed::IndexExpr>(&target);
+  return index && index->base->type->isVector() && index->index->kind != ExprKind::Literal;
+}
+
+/// Finds what the expression itself, not a part of it, writes.
+bool FunctionLowering::openPlaces(const typed::Expr &expr, Evaluation &evaluation) {
+  std::vector<const typed::Expr *> parts, written;
+  bool readsOld = true;
+  auto outputs = [&](const typed::Function *callee, const std::vector<typed::ExprPtr> &args) {
+    for (std::size_t i = 0; i < args.size(); ++i) {
+      parts.push_back(args[i].get());
+      if (callee && callee->parameters[i]->direction != ast::Direction::In)
+        written.push_back(args[i].get());
+    }
+  };
+  if (auto *assign = dynCast<typed::AssignExpr>(&expr)) {
+    parts = {assign->target.get(), assign->value.get()};
+    written = {assign->target.get()};
+  } else if (auto *step = dynCast<typed::IncDecExpr>(&expr)) {
+    parts = written = {step->target.get()};
+  } else if (auto *call = dynCast<typed::CallExpr>(&expr)) {
+    outputs(call->function, call->args);
+  } else if (auto *method = dynCast<typed::MethodCallExpr>(&expr)) {
+    parts = {method->receiver.get()};
+    outputs(method->function, method->args);
+  } else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr)) {
+    outputs(nullptr, builtin->args);
+    const auto [first, count] = outputsOf(builtin->builtin);
+    for (std::size_t i = first; i < first + count; ++i)
+      written.push_back(builtin->args[i].get());
+    readsOld = false;
+  } else {
+    parts = {&expr};
+  }
+
+  // Parts with effects run before: they must not change what is looked at in its place.
+  std::set<const typed::Variable *> changedBefore;
+  for (const typed::Expr *part : parts)
+    for (const typed::Variable *variable : assignedVariables(*part))
+      changedBefore.insert(variable);
+  std::set<const typed::Variable *> looked;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    if (isLocal(inner) && livesInMemory(inner.type))
+      looked.insert(cast<typed::VariableExpr>(inner).variable);
+  });
+  for (const typed::Expr *place : written) {
+    const typed::Expr &whole = wholeOf(*place);
+    if (isLocal(whole))
+      looked.insert(cast<typed::VariableExpr>(whole).variable);
+  }
+  if (std::any_of(looked.begin(), looked.end(),
+                  [&](const auto *variable) { return changedBefore.count(variable) != 0; }))
+    return false;
+
+  for (const typed::Expr *target : written) {
+    const typed::Expr &whole = wholeOf(*target);
+    if (auto *state = dynCast<typed::StateExpr>(&whole)) {
+      evaluation.states.insert(state->variable);
+      continue;
+    }
+    if (!isLocal(whole))
+      return false;
+    const typed::Variable *variable = cast<typed::VariableExpr>(whole).variable;
+    if (evaluation.places.count(variable))
+      continue;
+    const Place where = place(whole);
+    if (livesInMemory(whole.type)) {
+      evaluation.places[variable] = where.address;
+      continue;
+    }
+    const Value copy = variableOf(variable->name, whole.type);
+    if (readsOld || &whole != target)
+      storeTo(load(where), copy, whole.type);
+    evaluation.places[variable] = copy;
+    evaluation.outputs.push_back({where, copy});
+  }
+  return true;
+}
+
+void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, bool isTop) {
+  auto leaf = [&](Value operand, bool changes = false) {
+    if (changes)
+      evaluation.changed.push_back(static_cast<std::int32_t>(evaluation.operands.size()));
+    evaluation.leaves.push_back(&expr);
+    evaluation.operands.push_back(operand);
+  };
+  if (!isTop && !evaluation.isNested && expr.kind != ExprKind::String && !isKept(expr)) {
+    if (!livesInMemory(expr.type))
+      return leaf(value(expr));
+    const auto *call = dynCast<typed::CallExpr>(&expr);
+    const Value address = temporary(call ? call->function->name : "value", expr.type);
+    lowerInto(expr, address);
+    return leaf(address);
+  }
+  switch (expr.kind) {
+  case ExprKind::Variable: {
+    if (!isLocal(expr))
+      return;
+    const typed::Variable *variable = cast<typed::VariableExpr>(expr).variable;
+    if (auto place = evaluation.places.find(variable); place != evaluation.places.end())
+      return leaf(place->second, true);
+    if (isNamedMatrix(*variable))
+      return;
+    if (!livesInMemory(expr.type))
+      return leaf(value(expr));
+    const Value address = place(expr).address;
+    if (!address.getDefiningOp() || !llvm::isa<ir::TableOp>(address.getDefiningOp()))
+      leaf(address);
+    return;
+  }
+  case ExprKind::State:
+    if (!evaluation.isNested && !livesInMemory(expr.type) && !evaluation.states.count(cast<typed::StateExpr>(expr).variable))
+      leaf(value(expr));
+    return;
+  default:
+    forEachChild(expr, [&](const typed::Expr &part) { gather(part, evaluation, false); });
+  }
+}
+
+/// One that traces, or whose parts run only sometimes, is taken apart.
+static bool isOneStep(const typed::Expr &expr, const SourceTable &table) {
+  const typed::Function *callee = nullptr;
+  if (auto *call = dynCast<typed::CallExpr>(&expr))
+    callee = call->function;
+  if (auto *method = dynCast<typed::MethodCallExpr>(&expr))
+    callee = method->function;
+  if (callee && table.mayTrace(*callee))
+    return false;
+  if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
+    return isPureBuiltin(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
+           outputsOf(builtin->builtin).second != 0;
+  return expr.kind != ExprKind::Comma && expr.kind != ExprKind::String;
+}
+
+std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, Value into) {
+  const bool isWrite = expr.kind == ExprKind::Assign || expr.kind == ExprKind::IncDec;
+  if (into && isWrite)
+    return lowerNested(expr, /*hasResult=*/true, into);
+  if (!isOneStep(expr, *module.options.source))
+    return std::nullopt;
+  const bool isChoice = expr.kind == ExprKind::Conditional || expr.kind == ExprKind::Binary;
+  if (isChoice && !isKept(expr))
+    return std::nullopt;
+  if (!into && livesInMemory(expr.type) && !isWrite)
+    return std::nullopt;
+  Evaluation evaluation(into);
+  evaluation.hasResult = !isWrite;
+  if (!openPlaces(expr, evaluation))
+    return lowerNested(expr, evaluation.hasResult, into);
+  gather(expr, evaluation, true);
+  return makeEvaluation(expr, evaluation, into);
+}
+
+Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation &evaluation, Value into) {
+  emitter.setLoc(module.location(expr.range));
+  SourceTable &table = *module.options.source;
+  const auto number = static_cast<std::uint32_t>(table.entries.size());
+  table.entries.push_back({into ? SourceTable::Kind::Into : SourceTable::Kind::Value, &expr, evaluation.leaves});
+  const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall;
+  mlir::ArrayAttr writes;
+  std::vector<std::string> names;
+  bool isKnown = !evaluation.isNested;
+  if (isCall && isKnown && !isKept(expr)) {
+    std::optional<std::vector<std::string>> found = table.writes(expr);
+    isKnown = found.has_value();
+    if (found)
+      names = std::move(*found);
+  }
+  for (typed::StateVariable variable : evaluation.states)
+    names.emplace_back(typed::name(variable));
+  if (isKnown)
+    writes = emitter.getStrArrayAttr(std::vector<llvm::StringRef>(names.begin(), names.end()));
+  llvm::SmallVector<mlir::Type, 1> types;
+  if (!into && evaluation.hasResult && !expr.type->is(TypeKind::Void))
+    types.push_back(module.type(expr.type));
+  auto op = emitter.make<ir::EvaluateOp>(types, number, evaluation.operands, writes);
+  if (into) // all of it
+    op->setAttr("rtsl.into", emitter.getUnitAttr());
+  if (!evaluation.changed.empty())
+    op->setAttr("rtsl.changes", emitter.getDenseI32ArrayAttr(evaluation.changed));
+  const bool isPrint = expr.kind == ExprKind::Builtin && cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
+  if (evaluation.isNested)
+    op->setAttr("rtsl.nested", emitter.getUnitAttr());
+  else if (!isPrint && (!isCall || isKept(expr))) // nothing but these variables is touched
+    op->setAttr("rtsl.plain", emitter.getUnitAttr());
+  for (const auto &[where, copy] : evaluation.outputs)
+    store(loadFrom(copy, where.type), where);
+  return Parts(op.getResults().begin(), op.getResults().end());
+}
+
+//===----------------------------------------------------------------------===//
+// Effects within effects
+//===----------------------------------------------------------------------===//
+
+/// Can it run between two rays, from its first part to its last?
+static bool isBetweenRays(const typed::Expr &expr, const SourceTable &table) {
+  bool found = true;
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
+      found = found && (isPureBuiltin(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
+                        builtin->builtin == typed::Builtin::Print || builtin->builtin == typed::Builtin::Rand);
+    else if (auto *call = dynCast<typed::CallExpr>(&inner))
+      found = found && !table.mayTrace(*call->function);
+    else if (auto *method = dynCast<typed::MethodCallExpr>(&inner))
+      found = found && !(method->function && table.mayTrace(*method->function));
+  });
+  return found;
+}
+
+/// One part changes what another looks at: the author's expression stays as it is, nested effects and all, and the printer
+/// puts it in order. Numbers and vectors that it writes are variables of their own for the time.
+std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool hasResult, Value into) {
+  if (!module.options.source || !isBetweenRays(expr, *module.options.source))
+    return std::nullopt;
+  if (hasResult && !into && livesInMemory(expr.type)) {
+    const Value address = temporary("value", expr.type);
+    lowerNested(expr, hasResult, address);
+    return loadFrom(address, expr.type);
+  }
+  Evaluation evaluation(into);
+  evaluation.isNested = true;
+  evaluation.hasResult = hasResult;
+  const std::set<const typed::Variable *> assigned = assignedVariables(expr);
+  forEachExpr(expr, [&](const typed::Expr &inner) {
+    auto *named = dynCast<typed::VariableExpr>(&inner);
+    if (!named || !isLocal(inner) || !assigned.count(named->variable) || evaluation.places.count(named->variable))
+      return;
+    const Place where = place(inner);
+    evaluation.places[named->variable] = where.address;
+    if (livesInMemory(inner.type))
+      return;
+    const Value copy = variableOf(named->variable->name, inner.type);
+    storeTo(load(where), copy, inner.type);
+    evaluation.places[named->variable] = copy;
+    evaluation.outputs.push_back({where, copy});
+  });
+  gather(expr, evaluation, true);
+  return makeEvaluation(expr, evaluation, into);
+}
+
+void FunctionLowering::lowerDiscarded(const typed::Expr &expr) {
+  if (module.options.source) {
+    if (auto *comma = dynCast<typed::CommaExpr>(&expr)) {
+      lowerDiscarded(*comma->left);
+      return lowerDiscarded(*comma->right);
+    }
+    auto *assign = dynCast<typed::AssignExpr>(&expr);
+    auto *step = dynCast<typed::IncDecExpr>(&expr);
+    const typed::Expr *target = assign ? assign->target.get() : step ? step->target.get() : nullptr;
+    if (target && staysWhole(*target) && lowerEvaluation(expr))
+      return;
+    if (livesInMemory(expr.type) && !target)
+      return lowerInto(expr, temporary("value", expr.type));
+  }
+  lower(expr);
+}
+
+/// Some part traces, or is not to be kept whole: each part is evaluated in its turn.
+std::optional<Parts> FunctionLowering::lowerOneByOne(const typed::Expr &expr, Value into) {
+  std::vector<const typed::Expr *> parts;
+  auto all = [&](const std::vector<typed::ExprPtr> &args) {
+    for (const typed::ExprPtr &arg : args)
+      parts.push_back(arg.get());
+  };
+  if (auto *binary = dynCast<typed::BinaryExpr>(&expr))
+    parts = {binary->left.get(), binary->right.get()};
+  else if (auto *unary = dynCast<typed::UnaryExpr>(&expr))
+    parts = {unary->operand.get()};
+  else if (auto *convert = dynCast<typed::ConvertExpr>(&expr))
+    parts = {convert->operand.get()};
+  else if (auto *construct = dynCast<typed::ConstructExpr>(&expr))
+    all(construct->args);
+  else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr); builtin && isPureBuiltin(builtin->builtin))
+    all(builtin->args);
+  else if (auto *call = dynCast<typed::CallExpr>(&expr); call && isKept(expr))
+    all(call->args);
+  if (parts.empty())
+    return std::nullopt;
+  Evaluation evaluation(into);
+  bool staysInMemory = into != nullptr;
+  for (const typed::Expr *part : parts) {
+    evaluation.leaves.push_back(part);
+    if (!livesInMemory(part->type)) {
+      evaluation.operands.push_back(value(*part));
+      continue;
+    }
+    staysInMemory = true;
+    evaluation.operands.push_back(temporary("value", part->type));
+    lowerInto(*part, evaluation.operands.back());
+  }
+  if (staysInMemory)
+    return makeEvaluation(expr, evaluation, into);
+  emitter.setLoc(module.location(expr.range));
+  return Parts{wholeExpression(SourceTable::Kind::Value, expr, parts, evaluation.operands, module.type(expr.type))};
+}
+
+} // namespace rtsl::lowering
