@@ -76,7 +76,7 @@ int main(int argc, char **argv) {
                                                fmt::format("{}", fmt::join(pathNames(), ", ")))
       ->delimiter(',');
   app.add_option("--also", options.paths.also, "and with these, beside those that are taken if nobody asks")->delimiter(',');
-  app.add_option("--compiler", options.paths.cpp.compiler, "what makes programs of C++, with its options")
+  app.add_option("--compiler", options.paths.cpp.compiler, "what makes programs of C++, with its options; empty: they are only printed")
       ->type_name("COMMAND")
       ->capture_default_str();
   app.add_option("--keep-cpp", options.paths.cpp.keep, "where to leave the last file of C++ that was compiled");
@@ -115,8 +115,8 @@ int main(int argc, char **argv) {
   const std::vector<FailedSeed> &failed = results.failed;
   for (const FailedSeed &one : failed)
     fmt::print("seed {}: {}: {}\n", one.seed, name(one.finding.failure), one.finding.detail);
-  for (const auto &[reason, programs] : results.refused)
-    fmt::print("{} programs not run, {}\n", programs, reason);
+  for (const auto &[reason, seeds] : results.refused)
+    fmt::print("{} programs not run, such as seed {}, {}\n", seeds.size(), seeds.front(), reason);
   fmt::print("{} programs, {} failed, in {} a ray met something\n", count, failed.size(), results.hit);
   std::fflush(stdout);
   if (makeSmaller)

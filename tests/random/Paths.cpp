@@ -32,6 +32,7 @@ struct Path {
   Compile compile;
   bool isAsked = false; // only by name, for it takes long
   bool renders = false; // whole pictures, and no single samples
+  bool isPrinted = false; // and runs only if there is a compiler
 };
 
 Compile compileWith(const CompileOptions &options) {
@@ -90,9 +91,9 @@ const std::vector<Path> &allPaths() {
       {"jit-O2-split-unchecked", false, true, jit(2, false, split)},
       {"megakernel-O0", true, false, megakernel(0), /*isAsked=*/true, /*renders=*/true},
       {"megakernel-O2", true, false, megakernel(2), /*isAsked=*/true, /*renders=*/true},
-      {"cpp-recurse", true, false, printed(true, recurse), /*isAsked=*/true},
-      {"cpp-recurse-unchecked", false, false, printed(false, recurse), /*isAsked=*/true},
-      {"cpp-split", true, true, printed(true, split), /*isAsked=*/true},
+      {"cpp-recurse", true, false, printed(true, recurse), /*isAsked=*/true, /*renders=*/false, /*isPrinted=*/true},
+      {"cpp-recurse-unchecked", false, false, printed(false, recurse), /*isAsked=*/true, /*renders=*/false, /*isPrinted=*/true},
+      {"cpp-split", true, true, printed(true, split), /*isAsked=*/true, /*renders=*/false, /*isPrinted=*/true},
   };
   return paths;
 }
@@ -251,6 +252,10 @@ void Comparison::compare(const Path &path, const runtime::Program &code, std::si
 void Comparison::runPath(const Path &path, const Numbers &which) {
   if (which.empty())
     return;
+  if (path.isPrinted && options.cpp.compiler.empty()) {
+    takenBy(path, which);
+    return;
+  }
   try {
     Checked checked(select(which));
     if (const Code code = compile(path, checked, options)) {

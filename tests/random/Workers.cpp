@@ -163,10 +163,10 @@ Results runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &opt
         failed.push_back({seeds[i], {Failure::Crash, "no answer", false, ""}});
       else if (findings[i].failure != Failure::None)
         failed.push_back({seeds[i], findings[i]});
-    for (const Finding &finding : findings) {
-      results.hit += finding.hit;
-      if (!finding.refused.empty())
-        ++results.refused[finding.refused];
+    for (std::size_t i = 0; i != findings.size(); ++i) {
+      results.hit += findings[i].hit;
+      if (!findings[i].refused.empty())
+        results.refused[findings[i].refused].push_back(seeds[i]);
     }
     done += seeds.size();
     progress(done);

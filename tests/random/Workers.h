@@ -23,7 +23,7 @@ struct FailedSeed {
 struct Results {
   std::vector<FailedSeed> failed; // by seed
   std::size_t hit = 0;            // programs in which some ray met something
-  std::map<std::string, std::size_t> refused; // programs that a path could not take yet, by reason
+  std::map<std::string, std::vector<std::uint32_t>> refused; // seeds that a path could not take yet, by reason
 };
 
 /// Runs the programs of `count` seeds from `first` on. What crashes takes only its process along; a
