@@ -259,9 +259,11 @@ static bool wordsOf(Value value, llvm::SmallVectorImpl<std::int32_t> &words) {
 }
 
 bool FunctionLowering::appendWords(const typed::Expr &expr, llvm::SmallVectorImpl<std::int32_t> &words) {
-  if (!isAggregate(expr.type))
+  // In what is printed for people no operations stay of a matrix that turns out to be no constant.
+  const bool isPrinted = module.options.source && expr.type->isMatrix();
+  if (!isAggregate(expr.type) && !isPrinted)
     return llvm::all_of(lower(expr), [&](Value part) { return wordsOf(part, words); });
-  if (auto *construct = dynCast<typed::ConstructExpr>(&expr))
+  if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && !isPrinted)
     return llvm::all_of(construct->args, [&](const typed::ExprPtr &arg) { return appendWords(*arg, words); });
   const std::optional<typed::Constant> constant = evaluate(expr);
   if (!constant)
