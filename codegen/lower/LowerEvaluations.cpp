@@ -132,7 +132,12 @@ bool FunctionLowering::openPlaces(const typed::Expr &expr, Evaluation &evaluatio
       continue;
     }
     const Value copy = variableOf(variable->name, whole.type);
-    if (readsOld || &whole != target)
+    unsigned mentions = 0; // more than one: it is an input too
+    forEachExpr(expr, [&](const typed::Expr &inner) {
+      auto *named = dynCast<typed::VariableExpr>(&inner);
+      mentions += named && named->variable == variable;
+    });
+    if (readsOld || &whole != target || mentions > 1)
       storeTo(load(where), copy, whole.type);
     evaluation.places[variable] = copy;
     evaluation.outputs.push_back({where, copy});
