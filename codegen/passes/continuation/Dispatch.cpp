@@ -32,6 +32,7 @@ public:
   mlir::LogicalResult run();
 
 private:
+  void dropUncalled();
   mlir::LogicalResult passFrame(FuncOp state);
   mlir::Value address(mlir::Location location, mlir::Value frame, std::uint32_t offset,
                       mlir::Type type);
@@ -332,7 +333,28 @@ void Dispatcher::makeRunState() {
                              llvm::ArrayRef<std::int32_t>(values), blocks, noOperands);
 }
 
+/// Methods that trace, are in no state and are called by nobody, as --keep has them, cannot be of a machine.
+void Dispatcher::dropUncalled() {
+  llvm::SmallVector<FuncOp> uncalled;
+  do {
+    for (FuncOp function : uncalled)
+      function.erase();
+    uncalled.clear();
+    for (FuncOp function : module.getOps<FuncOp>()) {
+      const bool traces = function
+                              .walk([](mlir::Operation *op) {
+                                return llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op) ? mlir::WalkResult::interrupt()
+                                                                                      : mlir::WalkResult::advance();
+                              })
+                              .wasInterrupted();
+      if (traces && !function->hasAttr("rtsl.state") && mlir::SymbolTable::symbolKnownUseEmpty(function, module))
+        uncalled.push_back(function);
+    }
+  } while (!uncalled.empty());
+}
+
 mlir::LogicalResult Dispatcher::run() {
+  dropUncalled();
   const RayGraph rays = findRays(module);
   std::map<std::string, std::int32_t> entries;
   for (llvm::StringRef name : machineEntries())

@@ -51,3 +51,10 @@ func.func private @f.state1(%o: !rtsl.ref<"F">) -> i32 attributes {rtsl.state = 
 // CHECK-NEXT:    arith.constant 1 : i32
 // CHECK-LABEL: func.func @rtsl_rt_Miss_miss_first
 // CHECK-NEXT:    arith.constant 0 : i32
+
+// What traces, is in no state and is called by nobody, as --keep has it, is gone.
+// CHECK-NOT: @uncalled
+func.func @uncalled(%d: vector<3xf32>) -> vector<3xf32> {
+  %c = rtsl.trace %d, %d : vector<3xf32>
+  return %c : vector<3xf32>
+}
