@@ -3,11 +3,9 @@
 
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/States.h"
-#include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/driver/Stages.h"
 #include "codegen/emit/DoublePrecision.h"
-#include "codegen/emit/FastMath.h"
 #include "codegen/emit/Jit.h"
-#include "codegen/emit/LlvmModule.h"
 #include "codegen/emit/NativeImage.h"
 #include "codegen/emit/Ptx.h"
 #include "codegen/ir/Rtsl.h"
@@ -16,7 +14,6 @@
 #include "codegen/lower/KnownConditions.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/Split.h"
 #include "codegen/passes/continuation/StateGraph.h"
 #include "codegen/passes/restructure/Restructure.h"
 #include "frontend/Expansion.h"
@@ -24,170 +21,20 @@
 #include "sema/Casting.h"
 #include "sema/Walk.h"
 
-#include "mlir/IR/MLIRContext.h"
 #include "mlir/IR/Verifier.h"
-#include "mlir/Pass/PassManager.h"
-#include "llvm/IR/LLVMContext.h"
 #include "llvm/IR/Module.h"
-#include "llvm/Support/raw_ostream.h"
-#include "llvm/Target/TargetMachine.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 namespace rtsl {
 
+using namespace driver;
+
 namespace {
-
-/// What can only be a mistake of ours: the program was checked before. Main ends with its own exit status.
-[[noreturn]] void fail(const std::string &what) { throw std::logic_error(what); }
-
-template <typename T>
-T take(llvm::Expected<T> expected) {
-  if (!expected)
-    fail(llvm::toString(expected.takeError()));
-  return std::move(*expected);
-}
-
-std::unique_ptr<mlir::MLIRContext> makeContext() {
-  mlir::DialectRegistry registry;
-  registry.insert<ir::RtslDialect>();
-  codegen::registerPassDependencies(registry);
-  codegen::registerLlvmTranslation(registry);
-  auto context = std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
-  context->loadAllAvailableDialects();
-  return context;
-}
-
-mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
-                                              const LinkRequest &request, Diagnostics &diagnostics,
-                                              mlir::MLIRContext &context) {
-  LowerOptions lowering;
-  lowering.diagnostics = &diagnostics;
-  lowering.colorComponents = options.colorComponents;
-  lowering.checkIndices = options.checkIndices;
-  lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
-  lowering.prints = request.features & RTSL_FEATURE_PRINT;
-  if (!request.keep.has(Item::Classes))
-    lowering.classes = {request.classes.begin(), request.classes.end()};
-  return lower(module, lowering, context);
-}
-
-/// Runs `work` on the module. Our own passes may fail only through a fault of ours.
-template <typename Work>
-void expectSuccess(mlir::ModuleOp ir, Work work) {
-  std::string messages;
-  mlir::ScopedDiagnosticHandler collect(ir.getContext(), [&](mlir::Diagnostic &diagnostic) {
-    messages += diagnostic.str() + "\n";
-    return mlir::success();
-  });
-  if (!work())
-    fail(messages);
-}
-
-void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &)) {
-  mlir::PassManager passes(ir.getContext());
-#ifdef NDEBUG
-  passes.enableVerifier(false);
-#endif
-  build(passes);
-  expectSuccess(ir, [&] { return mlir::succeeded(passes.run(ir)); });
-}
-
-SplitOptions splitOptions(const CompileOptions &options) {
-  SplitOptions split;
-  split.rematerialise = split.trim = split.cleanUp = !options.savesAllThatIsLive;
-  return split;
-}
-
-/// Level 1 to level 2, to states.
-SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options) {
-  SplitReport report;
-  keepTracingMethods(ir);
-  run(ir, codegen::buildSsaPipeline);
-  expectSuccess(ir, [&] { return splitAtTrace(ir, options, report); });
-  return report;
-}
-
-SplitReport runToExplainedStates(mlir::ModuleOp ir, const CompileOptions &options) {
-  SplitOptions split = splitOptions(options);
-  split.explain = true;
-  return runToStates(ir, split);
-}
-
-/// With `trace` left a call, or as states.
-void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace, bool dispatch = true) {
-  if (trace == TraceMode::Recurse)
-    return run(ir, codegen::buildSsaPipeline);
-  SplitOptions split = splitOptions(options);
-  split.dispatch = dispatch;
-  runToStates(ir, split);
-}
 
 /// Stages that show states by name, before they are numbered.
 bool isLookedAtSplit(Stage stage) { return stage == Stage::Split || stage == Stage::Structured; }
-
-std::string print(mlir::ModuleOp ir) {
-  std::string text;
-  llvm::raw_string_ostream stream(text);
-  ir.print(stream);
-  stream << "\n";
-  return text;
-}
-
-/// LLVM IR on its way to code.
-struct LlvmCode {
-  LlvmCode() = default;
-  LlvmCode(LlvmCode &&) = default;
-  std::unique_ptr<llvm::LLVMContext> context = std::make_unique<llvm::LLVMContext>();
-  std::unique_ptr<llvm::TargetMachine> machine;
-  std::unique_ptr<llvm::Module> module;
-  codegen::MachineOptions options;
-  std::vector<std::string> kept; // functions that nothing calls and that stay
-};
-
-/// Level 2 as LLVM IR that is not linked with device code yet.
-LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
-  LlvmCode code;
-  code.kept = keptFunctions(ir);
-  run(ir, codegen::buildLlvmPipeline);
-  code.options = options;
-  code.machine = take(codegen::createTargetMachine(options));
-  code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
-  if (options.floatingPoint == FloatingPoint::Fast)
-    codegen::relaxArithmetic(*code.module);
-  else if (options.floatingPoint == FloatingPoint::Double)
-    codegen::widenArithmetic(*code.module);
-  return code;
-}
-
-void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports) {
-  exports.insert(exports.end(), code.kept.begin(), code.kept.end());
-  if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
-    fail(llvm::toString(std::move(error)));
-}
-
-codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu) {
-  codegen::MachineOptions machine;
-  machine.optimization = options.optimization;
-  machine.hostCpu = hostCpu;
-  machine.floatingPoint = options.floatingPoint;
-  return machine;
-}
-
-codegen::MachineOptions gpuOptions(const CompileOptions &options) {
-  codegen::MachineOptions machine;
-  machine.optimization = options.optimization;
-  machine.gpu = options.gpu;
-  machine.floatingPoint = options.floatingPoint;
-  return machine;
-}
-
-std::string toPtx(LlvmCode code) {
-  codegen::nameForPtx(*code.module);
-  codegen::optimize(*code.module, *code.machine, code.options);
-  return take(codegen::printPtx(*code.module, *code.machine));
-}
 
 /// The PTX of a module without a scene: a function a method, or a state where it traces. What others supply is declared:
 /// slots, and the functions of runtime/device.

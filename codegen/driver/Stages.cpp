@@ -1,0 +1,138 @@
+//===- Stages.cpp - the steps that all ways through the compiler share ----===//
+#include "codegen/driver/Stages.h"
+
+#include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/DoublePrecision.h"
+#include "codegen/emit/FastMath.h"
+#include "codegen/emit/Ptx.h"
+#include "codegen/ir/Rtsl.h"
+#include "codegen/link/Link.h"
+#include "codegen/lower/Lower.h"
+#include "codegen/passes/Pipeline.h"
+
+#include "llvm/Support/raw_ostream.h"
+
+namespace rtsl::driver {
+
+std::unique_ptr<mlir::MLIRContext> makeContext() {
+  mlir::DialectRegistry registry;
+  registry.insert<ir::RtslDialect>();
+  codegen::registerPassDependencies(registry);
+  codegen::registerLlvmTranslation(registry);
+  auto context = std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
+  context->loadAllAvailableDialects();
+  return context;
+}
+
+mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
+                                              const LinkRequest &request, Diagnostics &diagnostics,
+                                              mlir::MLIRContext &context) {
+  LowerOptions lowering;
+  lowering.diagnostics = &diagnostics;
+  lowering.colorComponents = options.colorComponents;
+  lowering.checkIndices = options.checkIndices;
+  lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
+  lowering.prints = request.features & RTSL_FEATURE_PRINT;
+  if (!request.keep.has(Item::Classes))
+    lowering.classes = {request.classes.begin(), request.classes.end()};
+  return lower(module, lowering, context);
+}
+
+void expectSuccess(mlir::ModuleOp ir, llvm::function_ref<bool()> work) {
+  std::string messages;
+  mlir::ScopedDiagnosticHandler collect(ir.getContext(), [&](mlir::Diagnostic &diagnostic) {
+    messages += diagnostic.str() + "\n";
+    return mlir::success();
+  });
+  if (!work())
+    throw std::logic_error(messages);
+}
+
+void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &)) {
+  mlir::PassManager passes(ir.getContext());
+#ifdef NDEBUG
+  passes.enableVerifier(false);
+#endif
+  build(passes);
+  expectSuccess(ir, [&] { return mlir::succeeded(passes.run(ir)); });
+}
+
+SplitOptions splitOptions(const CompileOptions &options) {
+  SplitOptions split;
+  split.rematerialise = split.trim = split.cleanUp = !options.savesAllThatIsLive;
+  return split;
+}
+
+SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options) {
+  SplitReport report;
+  keepTracingMethods(ir);
+  run(ir, codegen::buildSsaPipeline);
+  expectSuccess(ir, [&] { return splitAtTrace(ir, options, report); });
+  return report;
+}
+
+SplitReport runToExplainedStates(mlir::ModuleOp ir, const CompileOptions &options) {
+  SplitOptions split = splitOptions(options);
+  split.explain = true;
+  return runToStates(ir, split);
+}
+
+void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace, bool dispatch) {
+  if (trace == TraceMode::Recurse)
+    return run(ir, codegen::buildSsaPipeline);
+  SplitOptions split = splitOptions(options);
+  split.dispatch = dispatch;
+  runToStates(ir, split);
+}
+
+std::string print(mlir::ModuleOp ir) {
+  std::string text;
+  llvm::raw_string_ostream stream(text);
+  ir.print(stream);
+  stream << "\n";
+  return text;
+}
+
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
+  LlvmCode code;
+  code.kept = keptFunctions(ir);
+  run(ir, codegen::buildLlvmPipeline);
+  code.options = options;
+  code.machine = take(codegen::createTargetMachine(options));
+  code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
+  if (options.floatingPoint == FloatingPoint::Fast)
+    codegen::relaxArithmetic(*code.module);
+  else if (options.floatingPoint == FloatingPoint::Double)
+    codegen::widenArithmetic(*code.module);
+  return code;
+}
+
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports) {
+  exports.insert(exports.end(), code.kept.begin(), code.kept.end());
+  if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
+    throw std::logic_error(llvm::toString(std::move(error)));
+}
+
+codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu) {
+  codegen::MachineOptions machine;
+  machine.optimization = options.optimization;
+  machine.hostCpu = hostCpu;
+  machine.floatingPoint = options.floatingPoint;
+  return machine;
+}
+
+codegen::MachineOptions gpuOptions(const CompileOptions &options) {
+  codegen::MachineOptions machine;
+  machine.optimization = options.optimization;
+  machine.gpu = options.gpu;
+  machine.floatingPoint = options.floatingPoint;
+  return machine;
+}
+
+std::string toPtx(LlvmCode code) {
+  codegen::nameForPtx(*code.module);
+  codegen::optimize(*code.module, *code.machine, code.options);
+  return take(codegen::printPtx(*code.module, *code.machine));
+}
+
+} // namespace rtsl::driver

@@ -1,0 +1,80 @@
+//===- Stages.h - the steps that all ways through the compiler share ------===//
+//
+// From a checked module to IR, states, LLVM IR and PTX. A step that fails is a mistake of ours, for the program was checked before: it
+// throws std::logic_error, which ends `rtslc` with a status of its own.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+#include "codegen/emit/LlvmModule.h"
+#include "codegen/passes/continuation/Split.h"
+
+#include "mlir/IR/BuiltinOps.h"
+#include "mlir/IR/MLIRContext.h"
+#include "mlir/IR/OwningOpRef.h"
+#include "mlir/Pass/PassManager.h"
+#include "llvm/IR/LLVMContext.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/Error.h"
+#include "llvm/Target/TargetMachine.h"
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace rtsl::driver {
+
+template <typename T>
+T take(llvm::Expected<T> expected) {
+  if (!expected)
+    throw std::logic_error(llvm::toString(expected.takeError()));
+  return std::move(*expected);
+}
+
+std::unique_ptr<mlir::MLIRContext> makeContext();
+
+/// Null if something is not supported, which is reported.
+mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
+                                              const LinkRequest &request, Diagnostics &diagnostics,
+                                              mlir::MLIRContext &context);
+
+/// Runs `work` on the module.
+void expectSuccess(mlir::ModuleOp ir, llvm::function_ref<bool()> work);
+
+void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &));
+
+SplitOptions splitOptions(const CompileOptions &options);
+
+/// Level 1 to level 2, to states.
+SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options);
+SplitReport runToExplainedStates(mlir::ModuleOp ir, const CompileOptions &options);
+
+/// With `trace` left a call, or as states.
+void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace, bool dispatch = true);
+
+std::string print(mlir::ModuleOp ir);
+
+/// LLVM IR on its way to code.
+struct LlvmCode {
+  LlvmCode() = default;
+  LlvmCode(LlvmCode &&) = default;
+  std::unique_ptr<llvm::LLVMContext> context = std::make_unique<llvm::LLVMContext>();
+  std::unique_ptr<llvm::TargetMachine> machine;
+  std::unique_ptr<llvm::Module> module;
+  codegen::MachineOptions options;
+  std::vector<std::string> kept; // functions that nothing calls and that stay
+};
+
+/// Level 2 as LLVM IR that is not linked with device code yet.
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options);
+
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports);
+
+codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu);
+codegen::MachineOptions gpuOptions(const CompileOptions &options);
+
+std::string toPtx(LlvmCode code);
+
+} // namespace rtsl::driver
