@@ -70,19 +70,20 @@ bool isPlainOperand(unsigned type) {
   return type == RtslLexer::IDENTIFIER || isLiteral(type);
 }
 
-bool isOpening(unsigned type) {
-  return type == RtslLexer::LEFT_PAREN || type == RtslLexer::LEFT_BRACKET ||
-         type == RtslLexer::LEFT_BRACE;
-}
-bool isClosing(unsigned type) {
-  return type == RtslLexer::RIGHT_PAREN || type == RtslLexer::RIGHT_BRACKET ||
-         type == RtslLexer::RIGHT_BRACE;
-}
-
 /// Rewriting what a cast converts must not take long, however casts are nested.
 constexpr std::size_t longestOperand = 200;
 
 } // namespace
+
+bool isOpening(unsigned type) {
+  return type == RtslLexer::LEFT_PAREN || type == RtslLexer::LEFT_BRACKET ||
+         type == RtslLexer::LEFT_BRACE;
+}
+
+bool isClosing(unsigned type) {
+  return type == RtslLexer::RIGHT_PAREN || type == RtslLexer::RIGHT_BRACKET ||
+         type == RtslLexer::RIGHT_BRACE;
+}
 
 //===----------------------------------------------------------------------===//
 // Where words stand

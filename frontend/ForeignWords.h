@@ -16,6 +16,10 @@
 
 namespace rtsl {
 
+/// Is the token a bracket of any kind that opens, or closes?
+bool isOpening(unsigned type);
+bool isClosing(unsigned type);
+
 class ForeignWords {
 public:
   /// Reads `in` from left to right, and changes it in front of what was read; `out` has what is

@@ -22,16 +22,6 @@ namespace {
 
 using generated::RtslLexer;
 
-bool isOpening(unsigned type) {
-  return type == RtslLexer::LEFT_PAREN || type == RtslLexer::LEFT_BRACKET ||
-         type == RtslLexer::LEFT_BRACE;
-}
-
-bool isClosing(unsigned type) {
-  return type == RtslLexer::RIGHT_PAREN || type == RtslLexer::RIGHT_BRACKET ||
-         type == RtslLexer::RIGHT_BRACE;
-}
-
 unsigned closingOf(unsigned opening) {
   return opening == RtslLexer::LEFT_PAREN     ? RtslLexer::RIGHT_PAREN
          : opening == RtslLexer::LEFT_BRACKET ? RtslLexer::RIGHT_BRACKET

@@ -173,32 +173,28 @@ bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed:
   });
 }
 
-/// Does what the statement does say nothing of the parameter?
-static bool leavesAlone(const typed::Stmt &stmt, const typed::Variable &parameter) {
-  bool found = stmt.kind != ast::StmtKind::Expression && stmt.kind != ast::StmtKind::Declaration;
-  forEachExpr(stmt, [&](const typed::Expr &expr) {
+/// Does some part of the statement or expression name the variable?
+template <typename Tree>
+static bool mentions(const Tree &tree, const typed::Variable &variable) {
+  bool found = false;
+  forEachExpr(tree, [&](const typed::Expr &expr) {
     auto *named = dynCast<typed::VariableExpr>(&expr);
-    found = found || (named && named->variable == &parameter);
+    found = found || (named && named->variable == &variable);
   });
-  return !found;
+  return found;
 }
 
 bool ModulePrinter::beginsAsZero(const typed::Variable &parameter, const typed::Function &function) const {
   if (parameter.direction != ast::Direction::Out || !function.body)
     return false;
   for (const typed::StmtPtr &stmt : cast<typed::CompoundStmt>(*function.body).body) {
-    if (!stmt || leavesAlone(*stmt, parameter))
+    const bool isPlain = stmt && (stmt->kind == ast::StmtKind::Expression || stmt->kind == ast::StmtKind::Declaration);
+    if (!stmt || (isPlain && !mentions(*stmt, parameter)))
       continue;
     auto *expression = dynCast<typed::ExpressionStmt>(stmt);
     auto *assign = expression ? dynCast<typed::AssignExpr>(expression->expr) : nullptr;
     auto *target = assign ? dynCast<typed::VariableExpr>(assign->target) : nullptr;
-    bool isRead = false;
-    if (target)
-      forEachExpr(*assign->value, [&](const typed::Expr &expr) {
-        auto *named = dynCast<typed::VariableExpr>(&expr);
-        isRead = isRead || (named && named->variable == &parameter);
-      });
-    return !target || target->variable != &parameter || assign->compound || isRead;
+    return !target || target->variable != &parameter || assign->compound || mentions(*assign->value, parameter);
   }
   return true;
 }

@@ -153,13 +153,7 @@ double nanosecondsAMeeting(Path path) {
   RayTarget &target = changingMesh(path);
   Random random(1);
   target.replaceBy(amongPoints(random, {{{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}}}));
-  constexpr int count = 100'000;
-  return timeOf(count, [&] {
-    float sum = 0;
-    for (int i = 0; i < count; ++i)
-      sum += *target.meet({0.001f * float(i & 255), 0.25f, 5}, {0, 0, -1});
-    return sum;
-  });
+  return nanosecondsToMeet(target);
 }
 
 } // namespace

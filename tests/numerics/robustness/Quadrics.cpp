@@ -164,13 +164,7 @@ Outcome runSurface(Path path, std::uint64_t cases, std::uint32_t seed) {
 double nanosecondsAMeeting(Path path) {
   Quadric &target = quadric(path);
   target.place({0, 0, 0}, {1, 1, 1}, 1, 2);
-  constexpr int count = 100'000;
-  return timeOf(count, [&] {
-    float sum = 0;
-    for (int i = 0; i < count; ++i)
-      sum += *target.meet({0.001f * float(i & 255), 0.25f, 5}, {0, 0, -1});
-    return sum;
-  });
+  return nanosecondsToMeet(target);
 }
 
 } // namespace

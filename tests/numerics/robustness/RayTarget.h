@@ -4,6 +4,7 @@
 #include "CompiledShaders.h"
 #include "Generators.h"
 #include "HighPrecision.h"
+#include "Timing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,5 +120,17 @@ inline Precise pointUnit(const Ray &ray, float t) {
 
 /// The point at t as the renderer computes it.
 inline device::Vec3 pointAt(const Ray &ray, float t) { return ray.origin + ray.direction * t; }
+
+/// Of a ray from in front of a target that it meets, about the origin.
+template <typename Target>
+double nanosecondsToMeet(Target &target) {
+  constexpr int count = 100'000;
+  return timeOf(count, [&] {
+    float sum = 0;
+    for (int i = 0; i < count; ++i)
+      sum += *target.meet({0.001f * float(i & 255), 0.25f, 5}, {0, 0, -1});
+    return sum;
+  });
+}
 
 } // namespace rtsl::numerics
