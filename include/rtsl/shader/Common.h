@@ -37,6 +37,15 @@ constexpr bool isLikely(bool choice) {
 #endif
 }
 
+/// For what every round of a loop passes to a call, which spoils registers: g++ would have it in some all the same, and
+/// save and fetch it around each call.
+template <typename T>
+inline void keepInMemory([[maybe_unused]] T &value) {
+#if defined(__GNUC__)
+  asm("" : "+m"(value));
+#endif
+}
+
 /// The IEEE square root: one instruction. std::sqrt also asks each time whether errno is to be set,
 /// and with the intrinsic g++ clears the register's other lanes first.
 inline float squareRoot(float x) {

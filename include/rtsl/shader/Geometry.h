@@ -41,18 +41,23 @@ inline glm::vec3 cross(const glm::vec3 &a, const glm::vec3 &b) {
 }
 
 namespace detail {
-// Below, squares that are subnormal could reach the last digits of the sum; above, the sum has
-// overflowed.
+/// May the root of a sum of squares be taken as it is? Below, squares that are subnormal could reach
+/// the last digits of the sum; above, it has overflowed.
 inline bool isGoodSquare(float square) {
 #if defined(RTSL_FAST)
   return isLikely(0x1p-96f <= square);
-#elif defined(__GNUC__) && !defined(__clang__)
-  return isLikely(0x1p-96f <= square && square < infinity);
 #else
-  // Their bits are in order as those of a sum of squares are, and with a NaN above all. One
-  // comparison is quicker with clang, two are with g++ (bench/run shaders).
+  // The bits of what is not negative are in order as the numbers are, with a NaN above all.
   constexpr uint least = 0x0f800000u, infinite = 0x7f800000u; // 2^-96
   return isLikely(bitsAs<uint>(square) - least < infinite - least);
+#endif
+}
+/// The same, where nothing is divided by the root: quicker with g++ (bench/run shaders).
+inline bool isGoodSquareOfLength(float square) {
+#if defined(__GNUC__) && !defined(__clang__) && !defined(RTSL_FAST)
+  return isLikely(0x1p-96f <= square && !(infinity <= square));
+#else
+  return detail::isGoodSquare(square);
 #endif
 }
 /// What a vector is multiplied with, exactly, so that its squares stay in the range of a float.
@@ -81,7 +86,7 @@ inline float length(const T &v) {
     return std::fabs(v);
   } else {
     const float square = rtsl::dot(v, v);
-    if (detail::isGoodSquare(square))
+    if (detail::isGoodSquareOfLength(square))
       return rtsl::squareRoot(square);
     const float scale = detail::scaleOfBadSquare(square);
     const T scaled = v * scale;

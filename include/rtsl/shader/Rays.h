@@ -77,7 +77,8 @@ inline float rand(State<N> &rt) {
 template <int N>
 inline Color<N> ambient(const State<N> &rt) {
   Color<N> color;
-  std::copy_n(rt.launch->ambient, N, color.components);
+  for (int i = 0; i < N; ++i)
+    color.components[i] = rt.launch->ambient[i];
   return color;
 }
 
@@ -106,19 +107,22 @@ inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point,
 template <int N>
 class Lights {
 public:
-  Lights(State<N> &rt, const glm::vec3 &point) : rt(rt), point(point) {}
+  Lights(State<N> &rt, const glm::vec3 &point) : Lights(rt, point, glm::vec3(0.0f), 0.0f, -2.0f) {}
   /// Those within `angle` (radians) of the normal.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float angle)
       : Lights(rt, point, normal, angle, cosOfAngle(angle)) {}
   /// For an angle whose cosine was known when the code was made.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float /*angle*/,
          float cosine)
-      : rt(rt), point(point), normal(normal), cosAngle(cosine) {}
+      : rt(rt), point(point), normal(normal), cosAngle(cosine), count(lightCount(rt)) {
+    keepInMemory(this->point);
+    keepInMemory(this->normal);
+  }
 
   /// Sets LightDirection, LightDistance and LightColor to those of the next light that reaches the
   /// point; false if there is none.
   bool next() {
-    while (index < lightCount(rt))
+    while (index < count)
       if (illuminate(rt, index++, point, normal, cosAngle))
         return true;
     return false;
@@ -128,9 +132,9 @@ public:
 
 private:
   State<N> &rt;
-  glm::vec3 point, normal = glm::vec3(0.0f);
-  float cosAngle = -2.0f; // no cosine: every light
-  int index = 0;
+  glm::vec3 point, normal;
+  float cosAngle; // -2 is no cosine: every light
+  int index = 0, count;
 };
 
 } // namespace RTSL_VARIANT
