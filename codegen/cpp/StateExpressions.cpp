@@ -33,6 +33,16 @@ Code StateWriter::use(mlir::Value value, const std::string &type) {
   return code;
 }
 
+// C++ asks both values to be of one type, and a vector of bools has another where it lies in memory.
+std::string choose(const std::string &condition, const std::string &first, const std::string &second,
+                   const std::string &type) {
+  const auto side = [&](const std::string &value) {
+    const bool isBools = type.compare(0, 9, "glm::bvec") == 0;
+    return isBools && value.compare(0, type.size() + 1, type + "(") != 0 ? type + "(" + value + ")" : value;
+  };
+  return condition + " ? " + side(first) + " : " + side(second);
+}
+
 static Code numberCode(mlir::Attribute number, bool isUnsigned) {
   std::string text;
   if (auto integer = llvm::dyn_cast<mlir::IntegerAttr>(number)) {

@@ -32,10 +32,40 @@ std::string Machine::addressName(const ModulePrinter &printer, std::size_t numbe
   return name.empty() ? called->fields[number] : name;
 }
 
-std::string StateWriter::freshName(std::string wanted) {
-  std::string clean;
-  for (char c : wanted)
-    clean += std::isalnum(static_cast<unsigned char>(c)) || c == '_' ? c : '_';
+/// The C++ type of a state variable; empty: the name is none's.
+static std::string stateType(llvm::StringRef name) {
+  static const std::map<std::string, std::string> types = {
+#define RTSL_STATE_VARIABLE(name, type) {#name, #type},
+#include "runtime/device/StateVariables.def"
+  };
+  const auto found = types.find(name.str());
+  if (found == types.end())
+    return {};
+  const std::string &word = found->second;
+  if (word == "color")
+    return "Color";
+  if (word == "uint2")
+    return "glm::uvec2";
+  return word == "float" || word == "int" ? word : "glm::" + word;
+}
+
+std::string StateWriter::spelling(llvm::StringRef name) {
+  std::string spelled;
+  for (std::size_t at = 0; at != name.size(); ++at)
+    if (llvm::isAlnum(name[at]) || name[at] == '_')
+      spelled += name[at];
+    else if (name[at] != ']' && (at + 1 == name.size() || !llvm::isDigit(name[at + 1])))
+      spelled += '_';
+  const auto isAuthors = [&](const auto &variable) { return variable->name == name; };
+  if (stateType(name).empty() || llvm::any_of(machine.method->locals, isAuthors) ||
+      llvm::any_of(machine.method->parameters, isAuthors))
+    return spelled;
+  spelled[0] = llvm::toLower(spelled[0]);
+  return spelled;
+}
+
+std::string StateWriter::freshName(const std::string &wanted) {
+  std::string clean = spelling(wanted);
   while (clean.find("__") != std::string::npos)
     clean.erase(clean.find("__"), 1);
   if (clean.empty() || std::isdigit(static_cast<unsigned char>(clean.front())))
@@ -143,19 +173,6 @@ static std::string scalarOf(const std::string &vector, mlir::Type known) {
   return known ? scalarType(known) : std::string();
 }
 
-static std::string stateType(llvm::StringRef name) {
-  static const std::map<std::string, std::string> types = {
-#define RTSL_STATE_VARIABLE(name, type) {#name, #type},
-#include "runtime/device/StateVariables.def"
-  };
-  const std::string &word = types.at(name.str());
-  if (word == "color")
-    return "Color";
-  if (word == "uint2")
-    return "glm::uvec2";
-  return word == "float" || word == "int" ? word : "glm::" + word;
-}
-
 const Type *StateWriter::declaredType(mlir::Value address) {
   mlir::Operation *op = address.getDefiningOp();
   if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
@@ -172,7 +189,7 @@ const Type *StateWriter::declaredType(mlir::Value address) {
   }
   if (auto element = llvm::dyn_cast_or_null<ir::ElementOp>(op)) {
     const Type *base = declaredType(element.getBase());
-    return base && base->is(TypeKind::Array) ? base->element : nullptr;
+    return base && (base->is(TypeKind::Array) || base->isMatrix()) ? base->element : nullptr;
   }
   auto number = op ? op->getAttrOfType<mlir::IntegerAttr>("rtsl.declared") : mlir::IntegerAttr();
   return number ? source.types[static_cast<std::size_t>(number.getInt())] : nullptr;

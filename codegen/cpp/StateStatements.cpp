@@ -32,8 +32,15 @@ static ir::VarOp variableAskedBy(mlir::Value condition, bool &isOpposite) {
 std::optional<Code> StateWriter::takeCondition(ir::IfOp op, Statements &out, Statement &taken) {
   bool isOpposite = false;
   ir::VarOp variable = variableAskedBy(op.getCondition(), isOpposite);
-  if (!variable || !isOwnName(variable.getName()) || out.empty() ||
-      out.back().assigns != variable || out.back().value.empty())
+  if (!variable || !isOwnName(variable.getName()))
+    return std::nullopt;
+  // Between the two may stand what is read from the frame, which the condition leaves alone.
+  const std::string frame = machine.frameName + ".";
+  const auto found = std::find_if(out.rbegin(), out.rend(), [&](const Statement &statement) {
+    return !statement.text.empty() && statement.value.compare(0, frame.size(), frame) != 0;
+  });
+  if (found == out.rend() || found->assigns != variable || found->value.empty() ||
+      (found != out.rbegin() && found->value.find(frame) != std::string::npos))
     return std::nullopt;
   for (mlir::Operation *user : variable->getUsers()) {
     auto load = llvm::dyn_cast<ir::LoadOp>(user);
@@ -51,8 +58,8 @@ std::optional<Code> StateWriter::takeCondition(ir::IfOp op, Statements &out, Sta
         return std::nullopt;
     }
   }
-  taken = std::move(out.back());
-  out.pop_back();
+  taken = std::move(*found);
+  out.erase(std::next(found).base());
   Code value = {taken.value, Binding::Assignment};
   return isOpposite ? negated(value) : value;
 }
@@ -103,7 +110,7 @@ void StateWriter::choice(ir::IfOp op, Statements &out) {
   if (mlir::Operation *target = assigns(thenPart); target && target == assigns(elsePart)) {
     const std::string name = nameOf(llvm::cast<ir::VarOp>(target));
     const std::string first = thenPart.front().value, second = elsePart.front().value;
-    std::string value = bind(condition, Binding::Or) + " ? " + first + " : " + second;
+    std::string value = choose(bind(condition, Binding::Or), first, second, varType(llvm::cast<ir::VarOp>(target)));
     if (condition.text == second || condition.text == "!" + second)
       value =
           takeName(op, second, out) + (condition.text == second ? " && " : " || ") + sideOf(first);

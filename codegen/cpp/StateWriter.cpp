@@ -216,8 +216,8 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
         const std::string type = typeOf(select.getResult());
         const std::string condition = bind(use(select.getCondition()), Binding::Or);
         const std::string first = bind(use(select.getTrueValue(), type), Binding::Assignment);
-        pure({condition + " ? " + first + " : " + bind(use(select.getFalseValue(), type), Binding::Assignment),
-              Binding::Assignment});
+        const std::string second = bind(use(select.getFalseValue(), type), Binding::Assignment);
+        pure({choose(condition, first, second, type), Binding::Assignment});
       })
       .Case<arith::ConstantOp, ir::NullRefOp, ir::NextOp, ir::StateOp, ir::YieldOp, ir::ConditionOp,
             ir::TraceReturnedOp, ir::EnterOp, ir::LeaveOp, ir::FrameObjectOp, ir::PayloadOp, ir::FieldOp, ir::TableOp>([](auto) {})

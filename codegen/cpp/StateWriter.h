@@ -68,6 +68,9 @@ bool isOwnName(llvm::StringRef name);
 /// The opposite of a condition.
 Code negated(const Code &code);
 
+/// `condition ? first : second`, of values of a type in C++.
+std::string choose(const std::string &condition, const std::string &first, const std::string &second, const std::string &type);
+
 class StateWriter {
 public:
   StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine);
@@ -80,6 +83,8 @@ public:
   std::string typeOfSlot(const std::string &slot, mlir::Type type);
   /// What a value is called: as nameFor() says, or in the frame.
   std::string nameOfValue(mlir::Value value);
+  /// A name of the IR as C++ writes it: `m[0]` is m0, `ray.origin` ray_origin, and the state's `HitPoint` hitPoint.
+  std::string spelling(llvm::StringRef name);
   bool usesScratch = false; // of the state that was written last
   /// The author's type of a variable that stays whole, or of a part of one; null: it is not known.
   const Type *declaredType(mlir::Value address);
@@ -163,7 +168,7 @@ private:
   // StateNames.cpp
   std::string varType(ir::VarOp variable);
   const std::string &nameOf(ir::VarOp variable);
-  std::string freshName(std::string wanted);
+  std::string freshName(const std::string &wanted);
 
   ModulePrinter &module;
   const SourceTable &source;

@@ -38,6 +38,7 @@ SourceTable makeSourceTable(const typed::Module &module) {
     return inside.isPure() && !inside.usesRay && !inside.usesScratch && !function.mayTrace && !tracing->mayBeCalled(function);
   };
   table.mayTrace = [tracing](const typed::Function &function) { return tracing->mayBeCalled(function); };
+  table.becomesStates = [tracing](const typed::Function &function) { return tracing->contains(function); };
   table.writes = [effects](const typed::Expr &expr) -> std::optional<std::vector<std::string>> {
     auto *call = dynCast<typed::CallExpr>(&expr);
     if (!call) // of a method that is known when the scene is
@@ -148,12 +149,7 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
     for (FrameField &known : machine.frame)
       if (known.slot == slot && known.isObject == isObject)
         return known;
-    std::string name; // "sum.2" is the second sum, "ray.origin" a part
-    for (std::size_t at = 0; at != slot.size(); ++at)
-      if (std::isalnum(static_cast<unsigned char>(slot[at])) || slot[at] == '_')
-        name += slot[at];
-      else if (at + 1 == slot.size() || !std::isdigit(static_cast<unsigned char>(slot[at + 1])))
-        name += '_';
+    std::string name = writer.spelling(slot);
     if (name == "evaluate" || name == "expression" || name == "call_returned") // what the IR calls it
       name = value ? writer.nameOfValue(value) : "value";
     machine.frame.push_back({slot.str(), unique(name, taken), "", 0, 0, !isObject, !isObject, isObject});

@@ -29,6 +29,7 @@ def Rtsl_Dialect : Dialect {
     | `rtsl.constructor` | writes the record of its object, so members are not constants there |
     | `rtsl.export` | keeps its name and may be called from outside of the program |
     | `rtsl.noinline` | stays a function |
+    | `rtsl.states` | becomes states, even if it does not trace |
   }];
   let useDefaultTypePrinterParser = 1;
   let useDefaultAttributePrinterParser = 1;

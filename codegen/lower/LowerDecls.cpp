@@ -114,6 +114,8 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
       function->setAttr("rtsl.constructor", emitter.getUnitAttr());
     else if (!key.inIntersect || source.name == "intersect")
       function->setAttr("rtsl.method", emitter.getStringAttr(slotName(source)));
+    if (options.source && options.source->becomesStates(source))
+      function->setAttr("rtsl.states", emitter.getUnitAttr());
     if (takesPayload(source))
       function->setAttr("rtsl.payload", mlir::TypeAttr::get(type(source.parameters[0]->type)));
   }

@@ -190,7 +190,7 @@ void OpenCalls::run() {
   summariseWrites();
   for (auto &[declaration, stands] : declarations)
     for (FuncOp target : stands)
-      if (tracing.contains(target))
+      if (tracing.contains(target) || target->hasAttr("rtsl.states"))
         giveFrame(target);
 }
 

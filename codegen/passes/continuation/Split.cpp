@@ -312,6 +312,9 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
     if (auto entry = module.lookupSymbol<FuncOp>(name);
         entry && !entry.isExternal() && !isEmpty(entry) && !llvm::is_contained(functions, entry))
       functions.push_back(entry);
+  for (FuncOp function : module.getOps<FuncOp>())
+    if (function->hasAttr("rtsl.states") && !llvm::is_contained(functions, function))
+      functions.push_back(function);
   // What is called comes after its callers, which ask what it writes.
   std::stable_partition(functions.begin(), functions.end(), [](FuncOp function) { return !isFramed(function); });
   for (FuncOp function : functions) {

@@ -21,32 +21,11 @@
 #include "codegen/passes/continuation/Steps.h"
 
 #include "mlir/IR/IRMapping.h"
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
-#include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 
 namespace rtsl::continuation {
 
 namespace {
-
-/// Blocks that had several ways in may have one here: then an argument is what comes that way.
-void forwardArguments(FuncOp state) {
-  for (mlir::Block &block : llvm::drop_begin(state.getBody())) {
-    mlir::Block *predecessor = block.getSinglePredecessor();
-    if (!predecessor || llvm::count(predecessor->getSuccessors(), &block) != 1)
-      continue;
-    auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-    if (!branch)
-      continue;
-    unsigned index = llvm::find(predecessor->getSuccessors(), &block) - predecessor->succ_begin();
-    mlir::SuccessorOperands operands = branch.getSuccessorOperands(index);
-    for (unsigned i = block.getNumArguments(); i-- > 0;) {
-      block.getArgument(i).replaceAllUsesWith(operands[i]);
-      block.eraseArgument(i);
-      operands.erase(i);
-    }
-  }
-}
 
 /// A call that is a jump to the first state of what it calls; nothing behind it runs.
 bool isJump(mlir::Operation &op) {

@@ -175,6 +175,9 @@ FrameLayout layoutFrame(FuncOp function);
 /// each trace.
 mlir::FailureOr<llvm::SmallVector<FuncOp>> splitStates(FuncOp function);
 
+/// ForwardArguments.cpp: an argument of a block to which only one value comes, on whatever way, is that value.
+void forwardArguments(FuncOp function);
+
 /// CleanStores.cpp: removes stores of what the slot already holds. True if there were any.
 bool cleanStores(FuncOp state);
 

@@ -12,7 +12,8 @@ from programs import run, same_picture
 rtslc, glass, *programs = sys.argv[1:]
 here = pathlib.Path(__file__).parent
 names = ["Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived",
-         "Table", "Bundle", "Turned", "Outputs", "Component", "Lit"]
+         "Table", "Bundle", "Turned", "Outputs", "Component", "Lit", "Tangled", "Loud", "Quiet",
+         "Columns", "Flags", "Scattered"]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
     "rtsl": 1,
@@ -29,7 +30,7 @@ scene = {
     "render": {"engine": "classic", "size": [96, 54], "spp": 2, "depth": 4, "seed": 1},
 }
 for i, name in enumerate(names):
-    center = [-4.1 + 1.2 * (i % 8), 0.8 + 1.5 * (i // 8), 0]
+    center = [-4.1 + 1.2 * (i % 8), 0.7 + 1.3 * (i // 8), 0]
     scene["objects"].append({"primitive": {"class": "Sphere", "center": center, "radius": 0.7}, "material": name})
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
     file, ours, theirs = (str(pathlib.Path(folder) / name) for name in ("scene.json", "cpp.exr", "jit.exr"))

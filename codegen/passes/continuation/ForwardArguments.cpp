@@ -1,0 +1,186 @@
+//===- ForwardArguments.cpp - arguments of blocks that merge nothing ------===//
+//
+//   cond_br ..., ^a(%v), ^b(%v)                 cond_br ..., ^a, ^b
+//   ^a(%x): br ^b(%x)                   ==>     ^a: br ^b
+//   ^b(%y): cond_br ..., ^a(%y), ^c             ^b: cond_br ..., ^a, ^c        and %v for %x and %y
+//
+// A state lacks the ways on which other values came. Arguments that pass each other on round a loop are a component of the
+// graph from an argument to what comes for it. One into which a single value comes is that value; of one into which several
+// come, those arguments are looked at by themselves that take only from the component (Braun et al., "Simple and Efficient
+// Construction of Static Single Assignment Form", 2013, algorithm 5).
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Steps.h"
+
+#include "mlir/Interfaces/ControlFlowInterfaces.h"
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
+#include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/SetVector.h"
+
+#include <algorithm>
+
+namespace rtsl::continuation {
+
+namespace {
+
+using mlir::Value;
+using Arguments = llvm::SmallSetVector<Value, 8>;
+
+class Forwarder {
+public:
+  explicit Forwarder(FuncOp function) : function(function) {}
+  void run();
+
+private:
+  void collect(mlir::Block &block);
+  Value behind(Value value) const;
+  void forward(const Arguments &part);
+  void forwardComponent(const Arguments &component);
+  void erase(mlir::Block &block);
+
+  FuncOp function;
+  llvm::MapVector<Value, llvm::SmallVector<Value>> incoming; // of each argument
+  llvm::DenseMap<Value, Value> forwarded;                    // what it is
+};
+
+/// The components of a part of the arguments, what comes for others first (Tarjan, "Depth-first search and linear graph
+/// algorithms", 1972).
+class Components {
+public:
+  Components(const Arguments &part, llvm::function_ref<llvm::ArrayRef<Value>(Value)> operandsOf)
+      : part(part), operandsOf(operandsOf) {
+    for (Value argument : part)
+      if (!numbers.count(argument))
+        visit(argument);
+  }
+  std::vector<Arguments> found;
+
+private:
+  unsigned visit(Value argument) {
+    const unsigned number = numbers[argument] = ++count;
+    unsigned low = number;
+    stack.push_back(argument);
+    open.insert(argument);
+    for (Value operand : operandsOf(argument)) {
+      if (!part.contains(operand))
+        continue;
+      if (auto known = numbers.find(operand); known == numbers.end())
+        low = std::min(low, visit(operand));
+      else if (open.contains(operand))
+        low = std::min(low, known->second);
+    }
+    if (low == number) {
+      Arguments &component = found.emplace_back();
+      do {
+        component.insert(stack.back());
+        open.erase(stack.pop_back_val());
+      } while (!component.contains(argument));
+    }
+    return low;
+  }
+
+  const Arguments &part;
+  llvm::function_ref<llvm::ArrayRef<Value>(Value)> operandsOf;
+  llvm::DenseMap<Value, unsigned> numbers;
+  llvm::DenseSet<Value> open;
+  llvm::SmallVector<Value> stack;
+  unsigned count = 0;
+};
+
+/// The operands for the arguments of `block` on each way from `from`; null for a terminator that makes some itself.
+template <typename Visit>
+bool forEachWay(mlir::Block *from, mlir::Block &block, Visit visit) {
+  auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(from->getTerminator());
+  for (unsigned way = 0; way < from->getNumSuccessors(); ++way)
+    if (from->getSuccessor(way) == &block) {
+      if (!branch || branch.getSuccessorOperands(way).getProducedOperandCount() != 0)
+        return false;
+      visit(branch.getSuccessorOperands(way));
+    }
+  return true;
+}
+
+void Forwarder::collect(mlir::Block &block) {
+  llvm::SmallVector<llvm::SmallVector<Value>> found(block.getNumArguments());
+  const llvm::SmallSetVector<mlir::Block *, 4> predecessors(block.pred_begin(), block.pred_end());
+  for (mlir::Block *from : predecessors)
+    if (!forEachWay(from, block, [&](mlir::SuccessorOperands operands) {
+          for (unsigned i = 0; i < block.getNumArguments(); ++i)
+            found[i].push_back(operands[i]);
+        }))
+      return;
+  for (auto [argument, values] : llvm::zip(block.getArguments(), found))
+    incoming.insert({argument, std::move(values)});
+}
+
+Value Forwarder::behind(Value value) const {
+  for (auto known = forwarded.find(value); known != forwarded.end(); known = forwarded.find(value))
+    value = known->second;
+  return value;
+}
+
+void Forwarder::forwardComponent(const Arguments &component) {
+  Value only;
+  bool several = false;
+  Arguments inner;
+  for (Value argument : component) {
+    bool isInner = true;
+    for (Value operand : incoming.find(argument)->second) {
+      const Value value = behind(operand);
+      if (component.contains(value))
+        continue;
+      isInner = false;
+      several |= only && only != value;
+      only = value;
+    }
+    if (isInner)
+      inner.insert(argument);
+  }
+  if (!several && only)
+    for (Value argument : component)
+      forwarded[argument] = only;
+  else if (inner.size() < component.size())
+    forward(inner);
+}
+
+void Forwarder::forward(const Arguments &part) {
+  const auto operandsOf = [&](Value argument) -> llvm::ArrayRef<Value> { return incoming.find(argument)->second; };
+  const Components components(part, operandsOf);
+  for (const Arguments &component : components.found)
+    forwardComponent(component);
+}
+
+void Forwarder::erase(mlir::Block &block) {
+  const llvm::SmallSetVector<mlir::Block *, 4> predecessors(block.pred_begin(), block.pred_end());
+  for (unsigned i = block.getNumArguments(); i-- > 0;) {
+    if (!forwarded.count(block.getArgument(i)))
+      continue;
+    for (mlir::Block *from : predecessors)
+      forEachWay(from, block, [&](mlir::SuccessorOperands operands) { operands.erase(i); });
+    block.eraseArgument(i);
+  }
+}
+
+void Forwarder::run() {
+  for (mlir::Block &block : llvm::drop_begin(function.getBody()))
+    if (block.getNumArguments() != 0)
+      collect(block);
+  Arguments all;
+  for (const auto &entry : incoming)
+    all.insert(entry.first);
+  forward(all);
+  for (Value argument : all)
+    if (forwarded.count(argument))
+      argument.replaceAllUsesWith(behind(argument));
+  for (mlir::Block &block : llvm::drop_begin(function.getBody()))
+    erase(block);
+}
+
+} // namespace
+
+void forwardArguments(FuncOp function) {
+  Forwarder(function).run();
+}
+
+} // namespace rtsl::continuation
