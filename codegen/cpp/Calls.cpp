@@ -25,8 +25,8 @@ bool FunctionPrinter::canBind(const typed::Expr &place) const {
     return false;
   auto *variable = dynCast<typed::VariableExpr>(&place);
   const bool isBool = place.type->is(TypeKind::Bool) || (place.type->isVector() && place.type->element->is(TypeKind::Bool));
-  if (isBool && place.kind == ExprKind::Swizzle)
-    return true;
+  if (auto *component = dynCast<typed::SwizzleExpr>(&place); component && isBool)
+    return canBind(*component->base);
   return variable || !isBool;
 }
 

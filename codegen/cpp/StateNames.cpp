@@ -49,6 +49,17 @@ static std::string stateType(llvm::StringRef name) {
   return word == "float" || word == "int" ? word : "glm::" + word;
 }
 
+bool mentions(const std::string &text, const std::string &word) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    auto isPart = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
+    const bool begins = at == 0 || !isPart(text[at - 1]);
+    const char next = at + word.size() < text.size() ? text[at + word.size()] : ' ';
+    if (begins && (next == '.' || !isPart(next)))
+      return true;
+  }
+  return false;
+}
+
 std::string StateWriter::spelling(llvm::StringRef name) {
   std::string spelled;
   for (std::size_t at = 0; at != name.size(); ++at)

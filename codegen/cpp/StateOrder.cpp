@@ -8,6 +8,8 @@
 
 #include "codegen/passes/continuation/Names.h"
 
+#include "mlir/Dialect/Vector/IR/VectorOps.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,6 +124,21 @@ void StateWriter::emit(Statements &out, std::string text) {
   out.push_back(std::move(statement));
 }
 
+/// Can the variable of a vector, which nobody reads any more, become that with components replaced?
+bool StateWriter::changesInPlace(mlir::Value value, const Insertion &whole) {
+  mlir::Value before = whole.before;
+  const auto variable = declared.find(before);
+  mlir::Operation *op = value.getDefiningOp();
+  if (variable == declared.end() || nameOfValue(value) != nameOfValue(before) || before.getParentBlock() != op->getBlock())
+    return false;
+  const std::string &name = variable->second;
+  return llvm::all_of(before.getUsers(),
+                      [&](mlir::Operation *user) { return user->getBlock() == op->getBlock() && !op->isBeforeInBlock(user); }) &&
+         llvm::none_of(pending, [&](const auto &waiting) { return mentions(waiting.second.code.text, name); }) &&
+         std::none_of(whole.parts.begin() + 1, whole.parts.end(),
+                      [&](const Insertion::Part &part) { return mentions(part.value, name) || mentions(part.index, name); });
+}
+
 /// Gives a value that waits for its use a variable now.
 void StateWriter::materialise(mlir::Value value, Statements &out) {
   Pending waiting = std::move(pending[value]);
@@ -131,13 +148,23 @@ void StateWriter::materialise(mlir::Value value, Statements &out) {
   const std::string type = typeOf(value);
   if (type.empty())
     unsupported(*value.getDefiningOp());
-  const std::string name = freshName(nameOfValue(value));
-  mentioned = std::move(waiting.mentions);
-  emit(out, fmt::format("{} {};", type, declarator(type, name, waiting.code.text)));
-  out.back().isDeclaration = true;
-  out.back().made = value;
-  out.back().value = waiting.code.text;
+  const auto whole = insertions.find(value);
+  const bool isInPlace = whole != insertions.end() && changesInPlace(value, whole->second);
+  const std::string name = isInPlace ? declared[whole->second.before] : freshName(nameOfValue(value));
   declared[value] = name;
+  if (!isInPlace) {
+    const std::string begin = whole == insertions.end() ? waiting.code.text : whole->second.vector;
+    mentioned = waiting.mentions;
+    emit(out, fmt::format("{} {};", type, declarator(type, name, begin)));
+    out.back().isDeclaration = true;
+    out.back().made = value;
+    out.back().value = begin;
+  }
+  if (whole != insertions.end())
+    for (const Insertion::Part &part : whole->second.parts) {
+      mentioned = waiting.mentions;
+      emit(out, Insertion::place(name, part) + " = " + part.value + ";");
+    }
   mentioned = before;
 }
 
@@ -198,13 +225,27 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
       isOwnName(given) || (value.getType().isInteger(1) && continuation::isNamedByCaller(value));
   const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
                        !given.empty() && !(uses == 1 && isLoose);
+  const auto whole = insertions.find(value);
+  const bool isLong = whole != insertions.end() && whole->second.parts.size() > 1 && !llvm::isa<mlir::vector::InsertOp>(user);
   const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
   const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
                          (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
   pending[value] = {std::move(code), std::move(touches), mentioned, uses, isPure, isTrivial};
-  if (uses == 1 ? isNamed && !stores() : isNamed || !isTrivial)
+  if (uses == 1 ? (isNamed && !stores()) || isLong : isNamed || !isTrivial)
     materialise(value, out);
+}
+
+std::string StateWriter::Insertion::text() const {
+  std::string text = vector;
+  for (const Part &part : parts)
+    text = part.component.empty() ? fmt::format("rtsl::with({}, {}, {})", text, part.index, part.value)
+                                  : fmt::format("rtsl::with<{}>({}, {})", std::string("xyzw").find(part.component), text, part.value);
+  return text;
+}
+
+std::string StateWriter::Insertion::place(const std::string &vector, const Part &part) {
+  return part.component.empty() ? fmt::format("rtsl::at({}, {})", vector, part.index) : vector + "." + part.component;
 }
 
 } // namespace rtsl::cpp

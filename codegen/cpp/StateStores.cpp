@@ -12,15 +12,6 @@ namespace rtsl::cpp {
 
 using typed::ExprKind;
 
-/// Does the text have the word?
-static bool mentions(const std::string &text, const std::string &word) {
-  auto isPart = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
-    if ((at == 0 || !isPart(text[at - 1])) && (at + word.size() == text.size() || !isPart(text[at + word.size()])))
-      return true;
-  return false;
-}
-
 bool writesTo(mlir::Operation *op, mlir::Value address) {
   if (auto store = llvm::dyn_cast<ir::StoreOp>(op))
     return store.getAddress() == address;
@@ -145,8 +136,8 @@ void StateWriter::store(ir::StoreOp op, Statements &out) {
   const std::string target = place(op.getAddress()).text;
   // A component of what lies there.
   auto insertion = insertions.find(op.getValue());
-  const bool isPart = insertion != insertions.end() && pending.count(op.getValue()) &&
-                      insertion->second.vector == target;
+  const bool isPart = insertion != insertions.end() && pending.count(op.getValue()) && insertion->second.vector == target &&
+                      insertion->second.parts.size() == 1;
   const std::string value = bind(use(op.getValue(), type), Binding::Assignment);
   flush(touchesOf(op), out);
   if (value == target)
@@ -155,9 +146,9 @@ void StateWriter::store(ir::StoreOp op, Statements &out) {
       op.getValue().getDefiningOp<mlir::arith::AddIOp>()) // the next light
     return emit(out, "++" + target + ";");
   if (isPart) {
-    const std::string part = target + "." + "xyzw"[insertion->second.component];
+    const Insertion::Part &part = insertion->second.parts.front();
     mlir::Value scalar = op.getValue().getDefiningOp<mlir::vector::InsertOp>().getValueToStore();
-    return emit(out, assignment(part, insertion->second.value, scalar));
+    return emit(out, assignment(Insertion::place(target, part), part.value, scalar));
   }
   // What it held before nobody has looked at.
   if (!out.empty() && !mentions(value, target))

@@ -157,18 +157,34 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
       .Case([&](ir::SwitchOp inner) { switchOver(inner, out); })
       .Case([&](mlir::vector::ExtractOp part) {
         auto position = part.getStaticPosition();
-        if (part.hasDynamicPosition() || position.size() != 1 || position.front() > 3)
+        if (position.size() != 1 || (!part.hasDynamicPosition() && position.front() > 3))
           return unsupported(op);
-        pure({bind(use(part.getSource()), Binding::Primary) + "." + "xyzw"[position.front()]});
+        const std::string vector = bind(use(part.getSource()), Binding::Primary);
+        if (part.hasDynamicPosition())
+          pure({"rtsl::at(" + vector + ", " + bind(use(part.getDynamicPosition().front()), Binding::Assignment) + ")"});
+        else
+          pure({vector + "." + "xyzw"[position.front()]});
       })
       .Case([&](mlir::vector::InsertOp part) {
         auto position = part.getStaticPosition();
-        if (part.hasDynamicPosition() || position.size() != 1 || position.front() > 3)
+        if (position.size() != 1 || (!part.hasDynamicPosition() && position.front() > 3))
           return unsupported(op);
+        Insertion whole;
+        if (auto before = insertions.find(part.getDest()); before != insertions.end() && pending.count(part.getDest()))
+          whole = before->second;
         const std::string vector = use(part.getDest(), typeOf(part.getResult())).text;
-        const std::string value = bind(use(part.getValueToStore()), Binding::Assignment);
-        insertions[part.getResult()] = {vector, value, static_cast<unsigned>(position.front())};
-        pure({fmt::format("rtsl::with<{}>({}, {})", position.front(), vector, value)});
+        if (whole.parts.empty()) {
+          whole.before = part.getDest();
+          whole.vector = vector;
+        }
+        Insertion::Part &last = whole.parts.emplace_back();
+        last.value = bind(use(part.getValueToStore()), Binding::Assignment);
+        if (part.hasDynamicPosition())
+          last.index = bind(use(part.getDynamicPosition().front()), Binding::Assignment);
+        else
+          last.component = "xyzw"[position.front()];
+        insertions[part.getResult()] = whole;
+        pure({whole.text()});
       })
       .Case([&](mlir::vector::FromElementsOp made) {
         const std::string type = typeOf(made.getResult());
@@ -208,6 +224,7 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
       .Case([&](arith::OrIOp) {
         op.getResult(0).getType().isInteger(1) ? infix("||", Binding::Or) : unsupported(op);
       })
+      .Case([&](arith::IndexCastUIOp index) { pure(use(index.getIn())); })
       .Case([&](arith::AddIOp) { infix("+", Binding::Sum); }) // of a light's number
       .Case([&](arith::CmpIOp compare) {
         compare.getPredicate() == arith::CmpIPredicate::ult ? infix("<", Binding::Relation) : unsupported(op);

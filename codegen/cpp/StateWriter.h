@@ -65,6 +65,9 @@ std::string nameFor(mlir::Value value);
 /// Is it the compiler's name for what `&&` or `||` has come to?
 bool isOwnName(llvm::StringRef name);
 
+/// Does a text of C++ name the variable, or the place `frame.x`?
+bool mentions(const std::string &text, const std::string &name);
+
 /// The opposite of a condition.
 Code negated(const Code &code);
 
@@ -152,6 +155,8 @@ private:
   Touches touchesOf(mlir::Operation *op);
   void emit(Statements &out, std::string text);
   void materialise(mlir::Value value, Statements &out);
+  struct Insertion;
+  bool changesInPlace(mlir::Value value, const Insertion &whole);
   std::string named(mlir::Value value, Statements &out);
   void flush(const Touches &touches, Statements &out);
   void flushBefore(mlir::Operation &op, Statements &out);
@@ -181,11 +186,18 @@ private:
   llvm::DenseMap<mlir::Operation *, std::string> variableTypes;
   std::set<mlir::Operation *> mentioned; // by the statement that is being put together
   Touches consumed;
+  /// A vector with components replaced, one after the other.
   struct Insertion {
-    std::string vector, value;
-    unsigned component;
+    struct Part {
+      std::string component, index, value; // "x", or empty: the one at `index`
+    };
+    mlir::Value before; // all of them
+    std::string vector; // that, in C++
+    std::vector<Part> parts;
+    std::string text() const;                                                    // `rtsl::with<0>(v, value)`
+    static std::string place(const std::string &vector, const Part &part); // `v.x`
   };
-  llvm::DenseMap<mlir::Value, Insertion> insertions; // vectors with one component replaced
+  llvm::DenseMap<mlir::Value, Insertion> insertions;
   std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
   std::set<unsigned> spaces;                         // lines of statements with an empty line above, likewise
   unsigned currentLine = 0;

@@ -205,17 +205,6 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
                         [](const FrameField &saved) { return saved.type != "bool"; });
 }
 
-static bool mentions(const std::string &text, const std::string &word) {
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
-    auto isPart = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
-    const bool begins = at == 0 || !isPart(text[at - 1]);
-    const char next = at + word.size() < text.size() ? text[at + word.size()] : ' ';
-    if (begins && (next == '.' || !isPart(next)))
-      return true;
-  }
-  return false;
-}
-
 /// What a field of the frame is, in the author's words: the comment at its declaration, or the line that makes it.
 std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameField &field) const {
   if (field.isTraced)

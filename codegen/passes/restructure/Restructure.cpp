@@ -17,6 +17,12 @@ using mlir::Block;
 
 namespace {
 
+/// Does an expression that goes to a variable, its first operand, change only that?
+bool changesNothingElse(mlir::Operation *evaluation) {
+  auto changed = evaluation->getAttrOfType<mlir::DenseI32ArrayAttr>("rtsl.changes");
+  return !changed || (changed.size() == 1 && changed[0] == 0);
+}
+
 /// Is the flag only set? Then nobody asks, and it goes.
 void dropUnreadVariables(FuncOp function) {
   llvm::SmallVector<ir::VarOp> variables;
@@ -24,7 +30,10 @@ void dropUnreadVariables(FuncOp function) {
   for (ir::VarOp variable : variables) {
     auto isWrite = [&](mlir::Operation *user) {
       auto store = llvm::dyn_cast<ir::StoreOp>(user);
-      return llvm::isa<ir::ClearOp>(user) || (store && store.getAddress() == variable.getResult());
+      const bool isAllOfIt = llvm::isa<ir::EvaluateOp>(user) && user->hasAttr("rtsl.into") && user->hasAttr("rtsl.plain") &&
+                             llvm::count(user->getOperands(), variable.getResult()) == 1 &&
+                             user->getOperand(0) == variable.getResult() && changesNothingElse(user);
+      return llvm::isa<ir::ClearOp>(user) || isAllOfIt || (store && store.getAddress() == variable.getResult());
     };
     if (!llvm::all_of(variable->getUsers(), isWrite))
       continue;
@@ -100,10 +109,11 @@ void findCondition(ir::LoopOp loop) {
                                    std::next(end));
 }
 
-/// What only the branches needed, which are gone.
+/// What only the branches needed, which are gone, or variables.
 void dropDeadCode(FuncOp function) {
   function.walk<mlir::WalkOrder::PostOrder, mlir::ReverseIterator>([](mlir::Operation *op) {
-    if (mlir::isOpTriviallyDead(op))
+    const bool isUnread = llvm::isa<ir::EvaluateOp>(op) && op->use_empty() && op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes");
+    if (isUnread || mlir::isOpTriviallyDead(op))
       op->erase();
   });
 }
@@ -120,6 +130,7 @@ mlir::LogicalResult restructure(FuncOp function) {
   });
   if (mlir::failed(buildRegions(function, Plan(function))))
     return mlir::failure();
+  dropDeadCode(function);
   dropUnreadVariables(function);
   placeVariables(function);
   function.walk([](ir::LoopOp loop) { findCondition(loop); });

@@ -41,8 +41,8 @@ inline int halfFromFloat(float x) {
   const uint bits = bitsAs<uint>(x);
   const uint sign = bits >> 16 & 0x8000u;
   const uint magnitude = bits & 0x7fffffffu;
-  if (magnitude > 0x7f800000u) // NaN
-    return wrap(sign | 0x7e00u);
+  if (magnitude > 0x7f800000u) // of a NaN no sign is seen
+    return 0x7e00;
   if (magnitude > 0x477fffffu) // 65536 and more
     return wrap(sign | 0x7c00u);
   if (magnitude < 0x38800000u) // multiples of 2^-24, the distance of floats just above 0.5

@@ -280,8 +280,14 @@ constexpr auto swizzle(const T &value) {
 
 /// `vector` with component I replaced.
 template <int I, int L, typename T, glm::qualifier Q>
-constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, T value) {
+constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, Value<T> value) {
   vector[I] = value;
+  return vector;
+}
+/// The same for component `index`, clamped into what there is.
+template <int L, typename T, glm::qualifier Q, typename Index>
+constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, Index index, Value<T> value) {
+  vector[static_cast<int>(elementIndex(index, uint(L)))] = value;
   return vector;
 }
 

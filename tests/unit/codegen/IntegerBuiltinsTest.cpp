@@ -192,8 +192,11 @@ TEST(PackingBuiltins, HalvesRoundToEven) {
   EXPECT_EQ(pack(65520.0F), 0x7c00u);
   EXPECT_EQ(pack(1e30F), 0x7c00u);
   EXPECT_EQ(pack(INFINITY), 0x7c00u);
-  float x[2];
-  std::uint32_t u[1] = {0x7e00fc00};
+  float x[2] = {NAN, -NAN};
+  std::uint32_t u[1] = {0};
+  shader.call("pack", x, u);
+  EXPECT_EQ(u[0], 0x7e007e00U) << "of a NaN no sign is seen";
+  u[0] = 0x7e00fc00;
   shader.call("unpack", x, u);
   EXPECT_EQ(x[0], -INFINITY);
   EXPECT_TRUE(std::isnan(x[1]));
