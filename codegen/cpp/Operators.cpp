@@ -429,7 +429,7 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
     if (!expr.compound) {
       // `a = b = c` stays as it is; an assignment anywhere else becomes a statement of its own.
       auto *inner = dynCast<typed::AssignExpr>(expr.value);
-      if (inner && !conflicts(module.effects.expression(*expr.target), module.effects.expression(*inner)))
+      if (inner && !replaced.count(inner) && !conflicts(module.effects.expression(*expr.target), module.effects.expression(*inner)))
         return assign(*inner, true).text;
       return argument(*expr.value);
     }

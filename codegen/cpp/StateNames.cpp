@@ -213,9 +213,13 @@ std::string StateWriter::varType(ir::VarOp variable) {
   if (const Type *declared = declaredType(variable))
     return variableTypes[variable] = module.type(declared);
   std::string type;
-  for (mlir::Operation *user : variable->getUsers())
-    if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty())
-      type = typeOf(store.getValue());
+  for (const bool isOfParts : {false, true}) // which may be its own
+    for (mlir::Operation *user : variable->getUsers())
+      if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty())
+        if (mlir::Operation *made = store.getValue().getDefiningOp();
+            isOfParts == llvm::isa_and_nonnull<ir::LoadOp, mlir::vector::InsertOp, mlir::vector::ExtractOp, mlir::vector::ShuffleOp,
+                                               mlir::vector::FromElementsOp, mlir::vector::BroadcastOp>(made))
+          type = typeOf(store.getValue());
   if (type.empty())
     type = scalarType(llvm::cast<ir::PtrType>(variable.getType()).getPointee());
   return variableTypes[variable] = type;
