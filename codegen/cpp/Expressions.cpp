@@ -166,8 +166,15 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
   case ExprKind::State:
   case ExprKind::Member:
   case ExprKind::Field:
-  case ExprKind::Index:
     return place(expr);
+  case ExprKind::Index: {
+    const auto &element = cast<typed::IndexExpr>(expr);
+    const bool changes = conflicts(module.effects.expression(*element.base), module.effects.expression(*element.index));
+    if (!element.base->type->isVector() || !changes)
+      return place(expr);
+    const std::string vector = hoist(element.base->type, "value", argument(*element.base)); // as it was before
+    return this->element(element, vector, false);
+  }
   case ExprKind::Swizzle:
     return swizzle(cast<typed::SwizzleExpr>(expr));
   case ExprKind::Length:
