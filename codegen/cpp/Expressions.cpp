@@ -168,12 +168,11 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
   case ExprKind::Field:
     return place(expr);
   case ExprKind::Index: {
-    const auto &element = cast<typed::IndexExpr>(expr);
-    const bool changes = conflicts(module.effects.expression(*element.base), module.effects.expression(*element.index));
-    if (!element.base->type->isVector() || !changes)
+    const auto &part = cast<typed::IndexExpr>(expr);
+    const bool changes = conflicts(module.effects.expression(*part.base), module.effects.expression(*part.index));
+    if (!part.base->type->isVector() || !changes)
       return place(expr);
-    const std::string vector = hoist(element.base->type, "value", argument(*element.base)); // as it was before
-    return this->element(element, vector, false);
+    return element(part, hoist(part.base->type, "value", argument(*part.base)), false); // of the vector as it was
   }
   case ExprKind::Swizzle:
     return swizzle(cast<typed::SwizzleExpr>(expr));

@@ -206,6 +206,13 @@ const Type *StateWriter::declaredType(mlir::Value address) {
   return number ? source.types[static_cast<std::size_t>(number.getInt())] : nullptr;
 }
 
+/// Is it of the type of other values, whatever that is?
+static bool isMadeOfParts(mlir::Value value) {
+  namespace vector = mlir::vector;
+  return llvm::isa_and_nonnull<ir::LoadOp, vector::InsertOp, vector::ExtractOp, vector::ShuffleOp, vector::FromElementsOp,
+                               vector::BroadcastOp>(value.getDefiningOp());
+}
+
 std::string StateWriter::varType(ir::VarOp variable) {
   auto [at, isNew] = variableTypes.try_emplace(variable);
   if (!isNew)
@@ -213,13 +220,10 @@ std::string StateWriter::varType(ir::VarOp variable) {
   if (const Type *declared = declaredType(variable))
     return variableTypes[variable] = module.type(declared);
   std::string type;
-  for (const bool isOfParts : {false, true}) // which may be its own
+  for (const bool ofParts : {false, true}) // which may be its own
     for (mlir::Operation *user : variable->getUsers())
-      if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty())
-        if (mlir::Operation *made = store.getValue().getDefiningOp();
-            isOfParts == llvm::isa_and_nonnull<ir::LoadOp, mlir::vector::InsertOp, mlir::vector::ExtractOp, mlir::vector::ShuffleOp,
-                                               mlir::vector::FromElementsOp, mlir::vector::BroadcastOp>(made))
-          type = typeOf(store.getValue());
+      if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty() && isMadeOfParts(store.getValue()) == ofParts)
+        type = typeOf(store.getValue());
   if (type.empty())
     type = scalarType(llvm::cast<ir::PtrType>(variable.getType()).getPointee());
   return variableTypes[variable] = type;

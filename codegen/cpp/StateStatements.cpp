@@ -36,8 +36,12 @@ std::optional<Code> StateWriter::takeCondition(ir::IfOp op, Statements &out, Sta
     return std::nullopt;
   // Between the two may stand what is read from the frame, which the condition leaves alone.
   const std::string frame = machine.frameName + ".";
+  const auto isField = [&](const std::string &value) {
+    return value.compare(0, frame.size(), frame) == 0 &&
+           std::all_of(value.begin(), value.end(), [](char c) { return llvm::isAlnum(c) || c == '_' || c == '.'; });
+  };
   const auto found = std::find_if(out.rbegin(), out.rend(), [&](const Statement &statement) {
-    return !statement.text.empty() && statement.value.compare(0, frame.size(), frame) != 0;
+    return !statement.text.empty() && !isField(statement.value);
   });
   if (found == out.rend() || found->assigns != variable || found->value.empty() ||
       (found != out.rbegin() && found->value.find(frame) != std::string::npos))

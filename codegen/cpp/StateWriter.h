@@ -121,6 +121,18 @@ private:
     std::set<mlir::Operation *> mentions;
   };
   using Statements = std::vector<Statement>;
+  /// A vector with components replaced, one after the other.
+  struct Insertion {
+    struct Part {
+      std::string component, index, value; // "x", or empty: the one at `index`
+    };
+    mlir::Value before; // all of them
+    std::string vector; // that, in C++
+    std::vector<Part> parts;
+    std::string text() const; // `rtsl::with<0>(v, value)`
+    /// `v.x`
+    static std::string place(const std::string &vector, const Part &part);
+  };
 
   // StateWriter.cpp
   void operation(mlir::Operation &op, Statements &out);
@@ -155,7 +167,6 @@ private:
   Touches touchesOf(mlir::Operation *op);
   void emit(Statements &out, std::string text);
   void materialise(mlir::Value value, Statements &out);
-  struct Insertion;
   bool changesInPlace(mlir::Value value, const Insertion &whole);
   std::string named(mlir::Value value, Statements &out);
   void flush(const Touches &touches, Statements &out);
@@ -186,17 +197,6 @@ private:
   llvm::DenseMap<mlir::Operation *, std::string> variableTypes;
   std::set<mlir::Operation *> mentioned; // by the statement that is being put together
   Touches consumed;
-  /// A vector with components replaced, one after the other.
-  struct Insertion {
-    struct Part {
-      std::string component, index, value; // "x", or empty: the one at `index`
-    };
-    mlir::Value before; // all of them
-    std::string vector; // that, in C++
-    std::vector<Part> parts;
-    std::string text() const;                                                    // `rtsl::with<0>(v, value)`
-    static std::string place(const std::string &vector, const Part &part); // `v.x`
-  };
   llvm::DenseMap<mlir::Value, Insertion> insertions;
   std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
   std::set<unsigned> spaces;                         // lines of statements with an empty line above, likewise

@@ -10,22 +10,18 @@
 // Construction of Static Single Assignment Form", 2013, algorithm 5).
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/passes/Components.h"
 #include "codegen/passes/continuation/Steps.h"
 
 #include "mlir/Interfaces/ControlFlowInterfaces.h"
-#include "llvm/ADT/DenseMap.h"
-#include "llvm/ADT/DenseSet.h"
 #include "llvm/ADT/MapVector.h"
-#include "llvm/ADT/SetVector.h"
-
-#include <algorithm>
 
 namespace rtsl::continuation {
 
 namespace {
 
 using mlir::Value;
-using Arguments = llvm::SmallSetVector<Value, 8>;
+using Arguments = Components<Value>::Part;
 
 class Forwarder {
 public:
@@ -44,51 +40,7 @@ private:
   llvm::DenseMap<Value, Value> forwarded;                    // what it is
 };
 
-/// The components of a part of the arguments, what comes for others first (Tarjan, "Depth-first search and linear graph
-/// algorithms", 1972).
-class Components {
-public:
-  Components(const Arguments &part, llvm::function_ref<llvm::ArrayRef<Value>(Value)> operandsOf)
-      : part(part), operandsOf(operandsOf) {
-    for (Value argument : part)
-      if (!numbers.count(argument))
-        visit(argument);
-  }
-  std::vector<Arguments> found;
-
-private:
-  unsigned visit(Value argument) {
-    const unsigned number = numbers[argument] = ++count;
-    unsigned low = number;
-    stack.push_back(argument);
-    open.insert(argument);
-    for (Value operand : operandsOf(argument)) {
-      if (!part.contains(operand))
-        continue;
-      if (auto known = numbers.find(operand); known == numbers.end())
-        low = std::min(low, visit(operand));
-      else if (open.contains(operand))
-        low = std::min(low, known->second);
-    }
-    if (low == number) {
-      Arguments &component = found.emplace_back();
-      do {
-        component.insert(stack.back());
-        open.erase(stack.pop_back_val());
-      } while (!component.contains(argument));
-    }
-    return low;
-  }
-
-  const Arguments &part;
-  llvm::function_ref<llvm::ArrayRef<Value>(Value)> operandsOf;
-  llvm::DenseMap<Value, unsigned> numbers;
-  llvm::DenseSet<Value> open;
-  llvm::SmallVector<Value> stack;
-  unsigned count = 0;
-};
-
-/// The operands for the arguments of `block` on each way from `from`; null for a terminator that makes some itself.
+/// The operands for the arguments of `block` on each way from `from`; false for a terminator that makes some itself.
 template <typename Visit>
 bool forEachWay(mlir::Block *from, mlir::Block &block, Visit visit) {
   auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(from->getTerminator());
@@ -145,9 +97,10 @@ void Forwarder::forwardComponent(const Arguments &component) {
 }
 
 void Forwarder::forward(const Arguments &part) {
-  const auto operandsOf = [&](Value argument) -> llvm::ArrayRef<Value> { return incoming.find(argument)->second; };
-  const Components components(part, operandsOf);
-  for (const Arguments &component : components.found)
+  const auto operands = [&](Value argument, llvm::function_ref<void(Value)> visit) {
+    llvm::for_each(incoming.find(argument)->second, visit);
+  };
+  for (const Arguments &component : Components<Value>::of(part, operands))
     forwardComponent(component);
 }
 

@@ -14,13 +14,12 @@
 // factor of two a level of nesting.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/passes/Components.h"
 #include "codegen/passes/restructure/Steps.h"
 
 #include "mlir/IR/IRMapping.h"
 #include "llvm/ADT/PostOrderIterator.h"
-#include "llvm/ADT/SetVector.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace rtsl::restructuring {
@@ -29,55 +28,7 @@ using mlir::Block;
 
 namespace {
 
-using BlockSet = llvm::SmallSetVector<Block *, 16>;
-
-/// The strongly connected components of a part of the graph (Tarjan, "Depth-first search and linear
-/// graph algorithms", 1972); those of one block only if it branches to itself.
-class Components {
-public:
-  explicit Components(const BlockSet &part) : part(part) {
-    for (Block *block : part)
-      if (!numbers.count(block))
-        visit(block);
-  }
-  llvm::SmallVector<BlockSet> found;
-
-private:
-  void visit(Block *block) {
-    unsigned number = numbers[block] = low[block] = ++count;
-    stack.push_back(block);
-    open.insert(block);
-    bool isLoop = false;
-    for (Block *next : block->getSuccessors()) {
-      if (!part.contains(next))
-        continue;
-      isLoop |= next == block;
-      if (!numbers.count(next)) {
-        visit(next);
-        low[block] = std::min(low[block], low[next]);
-      } else if (open.contains(next)) {
-        low[block] = std::min(low[block], numbers[next]);
-      }
-    }
-    if (low[block] != number)
-      return;
-    BlockSet component;
-    Block *member;
-    do {
-      member = stack.pop_back_val();
-      open.erase(member);
-      component.insert(member);
-    } while (member != block);
-    if (isLoop || component.size() > 1)
-      found.push_back(std::move(component));
-  }
-
-  const BlockSet &part;
-  llvm::DenseMap<Block *, unsigned> numbers, low;
-  llvm::SmallVector<Block *> stack;
-  llvm::DenseSet<Block *> open;
-  unsigned count = 0;
-};
+using BlockSet = Components<Block *>::Part;
 
 BlockSet entriesOf(const BlockSet &loop) {
   BlockSet entries;
@@ -90,7 +41,12 @@ BlockSet entriesOf(const BlockSet &loop) {
 
 /// A loop that is entered at several blocks, the largest around it first; empty if there is none.
 BlockSet findIrreducible(const BlockSet &part) {
-  for (const BlockSet &loop : Components(part).found) {
+  const auto successors = [](Block *block, llvm::function_ref<void(Block *)> visit) {
+    llvm::for_each(block->getSuccessors(), visit);
+  };
+  for (const BlockSet &loop : Components<Block *>::of(part, successors)) {
+    if (loop.size() == 1 && !llvm::is_contained(loop.front()->getSuccessors(), loop.front()))
+      continue; // no loop
     BlockSet entries = entriesOf(loop);
     if (entries.size() > 1)
       return loop;
