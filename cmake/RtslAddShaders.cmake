@@ -19,7 +19,9 @@ function(rtsl_add_shaders target)
   if(ARG_FP)
     list(APPEND options "--fp=${ARG_FP}")
   endif()
-  set(generated "${CMAKE_CURRENT_BINARY_DIR}/${ARG_NAME}.cpp")
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/${target}-shaders") # others may have some of that name
+  file(MAKE_DIRECTORY "${folder}")
+  set(generated "${folder}/${ARG_NAME}.cpp")
   add_custom_command(OUTPUT "${generated}"
     COMMAND rtsl::rtslc compile ${files} --emit=cpp ${options} -o "${generated}" -MD -MF "${generated}.d"
     DEPENDS ${files} rtsl::rtslc DEPFILE "${generated}.d"

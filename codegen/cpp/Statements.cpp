@@ -403,15 +403,18 @@ std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
       labels.emplace_back("default:\n");
     for (const std::string &label : labels)
       text += label;
-    if (needsBraces[i])
+    const std::size_t before = temporaries.size();
+    const std::string body = block(arm.body);
+    const bool isScope = needsBraces[i] || temporaries.size() != before;
+    if (isScope)
       text.back() = ' ', text += "{\n";
-    text += block(arm.body);
+    text += body;
     const bool fallsThrough = i + 1 < stmt.arms.size() && mayComplete(arm.body);
     if (fallsThrough)
       text += "[[fallthrough]];\n";
     else if (arm.body.empty() && i + 1 == stmt.arms.size())
       text += "break;\n";
-    if (needsBraces[i])
+    if (isScope)
       text += "}\n";
   }
   text += "}\n";

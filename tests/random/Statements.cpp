@@ -226,7 +226,7 @@ NodePtr Generator::switchStatement(unsigned depth) {
       node->text += "case " + std::string(type == types.intType && chance(30) ? "-" : "") +
                     std::to_string(label + 1) + (type == types.uintType ? "u" : "") + ": ";
     const char *end = chance(60) ? " break;" : "";
-    node->text += std::string("{$}") + end;
+    node->text += std::string(chance(70) ? "{$}" : "$") + end;
     node->children.push_back(block(1 + below(2), depth - 1));
   }
   node->text += " }";
