@@ -412,7 +412,7 @@ std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
     const bool fallsThrough = i + 1 < stmt.arms.size() && mayComplete(arm.body);
     if (fallsThrough)
       text += "[[fallthrough]];\n";
-    else if (arm.body.empty() && i + 1 == stmt.arms.size())
+    else if (body.empty() && i + 1 == stmt.arms.size())
       text += "break;\n";
     if (isScope)
       text += "}\n";

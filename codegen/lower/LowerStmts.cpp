@@ -118,9 +118,10 @@ void FunctionLowering::lowerSwitch(const typed::SwitchStmt &stmt) {
   for (const auto &arm : stmt.arms) {
     for (const typed::StmtPtr &inner : arm.body)
       if (auto *declaration = dynCast<typed::DeclarationStmt>(inner))
-        for (const typed::Variable *variable : declaration->variables)
-          variables[variable].address =
-              emitter.variable(variable->name, module.type(variable->type));
+        for (const typed::Variable *variable : declaration->variables) {
+          emitter.setLoc(module.location(variable->range));
+          variables[variable].address = variableOf(variable->name, variable->type);
+        }
     arms.push_back({arm.values, arm.isDefault, [this, &arm] { lowerAll(arm.body); }});
   }
   emitter.setLoc(module.location(stmt.range));
