@@ -124,19 +124,18 @@ void StateWriter::emit(Statements &out, std::string text) {
   out.push_back(std::move(statement));
 }
 
-/// Can the variable of a vector, which nobody reads any more, become that with components replaced?
-bool StateWriter::changesInPlace(mlir::Value value, const Insertion &whole) {
-  mlir::Value before = whole.before;
-  const auto variable = declared.find(before);
+/// Can the variable of a value become that of `value`, which the author calls the same? It can if nobody reads it any more.
+bool StateWriter::isReplacedBy(mlir::Value before, mlir::Value value) {
+  const auto variable = before ? declared.find(before) : declared.end();
   mlir::Operation *op = value.getDefiningOp();
-  if (variable == declared.end() || nameOfValue(value) != nameOfValue(before) || before.getParentBlock() != op->getBlock())
+  if (variable == declared.end() || before.getParentBlock() != op->getBlock() || nameOfValue(before) != nameOfValue(value) ||
+      typeOf(before) != typeOf(value))
     return false;
   const std::string &name = variable->second;
   return llvm::all_of(before.getUsers(),
                       [&](mlir::Operation *user) { return user->getBlock() == op->getBlock() && !op->isBeforeInBlock(user); }) &&
          llvm::none_of(pending, [&](const auto &waiting) { return mentions(waiting.second.code.text, name); }) &&
-         std::none_of(whole.parts.begin() + 1, whole.parts.end(),
-                      [&](const Insertion::Part &part) { return mentions(part.value, name) || mentions(part.index, name); });
+         llvm::none_of(elementIndices, [&](const auto &index) { return mentions(index.second, name); });
 }
 
 /// Gives a value that waits for its use a variable now.
@@ -148,23 +147,30 @@ void StateWriter::materialise(mlir::Value value, Statements &out) {
   const std::string type = typeOf(value);
   if (type.empty())
     unsupported(*value.getDefiningOp());
-  const auto whole = insertions.find(value);
-  const bool isInPlace = whole != insertions.end() && changesInPlace(value, whole->second);
-  const std::string name = isInPlace ? declared[whole->second.before] : freshName(nameOfValue(value));
-  declared[value] = name;
-  if (!isInPlace) {
-    const std::string begin = whole == insertions.end() ? waiting.code.text : whole->second.vector;
-    mentioned = waiting.mentions;
-    emit(out, fmt::format("{} {};", type, declarator(type, name, begin)));
+  const std::string wanted = nameOfValue(value);
+  const auto found = insertions.find(value);
+  const Insertion *whole = found != insertions.end() ? &found->second : nullptr;
+  const mlir::Value last = whole ? whole->before : latest[wanted];
+  bool isAgain = (whole || !continuation::authorsName(value).empty()) && !isOwnName(wanted) && isReplacedBy(last, value);
+  const std::string name = isAgain ? declared[last] : "";
+  for (std::size_t i = 1; whole && i < whole->parts.size(); ++i) // the first has changed it then
+    isAgain = isAgain && !mentions(whole->parts[i].value, name) && !mentions(whole->parts[i].index, name);
+  const std::string &own = declared[value] = isAgain ? name : freshName(wanted);
+  latest[wanted] = value;
+  mentioned = waiting.mentions;
+  if (!isAgain) {
+    const std::string &begin = whole ? whole->vector : waiting.code.text;
+    emit(out, fmt::format("{} {};", type, declarator(type, own, begin)));
     out.back().isDeclaration = true;
     out.back().made = value;
     out.back().value = begin;
+  } else if (!whole) {
+    emit(out, assignment(own, waiting.code.text, value));
   }
-  if (whole != insertions.end())
-    for (const Insertion::Part &part : whole->second.parts) {
-      mentioned = waiting.mentions;
-      emit(out, Insertion::place(name, part) + " = " + part.value + ";");
-    }
+  for (std::size_t i = 0; whole && i < whole->parts.size(); ++i) {
+    mentioned = waiting.mentions;
+    emit(out, Insertion::place(own, whole->parts[i]) + " = " + whole->parts[i].value + ";");
+  }
   mentioned = before;
 }
 

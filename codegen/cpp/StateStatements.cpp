@@ -392,6 +392,7 @@ std::string StateWriter::body(mlir::func::FuncOp state) {
   taken.clear();
   pending.clear();
   declared.clear();
+  latest.clear();
   variableNames.clear();
   variableTypes.clear();
   mentioned.clear();

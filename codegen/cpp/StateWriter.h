@@ -167,7 +167,7 @@ private:
   Touches touchesOf(mlir::Operation *op);
   void emit(Statements &out, std::string text);
   void materialise(mlir::Value value, Statements &out);
-  bool changesInPlace(mlir::Value value, const Insertion &whole);
+  bool isReplacedBy(mlir::Value before, mlir::Value value);
   std::string named(mlir::Value value, Statements &out);
   void flush(const Touches &touches, Statements &out);
   void flushBefore(mlir::Operation &op, Statements &out);
@@ -193,6 +193,7 @@ private:
   std::set<std::string> taken, always;
   llvm::MapVector<mlir::Value, Pending> pending;
   llvm::DenseMap<mlir::Value, std::string> declared;
+  std::map<std::string, mlir::Value> latest; // of the values that have a variable, by what they are called
   llvm::DenseMap<mlir::Operation *, std::string> variableNames;
   llvm::DenseMap<mlir::Operation *, std::string> variableTypes;
   std::set<mlir::Operation *> mentioned; // by the statement that is being put together
