@@ -138,8 +138,9 @@ bool StateWriter::isReplacedBy(mlir::Value before, mlir::Value value) {
          llvm::none_of(elementIndices, [&](const auto &index) { return mentions(index.second, name); });
 }
 
-/// Gives a value that waits for its use a variable now.
-void StateWriter::materialise(mlir::Value value, Statements &out) {
+/// Gives a value that waits for its use a variable now. `isNew`: it was just made, so no text that still reads the variable
+/// before it is under way to a statement.
+void StateWriter::materialise(mlir::Value value, Statements &out, bool isNew) {
   Pending waiting = std::move(pending[value]);
   pending.erase(value);
   const std::set<mlir::Operation *> before = std::move(mentioned);
@@ -151,7 +152,7 @@ void StateWriter::materialise(mlir::Value value, Statements &out) {
   const auto found = insertions.find(value);
   const Insertion *whole = found != insertions.end() ? &found->second : nullptr;
   const mlir::Value last = whole ? whole->before : latest[wanted];
-  bool isAgain = (whole || !continuation::authorsName(value).empty()) && !isOwnName(wanted) && isReplacedBy(last, value);
+  bool isAgain = isNew && (whole || !continuation::authorsName(value).empty()) && !isOwnName(wanted) && isReplacedBy(last, value);
   const std::string name = isAgain ? declared[last] : "";
   for (std::size_t i = 1; whole && i < whole->parts.size(); ++i) // the first has changed it then
     isAgain = isAgain && !mentions(whole->parts[i].value, name) && !mentions(whole->parts[i].index, name);
@@ -239,7 +240,7 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
                          (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
   pending[value] = {std::move(code), std::move(touches), mentioned, uses, isPure, isTrivial};
   if (uses == 1 ? (isNamed && !stores()) || isLong : isNamed || !isTrivial)
-    materialise(value, out);
+    materialise(value, out, /*isNew=*/true);
 }
 
 std::string StateWriter::Insertion::text() const {

@@ -166,7 +166,7 @@ private:
   void note(mlir::Value address, Touches &touches, bool isWritten);
   Touches touchesOf(mlir::Operation *op);
   void emit(Statements &out, std::string text);
-  void materialise(mlir::Value value, Statements &out);
+  void materialise(mlir::Value value, Statements &out, bool isNew = false);
   bool isReplacedBy(mlir::Value before, mlir::Value value);
   std::string named(mlir::Value value, Statements &out);
   void flush(const Touches &touches, Statements &out);

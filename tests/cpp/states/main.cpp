@@ -23,7 +23,7 @@ int main(int argc, char **argv) try {
   int i = 0;
   for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived", "Table",
                            "Bundle", "Turned", "Outputs", "Component", "Lit", "Tangled", "Loud", "Quiet", "Columns", "Flags",
-                           "Scattered", "Replaced", "Arms"}) {
+                           "Scattered", "Replaced", "Arms", "Late"}) {
     const double x = -4.1 + 1.2 * (i % 8), y = 0.7 + 1.3 * (i / 8);
     scene.addPrimitive(make("Sphere", {{"center", {x, y, 0}}, {"radius", 0.7}}), make(name, {}));
     ++i;

@@ -13,7 +13,7 @@ rtslc, glass, *programs = sys.argv[1:]
 here = pathlib.Path(__file__).parent
 names = ["Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived",
          "Table", "Bundle", "Turned", "Outputs", "Component", "Lit", "Tangled", "Loud", "Quiet",
-         "Columns", "Flags", "Scattered", "Replaced", "Arms"]
+         "Columns", "Flags", "Scattered", "Replaced", "Arms", "Late"]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
     "rtsl": 1,
