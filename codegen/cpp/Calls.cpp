@@ -30,21 +30,9 @@ bool FunctionPrinter::canBind(const typed::Expr &place) const {
   return variable || !isBool;
 }
 
+/// What an assignment to the place would write: what it is part of.
 static std::set<const void *> writesOf(EffectsOf &effects, const typed::Expr &place) {
-  // What an assignment to the place would write: its root.
-  std::set<const void *> roots;
-  for (const typed::Expr *at = &place;;) {
-    if (auto *field = dynCast<typed::FieldExpr>(at))
-      at = field->base.get();
-    else if (auto *swizzle = dynCast<typed::SwizzleExpr>(at))
-      at = swizzle->base.get();
-    else if (auto *index = dynCast<typed::IndexExpr>(at))
-      at = index->base.get();
-    else {
-      const Effects root = effects.expression(*at);
-      return root.reads;
-    }
-  }
+  return effects.expression(lowering::wholeOf(place)).reads;
 }
 
 static bool meet(const std::set<const void *> &a, const std::set<const void *> &b) {

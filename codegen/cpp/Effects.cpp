@@ -106,27 +106,12 @@ const Effects &EffectsOf::function(const typed::Function &named) {
   return known[&function] = effects;
 }
 
-/// What a place is, or is a part of.
-static const typed::Expr *rootOf(const typed::Expr &place) {
-  const typed::Expr *root = &place;
-  for (;;) {
-    if (auto *field = dynCast<typed::FieldExpr>(root))
-      root = field->base.get();
-    else if (auto *swizzle = dynCast<typed::SwizzleExpr>(root))
-      root = swizzle->base.get();
-    else if (auto *index = dynCast<typed::IndexExpr>(root))
-      root = index->base.get();
-    else
-      return root;
-  }
-}
-
 template <typename Tree>
 void EffectsOf::collectAll(const Tree &tree, Effects &effects) {
   std::set<const typed::Expr *> onlyWritten; // outer expressions come first
   forEachEvaluated(tree, [&](const typed::Expr &inner) {
     if (auto *assign = dynCast<typed::AssignExpr>(&inner); assign && !assign->compound)
-      onlyWritten.insert(rootOf(*assign->target));
+      onlyWritten.insert(&lowering::wholeOf(*assign->target));
     if (!onlyWritten.count(&inner))
       collect(inner, effects);
   });
@@ -177,7 +162,7 @@ Effects EffectsOf::statement(const typed::Stmt &stmt) {
 }
 
 void EffectsOf::collectWrite(const typed::Expr &target, Effects &effects) {
-  const typed::Expr *root = rootOf(target);
+  const typed::Expr *root = &lowering::wholeOf(target);
   if (auto *variable = dynCast<typed::VariableExpr>(root)) {
     effects.writes.insert(variable->variable);
   } else if (auto *member = dynCast<typed::MemberExpr>(root)) {

@@ -21,8 +21,7 @@ constexpr Beginning beginnings[] = {{"rt_Material", "shade", "shade", "shadeFirs
 } // namespace
 
 /// Does some class have such a method?
-static bool isThere(const ModulePrinter &printer, const std::vector<const typed::Class *> &classes, const Beginning &one) {
-  static_cast<void>(printer);
+static bool isThere(const std::vector<const typed::Class *> &classes, const Beginning &one) {
   for (const typed::Class *definition : classes)
     for (const typed::Class *at = definition; at; at = at->base)
       for (const auto &method : at->functions)
@@ -45,7 +44,7 @@ std::string ModulePrinter::stepNumbers() const {
     begin.push_back(fmt::format("`{}`", step));
   };
   for (const Beginning &one : beginnings)
-    if (isThere(*this, classesBelow(one.base), one))
+    if (isThere(classesBelow(one.base), one))
       add(one.step);
   for (const CalledMethod &called : calledMethods)
     add(called.step);
@@ -94,7 +93,7 @@ std::string ModulePrinter::runState() {
     return body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
   };
   for (const Beginning &one : beginnings) {
-    if (!isThere(*this, classesBelow(one.base), one))
+    if (!isThere(classesBelow(one.base), one))
       continue;
     text += fmt::format("case Step::{}:\n", one.step);
     if (!one.hasPayload) {
@@ -126,7 +125,7 @@ std::string ModulePrinter::describeStates() const {
   if (!calledMethods.empty())
     text += fmt::format("program.calls<{}>({});\n", join(calledFrames, ", "), calledMethods.size());
   for (const Beginning &one : beginnings)
-    if (isThere(*this, classesBelow(one.base), one))
+    if (isThere(classesBelow(one.base), one))
       text += fmt::format("program.slots().states.{} = static_cast<rtsl::Next>(Step::{});\n", one.slot, one.step);
   return text;
 }

@@ -68,6 +68,13 @@ const typed::Expr &rootOf(const typed::Expr &expr) {
   }
 }
 
+const typed::Expr &wholeOf(const typed::Expr &place) {
+  const typed::Expr *root = &rootOf(place);
+  while (auto *swizzle = dynCast<typed::SwizzleExpr>(root))
+    root = &rootOf(*swizzle->base);
+  return *root;
+}
+
 bool hasSideEffects(const typed::Expr &expr) {
   bool found = false;
   forEachExpr(expr, [&](const typed::Expr &inner) {

@@ -20,6 +20,9 @@ bool isLocal(const typed::Expr &expr);
 /// The place that a field or an element is part of.
 const typed::Expr &rootOf(const typed::Expr &expr);
 
+/// What a place is part of: as above, and through components too.
+const typed::Expr &wholeOf(const typed::Expr &place);
+
 /// May evaluation change something, or end in another way than with a value?
 bool hasSideEffects(const typed::Expr &expr);
 

@@ -17,14 +17,6 @@ namespace rtsl::lowering {
 
 using typed::ExprKind;
 
-/// What a place is part of: like rootOf, and through components too.
-static const typed::Expr &wholeOf(const typed::Expr &place) {
-  const typed::Expr *root = &rootOf(place);
-  while (auto *swizzle = dynCast<typed::SwizzleExpr>(root))
-    root = &rootOf(*swizzle->base);
-  return *root;
-}
-
 FunctionLowering::Evaluation::Evaluation(Value into) {
   if (!into)
     return;
