@@ -1,7 +1,16 @@
 //===- LineFit.h - a straight line through measurements, and how sure it is ===//
+//
+// Measurements are made in rounds: in each round one at every level. What disturbs a machine for a
+// while (another process, heat, a clock that changes) disturbs the neighbouring measurements of a
+// round alike, so that these are not independent. Every interval here rests on the differences
+// between rounds alone.
+//
+//===----------------------------------------------------------------------===//
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace rtsl::report {
@@ -11,23 +20,64 @@ struct Estimate {
   double value = 0, low = 0, high = 0;
 };
 
-/// y = intercept + slope x by least squares, for errors of y that are independent and of one size.
+/// What was measured: x[level][round] and y[level][round]. `effort` is what the levels differ in,
+/// such as the logarithm of a number of samples; it is known without error, and ascends.
+struct Rounds {
+  std::vector<double> effort;
+  std::vector<std::vector<double>> x, y;
+
+  std::size_t levels() const { return effort.size(); }
+  std::size_t rounds() const { return x.empty() ? 0 : x.front().size(); }
+  /// Only levels [first, end).
+  Rounds part(std::size_t first, std::size_t end) const;
+};
+
+/// y = intercept + slope x.
 struct LineFit {
-  std::size_t points = 0;
+  std::size_t points = 0, rounds = 0;
   double intercept = 0;
   Estimate slope;
 
-  double meanX = 0, sumOfSquaresX = 0; // sum of (x - meanX)^2
-  double deviation = 0;                // of y about the line
-  double quantile = 0;                 // of Student's t with points - 2 degrees, at 97.5 %
+  /// How likely the means of the levels leave a straight line by as much as they do, if the truth
+  /// is one. 1: it cannot be tested.
+  double lackOfFit = 1;
+  double largestResidual = 0; // of a level's mean, in y
+  bool bends() const { return points != 0 && lackOfFit < 0.01; }
+
+  double meanX = 0;
+  double quantile = 0; // of Student's t with rounds - 1 degrees, at 97.5 %
+  double varianceAtMean = 0, varianceOfSlope = 0,
+         covariance = 0; // of the line at meanX, and of its slope
 
   /// The line at x with its confidence band.
   Estimate at(double x) const;
 };
 
-/// Wants at least three points at two different x; otherwise `points` is 0 and nothing else is set. The confidence
-/// interval: N. R. Draper, H. Smith, "Applied Regression Analysis", 3rd ed. 1998, section 1.4.
-LineFit fitLine(const std::vector<double> &x, const std::vector<double> &y);
+/// Fits a line to at least two levels and two rounds; otherwise `points` is 0 and nothing else is
+/// set.
+///
+/// The slope is that of y over `effort` divided by that of x over `effort`: noise of x would
+/// flatten the slope of a least-squares fit of y over x (W. A. Fuller, "Measurement Error Models",
+/// 1987, section 1.4). Its interval is that of a ratio of means over rounds (W. G. Cochran,
+/// "Sampling Techniques", 3rd ed. 1977, section 6.4), with Student's t. `lackOfFit` tests the
+/// quadratic and, of four levels, the cubic part of the residuals, each by Student's t over rounds,
+/// together by Bonferroni's inequality.
+LineFit fitLine(const Rounds &rounds);
+
+/// The x at which y comes down to a value, between the two levels on both sides of it, by linear
+/// interpolation.
+struct Crossing {
+  /// One value a round. Their mean is the crossing of the means, and their spread its uncertainty
+  /// (to first order).
+  std::vector<double> perRound;
+  /// The first level is below the value already: x may be smaller still.
+  bool isBound = false;
+
+  Estimate estimate() const;
+};
+
+/// The first crossing; nothing if no level's mean comes down to the value.
+std::optional<Crossing> findCrossing(const Rounds &rounds, double y);
 
 /// The mean of values with its confidence interval by Student's t; one value has an interval of no width.
 Estimate meanOf(const std::vector<double> &values);

@@ -11,8 +11,10 @@ namespace rtsl::report {
 
 namespace {
 
-constexpr double width = 640, height = 420;
-constexpr double left = 70, right = 16, top = 34, bottom = 52; // margins
+constexpr double width = 480, height = 372;
+constexpr double left = 66, right = 14, top = 62, bottom = 52; // margins
+constexpr double textLeft = 8;                                 // of what stands above the frame
+constexpr double nearMark = 0.35; // decades that an axis may be longer for a mark
 constexpr unsigned styles = 8;
 
 struct Range {
@@ -23,9 +25,9 @@ struct Range {
     high = std::max(high, value);
   }
   bool isEmpty() const { return !(low <= high); }
-  /// A little air on both sides, and at least half a decade.
-  void widen() {
-    const double air = std::max(0.06 * (high - low), (0.5 - (high - low)) / 2);
+  /// A little air on both sides, and at least so many decades.
+  void widen(double least) {
+    const double air = std::max(0.06 * (high - low), (least - (high - low)) / 2);
     low -= air;
     high += air;
   }
@@ -42,8 +44,17 @@ bool isDrawable(const PlotPoint &point) {
   return point.x > 0 && point.y.value > 0 && std::isfinite(point.x) && std::isfinite(point.y.value);
 }
 
-/// The lower end of an interval may reach 0, which is nowhere on the axis.
+/// The lower end of an interval may reach 0, which is nowhere on the axis, and an estimate may have
+/// no interval.
 double lowEnd(const Estimate &estimate) { return estimate.low > 0 ? estimate.low : estimate.value; }
+double highEnd(const Estimate &estimate) {
+  return estimate.high > estimate.value && std::isfinite(estimate.high) ? estimate.high
+                                                                        : estimate.value;
+}
+
+bool hasMark(const LogPlot &plot) {
+  return plot.mark > 0 && std::isfinite(plot.mark);
+}
 
 Axes findAxes(const LogPlot &plot) {
   Axes axes;
@@ -52,71 +63,119 @@ Axes findAxes(const LogPlot &plot) {
       if (isDrawable(point)) {
         axes.x.add(std::log10(point.x));
         axes.y.add(std::log10(lowEnd(point.y)));
-        axes.y.add(std::log10(std::max(point.y.high, point.y.value)));
+        axes.y.add(std::log10(highEnd(point.y)));
       }
   if (axes.x.isEmpty())
     return axes;
-  if (plot.floor > 0 && std::isfinite(plot.floor))
-    axes.y.add(std::log10(plot.floor));
-  axes.x.widen();
-  axes.y.widen();
+  if (hasMark(plot) && std::log10(plot.mark) > axes.y.low - nearMark &&
+      std::log10(plot.mark) < axes.y.high + nearMark)
+    axes.y.add(std::log10(plot.mark));
+  axes.x.widen(0.5);
+  axes.y.widen(plot.leastDecades);
   return axes;
 }
 
-/// 1000 is 1000, 1e-5 is 10 with a raised -5.
-std::string tickText(int decade) {
+/// 1000 is 1000, 2e-5 is 2·10 with a raised -5.
+std::string tickText(int factor, int decade) {
   if (decade >= -3 && decade <= 4)
-    return fmt::format("{:g}", std::pow(10.0, decade));
-  return fmt::format("10<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", decade);
+    return fmt::format("{:g}", factor * std::pow(10.0, decade));
+  return fmt::format("{}10<tspan dy=\"-5\" class=\"raised\">{}</tspan>",
+                     factor == 1 ? "" : fmt::format("{}·", factor), decade);
 }
 
-/// Which multiples of a decade have a grid line: the more decades there are, the fewer.
-std::vector<int> gridFactors(const Range &range) {
+struct Tick {
+  double place; // log10
+  std::string text;
+  bool isMain = true;
+};
+
+/// Multiples of powers of ten: the more decades there are, the fewer. Not all have a text, for two
+/// might meet.
+std::vector<Tick> decadeTicks(const Range &range) {
   const double decades = range.high - range.low;
-  if (decades > 2.5)
-    return {1};
-  if (decades > 0.9)
-    return {1, 2, 5};
-  return {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  const std::vector<int> factors = decades > 2.5   ? std::vector<int>{1}
+                                   : decades > 0.9 ? std::vector<int>{1, 2, 5}
+                                                   : std::vector<int>{1, 2, 3, 4, 5, 6, 7, 8, 9};
+  std::vector<Tick> ticks;
+  for (int decade = int(std::floor(range.low)); decade <= int(std::ceil(range.high)); ++decade)
+    for (int factor : factors)
+      if (const double place = decade + std::log10(double(factor));
+          place >= range.low && place <= range.high) {
+        const bool hasText = factor <= 3 || factor == 5 || factor == 7;
+        ticks.push_back({place, hasText ? tickText(factor, decade) : "", factor == 1});
+      }
+  return ticks;
+}
+
+/// Equal steps of 1, 2 or 5 times a power of ten, for less than half a decade.
+std::vector<Tick> evenTicks(const Range &range) {
+  const double low = std::pow(10, range.low), high = std::pow(10, range.high),
+               rough = (high - low) / 5;
+  const double decade = std::pow(10, std::floor(std::log10(rough)));
+  const double step = decade * (rough <= 1.5 * decade   ? 1
+                                : rough <= 3.5 * decade ? 2
+                                : rough <= 7.5 * decade ? 5
+                                                        : 10);
+  std::vector<Tick> ticks;
+  for (double number = std::ceil(low / step); number * step <= high; ++number)
+    ticks.push_back({std::log10(number * step), fmt::format("{:.4g}", number * step)});
+  return ticks;
+}
+
+std::vector<Tick> ticksFor(const Range &range) {
+  return range.high - range.low < 0.45 ? evenTicks(range) : decadeTicks(range);
 }
 
 std::string drawGrid(const Axes &axes) {
   std::string svg;
-  const auto ticks = [&](const Range &range, auto drawTick) {
-    for (int decade = int(std::floor(range.low)); decade <= int(std::ceil(range.high)); ++decade)
-      for (int factor : gridFactors(range)) {
-        const double place = decade + std::log10(double(factor));
-        if (place < range.low || place > range.high)
-          continue;
-        drawTick(place, factor == 1 ? tickText(decade) : decade >= -3 && decade <= 4 ? fmt::format("{:g}", factor * std::pow(10.0, decade)) : "",
-                 factor == 1);
-      }
-  };
-  ticks(axes.x, [&](double place, const std::string &text, bool isDecade) {
-    const double x = axes.toX(place);
-    svg += fmt::format("<line class=\"grid{}\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\"/>", isDecade ? "" : " fine", x, x, top, height - bottom);
-    svg += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x, height - bottom + 18, text);
-  });
-  ticks(axes.y, [&](double place, const std::string &text, bool isDecade) {
-    const double y = axes.toY(place);
-    svg += fmt::format("<line class=\"grid{}\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", isDecade ? "" : " fine", left, width - right, y, y);
-    svg += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 8, y + 4, text);
-  });
+  for (const Tick &tick : ticksFor(axes.x)) {
+    const double x = axes.toX(tick.place);
+    svg += fmt::format("<line class=\"grid{}\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\"/>",
+                       tick.isMain ? "" : " fine", x, x, top, height - bottom);
+    svg +=
+        fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+                    x, height - bottom + 18, tick.text);
+  }
+  for (const Tick &tick : ticksFor(axes.y)) {
+    const double y = axes.toY(tick.place);
+    svg += fmt::format("<line class=\"grid{}\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>",
+                       tick.isMain ? "" : " fine", left, width - right, y, y);
+    svg += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>",
+                       left - 6, y + 4, tick.text);
+  }
   return svg;
 }
 
-std::string drawMarker(unsigned style, double x, double y, const std::string &text) {
-  const double r = 4;
-  const std::string title = text.empty() ? "" : fmt::format("<title>{}</title>", escapeHtml(text));
+std::string drawMarker(unsigned style, double x, double y) {
+  const double r = 3.4;
   switch (style % styles / 2) {
-  case 0: return fmt::format("<circle class=\"marker\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\">{}</circle>", x, y, r, title);
-  case 1: return fmt::format("<rect class=\"marker\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\">{}</rect>", x - r, y - r, 2 * r, 2 * r, title);
+  case 0:
+    return fmt::format("<circle class=\"marker\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>", x, y, r);
+  case 1:
+    return fmt::format(
+        "<rect class=\"marker\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\"/>", x - r,
+        y - r, 2 * r, 2 * r);
   case 2:
-    return fmt::format("<path class=\"marker\" d=\"M{:.1f} {:.1f}l{} {}l{} {}l{} {}z\">{}</path>", x, y - 1.3 * r, 1.3 * r, 1.3 * r, -1.3 * r, 1.3 * r,
-                       -1.3 * r, -1.3 * r, title);
+    return fmt::format(
+        "<path class=\"marker\" d=\"M{:.1f} {:.1f}l{:.2f} {:.2f}l{:.2f} {:.2f}l{:.2f} {:.2f}z\"/>",
+        x, y - 1.3 * r, 1.3 * r, 1.3 * r, -1.3 * r, 1.3 * r, -1.3 * r, -1.3 * r);
   default:
-    return fmt::format("<path class=\"marker\" d=\"M{:.1f} {:.1f}l{} {}h{}z\">{}</path>", x, y - 1.2 * r, 1.2 * r, 2.1 * r, -2.4 * r, title);
+    return fmt::format("<path class=\"marker\" d=\"M{:.1f} {:.1f}l{:.2f} {:.2f}h{:.2f}z\"/>", x,
+                       y - 1.2 * r, 1.2 * r, 2.1 * r, -2.4 * r);
   }
+}
+
+/// A marker that can be pointed at, tapped and reached by keyboard. What it says stands above the
+/// frame, where no curve is.
+std::string drawPoint(const PlotPoint &point, unsigned style, double x, double y) {
+  std::string svg = fmt::format("<g class=\"point\" tabindex=\"0\" role=\"img\" aria-label=\"{}, "
+                                "{}\"><circle class=\"halo\" cx=\"{:.1f}\" cy=\"{:.1f}\"/>",
+                                escapeHtml(point.name), escapeHtml(point.figures), x, y);
+  svg += drawMarker(style, x, y);
+  svg += fmt::format(
+      "<text class=\"tip\" x=\"{}\" y=\"34\">{}<tspan x=\"{}\" dy=\"1.25em\">{}</tspan></text></g>",
+      textLeft, escapeHtml(point.name), textLeft, escapeHtml(point.figures));
+  return svg;
 }
 
 /// The fitted line over the range of its points, with its band.
@@ -136,8 +195,10 @@ std::string drawLine(const PlotSeries &series, const Axes &axes) {
     upper += fmt::format("{}{:.1f} {:.1f}", i ? "L" : "M", axes.toX(x), inside(y.high));
     lower = fmt::format("L{:.1f} {:.1f}", axes.toX(x), inside(y.low)) + lower;
   }
-  return fmt::format("<path class=\"band\" d=\"{}{}z\"/><line class=\"fit\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", upper, lower,
-                     axes.toX(range.low), axes.toY(series.line.at(range.low).value), axes.toX(range.high),
+  return fmt::format("<path class=\"band\" d=\"{}{}z\"/><line class=\"fit{}\" x1=\"{:.1f}\" "
+                     "y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>",
+                     upper, lower, series.line.bends() ? " bent" : "", axes.toX(range.low),
+                     axes.toY(series.line.at(range.low).value), axes.toX(range.high),
                      axes.toY(series.line.at(range.high).value));
 }
 
@@ -149,64 +210,112 @@ std::string drawSeries(const PlotSeries &series, const Axes &axes) {
       continue;
     const double x = axes.toX(std::log10(point.x));
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x, axes.toY(std::log10(point.y.value)));
-    svg += fmt::format("<line class=\"interval\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", x, x, axes.toY(std::log10(lowEnd(point.y))),
-                       axes.toY(std::log10(std::max(point.y.high, point.y.value))));
+    svg += fmt::format(
+        "<line class=\"interval\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", x, x,
+        axes.toY(std::log10(lowEnd(point.y))), axes.toY(std::log10(highEnd(point.y))));
   }
-  if (series.line.points == 0)
+  if (series.line.points == 0 || series.line.bends())
     svg += fmt::format("<path class=\"joint\" d=\"{}\"/>", path);
   for (const PlotPoint &point : series.points)
     if (isDrawable(point))
-      svg += drawMarker(series.style, axes.toX(std::log10(point.x)), axes.toY(std::log10(point.y.value)), point.text);
+      svg += drawPoint(point, series.style, axes.toX(std::log10(point.x)),
+                       axes.toY(std::log10(point.y.value)));
   return svg + "</g>";
+}
+
+std::string drawMark(const LogPlot &plot, const Axes &axes) {
+  if (!hasMark(plot))
+    return {};
+  const double place = std::log10(plot.mark);
+  if (place < axes.y.low || place > axes.y.high) {
+    const bool isBelow = place < axes.y.low;
+    return fmt::format("<text class=\"tick\" x=\"{}\" y=\"{}\">{} {}: {:.2g}</text>", left + 6,
+                       isBelow ? height - bottom - 6 : top + 14, isBelow ? "↓" : "↑",
+                       escapeHtml(plot.markText), plot.mark);
+  }
+  const double y = axes.toY(place);
+  return fmt::format("<line class=\"mark\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/><text "
+                     "class=\"tick\" x=\"{}\" y=\"{:.1f}\">{}</text>",
+                     left, width - right, y, y, left + 6, y - 5, escapeHtml(plot.markText));
 }
 
 } // namespace
 
 std::string drawLogPlot(const LogPlot &plot) {
-  std::string svg = fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", width, height, escapeHtml(plot.title));
-  svg += fmt::format("<text class=\"title\" x=\"{}\" y=\"20\">{}</text>", left, escapeHtml(plot.title));
+  std::string svg =
+      fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"group\" aria-label=\"{}\">",
+                  width, height, escapeHtml(plot.title));
+  svg += fmt::format("<text class=\"title\" x=\"{}\" y=\"15\">{}</text>", textLeft,
+                     escapeHtml(plot.title));
   const Axes axes = findAxes(plot);
   if (axes.x.isEmpty())
-    return svg + fmt::format("<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">no error above 0 was measured</text></svg>", width / 2, height / 2);
+    return svg +
+           fmt::format(
+               "<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text></svg>",
+               width / 2, height / 2, escapeHtml(plot.nothing));
+  svg += fmt::format("<text class=\"hint\" x=\"{}\" y=\"34\">Point at a marker, tap it or tab to "
+                     "it for its figures.</text>",
+                     textLeft);
   svg += drawGrid(axes);
   svg += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>", left, top, width - left - right, height - top - bottom);
   svg += fmt::format("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", (left + width - right) / 2, height - 12, escapeHtml(plot.xLabel));
-  svg += fmt::format("<text class=\"label\" transform=\"translate(16 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>", (top + height - bottom) / 2,
-                     escapeHtml(plot.yLabel));
-  if (plot.floor > 0 && std::isfinite(plot.floor)) {
-    const double y = axes.toY(std::log10(plot.floor));
-    svg += fmt::format("<line class=\"floor\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/><text class=\"tick\" x=\"{}\" y=\"{:.1f}\">{}</text>", left,
-                       width - right, y, y, left + 6, y - 5, escapeHtml(plot.floorText));
-  }
+  svg += fmt::format("<text class=\"label\" transform=\"translate(13 {}) rotate(-90)\" "
+                     "text-anchor=\"middle\">{}</text>",
+                     (top + height - bottom) / 2, escapeHtml(plot.yLabel));
+  svg += drawMark(plot, axes);
   for (const PlotSeries &series : plot.series)
     svg += drawSeries(series, axes);
   return svg + "</svg>";
 }
 
 std::string drawLegendKey(unsigned style) {
-  return fmt::format("<svg class=\"key series s{}\" viewBox=\"0 0 36 14\" aria-hidden=\"true\"><line class=\"fit\" x1=\"2\" x2=\"34\" y1=\"7\" y2=\"7\"/>{}</svg>",
-                     style % styles, drawMarker(style, 18, 7, ""));
+  return fmt::format(
+      "<svg class=\"key series s{}\" viewBox=\"0 0 36 14\" aria-hidden=\"true\"><line "
+      "class=\"fit\" x1=\"2\" x2=\"34\" y1=\"7\" y2=\"7\"/>{}</svg>",
+      style % styles, drawMarker(style, 18, 7));
+}
+
+std::string curveSwitch(unsigned style) {
+  return fmt::format("curve{}", style % styles);
 }
 
 std::string plotStyle() {
-  const char *colors[styles] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A6A00", "#555555"};
-  std::string css = R"(.plot { width: 100%; height: auto; display: block; }
-.plot text { fill: var(--ink); font-size: 12px; }
-.plot .title { font-size: 15px; font-weight: 600; }
-.plot .label { font-size: 13px; }
+  const char *onWhite[styles] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                 "#E69F00", "#56B4E9", "#7A6A00", "#555555"};
+  const char *onBlack[styles] = {"#3E9FE0", "#F07A2E", "#22B98E", "#E39AC4",
+                                 "#F2B63C", "#9AD4F5", "#BFAE3A", "#B5B5B5"};
+  // Text is 12 pixels high or more on a telephone (a column of 366) and on a desk (580).
+  std::string css = R"(.plot { width: 100%; height: auto; display: block; overflow: visible; }
+.plot text { fill: var(--ink); font-size: 11px; }
+.plot .raised { font-size: 0.8em; }
+.plot .title { font-size: 13px; font-weight: 600; }
+.plot .hint { fill: var(--muted); }
+.plot .tip { display: none; }
+.plot .point { outline: none; cursor: default; }
+.plot .point:hover .tip, .plot .point:focus .tip { display: block; }
+.plot:has(.point:hover, .point:focus) .hint { display: none; }
+.plot:has(.point:hover) .point:focus:not(:hover) .tip { display: none; }
+.plot .halo { r: 8px; fill: currentColor; fill-opacity: 0; stroke: none; pointer-events: all; }
+.plot .point:hover .halo, .plot .point:focus .halo { fill-opacity: 0.35; }
 .plot .grid { stroke: var(--grid); stroke-width: 1; }
 .plot .grid.fine { stroke-dasharray: 2 4; }
 .plot .frame { fill: none; stroke: var(--muted); stroke-width: 1; }
-.plot .floor { stroke: var(--muted); stroke-width: 1.5; stroke-dasharray: 6 4; }
+.plot .mark { stroke: var(--muted); stroke-width: 1.5; stroke-dasharray: 6 4; }
 .series .fit { stroke: currentColor; stroke-width: 1.5; }
+.series .fit.bent { stroke-dasharray: 1 4; }
 .series .band { fill: currentColor; opacity: 0.12; stroke: none; }
 .series .interval { stroke: currentColor; stroke-width: 1.2; opacity: 0.7; }
 .series .joint { fill: none; stroke: currentColor; stroke-width: 1.2; }
 .series .marker { fill: currentColor; stroke: var(--paper); stroke-width: 1; }
 .key { width: 36px; height: 14px; vertical-align: -2px; }
+@media (max-width: 640px) { .plot text { font-size: 16px; } .plot .title { font-size: 16px; } }
+@media (pointer: coarse) { .plot .halo { r: 15px; } }
 )";
   for (unsigned i = 0; i < styles; ++i)
-    css += fmt::format(".s{} {{ color: {}; }}\n", i, colors[i]);
+    css += fmt::format(".s{0} {{ color: {1}; }}\n@media (prefers-color-scheme: dark) {{ .s{0} {{ "
+                       "color: {2}; }} }}\n"
+                       "body:has(#{3}:not(:checked)) .plot .s{0} {{ display: none; }}\n",
+                       i, onWhite[i], onBlack[i], curveSwitch(i));
   return css;
 }
 

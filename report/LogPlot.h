@@ -8,11 +8,11 @@
 
 namespace rtsl::report {
 
-/// A measured point and the interval of its y.
+/// A measured point and the interval of its y, if its ends are numbers.
 struct PlotPoint {
   double x = 0;
   Estimate y;
-  std::string text; // shown when the pointer rests on it
+  std::string name, figures; // shown when the pointer rests on it, or when it has the focus
 };
 
 struct PlotSeries {
@@ -25,20 +25,30 @@ struct PlotSeries {
 struct LogPlot {
   std::string title, xLabel, yLabel;
   std::vector<PlotSeries> series;
-  /// A horizontal line where the reference ends to tell errors apart; 0: none.
-  double floor = 0;
-  std::string floorText;
+  /// A horizontal line at `mark`, with a text; 0: none. The axis reaches down to it only if it is
+  /// near; if it is not, the text stands at the lower edge.
+  double mark = 0;
+  std::string markText;
+  /// The least that the y axis spans.
+  double leastDecades = 0.5;
+  std::string nothing = "no error above 0 was measured"; // said where there is no point
 };
 
-/// An `<svg>` of 640 by 420 units that scales with its column; the classes that it names are in plotStyle(). Points that
-/// are not positive have no place on a logarithmic axis and are left out; a plot with no point says so.
+/// An `<svg>` of 480 by 372 units that scales with its column; the classes that it names are in
+/// plotStyle(). Points that are not positive have no place on a logarithmic axis and are left out;
+/// a plot with no point says so. Each point can be pointed at, tapped and reached by keyboard, and
+/// then shows its figures.
 std::string drawLogPlot(const LogPlot &plot);
 
 /// The sample of line and marker that stands beside a name in a legend, as a small `<svg>`.
 std::string drawLegendKey(unsigned style);
 
-/// The CSS of plots and keys. The eight colours can be told apart by people who are colour-blind (M. Okabe, K. Ito,
-/// "Color Universal Design", 2008).
+/// The id of the check box that shows and hides the curves of a style, wherever it stands on the
+/// page.
+std::string curveSwitch(unsigned style);
+
+/// The CSS of plots and keys. The eight colours can be told apart by people who are colour-blind
+/// (M. Okabe, K. Ito, "Color Universal Design", 2008); on dark paper they are lighter.
 std::string plotStyle();
 
 /// Text for use in HTML and SVG.

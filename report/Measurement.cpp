@@ -58,7 +58,8 @@ const std::vector<Column<Measurement>> &columnsOf(const Measurement *) {
       column("nan_pixels", &Measurement::nanPixels),
       column("infinite_pixels", &Measurement::infinitePixels),
       column("samples_not_finite", &Measurement::samplesNotFinite),
-      column("picture_hash", &Measurement::pictureHash)};
+      column("picture_hash", &Measurement::pictureHash),
+      column("pair_variance", &Measurement::pairVariance)};
   return columns;
 }
 
@@ -136,9 +137,11 @@ std::vector<Measurement> readMeasurements(const std::string &path) { return read
 void appendMeasurement(const std::string &path, const Measurement &measurement) {
   appendLine(path, headerOf<Measurement>(), lineOf(measurement));
 }
-std::vector<LevelVariance> readLevels(const std::string &path) { return readTable<LevelVariance>(path); }
-void appendLevel(const std::string &path, const LevelVariance &level) {
-  appendLine(path, headerOf<LevelVariance>(), lineOf(level));
+void writeLevels(const std::string &path, const std::vector<LevelVariance> &levels) {
+  std::string table = headerOf<LevelVariance>();
+  for (const LevelVariance &level : levels)
+    table += lineOf(level);
+  runtime::writeFileAtomically(path, table);
 }
 
 std::uint64_t hashOf(std::string_view bytes) {

@@ -22,13 +22,16 @@ struct Measurement {
   std::uint64_t nanPixels = 0, infinitePixels = 0;
   std::uint64_t samplesNotFinite = 0; // counted as black by the renderer
   std::uint64_t pictureHash = 0;      // the same for the same bits
+  double pairVariance = 0; // of this picture and that of the run before: unbiased, mean over pixels
+                           // and channels; 0 for run 0
 };
 
 /// What all runs of a configuration with one number of samples say together.
 struct LevelVariance {
   std::string configuration;
   std::uint32_t samplesPerPixel = 0;
-  double variance = 0;    // of a picture: the unbiased sample variance over the runs, mean over pixels and channels
+  double variance = 0;    // of a picture over the runs, mean over pixels and channels: the mean of
+                          // Measurement::pairVariance, unbiased
   double meanSeconds = 0; // of rendering one picture
   double efficiency = 0;  // 1 / (variance x time); not finite if the variance is 0
 };
@@ -38,8 +41,8 @@ struct LevelVariance {
 /// throws BadImage for one that is no such table.
 std::vector<Measurement> readMeasurements(const std::string &path);
 void appendMeasurement(const std::string &path, const Measurement &measurement);
-std::vector<LevelVariance> readLevels(const std::string &path);
-void appendLevel(const std::string &path, const LevelVariance &level);
+/// A whole table.
+void writeLevels(const std::string &path, const std::vector<LevelVariance> &levels);
 
 /// FNV-1a.
 std::uint64_t hashOf(std::string_view bytes);

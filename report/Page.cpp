@@ -2,6 +2,7 @@
 #include "report/Page.h"
 
 #include "report/ErrorMap.h"
+#include "report/Exposure.h"
 #include "report/LogPlot.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,8 @@ namespace rtsl::report {
 
 namespace {
 
-constexpr const char *style = R"(:root { color-scheme: light dark; --paper: #ffffff; --ink: #1c2126; --muted: #68707a; --grid: #e4e7eb; --card: #f6f7f9; --warn: #8a4b00; }
+constexpr const char *style =
+    R"(:root { color-scheme: light dark; --paper: #ffffff; --ink: #1c2126; --muted: #68707a; --grid: #e4e7eb; --card: #f6f7f9; --warn: #8a4b00; }
 @media (prefers-color-scheme: dark) { :root { --paper: #16191d; --ink: #e6e9ec; --muted: #9aa3ad; --grid: #2b3138; --card: #1e2227; --warn: #f0b060; } }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 1360px; padding: 24px clamp(12px, 3vw, 40px) 64px; background: var(--paper); color: var(--ink);
@@ -25,7 +27,9 @@ p, li { max-width: 78ch; }
 .muted { color: var(--muted); }
 .problems { background: var(--card); border-left: 4px solid var(--warn); padding: 8px 16px; margin: 16px 0; }
 .problems h2 { margin: 4px 0; font-size: 16px; color: var(--warn); }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 520px), 1fr)); gap: 20px; }
+.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 460px), 1fr)); gap: 20px; }
+.plots svg { max-width: 680px; }
+.legend label { cursor: pointer; display: inline-block; padding: 4px 0; }
 .legend { display: flex; flex-wrap: wrap; gap: 4px 20px; padding: 0; margin: 8px 0 14px; list-style: none; }
 .legend li { white-space: nowrap; }
 .table { overflow-x: auto; }
@@ -63,6 +67,20 @@ std::string interval(const Estimate &estimate, const char *format = "{:.3f}") {
   return fmt::format("{} <span class=\"muted\">[{}, {}]</span>", text(estimate.value), text(estimate.low), text(estimate.high));
 }
 
+/// A slope, and that of the end of a line that bends.
+std::string slope(const LineFit &line, const std::optional<Estimate> &last) {
+  if (line.points == 0)
+    return "–";
+  return interval(line.slope) + (line.bends() ? "; bends" : "") +
+         (last ? ", last " + interval(*last) : "");
+}
+
+std::string timeTo(const TimeToError &time) {
+  return fmt::format("{}{} <span class=\"muted\">[{}, {}]</span>", time.isBound ? "at most " : "",
+                     seconds(time.seconds.value), seconds(time.seconds.low),
+                     seconds(time.seconds.high));
+}
+
 std::string row(const std::vector<std::string> &cells, const char *tag = "td") {
   std::string html = "<tr>";
   for (const std::string &cell : cells)
@@ -71,7 +89,10 @@ std::string row(const std::vector<std::string> &cells, const char *tag = "td") {
 }
 
 std::string table(const std::vector<std::string> &header, const std::string &rows) {
-  return fmt::format("<div class=\"table\"><table><thead>{}</thead><tbody>\n{}</tbody></table></div>\n", row(header, "th"), rows);
+  return fmt::format(
+      "<div class=\"table\" tabindex=\"0\" role=\"region\" "
+      "aria-label=\"table\"><table><thead>{}</thead><tbody>\n{}</tbody></table></div>\n",
+      row(header, "th"), rows);
 }
 
 std::string definitions(const std::vector<std::pair<std::string, std::string>> &facts) {
@@ -83,27 +104,37 @@ std::string definitions(const std::vector<std::pair<std::string, std::string>> &
 
 //===-- what it says ------------------------------------------------------===//
 
+std::string verdict(const Estimate &slope) {
+  return slope.high < -1 ? "steeper than the -1 of independent samples, as it is where samples are "
+                           "spread evenly over a pixel"
+         : slope.low > -1 ? "<b>flatter</b> than the -1 of independent samples: some of the error "
+                            "does not fall with the samples"
+                          : "as the -1 of independent samples";
+}
+
 std::vector<std::string> findings(const Summary &summary) {
   std::vector<std::string> sentences;
-  std::vector<const SubjectSummary *> fitted;
+  std::vector<const SubjectSummary *> timed;
   for (const SubjectSummary &subject : summary.subjects)
-    if (subject.relMseOverSeconds.points && std::isfinite(subject.secondsTo(summary.commonRelMse)))
-      fitted.push_back(&subject);
-  if (!fitted.empty()) {
-    const auto slower = [&](const SubjectSummary *a, const SubjectSummary *b) {
-      return a->secondsTo(summary.commonRelMse) < b->secondsTo(summary.commonRelMse);
+    if (subject.toCommonRelMse)
+      timed.push_back(&subject);
+  if (!timed.empty()) {
+    const auto sooner = [](const SubjectSummary *a, const SubjectSummary *b) {
+      return a->toCommonRelMse->seconds.value < b->toCommonRelMse->seconds.value;
     };
-    const SubjectSummary *fastest = *std::min_element(fitted.begin(), fitted.end(), slower);
-    const SubjectSummary *slowest = *std::max_element(fitted.begin(), fitted.end(), slower);
-    const double best = fastest->secondsTo(summary.commonRelMse), worst = slowest->secondsTo(summary.commonRelMse);
-    sentences.push_back(fmt::format("<b>{}</b> comes to a relMSE of {} first, in {} a picture.", escapeHtml(fastest->name), figure(summary.commonRelMse), seconds(best)));
-    if (fastest != slowest)
-      sentences.push_back(fmt::format("<b>{}</b> takes longest: {:.2f} times as long.", escapeHtml(slowest->name), worst / best));
+    const SubjectSummary *fastest = *std::min_element(timed.begin(), timed.end(), sooner);
+    const SubjectSummary *slowest = *std::max_element(timed.begin(), timed.end(), sooner);
+    sentences.push_back(fmt::format("<b>{}</b> comes to a relMSE of {} first, in {} a picture.",
+                                    escapeHtml(fastest->name), figure(summary.commonRelMse),
+                                    timeTo(*fastest->toCommonRelMse)));
+    if (fastest != slowest && slowest->timesTheQuickest)
+      sentences.push_back(fmt::format("<b>{}</b> takes longest: {} times as long.",
+                                      escapeHtml(slowest->name),
+                                      interval(*slowest->timesTheQuickest, "{:.2f}")));
     const LineFit &line = fastest->relMseOverSamples;
-    const char *verdict = line.slope.high < -1  ? "steeper than the -1 of independent samples, as it is where samples are spread evenly over a pixel"
-                          : line.slope.low > -1 ? "<b>flatter</b> than the -1 of independent samples: some of the error does not fall with the samples"
-                                                : "as the -1 of independent samples";
-    sentences.push_back(fmt::format("Its relMSE falls with the samples to the power of {}: {}.", interval(line.slope, "{:.3f}"), verdict));
+    sentences.push_back(fmt::format("Its relMSE falls with the samples to the power of {}: {}.",
+                                    slope(line, fastest->lastSlopeOverSamples),
+                                    verdict(fastest->lastSlopeOverSamples.value_or(line.slope))));
   }
   std::map<std::uint64_t, std::vector<std::string>> byPicture;
   for (const SubjectSummary &subject : summary.subjects)
@@ -121,20 +152,34 @@ std::vector<std::string> findings(const Summary &summary) {
 
 //===-- plots -------------------------------------------------------------===//
 
-std::string drawError(const Summary &summary, const std::string &title, const std::string &unit, Estimate LevelSummary::*error,
-                      bool hasLines, double floor) {
+/// "0.0012 [0.0011, 0.0013]".
+std::string withInterval(const Estimate &estimate) {
+  return figure(estimate.value) +
+         (std::isfinite(estimate.low)
+              ? fmt::format(" [{}, {}]", figure(estimate.low), figure(estimate.high))
+              : "");
+}
+
+PlotPoint pointOf(const SubjectSummary &subject, const LevelSummary &level, double x,
+                  const Estimate &y, const std::string &what) {
+  return {x, y, fmt::format("{}, {} spp", subject.name, level.samplesPerPixel),
+          what + " in " + seconds(level.seconds.value)};
+}
+
+std::string drawError(const Summary &summary, const std::string &title, const std::string &unit,
+                      Estimate LevelSummary::*error, bool hasLines, double ownError) {
   LogPlot plot;
   plot.title = title;
   plot.xLabel = "seconds of rendering for one picture";
   plot.yLabel = unit;
-  plot.floor = floor;
-  plot.floorText = "the reference's own error";
+  plot.mark = ownError;
+  plot.markText = "the reference's own error";
   for (std::size_t i = 0; i < summary.subjects.size(); ++i) {
     const SubjectSummary &subject = summary.subjects[i];
     PlotSeries series{subject.name, unsigned(i), {}, {}};
     for (const LevelSummary &level : subject.levels)
-      series.points.push_back({level.seconds.value, level.*error,
-                               fmt::format("{}, {} spp: {} in {}", subject.name, level.samplesPerPixel, figure((level.*error).value), seconds(level.seconds.value))});
+      series.points.push_back(
+          pointOf(subject, level, level.seconds.value, level.*error, withInterval(level.*error)));
     if (hasLines)
       series.line = subject.relMseOverSeconds;
     plot.series.push_back(std::move(series));
@@ -142,17 +187,57 @@ std::string drawError(const Summary &summary, const std::string &title, const st
   return drawLogPlot(plot);
 }
 
-std::string plots(const Summary &summary, const Reference &reference) {
+/// Curves that lie on one another in the other plots are apart here.
+std::string drawRatios(const Summary &summary) {
+  LogPlot plot;
+  const std::string first = summary.subjects.front().name;
+  plot.title = "Time to the same relMSE, relative to the first";
+  plot.xLabel = "relMSE";
+  plot.yLabel = "times " + first;
+  plot.mark = 1;
+  plot.leastDecades = 0.05;
+  plot.nothing = "no error was met by two configurations";
+  for (std::size_t i = 1; i < summary.subjects.size(); ++i) {
+    const SubjectSummary &subject = summary.subjects[i];
+    PlotSeries series{subject.name, unsigned(i), {}, {}};
+    for (const LevelSummary &level : subject.levels)
+      if (level.timesTheFirst)
+        series.points.push_back(
+            pointOf(subject, level, level.relMse.value, *level.timesTheFirst,
+                    fmt::format("relMSE {}, {} times", figure(level.relMse.value),
+                                withInterval(*level.timesTheFirst))));
+    plot.series.push_back(std::move(series));
+  }
+  return drawLogPlot(plot);
+}
+
+std::string legend(const Summary &summary) {
   std::string html = "<ul class=\"legend\">";
   for (std::size_t i = 0; i < summary.subjects.size(); ++i)
-    html += fmt::format("<li>{} {}</li>", drawLegendKey(unsigned(i)), escapeHtml(summary.subjects[i].name));
-  html += "</ul>\n<div class=\"plots\">\n";
-  const double relMseFloor = reference.ownError ? reference.ownError->relMse : 0, rmseFloor = reference.ownError ? reference.ownError->rmse : 0;
-  html += drawError(summary, "Relative mean square error, with fitted lines and 95 % bands", "relMSE", &LevelSummary::relMse, true, relMseFloor) + "\n";
-  html += drawError(summary, "Root mean square error", "RMSE", &LevelSummary::rmse, false, rmseFloor) + "\n";
+    html += fmt::format("<li><label><input type=\"checkbox\" id=\"{}\" checked> {} {}</label></li>",
+                        curveSwitch(unsigned(i)), drawLegendKey(unsigned(i)),
+                        escapeHtml(summary.subjects[i].name));
+  return html + "</ul>\n";
+}
+
+std::string plots(const Summary &summary, const Reference &reference) {
+  std::string html = legend(summary) + "<div class=\"plots\">\n";
+  const double ownRelMse = reference.ownError ? reference.ownError->relMse : 0,
+               ownRmse = reference.ownError ? reference.ownError->rmse : 0;
+  html += drawError(summary, "relMSE, with fitted lines and 95 % bands", "relMSE",
+                    &LevelSummary::relMse, true, ownRelMse) +
+          "\n";
+  if (summary.subjects.size() > 1)
+    html += drawRatios(summary) + "\n";
+  html +=
+      drawError(summary, "Root mean square error", "RMSE", &LevelSummary::rmse, false, ownRmse) +
+      "\n";
   html += drawError(summary, "FLIP, as seen on a screen", "mean FLIP", &LevelSummary::flip, false, 0) + "\n";
   html += drawError(summary, "HDR-FLIP, over all exposures", "mean HDR-FLIP", &LevelSummary::flipHdr, false, 0) + "\n";
-  return html + "</div>\n<p class=\"muted\">Points are medians of the runs, bars their 95 % intervals. Rest the pointer on a point for its figures.</p>\n";
+  return html +
+         "</div>\n<p class=\"muted\">Points are medians of the runs, bars their 95 % intervals; "
+         "the check boxes show and hide curves. The ratio compares times of the same "
+         "round, so that a machine that is busy for a while disturbs it little.</p>\n";
 }
 
 //===-- tables ------------------------------------------------------------===//
@@ -160,16 +245,25 @@ std::string plots(const Summary &summary, const Reference &reference) {
 std::string configurations(const Summary &summary) {
   std::string rows;
   for (const SubjectSummary &subject : summary.subjects) {
-    const bool hasLine = subject.relMseOverSeconds.points != 0;
     const double lastSeconds = subject.levels.empty() ? 0 : subject.levels.back().seconds.value;
-    rows += row({escapeHtml(subject.name), seconds(subject.compileSeconds), seconds(subject.buildSeconds.value),
-                 subject.levels.empty() ? "–" : fmt::format("{} <span class=\"muted\">at {} spp</span>", seconds(lastSeconds), subject.levels.back().samplesPerPixel),
-                 hasLine ? interval(subject.relMseOverSeconds.slope) : "–", hasLine ? interval(subject.relMseOverSamples.slope) : "–",
-                 hasLine ? seconds(subject.secondsTo(summary.commonRelMse)) : "–", subject.efficiency > 0 ? figure(subject.efficiency) : "–",
-                 fmt::format("{} / {} / {}", subject.nanPixels, subject.infinitePixels, subject.samplesNotFinite)});
+    rows += row({escapeHtml(subject.name), seconds(subject.compileSeconds),
+                 seconds(subject.buildSeconds.value),
+                 subject.levels.empty()
+                     ? "–"
+                     : fmt::format("{} <span class=\"muted\">at {} spp</span>",
+                                   seconds(lastSeconds), subject.levels.back().samplesPerPixel),
+                 slope(subject.relMseOverSeconds, subject.lastSlopeOverSeconds),
+                 slope(subject.relMseOverSamples, subject.lastSlopeOverSamples),
+                 subject.toCommonRelMse ? timeTo(*subject.toCommonRelMse) : "–",
+                 subject.timesTheQuickest ? interval(*subject.timesTheQuickest, "{:.2f}") : "–",
+                 subject.efficiency > 0 ? figure(subject.efficiency) : "–",
+                 fmt::format("{} / {} / {}", subject.nanPixels, subject.infinitePixels,
+                             subject.samplesNotFinite)});
   }
-  return table({"configuration", "compile", "build", "trace", "slope over seconds", "slope over samples",
-                fmt::format("time to relMSE {}", figure(summary.commonRelMse)), "efficiency<br>1/(variance·s)", "NaN / Inf<br>/ samples"},
+  return table({"configuration", "compile", "build", "trace", "slope over seconds",
+                "slope over samples",
+                fmt::format("time to relMSE {}", figure(summary.commonRelMse)),
+                "times the quickest", "efficiency<br>1/(variance·s)", "NaN / Inf<br>/ samples"},
                rows);
 }
 
@@ -177,10 +271,16 @@ std::string levels(const Summary &summary) {
   std::string rows;
   for (const SubjectSummary &subject : summary.subjects)
     for (const LevelSummary &level : subject.levels)
-      rows += row({escapeHtml(subject.name), fmt::format("{}", level.samplesPerPixel), fmt::format("{}", level.runs), seconds(level.seconds.value), figure(level.rmse.value),
-                   figure(level.relMse.value) + (level.isResolved ? "" : " *"), figure(level.flip.value), figure(level.flipHdr.value), figure(level.variance),
-                   level.variance > 0 ? figure(level.efficiency) : "–"});
-  return table({"configuration", "spp", "runs", "seconds", "RMSE", "relMSE", "FLIP", "HDR-FLIP", "variance", "efficiency"}, rows);
+      rows += row({escapeHtml(subject.name), fmt::format("{}", level.samplesPerPixel),
+                   fmt::format("{}", level.runs), seconds(level.seconds.value),
+                   figure(level.rmse.value),
+                   figure(level.relMse.value) + (level.isResolved ? "" : " *"),
+                   figure(level.flip.value), figure(level.flipHdr.value), figure(level.variance),
+                   level.variance > 0 ? figure(level.efficiency) : "–",
+                   level.timesTheFirst ? interval(*level.timesTheFirst, "{:.3f}") : "–"});
+  return table({"configuration", "spp", "runs", "seconds", "RMSE", "relMSE", "FLIP", "HDR-FLIP",
+                "variance", "efficiency", "times the first"},
+               rows);
 }
 
 } // namespace
@@ -206,8 +306,12 @@ std::string writePage(const Context &context, const Summary &summary, const Refe
   html += fmt::format("<p>The reference is {}.</p>\n", escapeHtml(reference.origin));
   html += "<h2>Error against seconds</h2>\n" + plots(summary, reference);
   html += "<h2>Configurations</h2>\n" + configurations(summary);
-  html += "<p class=\"muted\">Slopes are of log relMSE, by least squares over all runs, with 95 % confidence. The time to an error is read off the fitted line. Compile, build "
-          "and trace are apart: compiling the shaders, building acceleration structures, tracing one picture.</p>\n";
+  html += "<p class=\"muted\">Slopes are of log relMSE, less that of the reference, with intervals "
+          "that hold with 95 %: they rest on the differences between rounds of runs, for the "
+          "runs of a round share what disturbs the machine. Where a line bends (a test of lack of "
+          "fit, at 1 %) the slope of its end is given too. The time to an error is read off the "
+          "points on both sides of it. Compile, build and trace are apart: compiling the shaders, "
+          "building acceleration structures, tracing one picture.</p>\n";
   if (!exhibits.empty()) {
     html += "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
     for (const Exhibit &exhibit : exhibits)

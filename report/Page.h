@@ -28,7 +28,7 @@ struct Exhibit {
 /// One self-contained HTML page: no scripts, nothing loaded from elsewhere, dark where the reader's system is.
 std::string writePage(const Context &context, const Summary &summary, const Reference &reference, const std::vector<Exhibit> &exhibits);
 
-/// The same as JSON, version 1; docs/report.md lists its keys. Values that are not finite are null.
+/// The same as JSON, version 2; docs/report.md lists its keys. Values that are not finite are null.
 std::string writeJson(const Context &context, const Summary &summary, const Reference &reference);
 
 } // namespace rtsl::report

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unistd.h>
 
 namespace rtsl::report {
@@ -23,10 +24,23 @@ std::string picturePath(const std::string &folder) { return folder + "/reference
 std::string factsPath(const std::string &folder) { return folder + "/reference.json"; }
 
 std::string describe(const std::string &subject, const Reference::OwnError &own) {
-  return fmt::format("the mean of {} runs with {} samples a pixel ({}), in {:.3g} s; its own RMSE is about {:.2g}, its relMSE {:.2g}; "
-                     "single precision moves a run by {:.2g} (RMSE)",
-                     own.runs, own.samplesPerPixel, subject, own.seconds, own.rmse, own.relMse, own.rounding);
+  const std::string error =
+      own.tail.isHeavy()
+          ? "how wrong it is cannot be told, for rare, large samples rule it (" + own.tail.text() +
+                ")"
+          : fmt::format("its own RMSE is about {:.2g}, its relMSE {:.2g}", own.rmse, own.relMse);
+  return fmt::format("the mean of {} runs with {} samples a pixel ({}), in {:.3g} s; {}; single "
+                     "precision moves a run by {:.2g} (RMSE)",
+                     own.runs, own.samplesPerPixel, subject, own.seconds, error, own.rounding);
 }
+
+/// JSON has no infinity and nothing that is not a number.
+double numberOr(const nlohmann::json &facts, const char *key, double otherwise) {
+  const auto found = facts.find(key);
+  return found != facts.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+constexpr int factsVersion = 2;
 
 /// Samples a pixel so that one run takes about `seconds`, from runs that take less.
 std::uint32_t samplesFor(const Subject &subject, double seconds) {
@@ -59,13 +73,23 @@ std::optional<Reference> findReference(const std::string &subject, const std::st
   if (::access(picturePath(folder).c_str(), R_OK) != 0 || ::access(factsPath(folder).c_str(), R_OK) != 0)
     return std::nullopt;
   const nlohmann::json facts = nlohmann::json::parse(runtime::readFile(factsPath(folder)), nullptr, false);
-  if (facts.is_discarded() || facts.value("subject", "") != subject)
+  if (facts.is_discarded() || facts.value("version", 0) != factsVersion ||
+      facts.value("subject", "") != subject)
     return std::nullopt;
   Reference reference;
   reference.image = runtime::readImage(picturePath(folder));
-  reference.ownError = Reference::OwnError{facts.value("rmse", 0.0),     facts.value("relMse", 0.0),
-                                           facts.value("rounding", 0.0), facts.value("runs", 0u),
-                                           facts.value("spp", 0u),       facts.value("seconds", 0.0)};
+  Reference::OwnError own;
+  own.rmse = numberOr(facts, "rmse", std::numeric_limits<double>::quiet_NaN());
+  own.relMse = numberOr(facts, "relMse", std::numeric_limits<double>::quiet_NaN());
+  own.rounding = numberOr(facts, "rounding", 0);
+  own.runs = facts.value("runs", 0u);
+  own.samplesPerPixel = facts.value("spp", 0u);
+  own.seconds = numberOr(facts, "seconds", 0);
+  own.tail.runs = own.runs;
+  own.tail.maximumShare = numberOr(facts, "maximumShare", 0);
+  own.tail.normalShare = normalMaximumShare(own.runs);
+  own.tail.tailIndex = numberOr(facts, "tailIndex", std::numeric_limits<double>::infinity());
+  reference.ownError = own;
   reference.origin = describe(subject, *reference.ownError);
   return reference;
 }
@@ -73,28 +97,39 @@ std::optional<Reference> findReference(const std::string &subject, const std::st
 Reference makeReference(const Subject &subject, const Subject &single, const std::string &folder, std::uint32_t runs, double seconds,
                         const ProgressFunction &progress) {
   Reference::OwnError own;
-  own.runs = runs;
   own.samplesPerPixel = samplesFor(subject, seconds / runs);
   RunningVariance spread;
-  for (std::uint32_t run = 0; run < runs; ++run) {
-    progress(double(run) / runs, "rendering the reference");
-    const Picture picture = subject.render(own.samplesPerPixel, firstSeed + run);
+  while (own.runs < runs && (own.runs < fewestRuns || own.seconds < seconds)) {
+    progress(double(own.runs) / runs, "rendering the reference");
+    const Picture picture = subject.render(own.samplesPerPixel, firstSeed + own.runs);
     own.seconds += picture.statistics.renderSeconds;
-    if (run == 0)
+    if (own.runs == 0)
       own.rounding = measureError(picture.image, single.render(own.samplesPerPixel, firstSeed).image).rmse;
     spread.add(picture.image);
+    ++own.runs;
   }
   Reference reference;
   reference.image = spread.mean();
-  own.rmse = std::sqrt(spread.meanVariance() / runs);
-  own.relMse = spread.meanRelativeVariance(relMseEpsilon) / runs;
+  own.tail = findTail(spread);
+  const bool isKnown = !own.tail.isHeavy();
+  own.rmse = isKnown ? std::sqrt(spread.meanVariance() / own.runs)
+                     : std::numeric_limits<double>::quiet_NaN();
+  own.relMse = isKnown ? spread.meanRelativeVariance(relMseEpsilon) / own.runs
+                       : std::numeric_limits<double>::quiet_NaN();
   reference.ownError = own;
   reference.origin = describe(subject.name, own);
   runtime::writeImage(picturePath(folder), reference.image);
-  const nlohmann::ordered_json facts = {{"version", 1},         {"subject", subject.name},
-                                        {"runs", own.runs},     {"spp", own.samplesPerPixel},
-                                        {"seconds", own.seconds}, {"rmse", own.rmse},
-                                        {"relMse", own.relMse},   {"rounding", own.rounding}};
+  const nlohmann::ordered_json facts = {{"version", factsVersion},
+                                        {"subject", subject.name},
+                                        {"runs", own.runs},
+                                        {"spp", own.samplesPerPixel},
+                                        {"seconds", own.seconds},
+                                        {"rmse", own.rmse},
+                                        {"relMse", own.relMse},
+                                        {"rounding", own.rounding},
+                                        {"heavyTails", own.tail.isHeavy()},
+                                        {"maximumShare", own.tail.maximumShare},
+                                        {"tailIndex", own.tail.tailIndex}};
   runtime::writeFileAtomically(factsPath(folder), facts.dump(2) + "\n");
   return reference;
 }

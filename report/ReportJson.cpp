@@ -20,30 +20,55 @@ Json toJson(const std::vector<std::pair<std::string, std::string>> &facts) {
   return object;
 }
 
-Json toJson(const LineFit &fit) {
+Json toJson(const std::optional<Estimate> &estimate) {
+  return estimate ? toJson(*estimate) : Json(nullptr);
+}
+
+Json toJson(const LineFit &fit, const std::optional<Estimate> &lastSlope) {
   if (fit.points == 0)
     return nullptr;
-  return {{"points", fit.points}, {"slope", toJson(fit.slope)}, {"intercept", fit.intercept}, {"deviation", fit.deviation}};
+  return {{"points", fit.points},       {"rounds", fit.rounds},
+          {"slope", toJson(fit.slope)}, {"intercept", fit.intercept},
+          {"lackOfFit", fit.lackOfFit}, {"largestResidual", fit.largestResidual},
+          {"bends", fit.bends()},       {"lastSlope", toJson(lastSlope)}};
 }
 
 Json toJson(const LevelSummary &level) {
-  return {{"spp", level.samplesPerPixel},       {"runs", level.runs},
-          {"seconds", toJson(level.seconds)},   {"rmse", toJson(level.rmse)},
-          {"relMse", toJson(level.relMse)},     {"flip", toJson(level.flip)},
-          {"flipHdr", toJson(level.flipHdr)},   {"variance", level.variance},
-          {"efficiency", level.efficiency},     {"resolved", level.isResolved}};
+  return {{"spp", level.samplesPerPixel},
+          {"runs", level.runs},
+          {"seconds", toJson(level.seconds)},
+          {"rmse", toJson(level.rmse)},
+          {"relMse", toJson(level.relMse)},
+          {"flip", toJson(level.flip)},
+          {"flipHdr", toJson(level.flipHdr)},
+          {"variance", level.variance},
+          {"efficiency", level.efficiency},
+          {"resolved", level.isResolved},
+          {"timesTheFirst", toJson(level.timesTheFirst)}};
 }
 
-Json toJson(const SubjectSummary &subject, double commonRelMse) {
+Json toJson(const std::optional<TimeToError> &time) {
+  if (!time)
+    return nullptr;
+  Json json = toJson(time->seconds);
+  json["isBound"] = time->isBound;
+  return json;
+}
+
+Json toJson(const SubjectSummary &subject) {
   Json levels = Json::array();
   for (const LevelSummary &level : subject.levels)
     levels.push_back(toJson(level));
   return {{"name", subject.name},
           {"settings", toJson(subject.settings)},
-          {"seconds", {{"compile", subject.compileSeconds}, {"build", toJson(subject.buildSeconds)}, {"toCommonRelMse", subject.secondsTo(commonRelMse)}}},
+          {"seconds",
+           {{"compile", subject.compileSeconds},
+            {"build", toJson(subject.buildSeconds)},
+            {"toCommonRelMse", toJson(subject.toCommonRelMse)}}},
+          {"timesTheQuickest", toJson(subject.timesTheQuickest)},
           {"efficiency", subject.efficiency},
-          {"relMseOverSeconds", toJson(subject.relMseOverSeconds)},
-          {"relMseOverSamples", toJson(subject.relMseOverSamples)},
+          {"relMseOverSeconds", toJson(subject.relMseOverSeconds, subject.lastSlopeOverSeconds)},
+          {"relMseOverSamples", toJson(subject.relMseOverSamples, subject.lastSlopeOverSamples)},
           {"nanPixels", subject.nanPixels},
           {"infinitePixels", subject.infinitePixels},
           {"samplesNotFinite", subject.samplesNotFinite},
@@ -54,7 +79,7 @@ Json toJson(const SubjectSummary &subject, double commonRelMse) {
 } // namespace
 
 std::string writeJson(const Context &context, const Summary &summary, const Reference &reference) {
-  Json document = {{"version", 1},
+  Json document = {{"version", 2},
                    {"scene", context.scene},
                    {"size", {context.width, context.height}},
                    {"runs", context.runs},
@@ -68,12 +93,16 @@ std::string writeJson(const Context &context, const Summary &summary, const Refe
                                          {"relMse", reference.ownError->relMse},
                                          {"rounding", reference.ownError->rounding},
                                          {"runs", reference.ownError->runs},
-                                         {"spp", reference.ownError->samplesPerPixel}};
+                                         {"spp", reference.ownError->samplesPerPixel},
+                                         {"heavyTails", reference.ownError->tail.isHeavy()},
+                                         {"maximumShare", reference.ownError->tail.maximumShare},
+                                         {"tailIndex", reference.ownError->tail.tailIndex}};
+  document["heavyTails"] = summary.heavyTails.empty() ? Json(nullptr) : Json(summary.heavyTails);
   document["problems"] = summary.problems;
   document["commonRelMse"] = summary.commonRelMse;
   document["configurations"] = Json::array();
   for (const SubjectSummary &subject : summary.subjects)
-    document["configurations"].push_back(toJson(subject, summary.commonRelMse));
+    document["configurations"].push_back(toJson(subject));
   return document.dump(2) + "\n";
 }
 

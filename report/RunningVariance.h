@@ -3,6 +3,7 @@
 
 #include "runtime/Image.h"
 
+#include <functional>
 #include <vector>
 
 namespace rtsl::report {
@@ -20,11 +21,16 @@ public:
   double meanVariance() const;
   /// Of variance / (mean^2 + epsilon) over all values.
   double meanRelativeVariance(double epsilon) const;
+  /// Gives the mean of each value, its sum of squared deviations, and the largest deviation of a
+  /// picture.
+  void forEachValue(
+      const std::function<void(double mean, double squares, double deviation)> &visit) const;
 
 private:
   std::size_t count = 0;
   runtime::Image shape; // of the first picture, without its values
   std::vector<double> means, squares;
+  std::vector<float> smallest, largest;
 };
 
 } // namespace rtsl::report

@@ -12,7 +12,10 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <optional>
+#include <numeric>
+#include <random>
+#include <set>
+#include <tuple>
 
 namespace rtsl::report {
 
@@ -22,12 +25,15 @@ constexpr unsigned levelsInAnyCase = 3; // a line needs them
 
 class StudyRun {
 public:
-  StudyRun(const std::vector<Subject> &subjects, const Reference &reference, const StudyOptions &options)
-      : subjects(subjects), reference(reference), options(options), spent(subjects.size(), 0.0), level(subjects.size()) {
+  StudyRun(const std::vector<Subject> &subjects, const Reference &reference,
+           const StudyOptions &options)
+      : subjects(subjects), reference(reference), options(options), state(subjects.size()) {
     std::filesystem::create_directories(options.folder + "/partial");
     std::filesystem::create_directories(options.folder + "/pictures");
     study.measurements = readMeasurements(tablePath());
-    study.levels = readLevels(levelsPath());
+    for (const Measurement &measurement : study.measurements)
+      known[keyOf(measurement.configuration, measurement.samplesPerPixel, measurement.run)] =
+          measurement;
     if (reference.problem.empty()) {
       screen = runtime::toRgb(reference.image);
       exposures = exposuresFor(screen);
@@ -35,113 +41,179 @@ public:
   }
 
   Study run() {
-    unsigned index = 0;
-    for (std::uint32_t samples = 1; samples <= options.mostSamples && runLevel(index, samples); ++index)
-      samples *= 2;
+    measureFirstRound();
+    for (std::uint32_t round = 1; round < options.runs; ++round)
+      measureRound(round);
+    summariseLevels();
     std::filesystem::remove_all(options.folder + "/partial");
     return std::move(study);
   }
 
 private:
+  using Key = std::tuple<std::string, std::uint32_t, std::uint32_t>; // configuration, samples, run
+
+  /// What is known of a subject.
+  struct State {
+    unsigned levels = 0;           // that fit into its budget
+    double spent = 0, inRound = 0; // seconds of rendering: in all, and in the first round
+    bool isWarm = false;
+  };
+
   const std::vector<Subject> &subjects;
   const Reference &reference;
   const StudyOptions &options;
   Study study;
+  std::map<Key, Measurement> known;
   runtime::Image screen; // the reference in RGB
   FlipExposures exposures;
-  std::vector<double> spent; // seconds of rendering, by subject
-
-  /// What is known of the level that runs, by subject.
-  struct Level {
-    double seconds = 0;
-    RunningVariance spread;
-  };
-  std::vector<Level> level;
-  /// Errors by the bits of the picture: strict configurations all give the same one.
+  std::vector<State> state;
+  /// Of the subjects that take turns with one number of samples: strict configurations all give the
+  /// same pictures.
   std::map<std::uint64_t, Measurement> errorsOfPictures;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, double> variancesOfPairs;
+  bool measuredInRound = false;
 
+  static Key keyOf(const std::string &configuration, std::uint32_t samples, std::uint32_t run) {
+    return {configuration, samples, run};
+  }
   std::string tablePath() const { return options.folder + "/measurements.csv"; }
-  std::string levelsPath() const { return options.folder + "/levels.csv"; }
   std::string partialPath(std::uint64_t hash) const { return fmt::format("{}/partial/{:016x}.exr", options.folder, hash); }
+  std::uint32_t seedOf(unsigned level, std::uint32_t run) const {
+    return 1 + level * options.runs + run;
+  }
 
-  /// Whether the next level, which takes twice as long as the last, fits into what is left of a subject's time.
-  bool hasTimeFor(std::size_t subject, unsigned index) const {
-    return index < levelsInAnyCase || spent[subject] + 2 * level[subject].seconds <= options.budgetSeconds;
+  void measureFirstRound() {
+    measuredInRound = false;
+    for (unsigned level = 0; level < 32 && (1u << level) <= options.mostSamples; ++level) {
+      std::vector<std::size_t> running;
+      for (std::size_t subject = 0; subject < subjects.size(); ++subject)
+        if (state[subject].levels == level && hasTimeFor(subject, level))
+          running.push_back(subject);
+      if (running.empty())
+        break;
+      forgetPictures();
+      for (std::size_t subject : running) {
+        const double seconds = measure(subject, level, 0);
+        state[subject].inRound += seconds;
+        state[subject].levels = level + 1;
+      }
+    }
+    dropPicturesBefore(0);
+  }
+
+  void measureRound(std::uint32_t round) {
+    measuredInRound = false;
+    unsigned levels = 0;
+    for (const State &one : state)
+      levels = std::max(levels, one.levels);
+    for (unsigned level : levelOrder(round, levels)) {
+      forgetPictures();
+      for (std::size_t turn = 0; turn < subjects.size(); ++turn) {
+        const std::size_t subject = (turn + round) % subjects.size();
+        if (level < state[subject].levels)
+          measure(subject, level, round);
+      }
+    }
+    dropPicturesBefore(round);
+  }
+
+  /// Whether the next level, which takes twice as long as the last, fits into what is left of a
+  /// subject's time: that of all rounds.
+  bool hasTimeFor(std::size_t subject, unsigned level) const {
+    if (level < levelsInAnyCase)
+      return true;
+    const Measurement &last = known.at(keyOf(subjects[subject].name, 1u << (level - 1), 0));
+    return (state[subject].inRound + 2 * last.renderSeconds) * options.runs <=
+           options.budgetSeconds;
   }
 
   double share() const {
     double sum = 0;
-    for (double seconds : spent)
-      sum += std::min(seconds / options.budgetSeconds, 1.0);
+    for (const State &one : state) {
+      const bool isFirst = one.spent <= one.inRound;
+      const double expected = isFirst ? options.budgetSeconds : one.inRound * options.runs;
+      sum += expected > 0 ? std::min(one.spent / expected, 1.0) : 0.0;
+    }
     return sum / double(subjects.size());
   }
 
-  /// False if no subject has time for it.
-  bool runLevel(unsigned index, std::uint32_t samples) {
-    std::vector<std::size_t> running;
-    for (std::size_t subject = 0; subject < subjects.size(); ++subject)
-      if (hasTimeFor(subject, index))
-        running.push_back(subject);
-    for (std::size_t subject : running)
-      level[subject] = {};
+  void forgetPictures() {
     errorsOfPictures.clear();
-    for (std::uint32_t run = 0; run < options.runs; ++run)
-      for (std::size_t turn = 0; turn < running.size(); ++turn)
-        measure(running[(turn + run) % running.size()], samples, run, 1 + index * options.runs + run);
-    bool isNew = false;
-    for (std::size_t subject : running) {
-      spent[subject] += level[subject].seconds;
-      isNew |= closeLevel(subject, samples);
-    }
-    if (isNew) { // otherwise its pictures went long ago, and those of the level that was interrupted are still wanted
-      std::filesystem::remove_all(options.folder + "/partial");
-      std::filesystem::create_directories(options.folder + "/partial");
-    }
-    return !running.empty();
+    variancesOfPairs.clear();
   }
 
-  const Measurement *findMeasurement(const Subject &subject, std::uint32_t samples, std::uint32_t run) const {
-    for (const Measurement &measurement : study.measurements)
-      if (measurement.configuration == subject.name && measurement.samplesPerPixel == samples && measurement.run == run)
-        return &measurement;
-    return nullptr;
-  }
-
-  const LevelVariance *findLevel(const Subject &subject, std::uint32_t samples) const {
-    for (const LevelVariance &level : study.levels)
-      if (level.configuration == subject.name && level.samplesPerPixel == samples)
-        return &level;
-    return nullptr;
-  }
-
-  void measure(std::size_t index, std::uint32_t samples, std::uint32_t run, std::uint32_t seed) {
+  /// Renders a picture and notes what it shows, unless that is known. Gives the seconds that it
+  /// took.
+  double measure(std::size_t index, unsigned level, std::uint32_t run) {
     const Subject &subject = subjects[index];
+    const std::uint32_t samples = 1u << level;
     options.progress(share(), fmt::format("{}, {} spp, run {}", subject.name, samples, run + 1));
-    if (const Measurement *earlier = findMeasurement(subject, samples, run)) {
-      level[index].seconds += earlier->renderSeconds;
-      if (!findLevel(subject, samples)) { // the pictures are still wanted
-        const std::string path = partialPath(earlier->pictureHash);
-        level[index].spread.add(std::filesystem::exists(path) ? runtime::readImage(path) : subject.render(samples, seed).image);
-      }
-      return;
+    const Key key = keyOf(subject.name, samples, run);
+    if (const auto earlier = known.find(key); earlier != known.end()) {
+      state[index].spent += earlier->second.renderSeconds;
+      return earlier->second.renderSeconds;
     }
-    const Picture picture = subject.render(samples, seed);
+    if (!state[index].isWarm) { // memory and caches that only a first picture meets
+      subject.render(1, seedOf(level, run));
+      state[index].isWarm = true;
+    }
+    measuredInRound = true;
+    const Picture picture = subject.render(samples, seedOf(level, run));
     Measurement measurement = errorsOf(picture.image);
     measurement.configuration = subject.name;
     measurement.samplesPerPixel = samples;
     measurement.run = run;
-    measurement.seed = seed;
+    measurement.seed = seedOf(level, run);
     measurement.buildSeconds = picture.statistics.buildSeconds;
     measurement.renderSeconds = picture.statistics.renderSeconds;
     measurement.samplesNotFinite = picture.statistics.samplesNotFinite;
+    if (run > 0)
+      measurement.pairVariance =
+          varianceOfPair(subject, level, run, measurement.pictureHash, picture.image);
     if (const std::string path = partialPath(measurement.pictureHash); !std::filesystem::exists(path))
       runtime::writeImage(path, picture.image);
     if (run == 0)
       runtime::writeImage(lastPicturePath(options.folder, subject), picture.image);
-    appendMeasurement(tablePath(), measurement); // after the picture, which an interrupted study needs
-    level[index].seconds += measurement.renderSeconds;
-    level[index].spread.add(picture.image);
-    study.measurements.push_back(std::move(measurement));
+    appendMeasurement(tablePath(), measurement); // after the picture, which the next round needs
+    state[index].spent += measurement.renderSeconds;
+    study.measurements.push_back(measurement);
+    return known.emplace(key, std::move(measurement)).first->second.renderSeconds;
+  }
+
+  /// Of this picture and that of the run before, which has another seed.
+  double varianceOfPair(const Subject &subject, unsigned level, std::uint32_t run,
+                        std::uint64_t hash, const runtime::Image &image) {
+    const std::uint64_t before = known.at(keyOf(subject.name, 1u << level, run - 1)).pictureHash;
+    const auto [found, isNew] = variancesOfPairs.try_emplace({before, hash}, 0.0);
+    if (isNew) {
+      const std::string path =
+          partialPath(before); // gone if the study was interrupted at a bad moment
+      RunningVariance pair;
+      pair.add(std::filesystem::exists(path)
+                   ? runtime::readImage(path)
+                   : subject.render(1u << level, seedOf(level, run - 1)).image);
+      pair.add(image);
+      found->second = pair.meanVariance();
+    }
+    return found->second;
+  }
+
+  /// Deletes the pictures of earlier rounds. Those of this round are compared with the next one's.
+  /// After a round that an earlier study made there is nothing to delete: what lies there belongs
+  /// to the round in which it was interrupted.
+  void dropPicturesBefore(std::uint32_t round) {
+    if (!measuredInRound)
+      return;
+    std::set<std::string> wanted;
+    for (const auto &[key, measurement] : known)
+      if (measurement.run == round)
+        wanted.insert(partialPath(measurement.pictureHash));
+    std::vector<std::filesystem::path> old;
+    for (const auto &entry : std::filesystem::directory_iterator(options.folder + "/partial"))
+      if (!wanted.count(entry.path().string()))
+        old.push_back(entry.path());
+    for (const std::filesystem::path &path : old)
+      std::filesystem::remove(path);
   }
 
   Measurement errorsOf(const runtime::Image &image) {
@@ -169,23 +241,37 @@ private:
     return measurement;
   }
 
-  /// False if an earlier run did.
-  bool closeLevel(std::size_t index, std::uint32_t samples) {
-    if (findLevel(subjects[index], samples))
-      return false;
-    LevelVariance result;
-    result.configuration = subjects[index].name;
-    result.samplesPerPixel = samples;
-    result.variance = level[index].spread.meanVariance();
-    result.meanSeconds = level[index].seconds / options.runs;
-    result.efficiency = 1 / (result.variance * result.meanSeconds);
-    appendLevel(levelsPath(), result);
-    study.levels.push_back(std::move(result));
-    return true;
+  void summariseLevels() {
+    for (std::size_t index = 0; index < subjects.size(); ++index)
+      for (unsigned level = 0; level < state[index].levels; ++level) {
+        LevelVariance result;
+        result.configuration = subjects[index].name;
+        result.samplesPerPixel = 1u << level;
+        for (std::uint32_t run = 0; run < options.runs; ++run) {
+          const Measurement &one =
+              known.at(keyOf(result.configuration, result.samplesPerPixel, run));
+          result.variance += one.pairVariance / (options.runs - 1);
+          result.meanSeconds += one.renderSeconds / options.runs;
+        }
+        result.efficiency = 1 / (result.variance * result.meanSeconds);
+        study.levels.push_back(std::move(result));
+      }
+    writeLevels(options.folder + "/levels.csv", study.levels);
   }
 };
 
 } // namespace
+
+std::vector<unsigned> levelOrder(std::uint32_t round, unsigned levels) {
+  std::vector<unsigned> order(levels);
+  std::iota(order.begin(), order.end(), 0u);
+  if (round == 0)
+    return order;
+  std::mt19937 random(round);
+  for (unsigned i = levels; i > 1; --i)
+    std::swap(order[i - 1], order[random() % i]);
+  return order;
+}
 
 std::string lastPicturePath(const std::string &folder, const Subject &subject) {
   std::string file = subject.name;

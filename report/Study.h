@@ -1,7 +1,11 @@
 //===- Study.h - error against run time, measured -------------------------===//
 //
-// Renders each subject with 1, 2, 4, ... samples a pixel, several independent runs each, and compares every picture with
-// the reference. The subjects take turns, so that a machine that grows slower is unfair to none.
+// Renders each subject with 1, 2, 4, ... samples a pixel, several independent runs each, and
+// compares every picture with the reference. The runs are made in rounds: a round has each number
+// of samples once, for every subject in turn, and each round has an order of its own. So a machine
+// that grows slower, or is busy for a while, disturbs all subjects and all numbers of samples
+// alike, and what it does differently in each round shows in the differences between rounds
+// (LineFit.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,7 +22,7 @@ namespace rtsl::report {
 
 struct StudyOptions {
   std::string folder;         // keeps measurements.csv, levels.csv, pictures/ and, while running, partial/
-  std::uint32_t runs = 8;     // with each number of samples
+  std::uint32_t runs = 8;     // with each number of samples: the rounds
   double budgetSeconds = 10;  // of rendering, for each subject; the first three levels run in any case
   std::uint32_t mostSamples = 1u << 16;
   ProgressFunction progress = [](double, const std::string &) {};
@@ -28,6 +32,10 @@ struct Study {
   std::vector<Measurement> measurements; // in the order in which they were made
   std::vector<LevelVariance> levels;
 };
+
+/// The order of levels in a round: ascending in the first, which finds out how many there are, and
+/// then at random, so that no disturbance can keep time with it. The same for the same arguments.
+std::vector<unsigned> levelOrder(std::uint32_t round, unsigned levels);
 
 /// The picture of a subject with the most samples so far, first run.
 std::string lastPicturePath(const std::string &folder, const Subject &subject);

@@ -1,13 +1,14 @@
 //===- Summary.cpp --------------------------------------------------------===//
 #include "report/Summary.h"
 
+#include "report/Exposure.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 
 namespace rtsl::report {
 
@@ -40,25 +41,113 @@ LevelSummary summariseLevel(const std::vector<const Measurement *> &runs, const 
   return level;
 }
 
-void fitLines(SubjectSummary &subject, const ByLevel &byLevel) {
-  std::vector<double> seconds, samples, errors;
-  for (const LevelSummary &level : subject.levels)
-    if (level.isResolved)
-      for (const Measurement *run : byLevel.at(level.samplesPerPixel))
-        if (run->relMse > 0 && run->renderSeconds > 0) {
-          seconds.push_back(std::log10(run->renderSeconds));
-          samples.push_back(std::log10(double(run->samplesPerPixel)));
-          errors.push_back(std::log10(run->relMse));
-        }
+/// log10 of seconds and of relMSE, less the reference's own, at the levels of a subject that the
+/// reference can tell.
+Rounds roundsOf(const SubjectSummary &subject, const ByLevel &byLevel, const Reference &reference) {
+  const double own = reference.ownError ? reference.ownError->relMse : 0;
+  Rounds rounds;
+  for (const LevelSummary &level : subject.levels) {
+    const std::vector<const Measurement *> &runs = byLevel.at(level.samplesPerPixel);
+    const bool isWhole = runs.size() == subject.levels.front().runs &&
+                         std::all_of(runs.begin(), runs.end(), [&](const Measurement *run) {
+                           return run->relMse > own && run->renderSeconds > 0;
+                         });
+    if (!level.isResolved || !isWhole)
+      continue;
+    rounds.effort.push_back(std::log10(double(level.samplesPerPixel)));
+    rounds.x.emplace_back();
+    rounds.y.emplace_back();
+    for (const Measurement *run : runs) {
+      rounds.x.back().push_back(std::log10(run->renderSeconds));
+      rounds.y.back().push_back(std::log10(run->relMse - own));
+    }
+  }
+  return rounds;
+}
+
+/// The same over samples.
+Rounds overSamples(Rounds rounds) {
+  for (std::size_t level = 0; level < rounds.levels(); ++level)
+    rounds.x[level].assign(rounds.rounds(), rounds.effort[level]);
+  return rounds;
+}
+
+constexpr std::size_t lastLevels = 3;
+
+std::optional<Estimate> lastSlope(const LineFit &whole, const Rounds &rounds) {
+  if (!whole.bends() || rounds.levels() <= lastLevels)
+    return std::nullopt;
+  return fitLine(rounds.part(rounds.levels() - lastLevels, rounds.levels())).slope;
+}
+
+void fitLines(SubjectSummary &subject, const Rounds &rounds) {
+  subject.relMseOverSeconds = fitLine(rounds);
+  subject.relMseOverSamples = fitLine(overSamples(rounds));
+  subject.lastSlopeOverSeconds = lastSlope(subject.relMseOverSeconds, rounds);
+  subject.lastSlopeOverSamples = lastSlope(subject.relMseOverSamples, overSamples(rounds));
+  if (subject.relMseOverSeconds.points != 0)
+    return;
   const bool isBlackAndWhite = std::all_of(subject.levels.begin(), subject.levels.end(),
                                            [](const LevelSummary &level) { return level.relMse.value == 0; });
-  if (std::set<double>(samples.begin(), samples.end()).size() >= 2) {
-    subject.relMseOverSeconds = fitLine(seconds, errors);
-    subject.relMseOverSamples = fitLine(samples, errors);
+  subject.noFit =
+      isBlackAndWhite
+          ? "every picture equals the reference, so there is no error to fit"
+          : "fewer than two numbers of samples have an error that the reference can tell";
+}
+
+Estimate powerOfTen(const Estimate &logarithm) {
+  return {std::pow(10, logarithm.value), std::pow(10, logarithm.low), std::pow(10, logarithm.high)};
+}
+
+/// 10 to the difference of two logarithms that were measured in the same rounds.
+Estimate pairedRatio(const std::vector<double> &above, const std::vector<double> &below) {
+  std::vector<double> differences;
+  for (std::size_t round = 0; round < std::min(above.size(), below.size()); ++round)
+    differences.push_back(above[round] - below[round]);
+  return powerOfTen(meanOf(differences));
+}
+
+double meanError(const Rounds &rounds, std::size_t level) {
+  return meanOf(rounds.y[level]).value;
+}
+
+/// How many times as long as the first subject another takes, at each of its levels.
+void compareWithFirst(const Rounds &first, const Rounds &other, SubjectSummary &subject) {
+  for (std::size_t i = 0; i < other.levels(); ++i) {
+    const double error = meanError(other, i);
+    const std::optional<Crossing> its = findCrossing(other, error),
+                                  firsts = findCrossing(first, error);
+    if (!its || !firsts || its->isBound || firsts->isBound)
+      continue;
+    for (LevelSummary &level : subject.levels)
+      if (std::log10(double(level.samplesPerPixel)) == other.effort[i])
+        level.timesTheFirst = pairedRatio(its->perRound, firsts->perRound);
   }
-  if (subject.relMseOverSeconds.points == 0)
-    subject.noFit = isBlackAndWhite ? "every picture equals the reference, so there is no error to fit"
-                                    : "fewer than two numbers of samples have an error that the reference can tell";
+}
+
+/// Finds the error that all came down to, and when they did.
+void findTimes(Summary &summary, const std::vector<Rounds> &rounds) {
+  double common = -std::numeric_limits<double>::infinity();
+  for (const Rounds &one : rounds)
+    if (one.levels() >= 2)
+      common = std::max(common, meanError(one, one.levels() - 1));
+  if (!std::isfinite(common))
+    return;
+  summary.commonRelMse = std::pow(10, common);
+  const std::vector<double> *quickest = nullptr;
+  std::vector<std::optional<Crossing>> crossings;
+  for (const Rounds &one : rounds)
+    crossings.push_back(one.levels() >= 2 ? findCrossing(one, common) : std::nullopt);
+  for (std::size_t i = 0; i < rounds.size(); ++i)
+    if (crossings[i]) {
+      summary.subjects[i].toCommonRelMse =
+          TimeToError{powerOfTen(crossings[i]->estimate()), crossings[i]->isBound};
+      if (!quickest || meanOf(crossings[i]->perRound).value < meanOf(*quickest).value)
+        quickest = &crossings[i]->perRound;
+    }
+  for (std::size_t i = 0; i < rounds.size(); ++i)
+    if (crossings[i] && !crossings[i]->isBound)
+      summary.subjects[i].timesTheQuickest = pairedRatio(crossings[i]->perRound, *quickest);
 }
 
 double medianEfficiency(const std::vector<LevelSummary> &levels) {
@@ -73,12 +162,12 @@ double medianEfficiency(const std::vector<LevelSummary> &levels) {
   return medianOf(slow.empty() ? all : slow).value;
 }
 
-SubjectSummary summariseSubject(const Subject &subject, const Study &study, const Reference &reference) {
+SubjectSummary summariseSubject(const Subject &subject, const Study &study,
+                                const Reference &reference, ByLevel &byLevel) {
   SubjectSummary summary;
   summary.name = subject.name;
   summary.settings = subject.settings;
   summary.compileSeconds = subject.compileSeconds;
-  ByLevel byLevel;
   std::vector<double> builds;
   for (const Measurement &measurement : study.measurements)
     if (measurement.configuration == subject.name) {
@@ -89,14 +178,49 @@ SubjectSummary summariseSubject(const Subject &subject, const Study &study, cons
       summary.samplesNotFinite += measurement.samplesNotFinite;
     }
   summary.buildSeconds = medianOf(std::move(builds));
-  for (const auto &[samples, runs] : byLevel)
+  for (auto &[samples, runs] : byLevel) {
+    std::sort(runs.begin(), runs.end(),
+              [](const Measurement *a, const Measurement *b) { return a->run < b->run; });
     summary.levels.push_back(summariseLevel(runs, study, reference));
-  if (reference.problem.empty())
-    fitLines(summary, byLevel);
-  else
-    summary.noFit = "no errors were measured";
+  }
   summary.efficiency = medianEfficiency(summary.levels);
   return summary;
+}
+
+/// How many times as large as the median the largest error of a level's runs is, over all subjects.
+double largestSpread(const Study &study) {
+  std::map<std::pair<std::string, std::uint32_t>, std::vector<double>> errors;
+  for (const Measurement &measurement : study.measurements)
+    errors[{measurement.configuration, measurement.samplesPerPixel}].push_back(measurement.relMse);
+  double spread = 0;
+  for (auto &[level, values] : errors)
+    if (const double median = medianOf(values).value; median > 0)
+      spread = std::max(spread, *std::max_element(values.begin(), values.end()) / median);
+  return spread;
+}
+
+/// Why errors have no intervals, if they have none.
+std::string findHeavyTails(const Study &study, const Reference &reference) {
+  if (reference.ownError && reference.ownError->tail.isHeavy())
+    return "the runs of the reference: " + reference.ownError->tail.text();
+  constexpr double muchMore = 4; // a mean over pixels with light tails is nowhere near
+  if (const double spread = largestSpread(study); spread > muchMore)
+    return fmt::format(
+        "of the runs with one number of samples one has {:.2g} times the median error", spread);
+  return {};
+}
+
+/// Errors keep their values, which were measured, and lose what would be concluded from them.
+void dropIntervals(Summary &summary) {
+  for (SubjectSummary &subject : summary.subjects) {
+    subject.noFit = "rare, large samples rule the errors";
+    subject.efficiency = std::numeric_limits<double>::quiet_NaN();
+    for (LevelSummary &level : subject.levels) {
+      level.efficiency = std::numeric_limits<double>::quiet_NaN();
+      for (Estimate *error : {&level.rmse, &level.relMse, &level.flip, &level.flipHdr})
+        error->low = error->high = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
 }
 
 /// Which pictures are the same bits, at the largest number of samples that every subject reached.
@@ -110,6 +234,27 @@ void comparePictures(Summary &summary, const Study &study) {
         subject.commonPicture = measurement.pictureHash;
 }
 
+/// One sentence for all subjects whose line bends.
+void describeBends(const Summary &summary, const char *over, LineFit SubjectSummary::*line,
+                   std::vector<std::string> &problems) {
+  std::string names;
+  std::size_t count = 0;
+  double largest = 0;
+  for (const SubjectSummary &subject : summary.subjects)
+    if ((subject.*line).bends()) {
+      names += (names.empty() ? "" : ", ") + subject.name;
+      largest = std::max(largest, std::pow(10, (subject.*line).largestResidual) - 1);
+      ++count;
+    }
+  if (count != 0)
+    problems.push_back(fmt::format(
+        "relMSE over {} does not follow a straight line ({}; the points leave it by up to {:.2g} "
+        "%): the slope is a mean of "
+        "several, and that of the last {} numbers of samples stands beside it",
+        over, count == summary.subjects.size() && count > 1 ? "in all configurations" : names,
+        100 * largest, lastLevels));
+}
+
 void findProblems(Summary &summary, const Reference &reference) {
   std::vector<std::string> &problems = summary.problems;
   if (!reference.problem.empty())
@@ -119,6 +264,17 @@ void findProblems(Summary &summary, const Reference &reference) {
   if (std::any_of(reference.image.pixels.begin(), reference.image.pixels.end(), [](float v) { return !std::isfinite(v); }) &&
       reference.problem.empty())
     problems.push_back("some pixels of the reference are not finite; they are left out of every error");
+  if (!summary.heavyTails.empty())
+    problems.push_back("rare, large samples rule the errors, so that no interval can be given and "
+                       "no line is fitted (" +
+                       summary.heavyTails + "); sample what is bright more often, or clamp it");
+  if (const double beyond =
+          reference.problem.empty() ? shareBeyondScreen(runtime::toRgb(reference.image)) : 0;
+      beyond > 0.25)
+    problems.push_back(
+        fmt::format("{:.0f} % of the reference's pixels are brighter than a screen: FLIP takes "
+                    "them for white and sees no error there, HDR-FLIP does",
+                    100 * beyond));
   for (const SubjectSummary &subject : summary.subjects) {
     if (subject.nanPixels || subject.infinitePixels)
       problems.push_back(fmt::format("{}: {} pixels were not a number and {} infinite, over all pictures", subject.name,
@@ -130,7 +286,7 @@ void findProblems(Summary &summary, const Reference &reference) {
     });
     if (isConstant)
       problems.push_back(fmt::format("{}: all runs gave the same picture (zero variance), so its efficiency has no meaning", subject.name));
-    if (!subject.noFit.empty())
+    if (!subject.noFit.empty() && summary.heavyTails.empty())
       problems.push_back(fmt::format("{}: no line was fitted: {}", subject.name, subject.noFit));
     const auto unresolved = std::count_if(subject.levels.begin(), subject.levels.end(), [](const LevelSummary &l) { return !l.isResolved; });
     if (unresolved && reference.ownError)
@@ -138,27 +294,33 @@ void findProblems(Summary &summary, const Reference &reference) {
                                      "which the line leaves out; a larger `--budget` makes a better reference",
                                      subject.name, unresolved));
   }
+  describeBends(summary, "seconds", &SubjectSummary::relMseOverSeconds, problems);
+  describeBends(summary, "samples", &SubjectSummary::relMseOverSamples, problems);
 }
 
 } // namespace
 
-double SubjectSummary::secondsTo(double relMse) const {
-  if (relMseOverSeconds.points == 0 || !(relMse > 0))
-    return std::numeric_limits<double>::quiet_NaN();
-  return std::pow(10, (std::log10(relMse) - relMseOverSeconds.intercept) / relMseOverSeconds.slope.value);
-}
-
 Summary summarise(const std::vector<Subject> &subjects, const Study &study, const Reference &reference) {
   Summary summary;
-  for (const Subject &subject : subjects)
-    summary.subjects.push_back(summariseSubject(subject, study, reference));
-  for (const SubjectSummary &subject : summary.subjects)
-    if (subject.relMseOverSeconds.points)
-      for (auto level = subject.levels.rbegin(); level != subject.levels.rend(); ++level)
-        if (level->isResolved) {
-          summary.commonRelMse = std::max(summary.commonRelMse, level->relMse.value);
-          break;
-        }
+  std::vector<ByLevel> byLevel(subjects.size());
+  for (std::size_t i = 0; i < subjects.size(); ++i)
+    summary.subjects.push_back(summariseSubject(subjects[i], study, reference, byLevel[i]));
+  summary.heavyTails = findHeavyTails(study, reference);
+  if (!reference.problem.empty()) {
+    for (SubjectSummary &subject : summary.subjects)
+      subject.noFit = "no errors were measured";
+  } else if (!summary.heavyTails.empty()) {
+    dropIntervals(summary);
+  } else {
+    std::vector<Rounds> rounds;
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      rounds.push_back(roundsOf(summary.subjects[i], byLevel[i], reference));
+      fitLines(summary.subjects[i], rounds[i]);
+      if (i > 0)
+        compareWithFirst(rounds.front(), rounds[i], summary.subjects[i]);
+    }
+    findTimes(summary, rounds);
+  }
   comparePictures(summary, study);
   findProblems(summary, reference);
   return summary;

@@ -41,7 +41,9 @@ class Report(Case):
                 self.assertGreater(level["relMse"]["value"], 0)
         self.assertGreater(document["reference"]["ownError"]["rmse"], 0)
         page = (self.folder / "out" / "index.html").read_text()
-        self.assertEqual(page.count('<svg class="plot"'), 4)
+        self.assertEqual(page.count('<svg class="plot"'), 5)
+        self.assertEqual(document["version"], 2)
+        self.assertIsNone(document["heavyTails"])
         self.assertNotRegex(page, r"https?://")
         self.assertFalse((self.folder / "out" / "partial").exists())
 

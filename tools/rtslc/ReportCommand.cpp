@@ -12,6 +12,7 @@
 #include "codegen/driver/Versions.h"
 #include "report/ErrorMap.h"
 #include "report/ErrorMetrics.h"
+#include "report/Exposure.h"
 #include "report/Flip.h"
 #include "report/Machine.h"
 #include "report/Page.h"
@@ -148,7 +149,9 @@ std::optional<report::Reference> referenceFor(const LoadedScene &loaded, const R
       measured != subjects.end() ? *measured : compileShortest(singleName, FloatingPoint::Strict, loaded, options, messages);
   if (!exact || !single)
     return std::nullopt;
-  return report::makeReference(*exact, *single, options.folder, options.runs, seconds, progress);
+  constexpr std::uint32_t referenceRuns = 32; // enough to tell heavy tails
+  return report::makeReference(*exact, *single, options.folder,
+                               std::max(options.runs, referenceRuns), seconds, progress);
 }
 
 /// Every way to render, the usual one first.
@@ -192,10 +195,11 @@ std::vector<report::Subject> subjectsFor(const LoadedScene &loaded, const Report
 
 /// What a study must have in common with the one that it goes on with: everything that changes a picture or a time.
 std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options, const Messages &messages) {
-  std::string all = fmt::format("{} {}x{} depth {} threads {} runs {} colors {} checked {} O{}", RTSL_VERSION, loaded.render.width,
-                                loaded.render.height, loaded.render.maxDepth, options.threads, options.runs,
-                                options.common.compile.colorComponents, options.common.compile.checkIndices,
-                                options.common.compile.optimization);
+  std::string all =
+      fmt::format("study 2, {} {}x{} depth {} threads {} runs {} colors {} checked {} O{}",
+                  RTSL_VERSION, loaded.render.width, loaded.render.height, loaded.render.maxDepth,
+                  options.threads, options.runs, options.common.compile.colorComponents,
+                  options.common.compile.checkIndices, options.common.compile.optimization);
   for (FileId file = 1; file <= messages.sources.count(); ++file)
     all += std::string(messages.sources.name(file)) + '\0' + std::string(messages.sources.text(file)) + '\0';
   all += runtime::readFile(loaded.description.file);
@@ -235,11 +239,21 @@ void openFolder(const ReportOptions &options, const std::string &fingerprint) {
   runtime::writeFileAtomically(identity, document.dump(2) + "\n");
 }
 
-/// The pictures of the page: the reference, and each different picture with its two maps.
+/// The pictures of the page: the reference, and each different picture with its two maps. All have
+/// the exposure of the first.
 std::vector<report::Exhibit> exhibitsFor(const std::vector<report::Subject> &subjects, const report::Reference &reference, const std::string &folder) {
   std::vector<report::Exhibit> exhibits;
+  std::optional<double> stops;
+  const auto show = [&](const std::string &caption, const runtime::Image &image) {
+    runtime::Image rgb = runtime::toRgb(image);
+    if (!stops)
+      stops = report::stopsFor(rgb);
+    const std::string exposure =
+        *stops == 0 ? "" : fmt::format(", at an exposure of {:+g} stops", *stops);
+    exhibits.push_back({caption + exposure, report::exposed(std::move(rgb), *stops)});
+  };
   if (reference.problem.empty())
-    exhibits.push_back({"the reference", runtime::toRgb(reference.image)});
+    show("the reference", reference.image);
   std::map<std::uint64_t, std::string> shown;
   for (const report::Subject &subject : subjects) {
     const std::string path = report::lastPicturePath(folder, subject);
@@ -248,7 +262,7 @@ std::vector<report::Exhibit> exhibitsFor(const std::vector<report::Subject> &sub
     const runtime::Image image = runtime::readImage(path);
     if (!shown.try_emplace(report::hashOf(image.pixels), subject.name).second)
       continue;
-    exhibits.push_back({fmt::format("{}: one picture with the most samples", subject.name), runtime::toRgb(image)});
+    show(subject.name + ": one picture with the most samples", image);
     if (!reference.problem.empty())
       continue;
     const report::FlipMap map = report::flip(runtime::toRgb(reference.image), runtime::toRgb(image));
@@ -271,18 +285,25 @@ std::string commandLine(const ReportOptions &options, const runtime::RenderOptio
   return line;
 }
 
+/// "-1.02 [-1.05, -0.99]".
+std::string withInterval(const report::Estimate &estimate, int digits) {
+  return fmt::format("{:.{}g} [{:.{}g}, {:.{}g}]", estimate.value, digits, estimate.low, digits,
+                     estimate.high, digits);
+}
+
 void printSummary(const ReportOptions &options, const report::Summary &summary, const std::string &json) {
   if (options.json) {
     fmt::print("{}", json);
     return;
   }
-  fmt::print("{:<24} {:>9} {:>22} {:>14}\n", "configuration", "compile", "slope of relMSE", fmt::format("s to {:.2g}", summary.commonRelMse));
+  fmt::print("{:<24} {:>9} {:>24} {:>24}\n", "configuration", "compile", "slope over seconds",
+             fmt::format("s to {:.2g}", summary.commonRelMse));
   for (const report::SubjectSummary &subject : summary.subjects) {
-    const report::Estimate &slope = subject.relMseOverSeconds.slope;
-    const bool hasLine = subject.relMseOverSeconds.points != 0;
-    fmt::print("{:<24} {:>7.0f}ms {:>22} {:>14}\n", subject.name, subject.compileSeconds * 1e3,
-               hasLine ? fmt::format("{:.3f} [{:.3f}, {:.3f}]", slope.value, slope.low, slope.high) : "-",
-               hasLine ? fmt::format("{:.3g}", subject.secondsTo(summary.commonRelMse)) : "-");
+    const report::LineFit &line = subject.relMseOverSeconds;
+    const auto &time = subject.toCommonRelMse;
+    fmt::print("{:<24} {:>7.0f}ms {:>24} {:>24}\n", subject.name, subject.compileSeconds * 1e3,
+               line.points != 0 ? withInterval(line.slope, 3) + (line.bends() ? "*" : "") : "-",
+               time ? (time->isBound ? "<= " : "") + withInterval(time->seconds, 3) : "-");
   }
   for (const std::string &problem : summary.problems)
     fmt::print("note: {}\n", problem);

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <limits>
 #include <random>
+#include <set>
 
 using namespace rtsl;
 using namespace rtsl::report;
@@ -93,7 +94,17 @@ TEST_F(Studies, FindEfficiencyAndTheCostOfASlowerWay) {
   ASSERT_EQ(summary.subjects.size(), 2u);
   // 1 / (0.2^2 / n x n x 1 ms)
   EXPECT_NEAR(summary.subjects[0].efficiency / (1 / (0.04 * secondsPerSample)), 1, 0.05);
-  EXPECT_NEAR(summary.subjects[1].secondsTo(summary.commonRelMse) / summary.subjects[0].secondsTo(summary.commonRelMse), 3, 0.2);
+  ASSERT_TRUE(summary.subjects[1].toCommonRelMse && summary.subjects[1].timesTheQuickest);
+  EXPECT_NEAR(summary.subjects[1].timesTheQuickest->value, 3, 1e-6)
+      << "the errors are the same, so the times tell";
+  EXPECT_NEAR(summary.subjects[1].toCommonRelMse->seconds.value /
+                  summary.subjects[0].toCommonRelMse->seconds.value,
+              3, 1e-6);
+  for (const LevelSummary &level : summary.subjects[1].levels) {
+    ASSERT_TRUE(level.timesTheFirst) << level.samplesPerPixel;
+    EXPECT_NEAR(level.timesTheFirst->value, 3, 1e-6);
+  }
+  EXPECT_FALSE(summary.subjects[0].levels.front().timesTheFirst);
   // The same seeds gave the same pictures.
   EXPECT_EQ(summary.subjects[0].commonPicture, summary.subjects[1].commonPicture);
 }
@@ -120,8 +131,10 @@ TEST_F(Studies, GoOnWhereTheyWereInterrupted) {
   runtime::writeFileAtomically((folder / "measurements.csv").string(), table + "strict,2,5,1");
 
   const Summary resumed = study({subject});
-  const unsigned callsInAll = calls;
-  EXPECT_EQ(readMeasurements((folder / "measurements.csv").string()).size(), callsInAll);
+  const std::size_t measured = readMeasurements((folder / "measurements.csv").string()).size();
+  EXPECT_EQ(calls, measured + 2)
+      << "each of both began with one picture that does not count, and none was rendered twice";
+  EXPECT_EQ(resumed.subjects[0].levels.size() * options.runs, measured);
 
   calls = 0;
   study({subject});
@@ -130,12 +143,86 @@ TEST_F(Studies, GoOnWhereTheyWereInterrupted) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   const Summary whole = study({subject});
-  EXPECT_EQ(calls, callsInAll);
+  EXPECT_EQ(calls, measured + 1);
   ASSERT_EQ(whole.subjects[0].levels.size(), resumed.subjects[0].levels.size());
   for (std::size_t i = 0; i < whole.subjects[0].levels.size(); ++i) {
     EXPECT_EQ(whole.subjects[0].levels[i].relMse.value, resumed.subjects[0].levels[i].relMse.value);
     EXPECT_DOUBLE_EQ(whole.subjects[0].levels[i].variance, resumed.subjects[0].levels[i].variance);
   }
+}
+
+TEST_F(Studies, GoOnAfterAnInterruptionInALaterRound) {
+  unsigned calls = 0;
+  const Subject subject = noisy("strict", 0.2, 1, &calls);
+  options.budgetSeconds = 0.2; // four levels
+  Subject cutOff = subject;
+  cutOff.render = [&](std::uint32_t samples, std::uint32_t seed) {
+    if (calls == 1 + 4 * 3 + 2) // in the fourth round
+      throw runtime::Error(runtime::ErrorCode::Cancelled, "interrupted");
+    return subject.render(samples, seed);
+  };
+  EXPECT_THROW(runStudy({cutOff}, reference, options), runtime::Error);
+  const Summary resumed = study({subject});
+  EXPECT_EQ(calls, 2 + 4 * options.runs);
+  EXPECT_FALSE(fs::exists(folder / "partial"));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  EXPECT_DOUBLE_EQ(study({subject}).subjects[0].levels.back().variance,
+                   resumed.subjects[0].levels.back().variance);
+}
+
+TEST_F(Studies, MeasureInRounds) {
+  options.budgetSeconds = 0.2;
+  study({noisy("a", 0.2), noisy("b", 0.2)});
+  const std::vector<Measurement> rows = readMeasurements((folder / "measurements.csv").string());
+  ASSERT_EQ(rows.size(), 2 * 4 * 8u);
+  std::set<std::vector<std::uint32_t>> orders;
+  for (std::uint32_t round = 0; round < 8; ++round) {
+    std::vector<std::uint32_t> order;
+    std::set<std::pair<std::string, std::uint32_t>> pictures;
+    for (std::size_t i = round * 8; i < (round + 1) * 8; ++i) {
+      EXPECT_EQ(rows[i].run, round);
+      pictures.insert({rows[i].configuration, rows[i].samplesPerPixel});
+      if (i % 2 == 0)
+        order.push_back(rows[i].samplesPerPixel);
+      else
+        EXPECT_EQ(rows[i].samplesPerPixel, rows[i - 1].samplesPerPixel)
+            << "configurations are neighbours";
+    }
+    EXPECT_EQ(pictures.size(), 8u) << "a round has everything once";
+    orders.insert(order);
+  }
+  EXPECT_GE(orders.size(), 5u) << "the rounds have orders of their own";
+}
+
+TEST_F(Studies, ReadTimesOffTheMeasuredPoints) {
+  // Starting a picture takes as long as 40 samples, so that the curve is steep and then as it
+  // should be. A line would be off by a factor.
+  Subject subject = noisy("bent", 0.2);
+  subject.render = [render = subject.render](std::uint32_t samples, std::uint32_t seed) {
+    Picture picture = render(samples, seed);
+    picture.statistics.renderSeconds = secondsPerSample * (samples + 40.0);
+    return picture;
+  };
+  options.budgetSeconds = 3;
+  Subject slow =
+      noisy("slow", 0.2, 8); // has fewer levels: where it ends is the error that both came down to
+  const Summary summary = study({subject, slow});
+  const SubjectSummary &bent = summary.subjects[0];
+  EXPECT_TRUE(bent.relMseOverSeconds.bends());
+  EXPECT_FALSE(bent.relMseOverSamples.bends());
+  ASSERT_TRUE(bent.lastSlopeOverSeconds);
+  EXPECT_GT(bent.lastSlopeOverSeconds->value, bent.relMseOverSeconds.slope.value) << "it flattens";
+  EXPECT_FALSE(summary.subjects[1].relMseOverSeconds.bends());
+  EXPECT_NE(problems(summary).find("relMSE over seconds does not follow a straight line (bent;"),
+            std::string::npos)
+      << problems(summary);
+
+  ASSERT_GT(bent.levels.size(), summary.subjects[1].levels.size());
+  const std::uint32_t last = summary.subjects[1].levels.back().samplesPerPixel;
+  ASSERT_TRUE(bent.toCommonRelMse);
+  EXPECT_NEAR(bent.toCommonRelMse->seconds.value, secondsPerSample * (last + 40),
+              1e-3 * secondsPerSample);
 }
 
 TEST_F(Studies, SayThatThereIsNoVariance) {
@@ -190,7 +277,8 @@ TEST_F(Studies, SayThatTheReferenceIsBlack) {
 }
 
 TEST_F(Studies, LeaveOutWhatTheReferenceCannotTell) {
-  reference.ownError = Reference::OwnError{0.01, 3e-3, 8, 64, 1};
+  reference.ownError = Reference::OwnError();
+  reference.ownError->relMse = 3e-3;
   const Summary summary = study({noisy("strict", 0.2)});
   EXPECT_FALSE(summary.subjects[0].levels.back().isResolved);
   EXPECT_TRUE(summary.subjects[0].levels.front().isResolved);
@@ -245,4 +333,18 @@ TEST_F(Studies, PagesAreWholeAndAlone) {
     EXPECT_EQ(count("<" + std::string(tag) + ">") + count("<" + std::string(tag) + " "), count("</" + std::string(tag) + ">")) << tag;
   }
   EXPECT_EQ(page.find("nan"), std::string::npos) << "no coordinate is off the paper";
+  // Each figure of a plot can be reached without a pointer.
+  const auto count = [&](const std::string &text) {
+    std::size_t found = 0;
+    for (std::size_t place = page.find(text); place != std::string::npos;
+         place = page.find(text, place + 1))
+      ++found;
+    return found;
+  };
+  const std::size_t levels = summary.subjects[0].levels.size() + summary.subjects[1].levels.size();
+  EXPECT_EQ(count("<g class=\"point\" tabindex=\"0\""),
+            4 * levels + summary.subjects[1].levels.size());
+  EXPECT_EQ(count("class=\"tip\""), count("<g class=\"point\""));
+  EXPECT_EQ(count("<title>"), 1u) << "of the page";
+  EXPECT_EQ(count("type=\"checkbox\""), 2u);
 }
