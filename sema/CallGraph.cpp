@@ -6,6 +6,7 @@
 // that lead to it may use. All walks are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
+#include "frontend/ClosestName.h"
 #include "sema/Program.h"
 
 #include <algorithm>
@@ -161,6 +162,7 @@ private:
   void spreadTracing();
   void reportCycle(const Cycle &cycle);
   void judgeFrom(const typed::Function &method, const ClassScope &scope, const MethodModel &rules);
+  void warnOfMistypedMethod(const typed::Function &function, const RootModel &root);
   const FunctionFacts &factsOf(const typed::Function *function) const {
     static const FunctionFacts none;
     auto found = program.facts.find(function);
@@ -364,6 +366,25 @@ void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope
   }
 }
 
+/// A function that nothing calls, of the shape of a method and nearly of its name, is one that the
+/// engine was to call.
+void CallGraph::warnOfMistypedMethod(const typed::Function &function, const RootModel &root) {
+  std::vector<std::string> names = {constructorModel().name};
+  for (const MethodModel &method : root.methods)
+    names.push_back(method.name);
+  const std::string meant = closestName(function.name, names);
+  const auto &parameters = function.parameters;
+  const bool takesPayload = parameters.size() == 1 &&
+                            parameters[0]->direction == ast::Direction::InOut &&
+                            parameters[0]->type->is(TypeKind::Struct);
+  const bool hasShape = meant == constructorModel().name || parameters.empty() || takesPayload;
+  if (meant.empty() || !hasShape || !function.returnType->is(TypeKind::Void))
+    return;
+  program.diagnostics
+      .report(Code::mistypedMethod, function.range, function.name, meant, withArticle(root.name))
+      .fix(function.range, meant);
+}
+
 void CallGraph::judgeHelpers() {
   for (const ClassScope *scope : baseFirst) {
     if (!scope->root)
@@ -381,15 +402,23 @@ void CallGraph::judgeHelpers() {
             judgeFrom(*function, *scope, *rules);
       }
   }
-  // What nobody calls yet may at least do what some method of its class may.
+  std::unordered_set<const typed::Function *> called;
+  for (const auto &[caller, facts] : program.facts)
+    for (const CallEdge &edge : facts.calls)
+      for (const typed::Function *target : targets(edge))
+        called.insert(target);
+  // What no method leads to yet may at least do what some method of its class may.
   for (const ClassScope *scope : baseFirst) {
     if (!scope->root)
       continue;
     MethodModel most = unionOfMethods(*scope->root);
     for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
-      if (!function->isConstructor && !function->isStateMethod && !reached.count(function.get()))
+      if (!function->isConstructor && !function->isStateMethod && !reached.count(function.get())) {
         for (const Use &use : factsOf(function.get()).uses)
           judgeUse(program.diagnostics, use, *scope->root, most, nullptr);
+        if (!called.count(function.get()))
+          warnOfMistypedMethod(*function, *scope->root);
+      }
   }
 }
 

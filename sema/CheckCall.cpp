@@ -106,10 +106,10 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
 void FunctionChecker::reportUnknownFunction(const ast::Name &callee, SourceRange call) {
   Diagnostic &diagnostic = diagnostics.report(Code::unknownFunction, callee.range, callee.text);
   if (const ForeignSpelling *foreign = foreignSpelling(callee.text)) {
-    suggestSpelling(diagnostic, *foreign, callee.range, call);
+    suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement), callee.range, call);
     return;
   }
-  std::vector<std::string> candidates = builtinNames();
+  std::vector<std::string> candidates = whatMayStandHere(builtinNames());
   for (const auto &entry : program.functions)
     candidates.push_back(entry.first);
   for (const ClassScope *at = scope; at; at = at->base)
@@ -294,34 +294,6 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
 // Built-in functions
 //===----------------------------------------------------------------------===//
 
-/// What a method must be able to do for this function to stand in it.
-static bool neededAbility(Builtin builtin, Ability &ability) {
-  switch (builtin) {
-  case Builtin::Trace:
-  case Builtin::TracePayload:
-    ability = Ability::Trace;
-    return true;
-  case Builtin::Hit:
-    ability = Ability::Hit;
-    return true;
-  case Builtin::Ambient:
-    ability = Ability::Illuminance;
-    return true;
-  case Builtin::IgnoreIntersection:
-  case Builtin::TerminateRay:
-    ability = Ability::AnyHit;
-    return true;
-  case Builtin::VisitChild:
-    ability = Ability::VisitChild;
-    return true;
-  case Builtin::Rand:
-    ability = Ability::Random;
-    return true;
-  default:
-    return false;
-  }
-}
-
 ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
                                           const BuiltinOverloads &overloads) {
   std::vector<ExprPtr> args = checkArguments(expr.args, overloads.signatures);
@@ -337,9 +309,8 @@ ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
     if (signature.parameters[i].direction != ast::Direction::In &&
         !requireTarget(*expr.args[i], *args[i], "write to"))
       return errorExpr(expr.range);
-  Ability ability;
-  if (neededAbility(builtin, ability) &&
-      !recordSpecial(ability, expr.callee.text, expr.callee.range))
+  if (const std::optional<Ability> ability = abilityNeeded(typed::name(builtin));
+      ability && !recordSpecial(*ability, expr.callee.text, expr.callee.range))
     return errorExpr(expr.range);
   convertArguments(signature, args);
   auto node = makeExpr<typed::BuiltinExpr>(signature.result, expr.range);

@@ -57,6 +57,34 @@ bool FunctionChecker::recordSpecial(Ability ability, const std::string &what, So
   return record(std::move(use));
 }
 
+std::string FunctionChecker::whyNotHere(const std::string &name) const {
+  typed::StateVariable variable;
+  const bool isState = name.compare(0, 3, "rt_") == 0 && findStateVariable(name.substr(3), variable);
+  const std::optional<Ability> ability = abilityNeeded(name.substr(0, name.find('(')));
+  if (!isState && !ability)
+    return {};
+  if (!facts)
+    return "`" + name + "` cannot be used outside of functions";
+  if (!scope || !scope->root)
+    return {}; // what calls it decides
+  const MethodModel allowed = rules ? *rules : unionOfMethods(*scope->root);
+  if (isState && !allowed.reads.has(variable))
+    return "`" + name + "`, which may be meant, " +
+           (scope->root->sees.has(variable)
+                ? "has no value in `" + allowed.name + "`"
+                : "belongs to " + classesThatSee(variable));
+  if (ability && !allowed.abilities.has(*ability))
+    return "`" + name + "`, which may be meant, stands in " + methodsWith(*ability);
+  return {};
+}
+
+std::vector<std::string>
+FunctionChecker::whatMayStandHere(std::vector<std::string> names) const {
+  const auto isMisplaced = [this](const std::string &name) { return !whyNotHere(name).empty(); };
+  names.erase(std::remove_if(names.begin(), names.end(), isMisplaced), names.end());
+  return names;
+}
+
 //===----------------------------------------------------------------------===//
 // Names
 //===----------------------------------------------------------------------===//
@@ -105,7 +133,7 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
     return; // once in a function says enough, if there is nothing to mend at each place
   Diagnostic &diagnostic = diagnostics.report(Code::unknownName, range, name);
   if (foreign) {
-    suggestSpelling(diagnostic, *foreign, range);
+    suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement), range);
     const SourceRange dot{range.file, range.end, range.end + 1};
     if (isThis && range.end < diagnostics.sources().text(range.file).size() &&
         sourceText(dot) == ".")
@@ -123,8 +151,12 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
   typed::StateVariable state;
   if (!closest.empty())
     diagnostic.fix(range, closest);
-  else if (findStateVariable(name, state))
-    diagnostic.fix(range, "rt_" + name);
+  else if (findStateVariable(name, state)) {
+    if (const std::string whyNot = whyNotHere("rt_" + name); whyNot.empty())
+      diagnostic.fix(range, "rt_" + name);
+    else
+      diagnostic.note(whyNot);
+  }
 }
 
 ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, Access access) {
@@ -135,7 +167,7 @@ ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, 
       return errorExpr(range);
     }
     Diagnostic &diagnostic = diagnostics.report(Code::unknownState, range, name);
-    const std::string closest = closestName(name, stateVariableNames());
+    const std::string closest = closestName(name, whatMayStandHere(stateVariableNames()));
     if (!closest.empty())
       diagnostic.fix(range, closest);
     return errorExpr(range);

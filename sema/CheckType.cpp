@@ -29,7 +29,7 @@ static const Type *typeOfName(const ast::Name &name, Program &program) {
   }
   Diagnostic &diagnostic = program.diagnostics.report(Code::unknownType, name.range, name.text);
   if (const ForeignSpelling *foreign = foreignSpelling(name.text)) {
-    suggestSpelling(diagnostic, *foreign, name.range);
+    suggestSpelling(diagnostic, *foreign, "", name.range);
     return program.types.error;
   }
   std::vector<std::string> candidates = {"bool",  "int",   "uint",  "float", "vec2",  "vec3",

@@ -162,6 +162,20 @@ const RootModel *rootModel(const std::string &name) {
   return nullptr;
 }
 
+std::optional<Ability> abilityNeeded(const std::string &builtin) {
+  static const std::map<std::string, Ability> needed = {
+      {"trace", Ability::Trace},
+      {"hit", Ability::Hit},
+      {"ambient", Ability::Illuminance},
+      {"ignoreIntersection", Ability::AnyHit},
+      {"terminateRay", Ability::AnyHit},
+      {"visitChild", Ability::VisitChild},
+      {"rand", Ability::Random},
+  };
+  const auto found = needed.find(builtin);
+  return found == needed.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::string MethodModel::signature() const {
   return "void " + name + (payload == Payload::Required ? "(inout P)" : "()");
 }

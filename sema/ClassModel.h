@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,9 @@ private:
   }
   std::uint16_t bits = 0;
 };
+
+/// What a method must be able to do for a built-in function of this name to stand in it.
+std::optional<Ability> abilityNeeded(const std::string &builtin);
 
 /// A method that the engine calls.
 struct MethodModel {

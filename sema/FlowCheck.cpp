@@ -72,6 +72,7 @@ private:
   Diagnostics &diagnostics;
   std::unordered_map<const Variable *, std::size_t> tracked;
   std::unordered_set<const Variable *> reported;
+  std::unordered_set<const Variable *> filledByIndex; // `v[i] = x` with an i that is not constant
   std::vector<Jumps> jumps;
   State state, atExit;
 };
@@ -113,8 +114,9 @@ void FlowCheck::read(const Variable &variable, SourceRange range) {
   if (found == tracked.end() || !state.reachable)
     return;
   const std::uint8_t flags = state.variables[found->second];
-  // Arrays are filled in loops, of which nobody knows here that they run.
-  if ((flags & written) && variable.type->is(TypeKind::Array))
+  // What is filled in a loop, element by element: nothing here shows that the loop runs.
+  const bool isFilled = variable.type->is(TypeKind::Array) || filledByIndex.count(&variable);
+  if ((flags & written) && isFilled)
     return;
   if (!(flags & unwritten) || !reported.insert(&variable).second)
     return;
@@ -136,6 +138,7 @@ void FlowCheck::write(const Variable &variable) {
 /// warned.
 void FlowCheck::visitTarget(const Expr &target, bool reads) {
   const Expr *at = &target;
+  bool isIndexed = false; // by an index that is not constant
   for (;;) {
     if (const auto *field = dynCast<FieldExpr>(at))
       at = field->base.get();
@@ -143,6 +146,7 @@ void FlowCheck::visitTarget(const Expr &target, bool reads) {
       at = swizzle->base.get();
     else if (const auto *index = dynCast<IndexExpr>(at)) {
       visit(*index->index);
+      isIndexed |= !evaluate(*index->index);
       at = index->base.get();
     } else
       break;
@@ -150,6 +154,8 @@ void FlowCheck::visitTarget(const Expr &target, bool reads) {
   const auto *variable = dynCast<VariableExpr>(at);
   if (!variable)
     return;
+  if (isIndexed)
+    filledByIndex.insert(variable->variable);
   if (reads)
     read(*variable->variable, variable->range);
 }

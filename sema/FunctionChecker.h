@@ -91,6 +91,10 @@ private:
   bool recordSpecial(Ability ability, const std::string &what, SourceRange range,
                      const typed::Member *member = nullptr);
   bool record(Use use);
+  /// Why a state variable or a special function cannot stand here, to say in place of suggesting
+  /// it; empty if it can, as far as is known.
+  std::string whyNotHere(const std::string &name) const;
+  std::vector<std::string> whatMayStandHere(std::vector<std::string> names) const;
 
   // CheckOperators.cpp
   typed::ExprPtr checkUnary(const ast::UnaryExpr &expr);

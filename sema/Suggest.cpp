@@ -1,12 +1,15 @@
 //===- Suggest.cpp - what the author may have meant -----------------------===//
 #include "sema/Suggest.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 namespace rtsl {
 
-const ForeignSpelling *foreignSpelling(const std::string &name) {
-  static const std::unordered_map<std::string, ForeignSpelling> table = {
+using SpellingTable = std::unordered_map<std::string, ForeignSpelling>;
+
+static const SpellingTable &spellings() {
+  static const SpellingTable table = {
       // Types of HLSL, CUDA and the double precision of GLSL
       {"float2", {"vec2", "", true}},
       {"float3", {"vec3", "", true}},
@@ -113,8 +116,8 @@ const ForeignSpelling *foreignSpelling(const std::string &name) {
       {"sqr", {"pow", "write `x * x` or `pow(x, 2)`", true, ", 2"}},
       {"log10", {"(log", "write `log(x) / log(10.0)`", true, "", " / log(10.0))"}},
       {"sincos", {"", "call `sin` and `cos`"}},
-      {"discard", {"ignoreIntersection", ""}},
-      {"clip", {"ignoreIntersection", ""}},
+      {"discard", {"ignoreIntersection()", "", false, "", "", true}},
+      {"clip", {"", "write `if (x < 0.0) ignoreIntersection();`, in `anyHit` of an rt_Material"}},
       {"asuint", {"floatBitsToUint", "", true}},
       {"asint", {"floatBitsToInt", "", true}},
       {"asfloat", {"uintBitsToFloat", ""}},
@@ -280,12 +283,28 @@ const ForeignSpelling *foreignSpelling(const std::string &name) {
       {"this", {"", "members are named directly, without `this`"}},
       {"self", {"", "members are named directly, without `self`"}},
   };
-  auto found = table.find(name);
-  return found == table.end() ? nullptr : &found->second;
+  return table;
 }
 
-void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign, SourceRange name,
-                     SourceRange call) {
+const ForeignSpelling *foreignSpelling(const std::string &name) {
+  auto found = spellings().find(name);
+  return found == spellings().end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> foreignNames() {
+  std::vector<std::string> names;
+  for (const auto &[name, spelling] : spellings())
+    names.push_back(name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign,
+                     const std::string &whyNot, SourceRange name, SourceRange call) {
+  if (!whyNot.empty()) {
+    diagnostic.note(whyNot);
+    return;
+  }
   const bool wrapsCall = !foreign.append.empty() || !foreign.behind.empty();
   if (foreign.isVariable && call.isValid()) {
     diagnostic.fix(call, foreign.replacement, foreign.sure);

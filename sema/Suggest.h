@@ -5,6 +5,7 @@
 #include "frontend/Diagnostics.h"
 
 #include <string>
+#include <vector>
 
 namespace rtsl {
 
@@ -20,8 +21,11 @@ struct ForeignSpelling {
 };
 /// Null if `name` is not known from HLSL, CUDA, OptiX, GLSL's rasteriser or the RenderMan language.
 const ForeignSpelling *foreignSpelling(const std::string &name);
+/// Every such name, sorted.
+std::vector<std::string> foreignNames();
 /// Adds the fix and the advice to a message about `name`, which calls something if `call` is valid.
-void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign, SourceRange name,
-                     SourceRange call = {});
+/// `whyNot`, if there is any, says why the replacement cannot stand there, and takes its place.
+void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign,
+                     const std::string &whyNot, SourceRange name, SourceRange call = {});
 
 } // namespace rtsl

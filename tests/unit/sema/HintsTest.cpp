@@ -6,7 +6,13 @@
 //===----------------------------------------------------------------------===//
 #include "Harness.h"
 
+#include "sema/ClassModel.h"
+#include "sema/Suggest.h"
+
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
 
 using namespace rtsl;
 using namespace rtsl::test;
@@ -86,6 +92,61 @@ TEST(Hints, OtherLanguagesAreTranslated) {
   EXPECT_EQ(hints("vec3 f(vec3 a) { return saturate(a); }"), "write `clamp(x, 0.0, 1.0)`\n");
   EXPECT_EQ(hints("vec3 f(mat3 m, vec3 a) { return mul(m, a); }"),
             "write `a * b`: it is the product of linear algebra\n");
+}
+
+TEST(Hints, WhatCannotStandThereIsNotSuggested) {
+  EXPECT_EQ(hints("class A : rt_Material { void shade() { discard; rt_SampleColor = color(1.0); } };"),
+            "`ignoreIntersection()`, which may be meant, stands in `anyHit` of an rt_Material\n");
+  expectFix("struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { discard; } };",
+            "struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { ignoreIntersection(); } };");
+  EXPECT_EQ(hints("class C : rt_Camera { void generateRay() { rt_RayOrigin = N; } };"),
+            "`rt_ShadingNormal`, which may be meant, belongs to rt_Primitive, rt_Material and rt_Light\n");
+  EXPECT_EQ(hints("class C : rt_Camera { void generateRay() { rt_RayOrigin = rt_HitPont; } };"), "");
+}
+
+/// The text after every fix of every message, sure or not.
+std::string withAllFixes(const Checked &checked, const std::string &text) {
+  std::vector<Fix> fixes;
+  for (const Diagnostic &diagnostic : checked.diagnostics.all())
+    fixes.insert(fixes.end(), diagnostic.fixes.begin(), diagnostic.fixes.end());
+  std::stable_sort(fixes.begin(), fixes.end(),
+                   [](const Fix &a, const Fix &b) { return a.range.begin > b.range.begin; });
+  std::string result = text;
+  for (const Fix &fix : fixes)
+    result.replace(fix.range.begin, fix.range.end - fix.range.begin, fix.replacement);
+  return result;
+}
+
+/// Whatever word of another language stands in whatever method: what is suggested in its place may stand there.
+TEST(Hints, NoSuggestionIsMisplaced) {
+  const std::set<Code> misplaced = {Code::stateNotVisible, Code::stateWithoutRay, Code::misplacedTrace,
+                                    Code::misplacedIlluminance, Code::misplacedLookup, Code::misplacedCall,
+                                    Code::unknownName, Code::unknownFunction, Code::unknownState};
+  std::vector<std::string> words = foreignNames();
+  for (const std::string &state : stateVariableNames())
+    words.insert(words.end(), {state.substr(3), state + "x"});
+  for (const char *call : {"tracee", "hitt", "ignoreIntersections", "terminateray", "visitChildren", "ramd"})
+    words.push_back(call);
+  std::size_t suggestions = 0;
+  for (const RootModel &root : rootModels())
+    for (const MethodModel &method : root.methods)
+      for (const std::string &word : words)
+        for (const char *form : {"  int unused = int(*);\n", "  *();\n"}) {
+          std::string use = form;
+          use.replace(use.find('*'), 1, word);
+          const bool takesPayload = method.payload == MethodModel::Payload::Required;
+          const std::string text = "struct P_ { float x; };\nclass A : " + root.name + " {\nvoid " + method.name +
+                                   (takesPayload ? "(inout P_ p)" : "()") + " {\n" + use + "}\n};\n";
+          const std::unique_ptr<Checked> before = checkText(text);
+          const std::string after = withAllFixes(*before, text);
+          if (after == text)
+            continue;
+          ++suggestions;
+          const std::unique_ptr<Checked> fixed = checkText(after);
+          for (const Diagnostic &diagnostic : fixed->diagnostics.all())
+            EXPECT_EQ(misplaced.count(diagnostic.code), 0u) << text << after << render(*fixed);
+        }
+  EXPECT_GT(suggestions, 1000u);
 }
 
 TEST(Hints, ConversionsAreWrittenOut) {
