@@ -1,6 +1,7 @@
 //===- Source.cpp - source texts and positions in them --------------------===//
 #include "frontend/Source.h"
 #include "frontend/Expansion.h"
+#include "support/EndlessInput.h"
 
 #include <algorithm>
 #include <cassert>
@@ -48,6 +49,12 @@ std::optional<FileId> SourceManager::addFile(const std::string &path, std::strin
   std::FILE *stream = isStandardInput ? stdin : std::fopen(path.c_str(), "rb");
   if (!stream) {
     whyNot = std::strerror(errno);
+    return std::nullopt;
+  }
+  if (const char *reason = whyNoInput(fileno(stream))) {
+    whyNot = reason;
+    if (!isStandardInput)
+      std::fclose(stream);
     return std::nullopt;
   }
   std::string text;

@@ -58,6 +58,7 @@ const std::vector<Column<Measurement>> &columnsOf(const Measurement *) {
       column("nan_pixels", &Measurement::nanPixels),
       column("infinite_pixels", &Measurement::infinitePixels),
       column("samples_not_finite", &Measurement::samplesNotFinite),
+      column("rays_too_deep", &Measurement::raysTooDeep),
       column("picture_hash", &Measurement::pictureHash),
       column("pair_variance", &Measurement::pairVariance)};
   return columns;

@@ -72,6 +72,7 @@ Json toJson(const SubjectSummary &subject) {
           {"nanPixels", subject.nanPixels},
           {"infinitePixels", subject.infinitePixels},
           {"samplesNotFinite", subject.samplesNotFinite},
+          {"raysTooDeep", subject.raysTooDeep},
           {"commonPicture", fmt::format("{:016x}", subject.commonPicture)},
           {"levels", std::move(levels)}};
 }

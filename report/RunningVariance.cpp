@@ -12,6 +12,7 @@ void RunningVariance::add(const runtime::Image &picture) {
     shape.width = picture.width;
     shape.height = picture.height;
     shape.channels = picture.channels;
+    counts.assign(picture.pixels.size(), 0);
     means.assign(picture.pixels.size(), 0.0);
     squares.assign(picture.pixels.size(), 0.0);
     smallest.assign(picture.pixels.size(), std::numeric_limits<float>::infinity());
@@ -21,11 +22,13 @@ void RunningVariance::add(const runtime::Image &picture) {
   }
   ++count;
   for (std::size_t i = 0; i < means.size(); ++i) {
-    const float value = std::isfinite(picture.pixels[i]) ? picture.pixels[i] : 0.0f;
+    const float value = picture.pixels[i];
+    if (!std::isfinite(value))
+      continue;
     smallest[i] = std::min(smallest[i], value);
     largest[i] = std::max(largest[i], value);
     const double toOldMean = value - means[i];
-    means[i] += toOldMean / double(count);
+    means[i] += toOldMean / double(++counts[i]);
     squares[i] += toOldMean * (value - means[i]);
   }
 }
@@ -33,27 +36,34 @@ void RunningVariance::add(const runtime::Image &picture) {
 runtime::Image RunningVariance::mean() const {
   runtime::Image image(shape.width, shape.height, shape.channels);
   for (std::size_t i = 0; i < means.size(); ++i)
-    image.pixels[i] = float(means[i]);
+    image.pixels[i] = counts[i] ? float(means[i]) : std::numeric_limits<float>::quiet_NaN();
   return image;
 }
 
-double RunningVariance::meanVariance() const {
+template <typename Weight>
+double RunningVariance::meanOf(Weight weight) const {
   double sum = 0;
-  for (double square : squares)
-    sum += square;
-  return count < 2 || squares.empty() ? 0 : sum / double(count - 1) / double(squares.size());
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < means.size(); ++i)
+    if (counts[i] > 1) {
+      sum += weight(i) * squares[i] / double(counts[i] - 1);
+      ++values;
+    }
+  return values ? sum / double(values) : 0;
+}
+
+double RunningVariance::meanVariance() const {
+  return meanOf([](std::size_t) { return 1.0; });
 }
 
 double RunningVariance::meanRelativeVariance(double epsilon) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < means.size(); ++i)
-    sum += squares[i] / (means[i] * means[i] + epsilon);
-  return count < 2 || squares.empty() ? 0 : sum / double(count - 1) / double(squares.size());
+  return meanOf([&](std::size_t i) { return 1 / (means[i] * means[i] + epsilon); });
 }
 
 void RunningVariance::forEachValue(const std::function<void(double, double, double)> &visit) const {
   for (std::size_t i = 0; i < means.size(); ++i)
-    visit(means[i], squares[i], std::max(largest[i] - means[i], means[i] - smallest[i]));
+    if (counts[i] > 0)
+      visit(means[i], squares[i], std::max(largest[i] - means[i], means[i] - smallest[i]));
 }
 
 } // namespace rtsl::report

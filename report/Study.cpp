@@ -167,6 +167,7 @@ private:
     measurement.buildSeconds = picture.statistics.buildSeconds;
     measurement.renderSeconds = picture.statistics.renderSeconds;
     measurement.samplesNotFinite = picture.statistics.samplesNotFinite;
+    measurement.raysTooDeep = picture.statistics.raysTooDeep;
     if (run > 0)
       measurement.pairVariance =
           varianceOfPair(subject, level, run, measurement.pictureHash, picture.image);

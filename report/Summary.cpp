@@ -176,6 +176,7 @@ SubjectSummary summariseSubject(const Subject &subject, const Study &study,
       summary.nanPixels += measurement.nanPixels;
       summary.infinitePixels += measurement.infinitePixels;
       summary.samplesNotFinite += measurement.samplesNotFinite;
+      summary.raysTooDeep += measurement.raysTooDeep;
     }
   summary.buildSeconds = medianOf(std::move(builds));
   for (auto &[samples, runs] : byLevel) {
@@ -280,7 +281,10 @@ void findProblems(Summary &summary, const Reference &reference) {
       problems.push_back(fmt::format("{}: {} pixels were not a number and {} infinite, over all pictures", subject.name,
                                      subject.nanPixels, subject.infinitePixels));
     if (subject.samplesNotFinite)
-      problems.push_back(fmt::format("{}: {} samples were not finite and count as black", subject.name, subject.samplesNotFinite));
+      problems.push_back(fmt::format("{}: {} samples were not finite and are left out of the means of their pixels", subject.name, subject.samplesNotFinite));
+    if (subject.raysTooDeep)
+      problems.push_back(fmt::format("{}: {} rays were deeper than the limit of depth and saw nothing; the reference has the same limit, so no error shows that",
+                                     subject.name, subject.raysTooDeep));
     const bool isConstant = !subject.levels.empty() && std::all_of(subject.levels.begin(), subject.levels.end(), [](const LevelSummary &level) {
       return level.runs > 1 && level.variance == 0;
     });

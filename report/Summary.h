@@ -43,7 +43,7 @@ struct SubjectSummary {
   LineFit relMseOverSamples;
   /// The slopes of the last three levels that the lines use, where there are more and a line bends.
   std::optional<Estimate> lastSlopeOverSeconds, lastSlopeOverSamples;
-  std::uint64_t nanPixels = 0, infinitePixels = 0, samplesNotFinite = 0; // over all pictures
+  std::uint64_t nanPixels = 0, infinitePixels = 0, samplesNotFinite = 0, raysTooDeep = 0; // over all pictures
   std::string noFit;                                                    // why there is no line, if there is none
   /// The median of the levels' 1 / (variance x seconds), of those with at least 10 ms a picture if there are such.
   double efficiency = 0;

@@ -1,9 +1,12 @@
 #include "runtime/AtomicFile.h"
 
+#include "support/EndlessInput.h"
+
 #include <fmt/format.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -13,7 +16,12 @@ namespace rtsl::runtime {
 
 namespace {
 
+constexpr const char *standardOutput = "-";
+
 [[noreturn]] void throwUnwritable(const std::string &path, int error) {
+  if (path == standardOutput)
+    throw Error(ErrorCode::FileUnwritable,
+                fmt::format("cannot write to standard output: {}", std::strerror(error)));
   throw Error(ErrorCode::FileUnwritable,
               fmt::format("cannot write `{}`: {}", path, std::strerror(error)), Place{path});
 }
@@ -94,6 +102,8 @@ void writeDirectly(const std::string &path, std::string_view bytes) {
 } // namespace
 
 void checkFileWritable(const std::string &path) {
+  if (path == standardOutput)
+    return;
   if (path.empty())
     throwUnwritable(path, ENOENT);
   if (isFolder(path))
@@ -114,6 +124,12 @@ void checkFileWritable(const std::string &path) {
 }
 
 void writeFileAtomically(const std::string &path, std::string_view bytes) {
+  if (path == standardOutput) {
+    std::fflush(stdout); // what was printed before comes first
+    if (const int error = writeAll(STDOUT_FILENO, bytes))
+      throwUnwritable(path, error);
+    return;
+  }
   if (path.empty())
     throwUnwritable(path, ENOENT);
   if (isFolder(path))
@@ -145,33 +161,75 @@ void writeFileAtomically(const std::string &path, std::string_view bytes) {
   }
 }
 
+void refuseToOverwrite(const std::string &output, const std::vector<std::string> &inputs) {
+  const bool isStandardOutput = output == standardOutput;
+  struct stat written, read;
+  if ((isStandardOutput ? ::fstat(STDOUT_FILENO, &written) : ::stat(output.c_str(), &written)) != 0 ||
+      !S_ISREG(written.st_mode))
+    return;
+  for (const std::string &input : inputs) {
+    if ((input == "-" ? ::fstat(STDIN_FILENO, &read) : ::stat(input.c_str(), &read)) != 0 ||
+        read.st_dev != written.st_dev || read.st_ino != written.st_ino)
+      continue;
+    const std::string what = isStandardOutput ? "standard output" : fmt::format("`{}`", output);
+    Error error(ErrorCode::OverwritesInput,
+                input == output ? fmt::format("{} is an input and would be overwritten", what)
+                                : fmt::format("{} is the same file as the input `{}`, which would be "
+                                              "overwritten",
+                                              what, input),
+                Place{isStandardOutput ? "<stdout>" : output});
+    error.note("write to another file");
+    throw error;
+  }
+}
+
+namespace {
+
+/// A file that is open for reading; -1: it could not be opened.
+class OpenFile {
+public:
+  explicit OpenFile(const std::string &path)
+      : isStandardInput(path == "-"),
+        file(isStandardInput ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (file >= 0 && !isStandardInput)
+      ::close(file);
+  }
+  OpenFile(const OpenFile &) = delete;
+
+  const bool isStandardInput;
+  const int file;
+};
+
+} // namespace
+
 std::string readFile(const std::string &path) {
-  int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0)
-    throw Error(errno == ENOENT || errno == ENOTDIR ? ErrorCode::FileNotFound
-                                                    : ErrorCode::FileUnreadable,
-                fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), Place{path});
+  const OpenFile open(path);
+  const std::string name = open.isStandardInput ? "<stdin>" : path;
+  const auto refuse = [&](ErrorCode code, const char *why) {
+    throw Error(code, fmt::format("cannot read `{}`: {}", name, why), Place{name});
+  };
+  if (open.file < 0)
+    refuse(errno == ENOENT || errno == ENOTDIR ? ErrorCode::FileNotFound
+                                               : ErrorCode::FileUnreadable,
+           std::strerror(errno));
+  if (const char *why = whyNoInput(open.file))
+    refuse(ErrorCode::FileUnreadable, why);
   std::string bytes;
   struct stat status;
-  if (::fstat(file, &status) == 0 && status.st_size > 0)
+  if (::fstat(open.file, &status) == 0 && status.st_size > 0)
     bytes.reserve(std::size_t(status.st_size));
   char chunk[1 << 16];
   for (;;) {
-    ssize_t count = ::read(file, chunk, sizeof chunk);
+    ssize_t count = ::read(open.file, chunk, sizeof chunk);
     if (count < 0 && errno == EINTR)
       continue;
-    if (count < 0) {
-      int error = errno;
-      ::close(file);
-      throw Error(ErrorCode::FileUnreadable,
-                  fmt::format("cannot read `{}`: {}", path, std::strerror(error)), Place{path});
-    }
+    if (count < 0)
+      refuse(ErrorCode::FileUnreadable, std::strerror(errno));
     if (count == 0)
-      break;
+      return bytes;
     bytes.append(chunk, std::size_t(count));
   }
-  ::close(file);
-  return bytes;
 }
 
 } // namespace rtsl::runtime

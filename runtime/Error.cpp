@@ -10,6 +10,8 @@ const char *name(ErrorCode code) {
     return "fileUnreadable";
   case ErrorCode::FileUnwritable:
     return "fileUnwritable";
+  case ErrorCode::OverwritesInput:
+    return "overwritesInput";
   case ErrorCode::UnsupportedFormat:
     return "unsupportedFormat";
   case ErrorCode::BadMesh:
@@ -18,6 +20,8 @@ const char *name(ErrorCode code) {
     return "badImage";
   case ErrorCode::BadPackage:
     return "badPackage";
+  case ErrorCode::NotAScene:
+    return "notAScene";
   case ErrorCode::JsonSyntax:
     return "jsonSyntax";
   case ErrorCode::DuplicateKey:

@@ -20,12 +20,14 @@ enum class ErrorCode : std::uint8_t {
   FileNotFound,
   FileUnreadable,
   FileUnwritable, // a path that cannot be written, or a disk that is full
+  OverwritesInput, // an output that is a file which is read
   UnsupportedFormat,
   // Meshes and images.
   BadMesh, // truncated, empty, not finite, an index out of range
   BadImage,
   BadPackage, // no package, of another version, truncated, damaged
   // Scene files.
+  NotAScene, // shaders where a scene is taken
   JsonSyntax,
   DuplicateKey,
   UnknownKey,

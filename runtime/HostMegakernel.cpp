@@ -1,12 +1,13 @@
 #include "runtime/HostMegakernel.h"
 
+#include "runtime/WorkerThreads.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <memory>
-#include <system_error>
 #include <thread>
 
 namespace rtsl::runtime {
@@ -84,11 +85,25 @@ void readStatus(const RtslStatus &status, const RenderOptions &options,
     throw Error(ErrorCode::Internal,
                 fmt::format("rays of depth {} overflow the stack that was made for them",
                             options.maxDepth));
-  if (status.stop)
+  // Every pixel that was taken is done, but for those that the stop has cut off.
+  const std::uint64_t pixels = std::uint64_t(options.width) * options.height;
+  statistics.pixels = std::min(status.nextPixel, pixels) - status.unfinishedPixels;
+  statistics.samples = statistics.pixels * options.samplesPerPixel + status.unfinishedSamples;
+  statistics.isUnfinished = statistics.pixels < pixels;
+  if (statistics.isUnfinished && !options.keepsUnfinished)
     throw Error(ErrorCode::Cancelled, "rendering was cancelled");
-  statistics.samples = std::uint64_t(options.width) * options.height * options.samplesPerPixel;
   statistics.badRays = status.badRays;
+  statistics.raysTooDeep = status.raysTooDeep;
   statistics.samplesNotFinite = status.samplesNotFinite;
+  statistics.pixelsWithoutSample = status.pixelsWithoutSample;
+  statistics.notFinite.clear();
+  for (const std::uint64_t rank : status.firstNotFinite)
+    if (rank != 0 && statistics.notFinite.size() < options.mostNotFinite) {
+      const std::uint64_t sample = ~rank, pixel = sample / options.samplesPerPixel;
+      statistics.notFinite.push_back({std::uint32_t(pixel % options.width),
+                                      std::uint32_t(pixel / options.width),
+                                      std::uint32_t(sample % options.samplesPerPixel)});
+    }
   std::copy_n(status.exceptions, RTSL_EXCEPTIONS, statistics.exceptions);
 }
 
@@ -111,27 +126,13 @@ Image renderOnHost(const MegakernelCode &code, FlatScene scene, const RenderOpti
   job.laneBytes = inLines(code.laneBytes(options.maxDepth, job.launch->referenceChain));
   const Memory lanes = allocate(threads * job.laneBytes, "rays in flight");
   job.lanes = lanes.get();
-  Image image;
-  try {
-    image = Image(options.width, options.height, job.launch->colorComponents);
-  } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory, "not enough memory for the picture");
-  }
+  Image image = newImage(options.width, options.height, job.launch->colorComponents);
   job.pixels = image.pixels.data();
   job.samplesPerPixel = options.samplesPerPixel;
 
   {
     Watch watch(status, options);
-    std::vector<std::thread> helpers;
-    try {
-      for (unsigned i = 1; i < threads; ++i)
-        helpers.emplace_back([&job, &code, i] { code.runLane(&job, i); });
-    } catch (const std::system_error &) {
-      // Fewer threads than hoped for: the picture is the same.
-    }
-    code.runLane(&job, 0);
-    for (std::thread &helper : helpers)
-      helper.join();
+    runOnThreads(threads, code.stackBytes, [&](unsigned lane) { code.runLane(&job, lane); });
   }
 
   RenderStatistics said;

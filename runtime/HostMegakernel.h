@@ -20,8 +20,8 @@ Image renderOnHost(const MegakernelCode &code, FlatScene scene, const RenderOpti
 /// Makes `scene` a launch of the given size, depth and seed.
 void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status);
 
-/// What a job's status says of its rendering. Throws Cancelled if it was stopped, Internal if lanes
-/// had too little memory.
+/// What a job's status says of its rendering. Throws Cancelled if it was stopped and is not to be
+/// kept as far as it is, Internal if lanes had too little memory.
 void readStatus(const RtslStatus &status, const RenderOptions &options,
                 RenderStatistics &statistics);
 

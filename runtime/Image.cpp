@@ -10,22 +10,26 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 namespace rtsl::runtime {
 
 namespace {
 
-enum class Format { Png, Exr };
-
-Format formatOf(const std::string &path) {
+/// Png or Exr.
+PictureFormat formatOf(const std::string &path, PictureFormat asked) {
+  if (asked != PictureFormat::ByName)
+    return asked;
+  if (path == "-")
+    return PictureFormat::Png;
   std::size_t dot = path.find_last_of("./");
   std::string extension = dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot + 1);
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
   if (extension == "png")
-    return Format::Png;
+    return PictureFormat::Png;
   if (extension == "exr")
-    return Format::Exr;
+    return PictureFormat::Exr;
   throw Error(
       ErrorCode::UnsupportedFormat,
       fmt::format("cannot tell the format of `{}`: a picture's name ends in `.png` or `.exr`",
@@ -34,6 +38,16 @@ Format formatOf(const std::string &path) {
 }
 
 } // namespace
+
+Image newImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+  try {
+    return Image(width, height, channels);
+  } catch (const std::bad_alloc &) {
+    throw Error(ErrorCode::OutOfMemory,
+                fmt::format("not enough memory for the picture: {} bytes",
+                            std::uint64_t(width) * height * channels * sizeof(float)));
+  }
+}
 
 Image toRgb(const Image &image) {
   if (image.channels == 3)
@@ -53,25 +67,30 @@ Image toRgb(const Image &image) {
   return rgb;
 }
 
-void checkWritable(const std::string &path) {
-  formatOf(path);
+void checkWritable(const std::string &path, PictureFormat format) {
+  formatOf(path, format);
   checkFileWritable(path);
 }
 
-void writeImage(const std::string &path, const Image &image) {
-  Format format = formatOf(path);
+void writeImage(const std::string &path, const Image &image, PictureFormat format) {
+  format = formatOf(path, format);
   if (image.width == 0 || image.height == 0 || image.channels == 0 ||
       image.pixels.size() != std::size_t(image.width) * image.height * image.channels)
     throw Error(ErrorCode::BadImage, fmt::format("cannot write `{}`: the picture is empty", path),
                 Place{path});
-  writeFileAtomically(path,
-                      format == Format::Png ? encodePng(image, path) : encodeExr(image, path));
+  writeFileAtomically(path, format == PictureFormat::Png ? encodePng(image, path)
+                                                         : encodeExr(image, path));
 }
 
 Image readImage(const std::string &path) {
-  Format format = formatOf(path);
-  std::string bytes = readFile(path);
-  return format == Format::Png ? decodePng(bytes, path) : decodeExr(bytes, path);
+  if (path != "-") { // the name is looked at first: it is what is most often wrong
+    const PictureFormat format = formatOf(path, PictureFormat::ByName);
+    const std::string bytes = readFile(path);
+    return format == PictureFormat::Png ? decodePng(bytes, path) : decodeExr(bytes, path);
+  }
+  const std::string bytes = readFile(path);
+  const bool isPng = bytes.compare(0, 4, "\x89PNG") == 0;
+  return isPng ? decodePng(bytes, "<stdin>") : decodeExr(bytes, "<stdin>");
 }
 
 } // namespace rtsl::runtime

@@ -28,22 +28,30 @@ struct Image {
   }
 };
 
+/// A black picture. Throws OutOfMemory.
+Image newImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels);
+
 /// Red, green and blue of an image with N channels, by runtime/ColorBasis.h. 3: as they are. 1:
 /// grey.
 Image toRgb(const Image &image);
 
+/// How a picture is written. ByName: as the end of its file's name says; of "-", PNG.
+enum class PictureFormat : std::uint8_t { ByName, Png, Exr };
+
 /// Throws FileUnwritable or UnsupportedFormat now if `writeImage(path, ...)` could not succeed
 /// later: unknown extension, missing or read-only folder, a folder in the file's place. Call it
 /// before a long rendering.
-void checkWritable(const std::string &path);
+void checkWritable(const std::string &path, PictureFormat format = PictureFormat::ByName);
 
 /// Writes .exr (32-bit float, R G B, Y for one channel, or C0 C1 ... for others) or .png (8 bit,
-/// sRGB, clamped to [0, 1], not a number becomes black). The file appears whole or not at all.
-/// Throws FileUnwritable, UnsupportedFormat.
-void writeImage(const std::string &path, const Image &image);
+/// sRGB, clamped to [0, 1], not a number becomes black). The file appears whole or not at all; "-"
+/// is standard output. Throws FileUnwritable, UnsupportedFormat.
+void writeImage(const std::string &path, const Image &image,
+                PictureFormat format = PictureFormat::ByName);
 
 /// Reads what writeImage writes (any EXR of float or half channels, any PNG); PNG values are made
-/// linear. Throws FileNotFound, FileUnreadable, UnsupportedFormat, BadImage.
+/// linear. "-" is standard input, whose first bytes say what it is. Throws FileNotFound,
+/// FileUnreadable, UnsupportedFormat, BadImage.
 Image readImage(const std::string &path);
 
 /// Linear to sRGB and back (IEC 61966-2-1:1999), both in [0, 1].

@@ -32,6 +32,9 @@ void checkReadable(const std::string &path) {
   if (::access(path.c_str(), R_OK) != 0)
     throw Error(ErrorCode::FileUnreadable,
                 fmt::format("cannot read mesh `{}`: {}", path, std::strerror(errno)), Place{path});
+  if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
+    throw Error(ErrorCode::FileUnreadable,
+                fmt::format("cannot read mesh `{}`: it is a device", path), Place{path});
   if (S_ISREG(status.st_mode) && status.st_size == 0)
     throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` is empty", path), Place{path});
 }

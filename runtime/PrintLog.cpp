@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
 #include <mutex>
 #include <tuple>
@@ -16,10 +15,6 @@ auto key(const PrintedLine &line) {
   // What no sample printed comes first.
   std::uint64_t row = line.sample == PrintedLine::noSample ? 0 : std::uint64_t(line.y) + 1;
   return std::make_tuple(row, line.x, line.sample, line.order);
-}
-
-bool comesFirst(const PrintedLine &a, const PrintedLine &b) {
-  return key(a) < key(b);
 }
 
 std::string scalarText(ValueType::Kind kind, std::uint32_t word) {
@@ -67,28 +62,20 @@ std::string lineText(const PrintedLine &line, const std::vector<PrintFormat> &fo
 
 } // namespace
 
-void PrintLog::keepFirst(std::size_t count) {
-  if (lines.size() <= count)
-    return;
-  std::nth_element(lines.begin(), lines.begin() + std::ptrdiff_t(count), lines.end(), comesFirst);
-  lines.resize(count);
+bool PrintLog::ComesFirst::operator()(const PrintedLine &a, const PrintedLine &b) const {
+  return key(a) < key(b);
 }
 
 void PrintLog::add(PrintedLine line) {
-  ++total;
-  lines.push_back(std::move(line));
-  if (lines.size() >= 2 * mostLines) // seldom enough to cost little
-    keepFirst(mostLines);
+  lines.add(std::move(line));
 }
 
 std::vector<std::string> PrintLog::texts(const std::vector<PrintFormat> &formats) {
-  keepFirst(mostLines);
-  std::sort(lines.begin(), lines.end(), comesFirst);
   std::vector<std::string> texts;
-  for (const PrintedLine &line : lines)
+  for (const PrintedLine &line : lines.take())
     texts.push_back(lineText(line, formats));
-  if (total > lines.size())
-    texts.push_back(fmt::format("... and {} more lines", total - lines.size()));
+  if (lines.total() > texts.size())
+    texts.push_back(fmt::format("... and {} more lines", lines.total() - texts.size()));
   return texts;
 }
 

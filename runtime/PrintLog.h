@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/FirstFew.h"
 #include "runtime/Program.h"
 
 #include <cstdint>
@@ -37,10 +38,10 @@ public:
   std::vector<std::string> texts(const std::vector<PrintFormat> &formats);
 
 private:
-  void keepFirst(std::size_t count);
-
-  std::vector<PrintedLine> lines;
-  std::uint64_t total = 0;
+  struct ComesFirst {
+    bool operator()(const PrintedLine &a, const PrintedLine &b) const;
+  };
+  FirstFew<PrintedLine, ComesFirst> lines{mostLines};
 };
 
 /// `print` of shaders in C++.

@@ -6,9 +6,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/Error.h"
 #include "runtime/device/Abi.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,6 +91,7 @@ enum class Engine : std::uint8_t { Classic, Programs, Either };
 struct MegakernelCode {
   std::uint64_t (*laneBytes)(std::uint32_t maxDepth, std::uint32_t referenceChain) = nullptr;
   void (*runLane)(const RtslJob *, std::uint32_t lane) = nullptr;
+  std::uint64_t stackBytes = 0; // of the calling thread
 };
 
 struct Program {
@@ -127,6 +130,11 @@ struct Program {
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                  float *color) = nullptr;
   MegakernelCode megakernel;
+  /// Bytes of stack that the frames of `sample` take at most, for a limit of depth and
+  /// RtslLaunch::referenceChain; with nothing below. Empty: not known.
+  std::function<std::uint64_t(std::uint32_t maxDepth, std::uint32_t referenceChain)> stackBytes;
+  /// Where the author wrote what rtsl_check_number looks at, by its number (NumberCheck.h).
+  std::vector<Place> numberPlaces;
 
   std::vector<PrintFormat> prints; // by number
 

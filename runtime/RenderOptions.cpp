@@ -19,14 +19,14 @@ static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowe
 void checkOptions(const RenderOptions &options) {
   checkRange("width", options.width, 1, 65536);
   checkRange("height", options.height, 1, 65536);
-  checkRange("number of samples per pixel", options.samplesPerPixel, 1, 0xfffffffe);
+  checkRange("number of samples per pixel", options.samplesPerPixel, 1, mostSamplesPerPixel);
   // Each level of trace takes stack of the thread.
   checkRange("depth", options.maxDepth, 0, maxRayDepth);
 }
 
 unsigned threadCount(const RenderOptions &options) {
   if (options.threads)
-    return std::min(options.threads, 1024u);
+    return std::min(options.threads, mostThreads);
   return std::max(1u, std::thread::hardware_concurrency());
 }
 

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <tuple>
+#include <vector>
 
 namespace rtsl::runtime {
 
@@ -16,6 +18,8 @@ enum class Traversal : std::uint8_t {
 
 /// The largest limit of depth.
 constexpr std::uint32_t maxRayDepth = 256;
+constexpr std::uint32_t mostSamplesPerPixel = 0x7fffffff;
+constexpr std::uint32_t mostThreads = 1024;
 
 struct RenderOptions {
   std::uint32_t width = 960, height = 540;
@@ -27,18 +31,39 @@ struct RenderOptions {
 
   /// Called from time to time by one thread at a time, with the share that is done, in [0, 1].
   std::function<void(double)> progress;
-  /// Set it from anywhere to stop: render throws Cancelled.
+  /// Set it from anywhere to stop: render throws Cancelled,
   const std::atomic<bool> *cancel = nullptr;
+  /// or gives the picture as far as it is: of pixels that were begun the samples so far, and black
+  /// where there are none.
+  bool keepsUnfinished = false;
+
+  /// What a pixel is none of whose samples is finite. The megakernel makes it 0 in any case.
+  float withoutSample = 0;
+  /// How many samples that are not finite the statistics name: the first in the order of rows,
+  /// columns and samples. The megakernel names no more than RTSL_FIRST_NOT_FINITE.
+  std::size_t mostNotFinite = RTSL_FIRST_NOT_FINITE;
 };
 
+/// One sample of a picture.
+struct SampleId {
+  std::uint32_t x = 0, y = 0, sample = 0;
+};
+inline bool operator<(const SampleId &a, const SampleId &b) {
+  return std::tie(a.y, a.x, a.sample) < std::tie(b.y, b.x, b.sample);
+}
+
 struct RenderStatistics {
-  std::uint64_t samples = 0;
+  std::uint64_t samples = 0, pixels = 0; // those that were asked for, unless the rendering is unfinished
+  bool isUnfinished = false;             // it was stopped: RenderOptions::keepsUnfinished
   double buildSeconds = 0;            // acceleration structures
   double renderSeconds = 0;           // samples
   std::uint64_t badRays = 0;          // not finite or without a direction: they saw color 0
   std::uint64_t retracedRays = 0;     // Embree's answer was refused, and our own traversal asked
   std::uint64_t rescaledRays = 0;     // directions too long or short for Embree
-  std::uint64_t samplesNotFinite = 0; // counted as 0
+  std::uint64_t raysTooDeep = 0;      // deeper than maxDepth: they were not sent
+  std::uint64_t samplesNotFinite = 0; // left out of the means of their pixels
+  std::uint64_t pixelsWithoutSample = 0; // black, for none of their samples was finite
+  std::vector<SampleId> notFinite;       // the first samples that are not finite
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
 };
 

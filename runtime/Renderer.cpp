@@ -1,15 +1,15 @@
 #include "runtime/Renderer.h"
 
+#include "runtime/FirstFew.h"
 #include "runtime/HostScene.h"
+#include "runtime/WorkerThreads.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <exception>
+#include <functional>
 #include <mutex>
-#include <thread>
 #include <type_traits>
-#include <vector>
 
 namespace rtsl::runtime {
 
@@ -26,7 +26,11 @@ double secondsSince(Clock::time_point start) {
 
 } // namespace
 
+using SamplesNotFinite = FirstFew<SampleId, std::less<SampleId>>;
+
 struct Renderer::Implementation {
+  struct Worker;
+
   const Scene &scene;
   RenderOptions options;
   std::unique_ptr<HostScene> host;
@@ -41,16 +45,28 @@ struct Renderer::Implementation {
   std::mutex mutex; // for what follows
   std::uint64_t tilesDone = 0;
   RenderStatistics totals;
-  RtslStatus status{}; // of the samples: lanes count in it
-  std::exception_ptr failure;
+  SamplesNotFinite notFinite{RTSL_FIRST_NOT_FINITE};
 
   Implementation(const Scene &scene, const RenderOptions &options)
       : scene(scene), options(options) {}
 
+  bool isCancelled() const {
+    return stop.load(std::memory_order_relaxed) ||
+           (options.cancel && options.cancel->load(std::memory_order_relaxed));
+  }
   template <typename Count>
-  void renderTile(std::uint64_t tile, std::uint64_t &notFinite, Count components);
+  void renderTile(std::uint64_t tile, Worker &worker, Count components);
   void work();
+  void add(Worker &worker);
   void report();
+};
+
+/// What one thread has rendered and met.
+struct Renderer::Implementation::Worker {
+  RtslLaunch launch;
+  RtslStatus status{}; // lanes count in it
+  std::uint64_t samples = 0, pixels = 0, pixelsWithoutSample = 0;
+  SamplesNotFinite notFinite;
 };
 
 Renderer::Renderer(const Scene &scene, const RenderOptions &options)
@@ -66,17 +82,16 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
                                              threadCount(options));
     if (options.traversal == Traversal::Device)
       self->launch = self->host->deviceLaunch();
-    self->image = Image(options.width, options.height, program.colorComponents);
+    self->image = newImage(options.width, options.height, program.colorComponents); // while little was done
   } catch (const std::bad_alloc &) {
     throw Error(ErrorCode::OutOfMemory,
-                "not enough memory for the scene's acceleration structure or the picture");
+                "not enough memory for the scene's acceleration structure");
   }
   self->launch.host = self->host.get();
   self->launch.width = options.width;
   self->launch.height = options.height;
   self->launch.maxDepth = options.maxDepth;
   self->launch.seed = options.seed;
-  self->launch.status = &self->status;
   self->buildSeconds = secondsSince(start);
 }
 
@@ -86,11 +101,11 @@ const RtslLaunch &Renderer::launch() const {
   return self->launch;
 }
 
-/// Sums of a pixel are taken in the order of its samples, whoever takes them. A number of
-/// components that is a constant makes no loops of them.
+/// Sums of a pixel are taken in the order of its samples, whoever takes them. A sample that is not
+/// finite is left out of the mean, for it would take the whole pixel with it. A number of components
+/// that is a constant makes no loops of them.
 template <typename Count>
-void Renderer::Implementation::renderTile(std::uint64_t tile, std::uint64_t &notFinite,
-                                          Count components) {
+void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Count components) {
   auto sample = scene.program().sample;
   std::uint32_t x0 = std::uint32_t(tile % tilesAcross) * tileSize,
                 y0 = std::uint32_t(tile / tilesAcross) * tileSize;
@@ -99,54 +114,65 @@ void Renderer::Implementation::renderTile(std::uint64_t tile, std::uint64_t &not
   for (std::uint32_t y = y0; y < y1; ++y)
     for (std::uint32_t x = x0; x < x1; ++x) {
       double sum[RTSL_MAX_COLOR] = {};
-      for (std::uint32_t s = 0; s < options.samplesPerPixel; ++s) {
+      std::uint32_t taken = 0, counted = 0;
+      for (; taken < options.samplesPerPixel && !isCancelled(); ++taken) {
         float color[RTSL_MAX_COLOR];
-        sample(&launch, x, y, s, color);
+        sample(&worker.launch, x, y, taken, color);
         bool finite = true;
         for (std::uint32_t c = 0; c < components; ++c)
           finite &= std::isfinite(color[c]);
-        if (!finite) { // one of them would take the whole pixel with it
-          ++notFinite;
+        if (!finite) {
+          worker.notFinite.add({x, y, taken});
           continue;
         }
+        ++counted;
         for (std::uint32_t c = 0; c < components; ++c)
           sum[c] += double(color[c]);
       }
+      worker.samples += taken;
+      worker.pixels += taken == options.samplesPerPixel;
+      worker.pixelsWithoutSample += taken > 0 && counted == 0;
       float *pixel = image.at(x, y);
       for (std::uint32_t c = 0; c < components; ++c)
-        pixel[c] = float(sum[c] / double(options.samplesPerPixel));
+        pixel[c] = counted ? float(sum[c] / double(counted)) : taken ? options.withoutSample : 0.0f;
     }
 }
 
 void Renderer::Implementation::work() {
-  RayCounters &counters = rayCounters();
-  counters = RayCounters();
-  std::uint64_t notFinite = 0;
+  rayCounters() = RayCounters();
+  Worker worker{launch, {}, 0, 0, 0, SamplesNotFinite(options.mostNotFinite)};
+  worker.launch.status = &worker.status;
   try {
-    for (;;) {
-      if (stop.load(std::memory_order_relaxed) ||
-          (options.cancel && options.cancel->load(std::memory_order_relaxed)))
-        break;
+    while (!isCancelled()) {
       std::uint64_t tile = nextTile.fetch_add(1, std::memory_order_relaxed);
       if (tile >= tileCount)
         break;
       if (launch.colorComponents == 3)
-        renderTile(tile, notFinite, std::integral_constant<std::uint32_t, 3>());
+        renderTile(tile, worker, std::integral_constant<std::uint32_t, 3>());
       else
-        renderTile(tile, notFinite, launch.colorComponents);
+        renderTile(tile, worker, launch.colorComponents);
       report();
     }
   } catch (...) {
-    std::lock_guard<std::mutex> lock(mutex);
-    if (!failure)
-      failure = std::current_exception();
     stop = true;
+    throw;
   }
+  add(worker);
+}
+
+void Renderer::Implementation::add(Worker &worker) {
+  const RayCounters &counters = rayCounters();
   std::lock_guard<std::mutex> lock(mutex);
+  totals.samples += worker.samples;
+  totals.pixels += worker.pixels;
+  totals.pixelsWithoutSample += worker.pixelsWithoutSample;
   totals.badRays += counters.badRays;
   totals.retracedRays += counters.retracedRays;
   totals.rescaledRays += counters.rescaledRays;
-  totals.samplesNotFinite += notFinite;
+  totals.raysTooDeep += worker.status.raysTooDeep;
+  for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
+    totals.exceptions[i] += worker.status.exceptions[i];
+  notFinite.add(std::move(worker.notFinite));
 }
 
 void Renderer::Implementation::report() {
@@ -159,35 +185,28 @@ void Renderer::Implementation::report() {
 Image Renderer::render(RenderStatistics *statistics) {
   Implementation &s = *self;
   Clock::time_point start = Clock::now();
-  s.image = Image(s.options.width, s.options.height, s.launch.colorComponents);
+  s.image = newImage(s.options.width, s.options.height, s.launch.colorComponents);
   s.tilesAcross = (s.options.width + tileSize - 1) / tileSize;
   s.tileCount = s.tilesAcross * ((s.options.height + tileSize - 1) / tileSize);
   s.nextTile = 0;
   s.tilesDone = 0;
   s.stop = false;
   s.totals = RenderStatistics();
-  s.status = RtslStatus();
-  s.failure = nullptr;
+  s.notFinite = SamplesNotFinite(s.options.mostNotFinite);
 
-  std::vector<std::thread> helpers;
-  unsigned threads = unsigned(std::min<std::uint64_t>(threadCount(s.options), s.tileCount));
-  try {
-    for (unsigned i = 1; i < threads; ++i)
-      helpers.emplace_back([&s] { s.work(); });
-  } catch (const std::system_error &) {
-    // Fewer threads than hoped for: the picture is the same.
-  }
-  s.work();
-  for (std::thread &helper : helpers)
-    helper.join();
+  const Program &program = s.scene.program();
+  const std::uint64_t stackBytes =
+      program.stackBytes ? program.stackBytes(s.options.maxDepth, s.launch.referenceChain) : 0;
+  const unsigned threads = unsigned(std::min<std::uint64_t>(threadCount(s.options), s.tileCount));
+  runOnThreads(threads, stackBytes, [&s](unsigned) { s.work(); });
 
-  if (s.failure)
-    std::rethrow_exception(s.failure);
-  if (s.tilesDone < s.tileCount)
+  const std::uint64_t pixels = std::uint64_t(s.options.width) * s.options.height;
+  s.totals.isUnfinished = s.totals.pixels < pixels;
+  if (s.totals.isUnfinished && !s.options.keepsUnfinished)
     throw Error(ErrorCode::Cancelled, "rendering was cancelled");
-  s.totals.samples = std::uint64_t(s.options.width) * s.options.height * s.options.samplesPerPixel;
+  s.totals.samplesNotFinite = s.notFinite.total();
+  s.totals.notFinite = s.notFinite.take();
   s.totals.buildSeconds = s.buildSeconds;
-  std::copy_n(s.status.exceptions, RTSL_EXCEPTIONS, s.totals.exceptions);
   s.totals.renderSeconds = secondsSince(start);
   if (statistics)
     *statistics = s.totals;

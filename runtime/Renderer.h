@@ -17,7 +17,8 @@ public:
   ~Renderer();
 
   /// Renders with the program's number of channels. The result does not depend on the number of
-  /// threads. Throws Cancelled.
+  /// threads. Throws Cancelled, and OutOfMemory if
+  /// there is none for the picture or for the stacks of rays.
   Image render(RenderStatistics *statistics = nullptr);
 
   /// The launch that is handed to the program, for tools that call it themselves.

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace rtsl::scene {
 
@@ -134,9 +135,18 @@ public:
     return true;
   }
 
-  bool parse_error(std::size_t position, const std::string &,
+  bool parse_error(std::size_t position, const std::string &token,
                    const nlohmann::json::exception &exception) override {
     std::string message = exception.what();
+    if (message.find("number overflow") != std::string::npos) {
+      const std::size_t length = token.size();
+      const std::size_t start = position > length ? position - length : 0;
+      error = Error(ErrorCode::OutOfRange,
+                    fmt::format("`{}` is too large: numbers reach to {:.1e}", token,
+                                std::numeric_limits<double>::max()),
+                    placeOfOffset(text, *file, start, length));
+      return false;
+    }
     // "[json.exception...] parse error at ...: syntax error while parsing X - REASON; last read:
     // '...'; expected Y"
     std::size_t reason = message.find(" - ");

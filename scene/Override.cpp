@@ -31,8 +31,9 @@ JsonValue parseValue(const std::string &text, const std::string &origin) {
   try {
     return parseJson(text, origin);
   } catch (const Error &error) {
-    // What begins like JSON was meant to be JSON.
-    if (!text.empty() && (text[0] == '{' || text[0] == '[' || text[0] == '"'))
+    // What begins like JSON was meant to be JSON, and a number that is too large to be a number.
+    if (error.code == ErrorCode::OutOfRange ||
+        (!text.empty() && (text[0] == '{' || text[0] == '[' || text[0] == '"')))
       throw Error(ErrorCode::BadOverride, error.what(), Place{origin});
   }
   JsonValue value;

@@ -291,9 +291,9 @@ private:
       render.height = readInteger(size->elements[1], 1, 65536, "the height");
     }
     if (const JsonValue *spp = value.find("spp"))
-      render.samplesPerPixel = readInteger(*spp, 1, 0x7fffffff, "`spp`");
+      render.samplesPerPixel = readInteger(*spp, 1, runtime::mostSamplesPerPixel, "`spp`");
     if (const JsonValue *depth = value.find("depth"))
-      render.depth = readInteger(*depth, 0, 256, "`depth`");
+      render.depth = readInteger(*depth, 0, runtime::maxRayDepth, "`depth`");
     if (const JsonValue *seed = value.find("seed"))
       render.seed = readInteger(*seed, 0, 0xffffffff, "`seed`");
   }

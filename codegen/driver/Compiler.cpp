@@ -18,6 +18,8 @@
 #include "codegen/passes/restructure/Restructure.h"
 #include "frontend/Expansion.h"
 #include "runtime/DeviceBitcode.h"
+#include "runtime/NumberCheck.h"
+#include "runtime/WorkerThreads.h"
 #include "sema/Casting.h"
 #include "sema/Walk.h"
 
@@ -84,9 +86,14 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
   if (options.target == Target::HostMegakernel) {
     find(jit, "rtsl_lane_bytes", program.megakernel.laneBytes);
     find(jit, "rtsl_run_lane", program.megakernel.runLane);
+    program.megakernel.stackBytes = jit.stackUse()->bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
   } else {
     find(jit, sampleSymbols(program, options).front(), program.sample);
   }
+  program.stackBytes = [use = jit.stackUse()](std::uint32_t maxDepth, std::uint32_t referenceChain) {
+    // The camera's ray or `generate`, and rays of depth 0 to maxDepth.
+    return use->bytes(std::uint64_t(maxDepth) + 2, referenceChain);
+  };
   find(jit, "rtsl_rt_Material_anyHit_payload", program.slots.rt_Material_anyHit_payload);
 #define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "runtime/device/Slots.def"
@@ -282,6 +289,7 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu) {
 void load(LlvmCode code, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
           runtime::Program &program) {
   symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
+  symbols.push_back({"rtsl_check_number", reinterpret_cast<void *>(&rtsl_check_number)});
   if (options.floatingPoint == FloatingPoint::Double)
     for (const codegen::HostSymbol &function : codegen::doubleFunctions())
       symbols.push_back(function);
@@ -315,7 +323,10 @@ void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOpt
   keepConstructors(*copy);
   auto constructors = std::make_shared<runtime::Program>(program);
   compileConstructors(*copy, options, *constructors);
-  bindScene(ir, makeObjects(constructors), request.keep, findings);
+  // Constructors and bounds may have large local variables.
+  runtime::SceneFacts facts;
+  runtime::runOnThreads(1, constructors->stackBytes(0, 0), [&](unsigned) { facts = makeObjects(constructors); });
+  bindScene(ir, facts, request.keep, findings);
 }
 
 } // namespace
@@ -487,7 +498,8 @@ void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Pr
     run(ir, codegen::buildSsaPipeline);
   }
 
-  LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true));
+  LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true),
+                            options.checksNumbers ? &program.numberPlaces : nullptr);
   defineFacts(code, program);
   std::vector<codegen::HostSymbol> symbols;
   if (isMegakernel) {
@@ -546,7 +558,8 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
   linkDeviceCode(host, bitcodes, kept);
   codegen::optimize(*host.module, *host.machine, host.options);
   codegen::NativeImage image = take(codegen::makeNativeImage(*host.module, *host.machine, entries));
-  package.host = {std::move(image.bytes), image.entries[0], image.entries[1]};
+  package.host = {std::move(image.bytes), image.entries[0], image.entries[1],
+                  static_cast<std::uint32_t>(image.stackBytes)};
   return true;
 }
 

@@ -43,6 +43,8 @@ struct CompileOptions {
   bool savesAllThatIsLive = false;
   /// What -Wlive-state calls much, in bytes: half of the registers that a GPU thread of a ray tracer has, 32 of 64.
   std::uint32_t largeLiveState = 128;
+  /// Numbers go through checks, to find where they stop being finite (runtime/NumberCheck.h). The bits are the same.
+  bool checksNumbers = false;
   /// Bring everything back to level 1 and down again, with TraceMode::Split: for tests, which ask that this changes nothing.
   bool restructure = false;
   FloatingPoint floatingPoint = FloatingPoint::Strict;

@@ -1,6 +1,7 @@
 //===- Stages.cpp - the steps that all ways through the compiler share ----===//
 #include "codegen/driver/Stages.h"
 
+#include "codegen/emit/CheckNumbers.h"
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/DoublePrecision.h"
 #include "codegen/emit/FastMath.h"
@@ -12,7 +13,17 @@
 
 #include "llvm/Support/raw_ostream.h"
 
+#include <cerrno>
+#include <cstring>
+#include <new>
+
 namespace rtsl::driver {
+
+void fail(const std::string &message) {
+  if (message.find(std::strerror(ENOMEM)) != std::string::npos)
+    throw std::bad_alloc();
+  throw std::logic_error(message);
+}
 
 std::unique_ptr<mlir::MLIRContext> makeContext() {
   mlir::DialectRegistry registry;
@@ -93,10 +104,13 @@ std::string print(mlir::ModuleOp ir) {
   return text;
 }
 
-LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options) {
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
+                   std::vector<runtime::Place> *numberPlaces) {
   LlvmCode code;
   code.kept = keptFunctions(ir);
   run(ir, codegen::buildLlvmPipeline);
+  if (numberPlaces)
+    codegen::checkNumbers(ir, *numberPlaces);
   code.options = options;
   code.machine = take(codegen::createTargetMachine(options));
   code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));

@@ -26,10 +26,13 @@
 
 namespace rtsl::driver {
 
+/// Throws std::logic_error, or std::bad_alloc if the message is that of a system without memory.
+[[noreturn]] void fail(const std::string &message);
+
 template <typename T>
 T take(llvm::Expected<T> expected) {
   if (!expected)
-    throw std::logic_error(llvm::toString(expected.takeError()));
+    fail(llvm::toString(expected.takeError()));
   return std::move(*expected);
 }
 
@@ -68,7 +71,9 @@ struct LlvmCode {
 };
 
 /// Level 2 as LLVM IR that is not linked with device code yet.
-LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options);
+/// With `numberPlaces`, numbers are checked, and their places are added there (CheckNumbers.h).
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
+                   std::vector<runtime::Place> *numberPlaces = nullptr);
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports);
 

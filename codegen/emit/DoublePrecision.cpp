@@ -1,6 +1,8 @@
 //===- DoublePrecision.cpp - what --fp=double changes ---------------------===//
 #include "codegen/emit/DoublePrecision.h"
 
+#include "runtime/NumberCheck.h"
+
 #include "llvm/Analysis/ConstantFolding.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/InstIterator.h"
@@ -35,6 +37,7 @@ const DoubleFunction functions[] = {
     UNARY(acosh),  UNARY(atanh), UNARY(exp),   UNARY(exp2),  UNARY(expm1),
     UNARY(log),    UNARY(log2),  UNARY(log1p), BINARY(pow),  BINARY(atan2),
     {"rtsl_double_inversesqrt", reinterpret_cast<void *>(&inverseSquareRoot)},
+    {"rtsl_double_check_number", reinterpret_cast<void *>(&rtsl_double_check_number)},
 };
 
 /// The name of the double function for an elementary one of the device code; empty for others.
@@ -133,7 +136,9 @@ private:
     llvm::Module &module = *function.getParent();
     llvm::Type *type = call->getArgOperand(0)->getType();
     if (const std::string name = doubleNameOf(*call); !name.empty()) {
-      llvm::SmallVector<llvm::Type *> operands(call->arg_size(), type);
+      llvm::SmallVector<llvm::Type *> operands;
+      for (const llvm::Use &argument : call->args()) // wide by now, but for integers
+        operands.push_back(argument->getType());
       llvm::FunctionCallee callee =
           module.getOrInsertFunction(name, llvm::FunctionType::get(type, operands, false), call->getCalledFunction()->getAttributes());
       call->setCalledFunction(callee);

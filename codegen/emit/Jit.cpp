@@ -20,6 +20,7 @@ struct Jit::Implementation {
   std::unique_ptr<orc::LLJIT> jit;
   std::map<std::string, void *> addresses;
   std::string messages; // what went wrong on the way, beside what is returned
+  std::shared_ptr<StackUse> stackUse;
 };
 
 Jit::Jit() : implementation(std::make_unique<Implementation>()) {}
@@ -90,6 +91,7 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::unique_ptr<llvm::LLVMConte
     defined.erase(self.jit->mangleAndIntern(name));
   if (llvm::Error error = library.define(orc::absoluteSymbols(std::move(defined))))
     return error;
+  self.stackUse = std::make_shared<StackUse>(*module);
   if (llvm::Error error = self.jit->addIRModule(
           orc::ThreadSafeModule(std::move(module), orc::ThreadSafeContext(std::move(context)))))
     return error;
@@ -110,6 +112,10 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::unique_ptr<llvm::LLVMConte
 void *Jit::lookup(const std::string &name) const {
   auto found = implementation->addresses.find(name);
   return found == implementation->addresses.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<const StackUse> Jit::stackUse() const {
+  return implementation->stackUse;
 }
 
 } // namespace rtsl::codegen

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/emit/StackUse.h"
 
 #include <memory>
 #include <string>
@@ -29,6 +30,9 @@ public:
 
   /// Address of an exported function; null if the module defines none of that name.
   void *lookup(const std::string &name) const;
+
+  /// Of all of the module.
+  std::shared_ptr<const StackUse> stackUse() const;
 
 private:
   Jit();

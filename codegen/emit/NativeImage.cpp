@@ -6,6 +6,8 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/emit/NativeImage.h"
 
+#include "codegen/emit/StackUse.h"
+
 #include "llvm/ADT/BitmaskEnum.h"
 #include "llvm/ExecutionEngine/JITLink/ELF_x86_64.h"
 #include "llvm/ExecutionEngine/JITLink/JITLinkMemoryManager.h"
@@ -172,6 +174,7 @@ llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMa
   llvm::SmallString<0> object;
   llvm::raw_svector_ostream stream(object);
   llvm::legacy::PassManager passes;
+  const StackUse stackUse(module);
   if (machine.addPassesToEmitFile(passes, stream, nullptr, llvm::CodeGenFileType::ObjectFile))
     return llvm::createStringError("the code generator writes no object files");
   passes.run(module);
@@ -184,6 +187,7 @@ llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMa
   jitlink::link_ELF_x86_64(std::move(*graph), std::make_unique<Context>(result, entries));
   if (result.error)
     return std::move(result.error);
+  result.image.stackBytes = stackUse.bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
   return std::move(result.image);
 }
 

@@ -23,6 +23,7 @@ namespace rtsl::codegen {
 struct NativeImage {
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint64_t> entries; // where the functions that were asked for begin
+  std::uint64_t stackBytes = 0;       // of the calling thread, at most
 };
 
 /// Compiles an optimised module for the host. An error if it calls what it does not define, has

@@ -76,6 +76,15 @@ uint32_t rtslSceneChannels(const RtslScene *scene);
 /* Renders and writes an .exr or .png. */
 int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path);
 
+/* What the last rendering of this thread met. Samples that are infinite or not a number are left out of the means of their
+ * pixels, and rays deeper than maxDepth are not sent: neither stops a rendering. */
+typedef struct RtslRenderFacts {
+  uint64_t samples;
+  uint64_t samplesNotFinite, pixelsWithoutSample; /* black, for none of their samples was finite */
+  uint64_t raysTooDeep, badRays;
+} RtslRenderFacts;
+RtslRenderFacts rtslLastRendering(void);
+
 /* Gives `take` each line that shaders (printed with --print) have printed since the last time, in the order of pixels. */
 int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context), void *context);
 

@@ -54,6 +54,20 @@ runtime::RenderOptions optionsOf(const RtslRenderSettings *settings) {
   return options;
 }
 
+RtslRenderFacts &lastRendering() {
+  static thread_local RtslRenderFacts facts{};
+  return facts;
+}
+
+runtime::Image render(const RtslScene *scene, const RtslRenderSettings *settings) {
+  runtime::RenderStatistics statistics;
+  lastRendering() = {};
+  runtime::Image image = runtime::render(scene->scene, optionsOf(settings), &statistics);
+  lastRendering() = {statistics.samples, statistics.samplesNotFinite, statistics.pixelsWithoutSample, statistics.raysTooDeep,
+                     statistics.badRays};
+  return image;
+}
+
 } // namespace
 
 extern "C" {
@@ -200,7 +214,7 @@ uint32_t rtslSceneChannels(const RtslScene *scene) { return scene->scene.program
 
 int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels) {
   return guarded(0, [&] {
-    const runtime::Image image = runtime::render(scene->scene, optionsOf(settings));
+    const runtime::Image image = render(scene, settings);
     std::copy(image.pixels.begin(), image.pixels.end(), pixels);
     return 1;
   });
@@ -209,10 +223,12 @@ int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float
 int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path) {
   return guarded(0, [&] {
     runtime::checkWritable(path);
-    runtime::writeImage(path, runtime::render(scene->scene, optionsOf(settings)));
+    runtime::writeImage(path, render(scene, settings));
     return 1;
   });
 }
+
+RtslRenderFacts rtslLastRendering(void) { return lastRendering(); }
 
 int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context), void *context) {
   return guarded(0, [&] {

@@ -89,13 +89,20 @@ typedef struct RtslLaunch {
 #define RTSL_EXCEPTION_INDEX 3u          // an index out of range
 #define RTSL_EXCEPTIONS 4u
 
+/// How many of the samples that are not finite a status names: the first in the order of the picture.
+#define RTSL_FIRST_NOT_FINITE 8
+
 /// What all lanes of a job write, one after the other. The host clears it before.
 typedef struct RtslStatus {
   uint64_t nextPixel; // the first that nobody has taken; row by row from the top left
   uint64_t badRays;   // not finite, or without a direction: they saw color 0
-  uint64_t samplesNotFinite;
+  uint64_t raysTooDeep;         // deeper than the launch allows: they were not sent
+  uint64_t samplesNotFinite;    // left out of the means of their pixels
+  uint64_t pixelsWithoutSample; // black, for none of their samples was finite
+  uint64_t firstNotFinite[RTSL_FIRST_NOT_FINITE]; // ~(pixel * samplesPerPixel + sample), descending; 0: none
+  uint64_t unfinishedPixels, unfinishedSamples;   // pixels that `stop` has cut off, and what they have
   uint64_t exceptions[RTSL_EXCEPTIONS]; // samples that ended so
-  uint32_t stop;    // set by anybody: no lane begins another pixel
+  uint32_t stop;    // set by anybody: no lane begins another pixel, and on CPUs no other sample
   uint32_t problem; // RTSL_PROBLEM_*
 } RtslStatus;
 

@@ -141,8 +141,11 @@ inline bool maySpawn(RtslState &parent, uint32_t *dimension) {
   *dimension = parent.dimension++; // even if nothing is traced, so that depth does not change what
                                    // is drawn later
   bool isShallow = parent.Depth < int32_t(parent.launch->maxDepth); // `generate` is at -1
-  if (!isShallow)
+  if (!isShallow) {
     raise(parent, RTSL_EXCEPTION_STACK_OVERFLOW);
+    if (RtslStatus *status = parent.launch->status)
+      countUp(&status->raysTooDeep);
+  }
   return isShallow && !isAbandoned(parent);
 }
 

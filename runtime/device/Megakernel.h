@@ -18,7 +18,8 @@ namespace rtsl::device {
 struct alignas(16) Lane {
   double sum[RTSL_MAX_COLOR]; // of the pixel's samples, in their order
   uint64_t pixel;
-  uint32_t sample; // the next one of the pixel
+  uint32_t sample;    // the next one of the pixel
+  uint32_t notFinite; // samples of the pixel that are left out
 };
 
 /// What a lane wants that has found no pixel. Beside the values of Rays::next.
@@ -28,34 +29,68 @@ inline uint64_t laneBytes(uint32_t maxDepth, uint32_t referenceChain) {
   return sizeof(Lane) + stackSize(maxDepth, referenceChain);
 }
 
-/// Adds the color of a sample that is over to its pixel. A color that is not finite counts as black,
-/// for it would take the whole pixel with it.
+/// Puts a sample among the first that are not finite, whoever else does the same: each place keeps
+/// the earlier of two samples and hands the other one on to the next place.
+inline void noteNotFinite(RtslStatus &status, uint64_t sample) {
+  uint64_t rank = ~sample; // the earlier the larger, and never 0
+  for (uint64_t &place : status.firstNotFinite) {
+    uint64_t held = __atomic_load_n(&place, __ATOMIC_RELAXED);
+    while (held < rank && !__atomic_compare_exchange_n(&place, &held, rank, false, __ATOMIC_RELAXED,
+                                                       __ATOMIC_RELAXED))
+      ;
+    if (held < rank)
+      rank = held;
+    if (rank == 0)
+      return;
+  }
+}
+
+/// Adds the color of a sample that is over to its pixel. One that is not finite is left out of the
+/// pixel's mean, for it would take the whole pixel with it.
 inline void addSample(const RtslJob &job, Lane &lane, const float *color) {
   uint32_t components = rtsl_color_components(job.launch);
   bool isNotFinite = false;
   for (uint32_t i = 0; i < components; ++i)
     isNotFinite |= !(absolute(color[i]) < infinity);
   if (isNotFinite) {
+    ++lane.notFinite;
     countUp(&job.status->samplesNotFinite);
+    noteNotFinite(*job.status, lane.pixel * job.samplesPerPixel + lane.sample);
     return;
   }
   for (uint32_t i = 0; i < components; ++i)
     lane.sum[i] += double(color[i]);
 }
 
+/// The mean of the samples so far; black without any.
 inline void writePixel(const RtslJob &job, const Lane &lane) {
   uint32_t components = rtsl_color_components(job.launch);
   float *pixel = job.pixels + lane.pixel * components;
+  uint32_t count = lane.sample - lane.notFinite;
+  if (count == 0)
+    countUp(&job.status->pixelsWithoutSample);
   for (uint32_t i = 0; i < components; ++i)
-    pixel[i] = float(lane.sum[i] / double(job.samplesPerPixel));
+    pixel[i] = count ? float(lane.sum[i] / double(count)) : 0.0f;
+}
+
+inline bool isToStop(const RtslJob &job) {
+  return __atomic_load_n(&job.status->stop, __ATOMIC_RELAXED);
+}
+
+/// A pixel is left as far as it is.
+inline void leavePixel(const RtslJob &job, Lane &lane) {
+  countUp(&job.status->unfinishedPixels);
+  __atomic_fetch_add(&job.status->unfinishedSamples, uint64_t(lane.sample), __ATOMIC_RELAXED);
+  writePixel(job, lane);
+  lane.sample = job.samplesPerPixel;
 }
 
 /// Takes a pixel that nobody has. False if there is none, or the job is to stop.
 inline bool takePixel(const RtslJob &job, Lane &lane) {
-  if (__atomic_load_n(&job.status->stop, __ATOMIC_RELAXED))
+  if (isToStop(job))
     return false;
   lane.pixel = countUp(&job.status->nextPixel);
-  lane.sample = 0;
+  lane.sample = lane.notFinite = 0;
   for (uint32_t i = 0; i < rtsl_color_components(job.launch); ++i)
     lane.sum[i] = 0;
   return lane.pixel < uint64_t(job.launch->width) * job.launch->height;
@@ -63,6 +98,10 @@ inline bool takePixel(const RtslJob &job, Lane &lane) {
 
 /// Starts the next sample, of this pixel or of another one.
 inline void nextSample(const RtslJob &job, Lane &lane, Rays &rays) {
+#ifndef __NVPTX__ // where each sample would wait for the memory that all lanes share
+  if (lane.sample != job.samplesPerPixel && isToStop(job))
+    leavePixel(job, lane);
+#endif
   if (lane.sample == job.samplesPerPixel && !takePixel(job, lane)) {
     rays.next = nothingLeft;
     return;

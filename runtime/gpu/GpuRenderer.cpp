@@ -64,7 +64,7 @@ Image renderOnGpu(const Package &package, const RenderOptions &options, unsigned
   device.upload(sceneAddress, scene.bytes.data(), scene.bytes.size());
   gpu.uploadSeconds = secondsSince(start);
 
-  Image image(options.width, options.height, scene.launch().colorComponents);
+  Image image = newImage(options.width, options.height, scene.launch().colorComponents);
   const std::size_t pixelBytes = image.pixels.size() * sizeof(float);
   const CudaDevice::Address pixels = device.allocate(pixelBytes, "the picture");
 

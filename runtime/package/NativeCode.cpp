@@ -11,7 +11,8 @@
 namespace rtsl::runtime {
 
 NativeCode::NativeCode(const NativeImage &image)
-    : size(image.bytes.size()), laneBytes(image.laneBytes), runLane(image.runLane) {
+    : size(image.bytes.size()), laneBytes(image.laneBytes), runLane(image.runLane),
+      stackBytes(image.stackBytes) {
   memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED)
     throw Error(ErrorCode::OutOfMemory, "not enough memory for the package's code");
@@ -33,6 +34,7 @@ MegakernelCode NativeCode::entries() const {
   MegakernelCode code;
   code.laneBytes = reinterpret_cast<decltype(code.laneBytes)>(at(laneBytes));
   code.runLane = reinterpret_cast<decltype(code.runLane)>(at(runLane));
+  code.stackBytes = stackBytes;
   return code;
 }
 

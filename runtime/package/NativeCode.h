@@ -20,7 +20,7 @@ public:
 private:
   void *memory = nullptr;
   std::size_t size = 0;
-  std::uint64_t laneBytes, runLane;
+  std::uint64_t laneBytes, runLane, stackBytes;
 };
 
 } // namespace rtsl::runtime

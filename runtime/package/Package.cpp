@@ -16,7 +16,7 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 3;
+constexpr std::uint32_t formatVersion = 4;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -52,7 +52,7 @@ struct Layouts {
 struct Info {
   Layouts layouts;
   std::uint32_t width, height, samplesPerPixel, maxDepth, seed;
-  std::uint32_t stateCount, frameBytes, reserved;
+  std::uint32_t stateCount, frameBytes, hostStackBytes;
   std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
 };
 static_assert(sizeof(Info) == 80);
@@ -84,6 +84,7 @@ Info infoOf(const Package &package) {
   info.seed = package.options.seed;
   info.stateCount = package.stateCount;
   info.frameBytes = package.frameBytes;
+  info.hostStackBytes = package.host.stackBytes;
   info.hostLaneBytes = package.host.laneBytes;
   info.hostRunLane = package.host.runLane;
   return info;
@@ -215,6 +216,7 @@ private:
     if (laneBytes.size() != sizeof package.laneBytes)
       refuseDamaged();
     std::memcpy(package.laneBytes.data(), laneBytes.data(), sizeof package.laneBytes);
+    package.host.stackBytes = info.hostStackBytes;
     package.host.laneBytes = info.hostLaneBytes;
     package.host.runLane = info.hostRunLane;
     const std::uint64_t code = content(SectionKind::HostCode).size();

@@ -21,6 +21,7 @@ namespace rtsl::runtime {
 struct NativeImage {
   std::vector<std::uint8_t> bytes;
   std::uint64_t laneBytes = 0, runLane = 0; // where these functions begin (MegakernelCode)
+  std::uint32_t stackBytes = 0;             // that runLane takes of its thread
 };
 
 struct Package {

@@ -73,6 +73,10 @@ int main(int count, char **arguments) {
   /* Into memory, and what it prints is there once. */
   if (rtslSceneChannels(scene) != 3 || !rtslRender(scene, &settings, pixels) || !(pixels[0] > 0.0f))
     return fail("pixels");
+  /* Each sample ends in a ray that is deeper than the limit. */
+  if (rtslLastRendering().samples != 32 || rtslLastRendering().samplesNotFinite != 0 ||
+      rtslLastRendering().raysTooDeep == 0)
+    return fail("what the rendering met");
   if (!rtslTakePrinted(scene, show, &again) || again != lines || !rtslTakePrinted(scene, show, &again) || again != lines)
     return fail("printed lines");
   rtslSceneDestroy(scene);

@@ -1,5 +1,6 @@
 // Studies of subjects that are no renderers: their errors, times and faults are known.
 #include "report/Page.h"
+#include "report/RunningVariance.h"
 #include "report/Study.h"
 #include "report/Summary.h"
 
@@ -7,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -249,6 +251,22 @@ TEST_F(Studies, CountWhatIsNotFinite) {
   EXPECT_EQ(summary.subjects[0].infinitePixels, pictures);
   EXPECT_EQ(summary.subjects[0].samplesNotFinite, 2 * pictures);
   EXPECT_NEAR(summary.subjects[0].relMseOverSamples.slope.value, -1, 0.05) << "the other pixels still count";
+}
+
+TEST(RunningVariances, LeaveOutWhatIsNotFinite) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  RunningVariance spread;
+  for (const std::array<float, 3> &values : {std::array<float, 3>{1, nan, nan}, {3, 5, nan}, {nan, 7, nan}}) {
+    Image picture(1, 1, 3);
+    picture.pixels.assign(values.begin(), values.end());
+    spread.add(picture);
+  }
+  const Image mean = spread.mean();
+  EXPECT_EQ(mean.pixels[0], 2.0f);
+  EXPECT_EQ(mean.pixels[1], 6.0f);
+  EXPECT_TRUE(std::isnan(mean.pixels[2]));
+  EXPECT_DOUBLE_EQ(spread.meanVariance(), 2); // of the values that two pictures have
+  EXPECT_DOUBLE_EQ(spread.meanRelativeVariance(0), (2.0 / 4 + 2.0 / 36) / 2);
 }
 
 TEST_F(Studies, MeasureTimesWithoutAUsableReference) {

@@ -2,12 +2,16 @@
 
 #include "report/ErrorMetrics.h"
 #include "runtime/Renderer.h"
+#include "runtime/device/Megakernel.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <random>
+#include <thread>
 
 namespace report = rtsl::report;
 using namespace rtsl::runtime;
@@ -183,6 +187,84 @@ TEST(Renderer, ProgressReachesOneAndCancellingStops) {
   }
 }
 
+TEST(Renderer, WhatIsCancelledCanBeKept) {
+  Scene scene = room();
+  RenderOptions options = small();
+  const Image whole = render(scene, options);
+  std::atomic<bool> cancel{false};
+  options.cancel = &cancel;
+  options.keepsUnfinished = true;
+  options.progress = [&](double share) { cancel = share > 0.3; };
+  RenderStatistics statistics;
+  const Image part = render(scene, options, &statistics);
+  EXPECT_TRUE(statistics.isUnfinished);
+  EXPECT_GT(statistics.pixels, 96u * 64 / 4);
+  EXPECT_LT(statistics.pixels, 96u * 64);
+  EXPECT_GE(statistics.samples, 4 * statistics.pixels);
+  // What is done is done; where nothing is, the picture is black.
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < whole.pixels.size(); i += 3)
+    same += std::equal(&whole.pixels[i], &whole.pixels[i] + 3, &part.pixels[i]);
+  EXPECT_GE(same, statistics.pixels);
+}
+
+/// Samples that are infinite, in column 0 all of them, in the others each fourth.
+void spoilt(const RtslLaunch *, std::uint32_t x, std::uint32_t, std::uint32_t sample, float *color) {
+  const bool isBad = x == 0 || sample % 4 == 2;
+  color[0] = color[2] = 0.25f * float(sample % 4);
+  color[1] = isBad ? std::numeric_limits<float>::infinity() : 1.0f;
+}
+
+TEST(Renderer, SamplesThatAreNotFiniteAreLeftOut) {
+  const std::shared_ptr<Program> program = fakeProgram();
+  program->sample = spoilt;
+  Scene scene(program);
+  scene.setCamera(addCamera(scene));
+  RenderOptions options = small();
+  options.samplesPerPixel = 8;
+  options.withoutSample = 7;
+  for (unsigned threads : {1u, 5u}) {
+    options.threads = threads;
+    RenderStatistics statistics;
+    const Image image = render(scene, options, &statistics);
+    EXPECT_EQ(statistics.samplesNotFinite, 64u * 8 + 95u * 64 * 2);
+    EXPECT_EQ(statistics.pixelsWithoutSample, 64u);
+    EXPECT_EQ(image.at(0, 5)[1], 7.0f);
+    EXPECT_EQ(image.at(5, 5)[0], float(0.25 * (0 + 1 + 3) / 3));
+    EXPECT_EQ(image.at(5, 5)[1], 1.0f);
+    ASSERT_EQ(statistics.notFinite.size(), std::size_t(RTSL_FIRST_NOT_FINITE));
+    for (std::uint32_t i = 0; i < RTSL_FIRST_NOT_FINITE; ++i) {
+      EXPECT_EQ(statistics.notFinite[i].x, 0u);
+      EXPECT_EQ(statistics.notFinite[i].y, 0u);
+      EXPECT_EQ(statistics.notFinite[i].sample, i);
+    }
+  }
+  options.mostNotFinite = 100000;
+  RenderStatistics statistics;
+  render(scene, options, &statistics);
+  EXPECT_EQ(statistics.notFinite.size(), statistics.samplesNotFinite);
+  EXPECT_TRUE(std::is_sorted(statistics.notFinite.begin(), statistics.notFinite.end()));
+}
+
+TEST(Renderer, LanesKeepTheFirstSamplesThatAreNotFinite) {
+  constexpr unsigned threads = 4, each = 5000;
+  RtslStatus status{};
+  std::vector<std::thread> lanes;
+  for (unsigned lane = 0; lane < threads; ++lane)
+    lanes.emplace_back([&, lane] {
+      std::vector<std::uint64_t> samples(each);
+      for (unsigned i = 0; i < each; ++i)
+        samples[i] = 10 + threads * i + lane;
+      std::shuffle(samples.begin(), samples.end(), std::mt19937(lane));
+      for (std::uint64_t sample : samples)
+        rtsl::device::noteNotFinite(status, sample);
+    });
+  for (std::thread &lane : lanes)
+    lane.join();
+  for (unsigned i = 0; i < RTSL_FIRST_NOT_FINITE; ++i)
+    EXPECT_EQ(status.firstNotFinite[i], ~std::uint64_t(10 + i));
+}
+
 TEST(Renderer, RefusesOptionsOutOfRange) {
   Scene scene = room();
   auto codeOf = [&](auto change) {
@@ -197,7 +279,7 @@ TEST(Renderer, RefusesOptionsOutOfRange) {
   };
   EXPECT_EQ(
       codeOf([](RenderOptions &o) { o.samplesPerPixel = 0; }),
-      "outOfRange: the number of samples per pixel must lie between 1 and 4294967294, not be 0");
+      "outOfRange: the number of samples per pixel must lie between 1 and 2147483647, not be 0");
   EXPECT_EQ(codeOf([](RenderOptions &o) { o.width = 0; }),
             "outOfRange: the width must lie between 1 and 65536, not be 0");
   EXPECT_EQ(codeOf([](RenderOptions &o) { o.maxDepth = 1000; }),

@@ -1,0 +1,215 @@
+//===- StackUse.cpp - how much stack machine code takes --------------------===//
+#include "codegen/emit/StackUse.h"
+
+#include "llvm/ADT/StringMap.h"
+#include "llvm/IR/DiagnosticInfo.h"
+#include "llvm/IR/DiagnosticHandler.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/LLVMContext.h"
+#include "llvm/IR/Module.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace rtsl::codegen {
+
+namespace {
+
+using Index = std::size_t;
+
+/// The return address, the caller's frame pointer, and alignment.
+constexpr std::uint64_t callBytes = 32;
+
+struct Node {
+  std::string name;
+  std::uint64_t frame = callBytes;
+  std::vector<Index> callees; // in the module, each once
+
+  /// Functions of runtime/device and the switches over classes, of which a ray passes through each
+  /// once: trace, and the slots of methods. Functions of shaders have a dot in their names.
+  bool isRuntime() const {
+    return name.compare(0, 5, "rtsl_") == 0 && name.find('.') == std::string::npos;
+  }
+};
+using Graph = std::vector<Node>;
+
+/// Frame sizes, as the code generator reports them, by function.
+using Frames = llvm::StringMap<std::uint64_t>;
+
+struct CollectFrames : llvm::DiagnosticHandler {
+  explicit CollectFrames(std::shared_ptr<Frames> frames) : frames(std::move(frames)) {}
+  bool handleDiagnostics(const llvm::DiagnosticInfo &info) override {
+    const auto *stack = llvm::dyn_cast<llvm::DiagnosticInfoStackSize>(&info);
+    if (stack)
+      (*frames)[stack->getFunction().getName()] = stack->getStackSize();
+    return stack != nullptr;
+  }
+  std::shared_ptr<Frames> frames;
+};
+
+/// Tarjan's strongly connected components of the nodes in `chosen`, callees before callers. Chains of
+/// calls may be long, so the walk keeps a stack of its own.
+std::vector<std::vector<Index>> componentsOf(const Graph &graph, const std::vector<bool> &chosen) {
+  constexpr Index none = ~Index(0);
+  struct Step {
+    Index node, next;
+  };
+  std::vector<Index> order(graph.size(), none), low(graph.size(), none), open;
+  std::vector<bool> isOpen(graph.size(), false);
+  std::vector<std::vector<Index>> components;
+  std::vector<Step> walk;
+  Index count = 0;
+  const auto enter = [&](Index node) {
+    order[node] = low[node] = count++;
+    open.push_back(node);
+    isOpen[node] = true;
+    walk.push_back({node, 0});
+  };
+  for (Index root = 0; root < graph.size(); ++root) {
+    if (!chosen[root] || order[root] != none)
+      continue;
+    enter(root);
+    while (!walk.empty()) {
+      const Index node = walk.back().node;
+      if (walk.back().next < graph[node].callees.size()) {
+        const Index callee = graph[node].callees[walk.back().next++];
+        if (!chosen[callee])
+          continue;
+        if (order[callee] == none)
+          enter(callee);
+        else if (isOpen[callee])
+          low[node] = std::min(low[node], order[callee]);
+        continue;
+      }
+      walk.pop_back();
+      if (!walk.empty())
+        low[walk.back().node] = std::min(low[walk.back().node], low[node]);
+      if (low[node] != order[node])
+        continue;
+      components.emplace_back();
+      Index member;
+      do {
+        member = open.back();
+        open.pop_back();
+        isOpen[member] = false;
+        components.back().push_back(member);
+      } while (member != node);
+    }
+  }
+  return components;
+}
+
+bool isCycle(const Graph &graph, const std::vector<Index> &component) {
+  const std::vector<Index> &callees = graph[component[0]].callees;
+  return component.size() > 1 ||
+         std::find(callees.begin(), callees.end(), component[0]) != callees.end();
+}
+
+std::uint64_t sumOf(const Graph &graph, const std::vector<Index> &nodes) {
+  std::uint64_t sum = 0;
+  for (Index node : nodes)
+    sum += graph[node].frame;
+  return sum;
+}
+
+/// The longest way down through the chosen nodes, where `weigh(component)` is what a component takes
+/// by itself.
+template <typename Weigh>
+std::uint64_t longestPath(const Graph &graph, const std::vector<bool> &chosen, Weigh weigh) {
+  std::vector<std::uint64_t> below(graph.size(), 0); // from a node on, itself included
+  std::uint64_t longest = 0;
+  for (const std::vector<Index> &component : componentsOf(graph, chosen)) {
+    std::uint64_t deepest = 0;
+    for (Index node : component)
+      for (Index callee : graph[node].callees)
+        if (chosen[callee]) // those of the component itself are 0 still
+          deepest = std::max(deepest, below[callee]);
+    const std::uint64_t bytes = deepest + weigh(component);
+    for (Index node : component)
+      below[node] = bytes;
+    longest = std::max(longest, bytes);
+  }
+  return longest;
+}
+
+} // namespace
+
+struct StackUse::Implementation {
+  Graph graph;
+  std::shared_ptr<Frames> frames = std::make_shared<Frames>();
+
+  /// One ray's frames in functions that call one another in a circle. Without the runtime's part,
+  /// which leads from one ray to the next, there is no circle left, or one of methods that go from
+  /// object to object, or `trace` was inlined.
+  std::uint64_t perRay(const Graph &known, const std::vector<Index> &cycle,
+                       std::uint64_t referenceChain) const {
+    std::uint64_t runtime = 0;
+    std::vector<bool> shaders(known.size(), false);
+    for (Index node : cycle)
+      if (known[node].isRuntime())
+        runtime += known[node].frame;
+      else
+        shaders[node] = true;
+    return runtime + longestPath(known, shaders, [&](const std::vector<Index> &part) {
+             return sumOf(known, part) * (isCycle(known, part) ? referenceChain + 1 : 1);
+           });
+  }
+};
+
+StackUse::StackUse(llvm::Module &module) : self(std::make_unique<Implementation>()) {
+  llvm::StringMap<Index> indices;
+  for (llvm::Function &function : module)
+    if (!function.isDeclaration()) {
+      function.addFnAttr("warn-stack-size", "0"); // report each frame
+      indices[function.getName()] = self->graph.size();
+      self->graph.push_back({function.getName().str(), callBytes, {}});
+    }
+  for (const llvm::Function &function : module)
+    for (const llvm::Instruction &instruction : llvm::instructions(function))
+      if (const auto *call = llvm::dyn_cast<llvm::CallBase>(&instruction))
+        if (const llvm::Function *callee = call->getCalledFunction(); callee && !callee->isDeclaration()) {
+          std::vector<Index> &callees = self->graph[indices[function.getName()]].callees;
+          const Index index = indices[callee->getName()];
+          if (std::find(callees.begin(), callees.end(), index) == callees.end())
+            callees.push_back(index);
+        }
+  module.getContext().setDiagnosticHandler(std::make_unique<CollectFrames>(self->frames));
+}
+
+StackUse::~StackUse() = default;
+
+std::uint64_t StackUse::bytes(std::uint64_t rays, std::uint64_t referenceChain) const {
+  Graph known = self->graph;
+  for (Node &node : known)
+    node.frame = callBytes + self->frames->lookup(node.name);
+  const std::vector<bool> all(known.size(), true);
+  bool isRecursive = false;
+  const std::uint64_t path = longestPath(known, all, [&](const std::vector<Index> &component) {
+    if (!isCycle(known, component))
+      return sumOf(known, component);
+    isRecursive = true;
+    return rays * self->perRay(known, component, referenceChain);
+  });
+  if (!isRecursive)
+    return path;
+  // At the end of the last ray's traversal the runtime calls back: `intersect`, `anyHit`.
+  std::vector<bool> leaves(known.size(), false);
+  std::vector<bool> recurses(known.size(), false);
+  for (const std::vector<Index> &component : componentsOf(known, all)) {
+    bool leads = isCycle(known, component);
+    for (Index node : component)
+      for (Index callee : known[node].callees)
+        leads = leads || recurses[callee];
+    for (Index node : component) {
+      recurses[node] = leads;
+      leaves[node] = !leads;
+    }
+  }
+  return path + longestPath(known, leaves, [&](const std::vector<Index> &component) {
+           return sumOf(known, component);
+         });
+}
+
+} // namespace rtsl::codegen
