@@ -58,7 +58,7 @@ class Report(Case):
             time.sleep(0.02)
         running.send_signal(signal.SIGINT)
         error = running.communicate(timeout=300)[1].decode()
-        self.assertEqual(running.returncode, 1, error)
+        self.assertEqual(running.returncode, 130, error)
         self.assertIn("the same command goes on from here", error)
         before = table.read_text()
         # Interrupted while it wrote, too.

@@ -4,10 +4,11 @@ _rtslc() {
   [[ $previous == "=" ]] && previous="${COMP_WORDS[COMP_CWORD-2]}"
   [[ $current == "=" ]] && current=""
   local program="${COMP_WORDS[0]}" command="${COMP_WORDS[1]}"
-  if (( COMP_CWORD == 1 )); then
+  if (( COMP_CWORD == 1 )) || [[ $command == help && $current != -* ]]; then
     local commands
     commands=$("$program" --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p')
-    mapfile -t COMPREPLY < <(compgen -W "$commands --help --version" -- "$current")
+    (( COMP_CWORD == 1 )) && commands="$commands --help --version"
+    mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current")
     return
   fi
   local help

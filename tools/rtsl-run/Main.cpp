@@ -1,23 +1,27 @@
 //===- Main.cpp - rtsl-run, which renders packages ------------------------===//
 //
 // A program without a compiler in it: it renders what `rtslc pack` wrote, on a GPU or on the CPU.
-// Exit status: 0 fine, 1 the package, the device or the picture is not as it must be, 2 wrong
-// arguments, 3 a fault of rtsl-run or of the code in the package.
+// Exit status: 0 fine, 1 the package, the device or the picture is not as it must be, or there is no
+// memory or disk, 2 wrong arguments, 3 a fault of rtsl-run or of the code in the package; 130 and 143
+// if SIGINT or SIGTERM stopped it.
 //
 //===----------------------------------------------------------------------===//
+#include "runtime/AtomicFile.h"
 #include "runtime/HostMegakernel.h"
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
-#include "tools/rtslc/PictureSize.h"
+#include "tools/rtslc/Interruption.h"
+#include "tools/rtslc/OptionValues.h"
+#include "tools/rtslc/OutOfMemory.h"
+#include "tools/rtslc/Outcome.h"
+#include "tools/rtslc/Output.h"
+#include "tools/rtslc/PictureOptions.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
-#include <map>
-#include <new>
+#include <cstring>
 #include <optional>
 
 using namespace rtsl;
@@ -34,9 +38,8 @@ struct Options {
   std::optional<tool::PictureSize> size;
   std::uint32_t threads = 0, registers = 0;
   bool quiet = false, json = false;
+  runtime::PictureFormat format = runtime::PictureFormat::ByName;
 };
-
-std::atomic<bool> interrupted{false};
 
 runtime::RenderOptions renderOptions(const Options &options, const runtime::Package &package) {
   runtime::RenderOptions render = package.options;
@@ -48,53 +51,91 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
   render.maxDepth = options.depth.value_or(render.maxDepth);
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
-  render.cancel = &interrupted;
+  render.cancel = tool::catchInterruptions();
+  render.keepsUnfinished = true;
   return render;
+}
+
+std::string notFiniteJson(const std::vector<runtime::SampleId> &samples) {
+  std::string text;
+  for (const runtime::SampleId &one : samples)
+    text += fmt::format("{}{{\"pixel\": [{}, {}], \"sample\": {}}}", text.empty() ? "" : ", ", one.x, one.y, one.sample);
+  return "[" + text + "]";
+}
+
+std::string toJson(const runtime::Package &package, const runtime::RenderOptions &render,
+                   const runtime::RenderStatistics &statistics, const std::optional<runtime::GpuStatistics> &gpu) {
+  std::string text = fmt::format(
+      "{{\"version\": 1, \"size\": [{}, {}], \"spp\": {}, \"seed\": {}, \"depth\": {},\n"
+      " \"renderSeconds\": {}, \"samplesPerSecond\": {}, \"samples\": {}, \"pixels\": {}, \"badRays\": {},\n"
+      " \"raysTooDeep\": {}, \"samplesNotFinite\": {}, \"pixelsWithoutSample\": {}, \"notFinite\": {},\n"
+      " \"states\": {}, \"frameBytes\": {}, \"laneBytes\": {}",
+      render.width, render.height, render.samplesPerPixel, render.seed, render.maxDepth, statistics.renderSeconds,
+      double(statistics.samples) / statistics.renderSeconds, statistics.samples, statistics.pixels, statistics.badRays,
+      statistics.raysTooDeep, statistics.samplesNotFinite, statistics.pixelsWithoutSample,
+      notFiniteJson(statistics.notFinite), package.stateCount, package.frameBytes, package.laneBytes[render.maxDepth]);
+  if (statistics.isUnfinished)
+    text += fmt::format(",\n \"stoppedBy\": \"{}\"", tool::interruption());
+  if (gpu)
+    text += fmt::format(",\n \"registers\": {}, \"localBytes\": {}, \"blocks\": {}, \"threadsPerBlock\": {},\n"
+                        " \"loadSeconds\": {}, \"uploadSeconds\": {}",
+                        gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->loadSeconds,
+                        gpu->uploadSeconds);
+  return text + "}\n";
+}
+
+/// What makes the picture wrong although it was rendered; --quiet does not hide it.
+void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics) {
+  if (statistics.isUnfinished)
+    fmt::print(stderr, "{}\n", tool::unfinishedText(statistics, render));
+  if (statistics.samplesNotFinite) {
+    fmt::print(stderr, "{}\n", tool::notFiniteText(statistics));
+    for (const runtime::SampleId &one : statistics.notFinite)
+      fmt::print(stderr, "  {}\n", tool::sampleText(one));
+    fmt::print(stderr, "`rtslc render` of the scene says which line makes them so\n");
+  }
+  if (statistics.raysTooDeep)
+    fmt::print(stderr, "{}\n", tool::tooDeepText(statistics, render));
 }
 
 void report(const Options &options, const runtime::Package &package, const runtime::RenderOptions &render,
             const runtime::RenderStatistics &statistics, const std::optional<runtime::GpuStatistics> &gpu) {
-  const double rate = double(statistics.samples) / statistics.renderSeconds;
-  if (options.json) {
-    fmt::print("{{\"version\": 1, \"size\": [{}, {}], \"spp\": {}, \"seed\": {}, \"depth\": {},\n"
-               " \"renderSeconds\": {}, \"samplesPerSecond\": {}, \"badRays\": {}, \"samplesNotFinite\": {},\n"
-               " \"states\": {}, \"frameBytes\": {}, \"laneBytes\": {}",
-               render.width, render.height, render.samplesPerPixel, render.seed, render.maxDepth,
-               statistics.renderSeconds, rate, statistics.badRays, statistics.samplesNotFinite, package.stateCount,
-               package.frameBytes, package.laneBytes[render.maxDepth]);
-    if (gpu)
-      fmt::print(",\n \"registers\": {}, \"localBytes\": {}, \"blocks\": {}, \"threadsPerBlock\": {},\n"
-                 " \"loadSeconds\": {}, \"uploadSeconds\": {}",
-                 gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->loadSeconds,
-                 gpu->uploadSeconds);
-    fmt::print("}}\n");
-    return;
-  }
+  warn(render, statistics);
+  if (options.json)
+    return tool::printOut(toJson(package, render, statistics, gpu));
   if (options.quiet)
     return;
-  fmt::print(stderr, "{}: {}x{}, {} spp; rendered in {:.3f} s ({:.2f} million samples/s)\n", options.output,
-             render.width, render.height, render.samplesPerPixel, statistics.renderSeconds, rate * 1e-6);
+  fmt::print(stderr, "{}: {}x{}, {} spp; rendered in {:.3f} s ({:.2f} million samples/s)\n",
+             options.output == "-" ? "standard output" : options.output, render.width, render.height,
+             render.samplesPerPixel, statistics.renderSeconds,
+             double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (gpu)
     fmt::print(stderr,
                "{}: {} registers and {} local bytes a thread, {} blocks of {} threads, {} bytes for the rays of "
                "each; code loaded in {:.0f} ms, scene in {:.0f} ms\n",
                gpu->device, gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->laneBytes,
                gpu->loadSeconds * 1e3, gpu->uploadSeconds * 1e3);
-  if (statistics.samplesNotFinite)
-    fmt::print(stderr, "{} samples were infinite or not a number, and count as black\n",
-               statistics.samplesNotFinite);
   if (statistics.badRays)
     fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n", statistics.badRays);
 }
 
+/// The picture to compare with, before time is spent on another one; nothing if that is not asked for.
+std::optional<runtime::Image> readReference(const Options &options, const runtime::Package &package,
+                                            const runtime::RenderOptions &render) {
+  if (options.reference.empty())
+    return std::nullopt;
+  runtime::Image reference = runtime::readImage(options.reference);
+  const std::uint32_t channels = package.scene.launch().colorComponents;
+  if (reference.width != render.width || reference.height != render.height || reference.channels != channels)
+    throw runtime::Error(runtime::ErrorCode::BadImage,
+                         fmt::format("`{}` has {}x{} pixels of {} channels, not {}x{} of {}", options.reference,
+                                     reference.width, reference.height, reference.channels, render.width, render.height,
+                                     channels));
+  return reference;
+}
+
 /// Whether two pictures have the same bits; says so.
-bool compare(const runtime::Image &image, const Options &options) {
-  const runtime::Image reference = runtime::readImage(options.reference);
-  if (image.width != reference.width || image.height != reference.height || image.channels != reference.channels) {
-    fmt::print(stderr, "`{}` has {}x{} pixels of {} channels, not {}x{} of {}\n", options.reference,
-               reference.width, reference.height, reference.channels, image.width, image.height, image.channels);
-    return false;
-  }
+bool compare(const runtime::Image &image, const runtime::Image &reference, const Options &options) {
   std::size_t different = 0;
   const std::size_t channels = image.channels, count = image.pixels.size() / channels;
   for (std::size_t i = 0; i < count; ++i)
@@ -107,9 +148,13 @@ bool compare(const runtime::Image &image, const Options &options) {
 }
 
 int render(const Options &options) {
-  runtime::checkWritable(options.output);
+  runtime::checkWritable(options.output, options.format);
+  runtime::refuseToOverwrite(options.output, {options.package});
+  if (!options.reference.empty())
+    runtime::refuseToOverwrite(options.output, {options.reference});
   const runtime::Package package = runtime::readPackage(options.package);
   const runtime::RenderOptions render = renderOptions(options, package);
+  const std::optional<runtime::Image> reference = readReference(options, package, render);
   runtime::RenderStatistics statistics;
   std::optional<runtime::GpuStatistics> gpu;
   runtime::Image image;
@@ -119,37 +164,39 @@ int render(const Options &options) {
     const runtime::NativeCode code(package.host);
     image = runtime::renderOnHost(code.entries(), package.scene, render, &statistics);
   }
-  runtime::writeImage(options.output, image);
+  if (statistics.samples == 0)
+    throw runtime::Error(runtime::ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
+  runtime::writeImage(options.output, image, options.format);
   report(options, package, render, statistics, gpu);
-  return options.reference.empty() || compare(image, options) ? Fine : Refused;
+  return !reference || compare(image, *reference, options) ? Fine : Refused;
 }
 
 void addOptions(CLI::App &app, Options &options) {
-  app.set_version_flag("--version", "rtsl-run " RTSL_VERSION);
-  app.add_option("PACKAGE", options.package, "what `rtslc pack` wrote")->required();
-  app.add_option("-o,--output", options.output, "the picture: .png or .exr")->required()->type_name("IMAGE");
-  app.add_option("--target", options.target, "where to render: gpu, the first CUDA device; host, all cores")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Target>{{"gpu", Target::Gpu}, {"host", Target::Host}})
-                      .description(""))
-      ->type_name("gpu|host");
-  app.add_option("--spp", options.samples, "samples a pixel")->check(CLI::Range(1u, 1u << 24))->type_name("N");
+  app.set_version_flag("-V,--version", "rtsl-run " RTSL_VERSION);
+  app.add_option("PACKAGE", options.package, "what `rtslc pack` wrote; - is standard input")->required();
+  tool::addPictureOption(app, options.output, options.format);
+  tool::addChoice(app, "--target", options.target, tool::Choices<Target>{{"gpu", Target::Gpu}, {"host", Target::Host}},
+                  "where to render: gpu, the first CUDA device; host, all cores");
+  tool::addWhole(app, "--spp", options.samples, 1, runtime::mostSamplesPerPixel, "samples a pixel");
   tool::addSizeOption(app, options.size);
-  app.add_option("--depth", options.depth, "how often a ray may lead to another; 0: camera rays only")
-      ->type_name("N");
-  app.add_option("--seed", options.seed, "seed of the random numbers")->type_name("N");
-  app.add_option("--threads", options.threads, "threads of the host; all cores if not given")
-      ->check(CLI::Range(1u, 4096u))
-      ->type_name("N");
-  app.add_option("--registers", options.registers, "let the GPU's driver use no more registers a thread than this")
-      ->check(CLI::Range(16u, 255u))
-      ->type_name("N");
+  tool::addWhole(app, "--depth", options.depth, 0, runtime::maxRayDepth,
+                 "how often a ray may lead to another; 0: camera rays only");
+  tool::addWhole(app, "--seed", options.seed, 0, 0xffffffff, "seed of the random numbers");
+  tool::addWhole(app, "--threads", options.threads, 1, runtime::mostThreads,
+                 "threads of the host; all cores if not given");
+  tool::addWhole(app, "--registers", options.registers, 16, 255,
+                 "let the GPU's driver use no more registers a thread than this");
   app.add_option("--compare", options.reference, "a picture that must have the same bits; exit status 1: it has not")
       ->type_name("IMAGE");
   app.add_flag("--json", options.json, "write times and counts to standard output as JSON");
   app.add_flag("-q,--quiet", options.quiet, "no summary");
   app.footer("example:\n  rtsl-run glass.rtslpkg -o glass.png --target=host --spp 64\n"
-             "Exit status: 0 fine, 1 the package, the device or a file is not as it must be, 2 wrong arguments,\n"
-             "3 a fault of the program.");
+             "Exit status: 0 fine, 1 the package, the device or a file is not as it must be, or no memory or disk,\n"
+             "2 wrong arguments, 3 a fault of the program; 130 and 143: SIGINT (Ctrl-C) or SIGTERM stopped it.");
+  app.callback([&options] {
+    if (options.json && options.output == "-")
+      throw CLI::ValidationError("--json", "standard output is the picture; give a file to `-o`");
+  });
 }
 
 } // namespace
@@ -158,21 +205,26 @@ int main(int argc, char **argv) {
   CLI::App app("renders packages of rtslc, without the compiler", "rtsl-run");
   Options options;
   addOptions(app, options);
-  std::signal(SIGINT, [](int) { interrupted = true; });
+  tool::nameOutOfMemory("rtsl-run");
   try {
-    app.parse(argc, argv);
-    return render(options);
-  } catch (const CLI::ParseError &error) {
-    return app.exit(error) == 0 ? Fine : Usage;
+    int status = Fine;
+    try {
+      app.parse(argc, argv);
+      status = tool::statusAfterInterruption(render(options));
+    } catch (const CLI::ParseError &error) {
+      status = app.exit(error) == 0 ? Fine : Usage;
+    }
+    return tool::finishOutput("rtsl-run") || status != Fine ? status : Refused;
   } catch (const runtime::Error &error) {
     fmt::print(stderr, "rtsl-run: {}\n", error.what());
     if (error.code == runtime::ErrorCode::NoDevice)
       fmt::print(stderr, "`--target=host` renders on the CPU\n");
-    return error.code == runtime::ErrorCode::Internal ? InternalError : Refused;
-  } catch (const std::bad_alloc &) {
-    fmt::print(stderr, "rtsl-run: out of memory\n");
-    return Refused;
+    return tool::statusAfterInterruption(error.code == runtime::ErrorCode::Internal ? InternalError : Refused);
   } catch (const std::exception &error) {
+    if (tool::isOutOfMemory(error)) {
+      tool::sayOutOfMemory("rtsl-run");
+      return Refused;
+    }
     fmt::print(stderr, "rtsl-run: {}\n", error.what());
   }
   return InternalError;

@@ -1,12 +1,15 @@
 //===- CheckCommand.cpp - rtslc check -------------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
+#include "SceneShaders.h"
 #include "Shaders.h"
 #include "runtime/AtomicFile.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace rtsl::tool {
 
@@ -14,7 +17,7 @@ namespace {
 
 struct CheckOptions {
   CommonOptions common;
-  std::vector<std::string> files;
+  std::vector<std::string> files, overrides;
   bool fix = false;
 };
 
@@ -32,28 +35,68 @@ void writeFixes(const Messages &messages) {
       runtime::checkFileWritable(path(file));
   for (const FileId file : files) {
     const FixedText fixed = applyFixes(messages.diagnostics, file);
-    if (path(file) == "<stdin>")
-      fmt::print("{}", fixed.text);
-    else
-      runtime::writeFileAtomically(path(file), fixed.text);
+    runtime::writeFileAtomically(path(file) == "<stdin>" ? "-" : path(file), fixed.text);
     fmt::print(stderr, "{}: {} fixed", path(file), count(fixed.applied, "mistake"));
     fmt::print(stderr, fixed.skipped ? ", {} left that overlap with these: run again\n" : "\n", fixed.skipped);
   }
 }
 
-int check(const CheckOptions &options) {
+/// Everything that happens to a scene before it is rendered: its shaders are checked and linked, its objects made.
+void checkScene(const std::string &file, const CheckOptions &options, SceneBuilder buildScene, Messages &messages,
+                std::vector<std::string> &filesRead) {
+  const scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
+  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
+  if (!module)
+    return;
+  filesRead = withMeshes(description, filesRead);
+  std::optional<runtime::Scene> scene;
+  emitScene(*module, linkRequest(description), Stage::Ir, options.common.compile, messages.diagnostics,
+            [&](const auto &constructors) {
+              scene = buildScene(description, constructors);
+              return scene->facts();
+            });
+  if (scene)
+    for (const runtime::Warning &warning : scene->warnings())
+      messages.report(warning);
+}
+
+/// All that is wrong with scenes and, checked together, with RTSL files. Gives the files that were read.
+std::vector<std::string> checkFiles(const CheckOptions &options, SceneBuilder buildScene, Messages &messages) {
+  std::vector<std::string> sources, filesRead;
+  for (const std::string &file : options.files) {
+    if (!isScene(file)) {
+      sources.push_back(file);
+      continue;
+    }
+    std::vector<std::string> ofScene;
+    try {
+      checkScene(file, options, buildScene, messages, ofScene);
+    } catch (const runtime::Error &error) {
+      messages.report(error);
+    }
+    filesRead.insert(filesRead.end(), ofScene.begin(), ofScene.end());
+  }
+  if (sources.empty())
+    return filesRead;
+  Shaders shaders(messages, options.common.preprocessor, sources);
+  shaders.check(options.common.compile);
+  filesRead.insert(filesRead.end(), shaders.filesRead().begin(), shaders.filesRead().end());
+  return filesRead;
+}
+
+int check(const CheckOptions &options, SceneBuilder buildScene) {
   Messages messages(options.common);
   if (options.fix)
     messages.diagnostics.errorLimit = 0; // what is not recorded cannot be fixed
-  Shaders shaders(messages, options.common.preprocessor, options.files);
-  shaders.check(options.common.compile);
+  const std::vector<std::string> filesRead = checkFiles(options, buildScene, messages);
   messages.print();
   if (options.fix || options.common.dependencies.isAsked)
     try {
       if (options.fix)
         writeFixes(messages);
+      checkOutputs("", options.common.dependencies, options.files, filesRead);
       if (!messages.diagnostics.hasErrors())
-        writeDependencies(options.common.dependencies, "", options.files, shaders.filesRead());
+        writeDependencies(options.common.dependencies, "", options.files, filesRead);
     } catch (const runtime::Error &error) {
       fmt::print(stderr, "rtslc: {}\n", error.what());
       return Diagnosed;
@@ -63,16 +106,24 @@ int check(const CheckOptions &options) {
 
 } // namespace
 
-void addCheckCommand(CLI::App &app, Action &action) {
+void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App *command = app.add_subcommand("check", "look for mistakes in RTSL files");
-  command->add_option("FILE", options->files, "RTSL files; - is standard input")->required();
+  CLI::App *command = app.add_subcommand("check", "look for mistakes in RTSL files and scenes");
+  command
+      ->add_option("FILE", options->files,
+                   "RTSL files, which are checked together; - is standard input; and scenes (.json), each with its shaders")
+      ->required();
   command->add_flag("--fix", options->fix, "apply the fixes that are sure, and write the files back");
+  addSetOption(*command, options->overrides);
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addMessageOptions(*command, options->common);
-  command->footer("example:\n  rtslc check --diagnostics=json Glass.rtsl Sphere.rtsl");
-  command->callback([options, &action] { action = [options] { return check(*options); }; });
+  command->footer("examples:\n  rtslc check --diagnostics=json Glass.rtsl Sphere.rtsl\n  rtslc check scene.json");
+  command->callback([options, buildScene, &action] {
+    if (!options->overrides.empty() && std::none_of(options->files.begin(), options->files.end(), isScene))
+      throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
+    action = [options, buildScene] { return check(*options, buildScene); };
+  });
 }
 
 } // namespace rtsl::tool

@@ -1,12 +1,19 @@
 //===- CommandLine.cpp - what the commands of rtslc share -----------------===//
 #include "CommandLine.h"
 
+#include "OptionValues.h"
+#include "OutOfMemory.h"
+#include "Output.h"
+#include "codegen/driver/LlvmErrors.h"
+#include "frontend/ClosestName.h"
+#include "runtime/Error.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
-#include <map>
-#include <new>
+#include <filesystem>
+#include <unistd.h>
 
 namespace rtsl::tool {
 
@@ -53,7 +60,7 @@ std::string withoutLimit(const std::string &text, std::uint32_t &largeLiveState)
 
 void applyWarning(const std::string &text, WarningOptions &warnings) {
   if (text == "help") {
-    fmt::print("{}", warningList());
+    printOut(warningList());
     throw CLI::Success();
   }
   if (const std::string complaint = warnings.apply(text); !complaint.empty())
@@ -69,17 +76,10 @@ bool hasCommand(const CLI::App &app, const std::string &name) {
 } // namespace
 
 void addMessageOptions(CLI::App &command, CommonOptions &options) {
-  command
-      .add_option_function<std::string>(
-          "--diagnostics", [&options](const std::string &form) { options.jsonDiagnostics = form == "json"; },
-          "how messages are written to standard error")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->type_name("text|json");
-  command.add_option("--ansi", options.ansi, "colour in messages")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
-      ->type_name("auto|always|never");
-  command.add_option("--error-limit", options.errorLimit, "stop showing errors after this many; 0 shows all")
-      ->type_name("N");
+  addChoice(command, "--diagnostics", options.jsonDiagnostics, Choices<bool>{{"text", false}, {"json", true}},
+            "how messages are written to standard error");
+  addChoice(command, "--ansi", options.ansi, {"auto", "always", "never"}, "colour in messages");
+  addWhole(command, "--error-limit", options.errorLimit, 0, 1000000, "stop showing errors after this many; 0 shows all");
   command
       .add_option_function<std::vector<std::string>>(
           "-W",
@@ -126,60 +126,86 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
           },
           "what a color is made of")
       ->type_name("rgb|mono|spectral:N|N");
-  command
-      .add_option("--fp", options.compile.floatingPoint,
-                  "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and reassociation; double, "
-                  "shaders compute in double on this machine")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, FloatingPoint>{{"strict", FloatingPoint::Strict},
-                                                                               {"fast", FloatingPoint::Fast},
-                                                                               {"double", FloatingPoint::Double}})
-                      .description(""))
-      ->type_name("strict|fast|double");
+  addChoice(command, "--fp", options.compile.floatingPoint,
+            Choices<FloatingPoint>{
+                {"strict", FloatingPoint::Strict}, {"fast", FloatingPoint::Fast}, {"double", FloatingPoint::Double}},
+            "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and reassociation; double, "
+            "shaders compute in double on this machine");
   command.add_flag_callback(
       "--unchecked", [&options] { options.compile.checkIndices = false; },
       "trust array and buffer indices: one out of range is then undefined");
-  command
-      .add_option("--trace", options.compile.trace,
-                  "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU. If not given: recurse; of "
-                  "C++ split, if it can be printed so")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, TraceMode>{{"recurse", TraceMode::Recurse},
-                                                                           {"split", TraceMode::Split}})
-                      .description(""))
-      ->type_name("recurse|split");
-  command
-      .add_option("--save", options.compile.savesAllThatIsLive,
-                  "what states keep over a `trace`: needed, what cannot be had again for less; live, all that is alive there, to "
-                  "compare with")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"needed", false}, {"live", true}}).description(""))
-      ->type_name("needed|live");
-  command.add_option("--gpu-arch", options.compile.gpu, "the oldest NVIDIA GPU that PTX is for; sm_75 if not given")
-      ->check(CLI::IsMember({"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"}))
-      ->type_name("sm_75|sm_80|sm_86|sm_89|sm_90|sm_100|sm_120");
-  command.add_option("-O", options.compile.optimization, "optimisation of machine code, 0 to 3")
-      ->check(CLI::Range(0, 3))
-      ->type_name("LEVEL");
+  addChoice(command, "--trace", options.compile.trace,
+            Choices<TraceMode>{{"recurse", TraceMode::Recurse}, {"split", TraceMode::Split}},
+            "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU. If not given: recurse; of "
+            "C++ split, if it can be printed so");
+  addChoice(command, "--save", options.compile.savesAllThatIsLive, Choices<bool>{{"needed", false}, {"live", true}},
+            "what states keep over a `trace`: needed, what cannot be had again for less; live, all that is alive there, to "
+            "compare with");
+  addChoice(command, "--gpu-arch", options.compile.gpu,
+            {"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"},
+            "the oldest NVIDIA GPU that PTX is for; sm_75 if not given");
+  addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation of machine code")->type_name("LEVEL");
 }
 
-int run(CLI::App &app, Action &action, int argc, char **argv, const std::function<void()> &first) {
+namespace {
+
+/// A first argument that is no command.
+int refuseCommand(const CLI::App &app, const std::string &given) {
+  std::string text = fmt::format("rtslc: unknown command `{}`", given);
+  std::error_code error;
+  const std::string ending = std::filesystem::path(given).extension();
+  std::vector<std::string> commands;
+  for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+    commands.push_back(command->get_name());
+  const std::string closest = closestName(given, commands);
+  if (std::filesystem::exists(given, error) && ending == ".json")
+    text += fmt::format("; did you mean `rtslc render {} -o picture.png`?", given);
+  else if (std::filesystem::exists(given, error) && ending == ".rtsl")
+    text += fmt::format("; did you mean `rtslc check {}`?", given);
+  else if (!closest.empty())
+    text += fmt::format("; did you mean `{}`?", closest);
+  fmt::print(stderr, "{}\n`rtslc --help` lists the commands\n", text);
+  return Usage;
+}
+
+/// What the arguments say to do.
+int runCommand(CLI::App &app, Action &action, int argc, char **argv) {
+  if (argc > 1 && argv[1][0] != '-' && !hasCommand(app, argv[1]))
+    return refuseCommand(app, argv[1]);
+  std::vector<std::string> arguments = withLongDashes(argc, argv);
+  std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
   try {
-    first();
-    if (argc > 1 && argv[1][0] != '-' && !hasCommand(app, argv[1])) {
-      fmt::print(stderr, "rtslc: unknown command `{}`; `rtslc --help` lists them\n", argv[1]);
-      return Usage;
-    }
-    std::vector<std::string> arguments = withLongDashes(argc, argv);
-    std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
     app.parse(std::move(arguments));
     return action();
   } catch (const CLI::ParseError &error) {
     return app.exit(error) == 0 ? Fine : Usage;
-  } catch (const std::bad_alloc &) {
-    fmt::print(stderr, "rtslc: out of memory\n");
-  } catch (const std::exception &error) {
-    fmt::print(stderr, "rtslc: internal error: {}\nThis is a fault of rtslc; please report it with the files that "
-                       "show it.\n",
-               error.what());
   }
+}
+
+} // namespace
+
+int run(CLI::App &app, Action &action, int argc, char **argv, const std::function<void()> &first) {
+  nameOutOfMemory("rtslc");
+  onLlvmOutOfMemory([] {
+    sayOutOfMemory("rtslc");
+    ::_exit(Diagnosed);
+  });
+  try {
+    first();
+    const int status = runCommand(app, action, argc, argv);
+    return finishOutput("rtslc") || status != Fine ? status : Diagnosed;
+  } catch (const runtime::Error &error) { // what no command has reported
+    fmt::print(stderr, "rtslc: {}\n", error.what());
+    if (error.code != runtime::ErrorCode::Internal)
+      return Diagnosed;
+  } catch (const std::exception &error) {
+    if (isOutOfMemory(error)) {
+      sayOutOfMemory("rtslc");
+      return Diagnosed;
+    }
+    fmt::print(stderr, "rtslc: internal error: {}\n", error.what());
+  }
+  fmt::print(stderr, "This is a fault of rtslc; please report it with the files that show it.\n");
   return InternalError;
 }
 

@@ -25,7 +25,7 @@ namespace rtsl::tool {
 /// How a run ends, for scripts.
 enum ExitStatus : int {
   Fine = 0,
-  Diagnosed = 1,     // errors in what the user gave: source, scene, mesh, image
+  Diagnosed = 1,     // errors in what the user gave: source, scene, mesh, image; or no memory or disk for it
   Usage = 2,         // arguments that make no sense
   InternalError = 3, // a fault of rtslc itself
 };
@@ -70,7 +70,7 @@ struct MeasureRequest;
 struct ItemMeasurement;
 using ItemMeasurer = std::optional<std::vector<ItemMeasurement>> (*)(const MeasureRequest &, Diagnostics &);
 
-void addCheckCommand(CLI::App &app, Action &action);
+void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure);
 void addRenderCommand(CLI::App &app, Action &action);

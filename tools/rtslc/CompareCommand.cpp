@@ -1,6 +1,8 @@
 //===- CompareCommand.cpp - rtslc compare ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
+#include "OptionValues.h"
+#include "Output.h"
 #include "report/ErrorMetrics.h"
 #include "report/Flip.h"
 #include "runtime/Image.h"
@@ -9,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include <limits>
-#include <map>
 #include <memory>
 
 namespace rtsl::tool {
@@ -17,7 +18,7 @@ namespace rtsl::tool {
 namespace {
 
 enum class Metric : std::uint8_t { Rmse, RelMse, Flip, FlipHdr };
-const std::map<std::string, Metric> metrics = {
+const Choices<Metric> metrics = {
     {"rmse", Metric::Rmse}, {"relmse", Metric::RelMse}, {"flip", Metric::Flip}, {"flip-hdr", Metric::FlipHdr}};
 
 struct CompareOptions {
@@ -92,23 +93,27 @@ void printJson(const CompareOptions &options, const Comparison &comparison, cons
       {"infinitePixels", error.infinitePixels},
       {"threshold", options.threshold},
       {"equalEnough", comparison.isEqualEnough}};
-  fmt::print("{}\n", document.dump(2));
+  printOut(document.dump(2) + "\n");
 }
 
 void printText(const Comparison &comparison) {
   const report::ErrorMetrics &error = comparison.error;
   if (error.pixelsThatDiffer == 0) {
-    fmt::print("the pictures are the same, bit for bit\n");
+    printOut("the pictures are the same, bit for bit\n");
     return;
   }
-  fmt::print("RMSE      {:.6g}\nrelMSE    {:.6g}\nbias      {:+.6g}\nlargest   {:.6g}\nFLIP      {:.6g}\nHDR-FLIP  {:.6g} ({} "
-             "exposures, {:+.2f} to {:+.2f} stops)\n{} pixels differ\n",
-             error.rmse, error.relMse, error.bias, error.largest, comparison.flip, comparison.flipHdr,
-             comparison.exposures.count, comparison.exposures.first, comparison.exposures.last, error.pixelsThatDiffer);
+  std::string text = fmt::format(
+      "RMSE      {:.6g}\nrelMSE    {:.6g}\nbias      {:+.6g}\nlargest   {:.6g}\nFLIP      {:.6g}\nHDR-FLIP  {:.6g} ({} "
+      "exposures, {:+.2f} to {:+.2f} stops)\n{} pixels differ\n",
+      error.rmse, error.relMse, error.bias, error.largest, comparison.flip, comparison.flipHdr, comparison.exposures.count,
+      comparison.exposures.first, comparison.exposures.last, error.pixelsThatDiffer);
   if (error.nanPixels || error.infinitePixels)
-    fmt::print("of the second picture, {} pixels are not a number and {} infinite\n", error.nanPixels, error.infinitePixels);
+    text += fmt::format("of the second picture, {} pixels are not a number and {} infinite\n", error.nanPixels,
+                        error.infinitePixels);
   if (error.incomparable)
-    fmt::print("{} pixels are not finite in one picture or both, and differ: no figure above counts them\n", error.incomparable);
+    text += fmt::format("{} pixels are not finite in one picture or both, and differ: no figure above counts them\n",
+                        error.incomparable);
+  printOut(text);
 }
 
 int compare(const CompareOptions &options) {
@@ -133,14 +138,10 @@ int compare(const CompareOptions &options) {
 void addCompareCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App *command = app.add_subcommand(compareSummary.command, compareSummary.text);
-  command->add_option("REFERENCE", options->reference, "a picture, .png or .exr")->required();
+  command->add_option("REFERENCE", options->reference, "a picture, .png or .exr; - is standard input")->required();
   command->add_option("TEST", options->test, "another of the same size")->required();
-  command->add_option("--threshold", options->threshold, "largest error that passes; 0: the same bits")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("X");
-  command->add_option("--metric", options->metric, "the error that the threshold limits; rmse if not given")
-      ->transform(CLI::CheckedTransformer(metrics).description(""))
-      ->type_name("rmse|relmse|flip|flip-hdr");
+  addNotNegative(*command, "--threshold", options->threshold, "largest error that passes; 0: the same bits");
+  addChoice(*command, "--metric", options->metric, metrics, "the error that the threshold limits; rmse if not given");
   command->add_flag("--json", options->json, "write the figures as JSON");
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc compare embree.exr device.exr --threshold 1e-4");

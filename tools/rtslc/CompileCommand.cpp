@@ -1,23 +1,23 @@
 //===- CompileCommand.cpp - rtslc compile ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "Output.h"
+#include "OptionValues.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/driver/Compiler.h"
 #include "codegen/driver/Reflection.h"
 #include "frontend/Parser.h"
+#include "runtime/AtomicFile.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 
 namespace rtsl::tool {
 
 namespace {
 
-const std::map<std::string, Stage> stages = {{"preprocessed", Stage::Preprocessed},
+const Choices<Stage> stages = {{"preprocessed", Stage::Preprocessed},
                                              {"ast", Stage::Ast},
                                              {"typed-ast", Stage::TypedAst},
                                              {"ir", Stage::Ir},
@@ -43,10 +43,11 @@ struct CompileCommandOptions {
 /// The text of the asked stage of a whole scene; nothing if there were errors.
 std::optional<std::string> translateScene(const CompileCommandOptions &options, SceneBuilder buildScene, Messages &messages,
                                           std::vector<std::string> &filesRead) {
-  const scene::SceneDescription description = scene::readSceneFile(options.files.front(), options.overrides);
+  const scene::SceneDescription description = readScene(options.files.front(), options.overrides, messages, "compile");
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return std::nullopt;
+  filesRead = withMeshes(description, filesRead);
   CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
   request.features |= features(options.prints, options.exceptions);
@@ -101,7 +102,7 @@ std::optional<std::string> translate(const CompileCommandOptions &options, Messa
   } else {
     text = translate(options, *shaders.check(options.common.compile), messages);
   }
-  if (options.common.dependencies.isAsked && !messages.diagnostics.hasErrors())
+  if (!messages.diagnostics.hasErrors())
     filesRead = shaders.filesRead();
   return text;
 }
@@ -133,15 +134,16 @@ void checkInputs(const CompileCommandOptions &options) {
 int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
   Messages messages(options.common);
   try {
-    checkOutput(options.output);
+    checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
     const std::optional<std::string> text = isScene(options.files.front())
                                                 ? translateScene(options, buildScene, messages, filesRead)
                                                 : translate(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
+      checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
       // First what names the output: where that cannot be written, the old output stays.
       writeDependencies(options.common.dependencies, options.output, options.files, filesRead);
-      writeOutput(options.output, *text);
+      runtime::writeFileAtomically(options.output, *text);
     }
   } catch (const runtime::Error &error) {
     messages.report(error);
@@ -155,14 +157,10 @@ void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   auto options = std::make_shared<CompileCommandOptions>();
   CLI::App *command = app.add_subcommand("compile", "translate RTSL files, and show any stage on the way");
   command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
-  command->add_option("--emit", options->stage, "what to write")
-      ->transform(CLI::CheckedTransformer(stages).description(""))
-      ->type_name("preprocessed|ast|typed-ast|ir|ssa|split|structured|llvm|ptx|cpp|reflection");
+  addChoice(*command, "--emit", options->stage, stages, "what to write");
   command->add_flag_callback("-E", [options] { options->stage = Stage::Preprocessed; }, "the same as --emit=preprocessed");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
-  command->add_option("--set", options->overrides, "change a value of the scene file, such as camera.fov=30")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
+  addSetOption(*command, options->overrides);
   command->add_flag("--line-directives", options->lineDirectives,
                     "with --emit=cpp: #line, so that messages and debuggers show the RTSL files");
   command->add_flag("--print", options->prints, "of C++ or a scene: `print` prints; without, it is left out");

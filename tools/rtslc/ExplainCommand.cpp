@@ -3,15 +3,15 @@
 #include "Explanation.h"
 #include "MeasureItems.h"
 #include "Messages.h"
-#include "Output.h"
-#include "PictureSize.h"
+#include "OptionValues.h"
+#include "PictureOptions.h"
 #include "Progress.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
+#include "runtime/AtomicFile.h"
 #include "scene/SceneFile.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 
 namespace rtsl::tool {
@@ -42,13 +42,14 @@ std::optional<std::string> explainFiles(const ExplainOptions &options, Messages 
 /// A scene, its shaders, and how to make its objects.
 struct LoadedScene {
   LoadedScene(const ExplainOptions &options, SceneBuilder buildScene, Messages &messages, std::vector<std::string> &filesRead)
-      : description(scene::readSceneFile(options.files.front(), options.overrides)),
+      : description(readScene(options.files.front(), options.overrides, messages, "explain")),
         module(loadShaders(description, options.common, messages, &filesRead)), request(linkRequest(description)),
         compile(options.common.compile), makeObjects([this, buildScene](const auto &constructors) {
           scene = buildScene(description, constructors);
           return scene->facts();
         }) {
     keep(options.common.keep, request, compile);
+    filesRead = withMeshes(description, filesRead);
   }
   LoadedScene(const LoadedScene &) = delete;
 
@@ -122,13 +123,14 @@ std::optional<std::string> explainScene(const ExplainOptions &options, SceneBuil
 int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer measure) {
   Messages messages(options.common);
   try {
-    checkOutput(options.output);
+    checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
     const std::optional<std::string> text = isScene(options.files.front())
                                                 ? explainScene(options, buildScene, measure, messages, filesRead)
                                                 : explainFiles(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
-      writeOutput(options.output, *text);
+      checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
+      runtime::writeFileAtomically(options.output, *text);
       writeDependencies(options.common.dependencies, options.output, options.files, filesRead);
     }
   } catch (const runtime::Error &error) {
@@ -150,26 +152,15 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, I
                     "where shaders that trace are cut: their states, and what each trace saves and recomputes");
   command->add_flag("--measure", options->measure,
                     "render with each thing left out and kept, in turn: time, instructions, and whether the picture is the same");
-  command->add_option("--pairs", options->pairs, "with --measure: pairs of renderings an item; 11 if not given")
-      ->check(CLI::Range(10u, 10000u))
-      ->type_name("N");
+  addWhole(*command, "--pairs", options->pairs, 10, 10000, "with --measure: pairs of renderings an item; 11 if not given");
   addSizeOption(*command, options->size);
-  command->add_option("--spp", options->samples, "with --measure: samples per pixel; 1 if not given")
-      ->check(CLI::Range(1u, 0x7fffffffu))
-      ->type_name("N");
-  command
-      ->add_option("--format", options->format, "text; json; of --states also dot, for Graphviz, and svg, a picture")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ReportFormat>{{"text", ReportFormat::Text},
-                                                                              {"json", ReportFormat::Json},
-                                                                              {"dot", ReportFormat::Dot},
-                                                                              {"svg", ReportFormat::Svg}})
-                      .description(""))
-      ->type_name("text|json|dot|svg");
+  addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel, "with --measure: samples per pixel; 1 if not given");
+  const Choices<ReportFormat> formats = {
+      {"text", ReportFormat::Text}, {"json", ReportFormat::Json}, {"dot", ReportFormat::Dot}, {"svg", ReportFormat::Svg}};
+  addChoice(*command, "--format", options->format, formats, "text; json; of --states also dot, for Graphviz, and svg, a picture");
   command->add_flag_callback("--json", [options] { options->format = ReportFormat::Json; }, "the same as --format=json");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
-  command->add_option("--set", options->overrides, "change a value of the scene file, such as render.depth=4")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
+  addSetOption(*command, options->overrides);
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);

@@ -29,7 +29,7 @@ void addHandedOverCommands(CLI::App &app) {
 
 /// A command of rtslc whose program is bound to a scene: the runtime makes its objects.
 static bool bindsScene(std::string_view command, char **arguments) {
-  if (command != "compile" && command != "explain")
+  if (command != "check" && command != "compile" && command != "explain")
     return false;
   for (; *arguments; ++arguments)
     if (isScene(*arguments))

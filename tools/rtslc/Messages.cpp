@@ -15,9 +15,11 @@ Code codeFor(runtime::ErrorCode code) {
   case E::FileNotFound: return Code::fileNotFound;
   case E::FileUnreadable: return Code::fileUnreadable;
   case E::FileUnwritable: return Code::fileUnwritable;
+  case E::OverwritesInput: return Code::overwritesInput;
   case E::UnsupportedFormat: return Code::unsupportedFormat;
   case E::BadMesh: return Code::badMesh;
   case E::BadImage: return Code::badImage;
+  case E::NotAScene: return Code::notAScene;
   case E::JsonSyntax: return Code::sceneSyntax;
   case E::DuplicateKey: return Code::sceneDuplicateKey;
   case E::UnknownKey: return Code::sceneUnknownKey;

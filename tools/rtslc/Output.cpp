@@ -1,4 +1,4 @@
-//===- Output.cpp - text to a file or to standard output ------------------===//
+//===- Output.cpp - what goes to standard output ---------------------------===//
 #include "Output.h"
 
 #include "runtime/AtomicFile.h"
@@ -8,20 +8,20 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <iostream>
 
 namespace rtsl::tool {
 
-void checkOutput(const std::string &path) {
-  if (path != "-")
-    runtime::checkFileWritable(path);
-}
+void printOut(std::string_view text) { runtime::writeFileAtomically("-", text); }
 
-void writeOutput(const std::string &path, std::string_view text) {
-  if (path != "-")
-    runtime::writeFileAtomically(path, text);
-  else if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw runtime::Error(runtime::ErrorCode::FileUnwritable,
-                         fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+bool finishOutput(const char *program) {
+  errno = 0;
+  std::cout.flush();
+  const bool isWritten = std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.good();
+  if (!isWritten)
+    fmt::print(stderr, "{}: cannot write to standard output: {}\n", program,
+               std::strerror(errno ? errno : EIO));
+  return isWritten;
 }
 
 } // namespace rtsl::tool

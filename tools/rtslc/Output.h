@@ -1,15 +1,16 @@
-//===- Output.h - text to a file or to standard output --------------------===//
+//===- Output.h - what goes to standard output -----------------------------===//
 #pragma once
 
-#include <string>
 #include <string_view>
 
 namespace rtsl::tool {
 
-/// Throws now if writeOutput could not succeed later. "-" is standard output.
-void checkOutput(const std::string &path);
+/// Writes all of `text` to standard output. Throws runtime::Error with FileUnwritable: a full disk
+/// is said, whatever a command prints.
+void printOut(std::string_view text);
 
-/// Writes all of `text`; a file appears whole or not at all. Throws runtime::Error with FileUnwritable.
-void writeOutput(const std::string &path, std::string_view text);
+/// Whether all that was printed by other means, such as the help texts, has been written; says so
+/// if it was not.
+bool finishOutput(const char *program);
 
 } // namespace rtsl::tool

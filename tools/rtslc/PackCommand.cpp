@@ -25,12 +25,14 @@ struct PackOptions {
 };
 
 void packScene(const PackOptions &options, Messages &messages) {
-  runtime::checkFileWritable(options.output);
-  const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
+  checkOutputs(options.output, options.common.dependencies, {options.scene});
+  const scene::SceneDescription description = readScene(options.scene, options.overrides, messages, "pack");
   std::vector<std::string> filesRead;
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
+  filesRead = withMeshes(description, filesRead);
+  checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
   keep(options.common.keep, request, compile);
@@ -56,7 +58,7 @@ void packScene(const PackOptions &options, Messages &messages) {
 
   const std::string bytes = runtime::serialize(package);
   runtime::writeFileAtomically(options.output, bytes);
-  writeDependencies(options.common.dependencies, options.output, {options.scene}, withMeshes(description, filesRead));
+  writeDependencies(options.common.dependencies, options.output, {options.scene}, filesRead);
   if (!options.quiet && !options.common.jsonDiagnostics)
     fmt::print(stderr, "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB\n", options.output,
                double(bytes.size()) / (1 << 20), package.ptx.size() / 1000, options.common.compile.gpu,
@@ -64,8 +66,6 @@ void packScene(const PackOptions &options, Messages &messages) {
 }
 
 int pack(const PackOptions &options) {
-  if (options.common.compile.floatingPoint == FloatingPoint::Double)
-    throw CLI::ValidationError("--fp", "a package is for GPUs, too, and has no double; give strict or fast");
   Messages messages(options.common);
   try {
     packScene(options, messages);
@@ -80,11 +80,11 @@ int pack(const PackOptions &options) {
 void addPackCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<PackOptions>();
   CLI::App *command = app.add_subcommand(packSummary.command, packSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
-  command->add_option("-o,--output", options->output, "the package, by custom .rtslpkg")->required()->type_name("PACKAGE");
-  command->add_option("--set", options->overrides, "change a value of the scene file, such as objects.3.mesh=bunny.obj")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
+  command->add_option("-o,--output", options->output, "the package, by custom .rtslpkg; - is standard output")
+      ->required()
+      ->type_name("PACKAGE");
+  addSetOption(*command, options->overrides);
   command->add_flag("-q,--quiet", options->quiet, "no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
@@ -92,7 +92,11 @@ void addPackCommand(CLI::App &app, Action &action) {
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run glass.rtslpkg -o glass.png --target=gpu");
-  command->callback([options, &action] { action = [options] { return pack(*options); }; });
+  command->callback([options, &action] {
+    if (options->common.compile.floatingPoint == FloatingPoint::Double)
+      throw CLI::ValidationError("--fp", "a package is for GPUs, too, and has no double; give strict or fast");
+    action = [options] { return pack(*options); };
+  });
 }
 
 } // namespace rtsl::tool

@@ -31,6 +31,8 @@ MacroOption parseMacro(const char *option, const std::string &text, bool isUndef
   return macro;
 }
 
+bool hasFile(const std::string &output) { return !output.empty() && output != "-"; }
+
 /// A path as make reads it.
 std::string escaped(const std::string &path) {
   std::string result;
@@ -93,19 +95,37 @@ std::string dependencyRule(const std::string &target, const std::vector<std::str
   return rule + "\n";
 }
 
+/// Where the rule is written.
+static std::string dependencyFile(const DependencyOptions &options, const std::string &output,
+                                  const std::vector<std::string> &sources) {
+  if (!options.file.empty())
+    return options.file;
+  if (hasFile(output))
+    return std::filesystem::path(output).replace_extension(".d").string();
+  const std::string source = sources.front() == "-" ? "stdin" : sources.front();
+  return std::filesystem::path(source).filename().replace_extension(".d").string();
+}
+
+void checkOutputs(const std::string &output, const DependencyOptions &dependencies, const std::vector<std::string> &sources,
+                  const std::vector<std::string> &filesRead) {
+  std::vector<std::string> outputs;
+  if (!output.empty())
+    outputs.push_back(output);
+  if (dependencies.isAsked)
+    outputs.push_back(dependencyFile(dependencies, output, sources));
+  for (const std::string &file : outputs) {
+    runtime::checkFileWritable(file);
+    runtime::refuseToOverwrite(file, sources);
+    runtime::refuseToOverwrite(file, filesRead);
+  }
+}
+
 void writeDependencies(const DependencyOptions &options, const std::string &output,
                        const std::vector<std::string> &sources, const std::vector<std::string> &files) {
   if (!options.isAsked)
     return;
-  const bool hasOutput = !output.empty() && output != "-";
-  std::string file = options.file;
-  if (file.empty())
-    file = hasOutput ? std::filesystem::path(output).replace_extension(".d").string()
-                     : std::filesystem::path(sources.front() == "-" ? "stdin" : sources.front())
-                           .filename()
-                           .replace_extension(".d")
-                           .string();
-  const std::string target = !options.target.empty() ? options.target : hasOutput ? output : file;
+  const std::string file = dependencyFile(options, output, sources);
+  const std::string target = !options.target.empty() ? options.target : hasFile(output) ? output : file;
   runtime::writeFileAtomically(file, dependencyRule(target, files));
 }
 

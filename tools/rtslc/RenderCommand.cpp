@@ -1,7 +1,13 @@
 //===- RenderCommand.cpp - rtslc render -----------------------------------===//
 #include "CommandLine.h"
+#include "Interruption.h"
 #include "Messages.h"
-#include "PictureSize.h"
+#include "NotFinite.h"
+#include "OptionValues.h"
+#include "OutOfMemory.h"
+#include "Outcome.h"
+#include "Output.h"
+#include "PictureOptions.h"
 #include "Progress.h"
 #include "SceneShaders.h"
 #include "codegen/driver/SceneProgram.h"
@@ -15,11 +21,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
-#include <csignal>
+#include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -41,9 +46,8 @@ struct RenderCommandOptions {
   bool json = false;
   bool quiet = false;
   bool prints = false, exceptions = false;
+  runtime::PictureFormat format = runtime::PictureFormat::ByName;
 };
-
-std::atomic<bool> interrupted{false};
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -60,7 +64,9 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options, const 
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
   render.traversal = options.traversal;
-  render.cancel = &interrupted;
+  render.keepsUnfinished = true;
+  if (options.exceptions)
+    render.mostNotFinite = runtime::PrintLog::mostLines;
   return render;
 }
 
@@ -83,43 +89,106 @@ void printExceptions(const runtime::RenderOptions &render, const runtime::Render
     fmt::print(stderr, "{} samples used an index that was out of range\n", counts[RTSL_EXCEPTION_INDEX]);
 }
 
-void printSummary(const RenderCommandOptions &options, const runtime::RenderOptions &render,
-                  const runtime::RenderStatistics &statistics, const std::vector<std::string> &printed,
-                  const Times &times) {
-  if (options.json) {
-    nlohmann::ordered_json document = {
-        {"version", 1},
-        {"output", options.output},
-        {"size", {render.width, render.height}},
-        {"spp", render.samplesPerPixel},
-        {"seed", render.seed},
-        {"seconds",
-         {{"compile", times.compile},
-          {"scene", times.scene},
-          {"build", statistics.buildSeconds},
-          {"render", statistics.renderSeconds},
-          {"image", times.image}}},
-        {"samples", statistics.samples},
-        {"badRays", statistics.badRays},
-        {"retracedRays", statistics.retracedRays},
-        {"rescaledRays", statistics.rescaledRays},
-        {"samplesNotFinite", statistics.samplesNotFinite}};
-    if (options.prints)
-      document["printed"] = printed;
-    for (std::uint32_t i = 1; i < RTSL_EXCEPTIONS; ++i)
-      if (statistics.exceptions[i])
-        document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
-    fmt::print("{}\n", document.dump(2));
-  } else if (!options.quiet && !options.common.jsonDiagnostics) { // there standard error is one JSON document
-    fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
-               options.output, render.width, render.height, render.samplesPerPixel, times.compile * 1e3,
-               statistics.renderSeconds, double(statistics.samples) / statistics.renderSeconds * 1e-6);
-    printExceptions(render, statistics);
-    if (statistics.samplesNotFinite)
-      fmt::print(stderr, "{} samples were infinite or not a number, and count as black\n", statistics.samplesNotFinite);
-    if (statistics.badRays)
-      fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n", statistics.badRays);
+/// What is said of a rendering when it is over.
+struct Summary {
+  runtime::RenderOptions render;
+  runtime::RenderStatistics statistics;
+  std::vector<SampleNotFinite> notFinite;
+  std::vector<std::string> printed;
+  Times times;
+};
+
+nlohmann::ordered_json toJson(const SampleNotFinite &one) {
+  nlohmann::ordered_json color = nlohmann::ordered_json::array(); // JSON has no numbers that are not finite
+  for (const float value : one.color)
+    color.push_back(std::isfinite(value)  ? nlohmann::ordered_json(value)
+                    : std::isnan(value) ? nlohmann::ordered_json("nan")
+                                        : nlohmann::ordered_json(value > 0 ? "inf" : "-inf"));
+  nlohmann::ordered_json document = {
+      {"pixel", {one.sample.x, one.sample.y}}, {"sample", one.sample.sample}, {"color", color}};
+  if (one.place)
+    document["place"] = {{"file", one.place->file}, {"line", one.place->line}, {"column", one.place->column}};
+  return document;
+}
+
+std::string toJson(const RenderCommandOptions &options, const Summary &summary) {
+  const runtime::RenderOptions &render = summary.render;
+  const runtime::RenderStatistics &statistics = summary.statistics;
+  nlohmann::ordered_json document = {
+      {"version", 1},
+      {"output", options.output},
+      {"size", {render.width, render.height}},
+      {"spp", render.samplesPerPixel},
+      {"seed", render.seed},
+      {"seconds",
+       {{"compile", summary.times.compile},
+        {"scene", summary.times.scene},
+        {"build", statistics.buildSeconds},
+        {"render", statistics.renderSeconds},
+        {"image", summary.times.image}}},
+      {"samples", statistics.samples},
+      {"pixels", statistics.pixels},
+      {"badRays", statistics.badRays},
+      {"retracedRays", statistics.retracedRays},
+      {"rescaledRays", statistics.rescaledRays},
+      {"raysTooDeep", statistics.raysTooDeep},
+      {"samplesNotFinite", statistics.samplesNotFinite},
+      {"pixelsWithoutSample", statistics.pixelsWithoutSample},
+      {"notFinite", nlohmann::ordered_json::array()}};
+  for (const SampleNotFinite &one : summary.notFinite)
+    document["notFinite"].push_back(toJson(one));
+  if (statistics.isUnfinished)
+    document["stoppedBy"] = interruption();
+  if (options.prints)
+    document["printed"] = summary.printed;
+  for (std::uint32_t i = 1; i < RTSL_EXCEPTIONS; ++i)
+    if (statistics.exceptions[i])
+      document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
+  return document.dump(2) + "\n";
+}
+
+void printSummary(const RenderCommandOptions &options, const Summary &summary) {
+  const runtime::RenderOptions &render = summary.render;
+  const runtime::RenderStatistics &statistics = summary.statistics;
+  if (options.json)
+    return printOut(toJson(options, summary));
+  if (options.quiet || options.common.jsonDiagnostics) // there standard error is one JSON document
+    return;
+  fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
+             options.output == "-" ? "standard output" : options.output, render.width, render.height, render.samplesPerPixel,
+             summary.times.compile * 1e3, statistics.renderSeconds,
+             double(statistics.samples) / statistics.renderSeconds * 1e-6);
+  printExceptions(render, statistics);
+  if (statistics.badRays)
+    fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n", statistics.badRays);
+}
+
+/// Warns of what makes a picture wrong although it was rendered: samples that are left out, and rays that are not sent.
+void warn(const Summary &summary, Messages &messages) {
+  const runtime::RenderStatistics &statistics = summary.statistics;
+  if (statistics.isUnfinished)
+    messages.diagnostics.report(Code::unfinishedPicture, {}, unfinishedText(statistics, summary.render));
+  if (statistics.samplesNotFinite) {
+    SourceRange range;
+    for (const SampleNotFinite &one : summary.notFinite)
+      if (one.place && !range.isValid())
+        range = messages.rangeOf(*one.place);
+    Diagnostic &diagnostic = messages.diagnostics.report(Code::samplesNotFinite, range, notFiniteText(statistics));
+    for (const SampleNotFinite &one : summary.notFinite) {
+      const auto isNan = [](float value) { return std::isnan(value); };
+      const char *const what = one.color.empty()                                            ? "not finite"
+                               : std::any_of(one.color.begin(), one.color.end(), isNan) ? "not a number"
+                                                                                            : "infinite";
+      const std::string place =
+          one.place ? fmt::format("since {}:{}:{}", one.place->file, one.place->line, one.place->column)
+                    : "and no line was found to be the reason";
+      diagnostic.note(fmt::format("{} is {}, {}", sampleText(one.sample), what, place));
+    }
+    if (statistics.samplesNotFinite > summary.notFinite.size())
+      diagnostic.note(fmt::format("and {} more samples", statistics.samplesNotFinite - summary.notFinite.size()));
   }
+  if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
+    messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, summary.render));
 }
 
 /// By the GPU's program.
@@ -134,48 +203,49 @@ runtime::Image renderFlat(const runtime::Scene &scene, const runtime::RenderOpti
 }
 
 void renderScene(const RenderCommandOptions &options, Messages &messages) {
-  runtime::checkWritable(options.output);
-  const scene::SceneDescription description = scene::readSceneFile(options.scene, options.overrides);
+  runtime::checkWritable(options.output, options.format);
+  checkOutputs(options.output, options.common.dependencies, {options.scene});
+  const scene::SceneDescription description = readScene(options.scene, options.overrides, messages, "render");
 
-  Times times;
+  Summary summary;
   Clock::time_point start = Clock::now();
   std::vector<std::string> filesRead;
   const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
+  filesRead = withMeshes(description, filesRead);
+  checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
   request.features |= features(options.prints, options.exceptions);
   keep(options.common.keep, request, compile);
   if (options.common.keep.has(Item::Events)) // the lines are thrown away
     request.features |= RTSL_FEATURE_PRINT;
-  const std::optional<runtime::Scene> compiled =
+  std::optional<runtime::Scene> scene =
       compileScene(*module, request, compile, messages.diagnostics, [&](const auto &program) {
         const Clock::time_point begin = Clock::now();
-        runtime::Scene scene = scene::buildScene(description, program);
-        times.scene = secondsSince(begin);
-        return scene;
+        runtime::Scene made = scene::buildScene(description, program);
+        summary.times.scene = secondsSince(begin);
+        return made;
       });
-  if (!compiled)
+  if (!scene)
     return;
-  times.compile = secondsSince(start) - times.scene;
-  const runtime::Scene &scene = *compiled;
-  for (const runtime::Warning &warning : scene.warnings())
+  summary.times.compile = secondsSince(start) - summary.times.scene;
+  for (const runtime::Warning &warning : scene->warnings())
     messages.report(warning);
 
-  runtime::RenderOptions render = renderOptions(options, description.render);
+  runtime::RenderOptions &render = summary.render = renderOptions(options, description.render);
+  render.cancel = catchInterruptions();
   Progress progress("rendering");
   if (!options.quiet)
     render.progress = [&](double share) { progress.update(share); };
-  runtime::RenderStatistics statistics;
   const runtime::Image image = options.common.compile.target == Target::HostMegakernel
-                                   ? renderFlat(scene, render, statistics)
-                                   : runtime::render(scene, render, &statistics);
+                                   ? renderFlat(*scene, render, summary.statistics)
+                                   : runtime::render(*scene, render, &summary.statistics);
   progress.finish();
-  const std::vector<std::string> printed = runtime::takePrintLog().texts(scene.program().prints);
-  if (options.prints && !options.json) // there the lines are part of the document
-    for (const std::string &line : printed)
-      fmt::print("{}\n", line);
+  if (summary.statistics.samples == 0)
+    throw runtime::Error(runtime::ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
+  summary.printed = runtime::takePrintLog().texts(scene->program().prints);
   std::uint64_t stackBytes = 0;
   if (runtime::failedMachineStacks(&stackBytes))
     throw runtime::Error(runtime::ErrorCode::OutOfMemory,
@@ -183,21 +253,33 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
                                      stackBytes));
 
   start = Clock::now();
-  runtime::writeImage(options.output, image);
-  writeDependencies(options.common.dependencies, options.output, {options.scene}, withMeshes(description, filesRead));
-  times.image = secondsSince(start);
-  printSummary(options, render, statistics, printed, times);
+  runtime::writeImage(options.output, image, options.format);
+  writeDependencies(options.common.dependencies, options.output, {options.scene}, filesRead);
+  summary.times.image = secondsSince(start);
+  if (options.prints && !options.json) // there the lines are part of the document
+    printOut(summary.printed.empty() ? "" : fmt::format("{}\n", fmt::join(summary.printed, "\n")));
+  if (!summary.statistics.notFinite.empty())
+    try {
+      summary.notFinite = explainNotFinite(summary.statistics.notFinite, *module, request, compile, *scene, render,
+                                           messages.diagnostics);
+    } catch (const std::exception &error) { // the picture is written, and the samples are counted
+      if (!isOutOfMemory(error))
+        throw;
+      for (const runtime::SampleId &sample : summary.statistics.notFinite)
+        summary.notFinite.push_back({sample, {}, std::nullopt});
+    }
+  warn(summary, messages);
+  printSummary(options, summary);
 }
 
 int render(const RenderCommandOptions &options) {
-  std::signal(SIGINT, [](int) { interrupted = true; });
   Messages messages(options.common);
   try {
     renderScene(options, messages);
   } catch (const runtime::Error &error) {
     messages.report(error);
   }
-  return messages.status();
+  return statusAfterInterruption(messages.status());
 }
 
 } // namespace
@@ -205,36 +287,26 @@ int render(const RenderCommandOptions &options) {
 void addRenderCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<RenderCommandOptions>();
   CLI::App *command = app.add_subcommand(renderSummary.command, renderSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
-  command->add_option("-o,--output", options->output, "the picture: .png or .exr")->required()->type_name("IMAGE");
-  command->add_option("--spp", options->samples, "samples a pixel")->check(CLI::Range(1u, 1u << 24))->type_name("N");
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
+  addPictureOption(*command, options->output, options->format);
+  addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel, "samples a pixel");
   addSizeOption(*command, options->size);
-  command->add_option("--threads", options->threads, "threads; all cores if not given")
-      ->check(CLI::Range(1u, 4096u))
-      ->type_name("N");
-  command->add_option("--depth", options->depth, "how often a ray may lead to another; 0: camera rays only")
-      ->check(CLI::Range(0u, 1000u))
-      ->type_name("N");
-  command->add_option("--seed", options->seed, "seed of the random numbers")->type_name("N");
-  command->add_option("--set", options->overrides, "change a value of the scene file, such as objects.3.mesh=bunny.obj")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--traversal", options->traversal, "embree: fast; device: the one that GPUs run")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, runtime::Traversal>{
-                                              {"embree", runtime::Traversal::Embree}, {"device", runtime::Traversal::Device}})
-                      .description(""))
-      ->type_name("embree|device");
-  command
-      ->add_option("--target", options->common.compile.target,
-                   "host: the fastest way on this machine; host-megakernel: the program that GPUs run, on the CPU")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Target>{{"host", Target::Host},
-                                                                        {"host-megakernel", Target::HostMegakernel}})
-                      .description(""))
-      ->type_name("host|host-megakernel");
+  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads, "threads; all cores if not given");
+  addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
+           "how often a ray may lead to another; 0: camera rays only");
+  addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");
+  addSetOption(*command, options->overrides);
+  addChoice(*command, "--traversal", options->traversal,
+            Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree}, {"device", runtime::Traversal::Device}},
+            "embree: fast; device: the one that GPUs run");
+  addChoice(*command, "--target", options->common.compile.target,
+            Choices<Target>{{"host", Target::Host}, {"host-megakernel", Target::HostMegakernel}},
+            "host: the fastest way on this machine; host-megakernel: the program that GPUs run, on the CPU");
   command->add_flag("--print", options->prints,
                     "show what shaders print, in the order of pixels, on standard output");
   command->add_flag("--exceptions", options->exceptions,
-                    "end samples that send a bad ray, one too deep, or use an index out of range, and say how many");
+                    "end samples that send a bad ray, one too deep, or use an index out of range, and say how many; list all "
+                    "samples that are not finite");
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
@@ -243,7 +315,12 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");
-  command->callback([options, &action] { action = [options] { return render(*options); }; });
+  command->callback([options, &action] {
+    for (const auto &[name, isGiven] : {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
+      if (isGiven && options->output == "-")
+        throw CLI::ValidationError(name, "standard output is the picture; give a file to `-o`");
+    action = [options] { return render(*options); };
+  });
 }
 
 } // namespace rtsl::tool

@@ -14,6 +14,7 @@ int main(int argc, char **argv) {
   CLI::App app("renders with RTSL, compares pictures and reports what they cost", "rtslc");
   app.require_subcommand(1);
   Action action;
+  addCheckCommand(app, action, &scene::buildScene);
   addCompileCommand(app, action, &scene::buildScene);
   addExplainCommand(app, action, &scene::buildScene, &measureItems);
   addRenderCommand(app, action);

@@ -4,8 +4,11 @@
 //
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
+#include "Interruption.h"
 #include "Messages.h"
-#include "PictureSize.h"
+#include "OptionValues.h"
+#include "Output.h"
+#include "PictureOptions.h"
 #include "Progress.h"
 #include "SceneShaders.h"
 #include "codegen/driver/SceneProgram.h"
@@ -25,10 +28,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -50,8 +53,6 @@ struct ReportOptions {
   bool fresh = false, json = false, quiet = false;
 };
 
-std::atomic<bool> interrupted{false};
-
 double parseSeconds(const std::string &text) {
   const std::map<std::string, double> units = {{"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}, {"h", 3600}};
   char *end = nullptr;
@@ -66,6 +67,7 @@ double parseSeconds(const std::string &text) {
 struct LoadedScene {
   scene::SceneDescription description;
   std::unique_ptr<typed::Module> module;
+  std::vector<std::string> filesRead; // meshes and the reference too
   runtime::RenderOptions render;
 };
 
@@ -99,6 +101,7 @@ report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions o
                            std::uint32_t seed) {
   options.samplesPerPixel = samples;
   options.seed = seed;
+  options.withoutSample = std::numeric_limits<float>::quiet_NaN(); // no error is measured there
   report::Picture picture;
   picture.image = runtime::render(scene, options, &picture.statistics);
   if (runtime::failedMachineStacks(nullptr))
@@ -154,42 +157,63 @@ std::optional<report::Reference> referenceFor(const LoadedScene &loaded, const R
                                std::max(options.runs, referenceRuns), seconds, progress);
 }
 
-/// Every way to render, the usual one first.
-std::vector<report::Subject> subjectsFor(const LoadedScene &loaded, const ReportOptions &options, Messages &messages) {
+/// A way to render.
+struct Configuration {
+  FloatingPoint precision;
+  TraceMode trace;
+  runtime::Traversal traversal;
+  std::vector<std::pair<std::string, std::string>> settings; // "fp", "traversal" and "trace"
+
+  std::string name() const {
+    return fmt::format("{} {} {}", settings[0].second, settings[1].second, settings[2].second);
+  }
+};
+
+/// Those that --only leaves, the usual one first; throws if it leaves none.
+std::vector<Configuration> configurationsFor(const ReportOptions &options) {
   const std::pair<FloatingPoint, const char *> precisions[] = {{FloatingPoint::Strict, "strict"}, {FloatingPoint::Fast, "fast"}};
   const std::pair<TraceMode, const char *> traceModes[] = {{TraceMode::Recurse, "recurse"}, {TraceMode::Split, "split"}};
   const std::pair<runtime::Traversal, const char *> traversals[] = {{runtime::Traversal::Embree, "embree"},
                                                                     {runtime::Traversal::Device, "device"}};
-  const auto isWanted = [&](const std::string &name) {
-    return options.only.empty() || std::any_of(options.only.begin(), options.only.end(), [&](const std::string &part) {
-             return name.find(part) != std::string::npos;
-           });
-  };
-  std::vector<report::Subject> subjects;
+  std::vector<Configuration> configurations;
   for (const auto &[precision, precisionName] : precisions)
-    for (const auto &[trace, traceName] : traceModes) {
-      std::optional<Build> shared; // compiled when the first one is wanted
+    for (const auto &[trace, traceName] : traceModes)
       for (const auto &[traversal, traversalName] : traversals) {
-        report::Subject subject;
-        subject.name = fmt::format("{} {} {}", precisionName, traversalName, traceName);
-        if (!isWanted(subject.name))
-          continue;
-        CompileOptions compile = options.common.compile;
-        compile.floatingPoint = precision;
-        compile.trace = trace;
-        if (!shared)
-          shared = build(loaded, compile, messages);
-        if (!shared)
-          return {};
-        subject.settings = {{"fp", precisionName}, {"traversal", traversalName}, {"trace", traceName}};
-        subject.compileSeconds = shared->compileSeconds;
-        subject.render = rendererOf(*shared, loaded.render, traversal);
-        subjects.push_back(std::move(subject));
+        const Configuration one = {
+            precision, trace, traversal, {{"fp", precisionName}, {"traversal", traversalName}, {"trace", traceName}}};
+        const auto isPart = [&](const std::string &part) { return one.name().find(part) != std::string::npos; };
+        if (options.only.empty() || std::any_of(options.only.begin(), options.only.end(), isPart))
+          configurations.push_back(one);
       }
-    }
-  if (subjects.empty())
+  if (configurations.empty())
     throw runtime::Error(runtime::ErrorCode::UnknownName,
                          "no configuration is left by `--only`; their names are made of strict or fast, embree or device, and recurse or split");
+  return configurations;
+}
+
+/// Compiles them; configurations that differ in traversal alone share a program. Nothing if there were errors.
+std::vector<report::Subject> subjectsFor(const std::vector<Configuration> &configurations, const LoadedScene &loaded,
+                                         const ReportOptions &options, Messages &messages) {
+  std::map<std::pair<FloatingPoint, TraceMode>, Build> builds;
+  std::vector<report::Subject> subjects;
+  for (const Configuration &one : configurations) {
+    const auto [shared, isNew] = builds.try_emplace({one.precision, one.trace});
+    if (isNew) {
+      CompileOptions compile = options.common.compile;
+      compile.floatingPoint = one.precision;
+      compile.trace = one.trace;
+      const std::optional<Build> built = build(loaded, compile, messages);
+      if (!built)
+        return {};
+      shared->second = *built;
+    }
+    report::Subject subject;
+    subject.name = one.name();
+    subject.settings = one.settings;
+    subject.compileSeconds = shared->second.compileSeconds;
+    subject.render = rendererOf(shared->second, loaded.render, one.traversal);
+    subjects.push_back(std::move(subject));
+  }
   return subjects;
 }
 
@@ -202,7 +226,8 @@ std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options,
                   options.common.compile.checkIndices, options.common.compile.optimization);
   for (FileId file = 1; file <= messages.sources.count(); ++file)
     all += std::string(messages.sources.name(file)) + '\0' + std::string(messages.sources.text(file)) + '\0';
-  all += runtime::readFile(loaded.description.file);
+  if (options.scene != "-") // the text of standard input is among the sources
+    all += runtime::readFile(loaded.description.file);
   for (const std::string &value : options.overrides)
     all += '\0' + value;
   for (const scene::GeometryDescription &geometry : loaded.description.objects)
@@ -213,30 +238,48 @@ std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options,
   return fmt::format("{:016x}", report::hashOf(all));
 }
 
-/// Makes the folder, or finds the same study in it. Throws if it holds another one.
+namespace fs = std::filesystem;
+
+/// What a report writes into its folder.
+constexpr const char *parts[] = {"study.json",  "measurements.csv", "levels.csv",     "report.json", "index.html",
+                                 "reference.exr", "reference.json",  "partial", "pictures"};
+
+std::string identityOf(const ReportOptions &options) { return options.folder + "/study.json"; }
+
+/// Throws if the folder holds another study, or if something that is read lies where the report writes.
+void checkFolder(const ReportOptions &options, const std::string &fingerprint, const std::vector<std::string> &inputs) {
+  for (const char *part : parts) {
+    const fs::path path = fs::path(options.folder) / part;
+    std::error_code error;
+    runtime::refuseToOverwrite(path.string(), inputs);
+    for (const fs::directory_entry &entry : fs::directory_iterator(path, error)) // of folders: they are emptied
+      runtime::refuseToOverwrite(entry.path().string(), inputs);
+  }
+  if (options.fresh || !fs::exists(identityOf(options)))
+    return;
+  const nlohmann::json earlier = nlohmann::json::parse(runtime::readFile(identityOf(options)), nullptr, false);
+  if (earlier.is_discarded() || earlier.value("fingerprint", "") != fingerprint)
+    throw runtime::Error(runtime::ErrorCode::FileUnwritable,
+                         fmt::format("`{}` holds a report of another scene, shader, size or version; choose another `--out`, or pass `--fresh` to begin it anew",
+                                     options.folder),
+                         runtime::Place{options.folder});
+}
+
+/// Makes the folder, or finds the same study in it.
 void openFolder(const ReportOptions &options, const std::string &fingerprint) {
-  namespace fs = std::filesystem;
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error || !fs::is_directory(options.folder))
     throw runtime::Error(runtime::ErrorCode::FileUnwritable,
                          fmt::format("cannot make the folder `{}`: {}", options.folder, error ? error.message() : "there is a file of that name"),
                          runtime::Place{options.folder});
-  const std::string identity = options.folder + "/study.json";
   if (options.fresh)
-    for (const char *part : {"study.json", "measurements.csv", "levels.csv", "report.json", "index.html", "reference.exr", "reference.json", "partial", "pictures"})
+    for (const char *part : parts)
       fs::remove_all(fs::path(options.folder) / part, error);
-  if (fs::exists(identity)) {
-    const nlohmann::json earlier = nlohmann::json::parse(runtime::readFile(identity), nullptr, false);
-    if (earlier.is_discarded() || earlier.value("fingerprint", "") != fingerprint)
-      throw runtime::Error(runtime::ErrorCode::FileUnwritable,
-                           fmt::format("`{}` holds a report of another scene, shader, size or version; choose another `--out`, or pass `--fresh` to begin it anew",
-                                       options.folder),
-                           runtime::Place{options.folder});
+  if (fs::exists(identityOf(options)))
     return;
-  }
   const nlohmann::ordered_json document = {{"version", 1}, {"scene", options.scene}, {"fingerprint", fingerprint}};
-  runtime::writeFileAtomically(identity, document.dump(2) + "\n");
+  runtime::writeFileAtomically(identityOf(options), document.dump(2) + "\n");
 }
 
 /// The pictures of the page: the reference, and each different picture with its two maps. All have
@@ -292,30 +335,31 @@ std::string withInterval(const report::Estimate &estimate, int digits) {
 }
 
 void printSummary(const ReportOptions &options, const report::Summary &summary, const std::string &json) {
-  if (options.json) {
-    fmt::print("{}", json);
-    return;
-  }
-  fmt::print("{:<24} {:>9} {:>24} {:>24}\n", "configuration", "compile", "slope over seconds",
-             fmt::format("s to {:.2g}", summary.commonRelMse));
+  if (options.json)
+    return printOut(json);
+  std::string text = fmt::format("{:<24} {:>9} {:>24} {:>24}\n", "configuration", "compile", "slope over seconds",
+                                 fmt::format("s to {:.2g}", summary.commonRelMse));
   for (const report::SubjectSummary &subject : summary.subjects) {
     const report::LineFit &line = subject.relMseOverSeconds;
     const auto &time = subject.toCommonRelMse;
-    fmt::print("{:<24} {:>7.0f}ms {:>24} {:>24}\n", subject.name, subject.compileSeconds * 1e3,
-               line.points != 0 ? withInterval(line.slope, 3) + (line.bends() ? "*" : "") : "-",
-               time ? (time->isBound ? "<= " : "") + withInterval(time->seconds, 3) : "-");
+    text += fmt::format("{:<24} {:>7.0f}ms {:>24} {:>24}\n", subject.name, subject.compileSeconds * 1e3,
+                        line.points != 0 ? withInterval(line.slope, 3) + (line.bends() ? "*" : "") : "-",
+                        time ? (time->isBound ? "<= " : "") + withInterval(time->seconds, 3) : "-");
   }
   for (const std::string &problem : summary.problems)
-    fmt::print("note: {}\n", problem);
-  fmt::print("the report is {}/index.html\n", options.folder);
+    text += fmt::format("note: {}\n", problem);
+  printOut(text + fmt::format("the report is {}/index.html\n", options.folder));
 }
 
 std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages) {
   LoadedScene loaded;
-  loaded.description = scene::readSceneFile(options.scene, options.overrides);
-  loaded.module = loadShaders(loaded.description, options.common, messages);
+  loaded.description = readScene(options.scene, options.overrides, messages, "report");
+  loaded.module = loadShaders(loaded.description, options.common, messages, &loaded.filesRead);
   if (!loaded.module)
     return std::nullopt;
+  loaded.filesRead = withMeshes(loaded.description, loaded.filesRead);
+  if (!options.reference.empty())
+    loaded.filesRead.push_back(options.reference);
   loaded.render = scene::renderOptions(loaded.description.render);
   if (options.size) {
     loaded.render.width = options.size->width;
@@ -327,18 +371,21 @@ std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages
   }
   loaded.render.maxDepth = options.depth.value_or(loaded.render.maxDepth);
   loaded.render.threads = options.threads;
-  loaded.render.cancel = &interrupted;
+  loaded.render.cancel = catchInterruptions();
   return loaded;
 }
 
 void makeReport(const ReportOptions &options, Messages &messages) {
-  const std::optional<LoadedScene> loaded = load(options, messages);
+  const std::vector<Configuration> configurations = configurationsFor(options);
+  std::optional<LoadedScene> loaded = load(options, messages);
   if (!loaded)
     return;
-  openFolder(options, fingerprint(*loaded, options, messages));
-  const std::vector<report::Subject> subjects = subjectsFor(*loaded, options, messages);
+  const std::string study = fingerprint(*loaded, options, messages);
+  checkFolder(options, study, loaded->filesRead);
+  const std::vector<report::Subject> subjects = subjectsFor(configurations, *loaded, options, messages);
   if (subjects.empty())
     return;
+  openFolder(options, study); // when nothing is wrong any more
 
   Progress progress("measuring");
   const auto show = [&](double share) {
@@ -353,12 +400,12 @@ void makeReport(const ReportOptions &options, Messages &messages) {
   if (!found)
     return;
   const report::Reference &reference = *found;
-  report::StudyOptions study;
-  study.folder = options.folder;
-  study.runs = options.runs;
-  study.budgetSeconds = options.budget;
-  study.progress = [&](double share, const std::string &) { show((referenceShare + share * double(subjects.size())) / total); };
-  const report::Summary summary = report::summarise(subjects, report::runStudy(subjects, reference, study), reference);
+  report::StudyOptions how;
+  how.folder = options.folder;
+  how.runs = options.runs;
+  how.budgetSeconds = options.budget;
+  how.progress = [&](double share, const std::string &) { show((referenceShare + share * double(subjects.size())) / total); };
+  const report::Summary summary = report::summarise(subjects, report::runStudy(subjects, reference, how), reference);
   progress.finish();
 
   report::Context context;
@@ -379,7 +426,6 @@ void makeReport(const ReportOptions &options, Messages &messages) {
 }
 
 int report(const ReportOptions &options) {
-  std::signal(SIGINT, [](int) { interrupted = true; });
   Messages messages(options.common);
   try {
     makeReport(options, messages);
@@ -388,7 +434,7 @@ int report(const ReportOptions &options) {
       error.note("the same command goes on from here");
     messages.report(error);
   }
-  return messages.status();
+  return statusAfterInterruption(messages.status());
 }
 
 } // namespace
@@ -396,7 +442,7 @@ int report(const ReportOptions &options) {
 void addReportCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App *command = app.add_subcommand(reportSummary.command, reportSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON)")->required();
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
   command->add_option("--out", options->folder, "the folder of the report; an interrupted one goes on")->required()->type_name("DIR");
   command->add_option("--reference", options->reference, "what to compare with; rendered if not given")->type_name("IMAGE");
   command
@@ -404,13 +450,11 @@ void addReportCommand(CLI::App &app, Action &action) {
           "--budget", [options](const std::string &text) { options->budget = parseSeconds(text); },
           "time of rendering for each configuration; the reference gets four times as much; 10s if not given")
       ->type_name("TIME");
-  command->add_option("--runs", options->runs, "independent runs with each number of samples; 8 if not given")
-      ->check(CLI::Range(2u, 1000u))
-      ->type_name("N");
+  addWhole(*command, "--runs", options->runs, 2, 1000, "independent runs with each number of samples; 8 if not given");
   addSizeOption(*command, options->size);
-  command->add_option("--threads", options->threads, "threads; all cores if not given")->check(CLI::Range(1u, 4096u))->type_name("N");
-  command->add_option("--depth", options->depth, "how often a ray may lead to another")->check(CLI::Range(0u, 1000u))->type_name("N");
-  command->add_option("--set", options->overrides, "change a value of the scene file")->type_name("PATH=VALUE")->allow_extra_args(false);
+  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads, "threads; all cores if not given");
+  addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth, "how often a ray may lead to another");
+  addSetOption(*command, options->overrides);
   command->add_option("--only", options->only, "only configurations with this in their names, such as embree; may be repeated")
       ->type_name("TEXT")
       ->allow_extra_args(false);

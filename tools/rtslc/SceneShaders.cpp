@@ -3,17 +3,53 @@
 
 #include "Shaders.h"
 #include "frontend/FileSearch.h"
+#include "runtime/AtomicFile.h"
 #include "runtime/Scene.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace rtsl::tool {
 
-bool isScene(const std::string &file) {
-  const std::string extension = ".json";
-  return file.size() > extension.size() && file.compare(file.size() - extension.size(), extension.size(), extension) == 0;
+namespace {
+
+bool hasEnding(const std::string &file, const std::string &ending) {
+  return file.size() > ending.size() && file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+[[noreturn]] void refuseShaders(const std::string &file, const char *command) {
+  runtime::Error error(runtime::ErrorCode::NotAScene,
+                       fmt::format("`{}` holds shaders, and `rtslc {}` takes a scene, which imports them", file, command),
+                       runtime::Place{file});
+  error.note(fmt::format("a scene is a file such as {{\"rtsl\": 1, \"import\": [\"{}\"], \"camera\": {{\"class\": ...}}, "
+                         "\"objects\": [{{\"mesh\": ..., \"material\": {{\"class\": ...}}}}]}}",
+                         std::filesystem::path(file).filename().string()));
+  error.note(fmt::format("`rtslc check {}` looks for mistakes in the shaders alone", file));
+  throw error;
+}
+
+} // namespace
+
+bool isScene(const std::string &file) { return hasEnding(file, ".json"); }
+
+scene::SceneDescription readScene(const std::string &file, const std::vector<std::string> &overrides, Messages &messages,
+                                  const char *command) {
+  if (hasEnding(file, ".rtsl"))
+    refuseShaders(file, command);
+  if (file != "-")
+    return scene::readSceneFile(file, overrides);
+  const char *const name = "<stdin>";
+  const std::string text = runtime::readFile(file);
+  messages.sources.add(name, text); // messages show it
+  return scene::parseScene(text, name, overrides);
+}
+
+void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {
+  command.add_option("--set", overrides, "change a value of the scene file, such as objects.3.mesh=bunny.obj")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
 }
 
 namespace {

@@ -1,5 +1,7 @@
-//===- PictureSize.cpp ----------------------------------------------------===//
-#include "PictureSize.h"
+//===- PictureOptions.cpp - options of the picture that is rendered --------===//
+#include "PictureOptions.h"
+
+#include "OptionValues.h"
 
 #include <cstdio>
 #include <string>
@@ -25,6 +27,16 @@ void addSizeOption(CLI::App &command, std::optional<PictureSize> &size) {
       .add_option_function<std::string>(
           "--size", [&size](const std::string &text) { size = parseSize(text); }, "size in pixels")
       ->type_name("WxH");
+}
+
+void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFormat &format) {
+  command.add_option("-o,--output", output, "the picture: .png or .exr; - is standard output")
+      ->required()
+      ->type_name("IMAGE");
+  addChoice(command, "--format", format,
+            Choices<runtime::PictureFormat>{{"png", runtime::PictureFormat::Png},
+                                            {"exr", runtime::PictureFormat::Exr}},
+            "how the picture is written; as its name says if not given, and - as png");
 }
 
 } // namespace rtsl::tool

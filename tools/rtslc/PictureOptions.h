@@ -1,10 +1,13 @@
-//===- PictureSize.h - "960x540" ------------------------------------------===//
+//===- PictureOptions.h - options of the picture that is rendered ----------===//
 #pragma once
+
+#include "runtime/Image.h"
 
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace rtsl::tool {
 
@@ -14,5 +17,8 @@ struct PictureSize {
 
 /// Adds --size WxH, each from 1 to 65536.
 void addSizeOption(CLI::App &command, std::optional<PictureSize> &size);
+
+/// Adds -o IMAGE, which must be given, and --format.
+void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFormat &format);
 
 } // namespace rtsl::tool

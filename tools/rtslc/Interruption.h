@@ -1,0 +1,18 @@
+//===- Interruption.h - Ctrl-C while a picture is rendered -----------------===//
+#pragma once
+
+#include <atomic>
+
+namespace rtsl::tool {
+
+/// From now on the first SIGINT or SIGTERM sets the flag that comes back, for renderings to stop at;
+/// the second ends the process at once.
+const std::atomic<bool> *catchInterruptions();
+
+/// "SIGINT" or "SIGTERM"; null if neither has come.
+const char *interruption();
+
+/// The exit status of what was interrupted: 130 or 143. Otherwise `status`.
+int statusAfterInterruption(int status);
+
+} // namespace rtsl::tool

@@ -1,0 +1,63 @@
+//===- NotFinite.cpp - samples that are infinite or not a number -----------===//
+#include "NotFinite.h"
+
+#include "runtime/NumberCheck.h"
+#include "runtime/PrintLog.h"
+#include "runtime/WorkerThreads.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rtsl::tool {
+
+namespace {
+
+/// A sample as the program with checks sees it.
+SampleNotFinite explain(const runtime::SampleId &sample, const RtslLaunch &launch,
+                        const runtime::Program &program) {
+  SampleNotFinite result{sample, std::vector<float>(RTSL_MAX_COLOR), std::nullopt};
+  const auto isFinite = [&] {
+    program.sample(&launch, sample.x, sample.y, sample.sample, result.color.data());
+    return std::all_of(result.color.begin(), result.color.begin() + program.colorComponents,
+                       [](float value) { return std::isfinite(value); });
+  };
+  const std::optional<std::uint32_t> origin = runtime::findOrigin(isFinite);
+  isFinite(); // the color again, as it is
+  result.color.resize(program.colorComponents);
+  if (origin && program.numberPlaces.at(*origin).line != 0)
+    result.place = program.numberPlaces[*origin];
+  return result;
+}
+
+} // namespace
+
+std::vector<SampleNotFinite> explainNotFinite(const std::vector<runtime::SampleId> &samples,
+                                              const typed::Module &module,
+                                              LinkRequest request, CompileOptions compile,
+                                              runtime::Scene &scene, runtime::RenderOptions render,
+                                              Diagnostics &diagnostics) {
+  request.keep.add(ItemSet::only(Item::Parameters)); // what folds has no line
+  // Calls are the shortest way, and every way has the same bits.
+  if (compile.target == Target::HostMegakernel)
+    render.traversal = runtime::Traversal::Device;
+  compile.target = Target::Host;
+  compile.trace = TraceMode::Recurse;
+  compile.checksNumbers = true;
+  std::vector<SampleNotFinite> result;
+  const auto program = compileProgram(module, request, compile, diagnostics,
+                                      [&](const auto &) { return scene.facts(); });
+  if (!program)
+    return result;
+  scene.useProgram(program);
+  runtime::Renderer renderer(scene, render);
+  RtslLaunch launch = renderer.launch();
+  const std::uint64_t stackBytes = program->stackBytes(render.maxDepth, launch.referenceChain);
+  runtime::runOnThreads(1, stackBytes, [&](unsigned) {
+    for (const runtime::SampleId &sample : samples)
+      result.push_back(explain(sample, launch, *program));
+  });
+  runtime::takePrintLog(); // they have printed again
+  return result;
+}
+
+} // namespace rtsl::tool

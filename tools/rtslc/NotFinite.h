@@ -1,0 +1,28 @@
+//===- NotFinite.h - samples that are infinite or not a number -------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+#include "runtime/Renderer.h"
+
+#include <optional>
+#include <vector>
+
+namespace rtsl::tool {
+
+/// A sample that is not finite, and why.
+struct SampleNotFinite {
+  runtime::SampleId sample;
+  std::vector<float> color;
+  /// Where a shader made the number to which that goes back; nothing if that is not found.
+  std::optional<runtime::Place> place;
+};
+
+/// Renders the samples again, by a program that checks its numbers (runtime/NumberCheck.h), and finds
+/// out where each stopped being finite. The scene gets that program.
+std::vector<SampleNotFinite> explainNotFinite(const std::vector<runtime::SampleId> &samples,
+                                              const typed::Module &module,
+                                              LinkRequest request, CompileOptions compile,
+                                              runtime::Scene &scene, runtime::RenderOptions render,
+                                              Diagnostics &diagnostics);
+
+} // namespace rtsl::tool

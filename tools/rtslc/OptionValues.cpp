@@ -1,0 +1,58 @@
+//===- OptionValues.cpp - options that say what they take -----------------===//
+#include "OptionValues.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+namespace rtsl::tool {
+
+std::string joined(const std::vector<std::string> &words) {
+  return fmt::format("{}", fmt::join(words, "|"));
+}
+
+void refuseWord(const std::string &option, const std::string &text,
+                const std::vector<std::string> &words) {
+  throw CLI::ValidationError(
+      option, fmt::format("`{}` is none of {}", text, fmt::join(words, ", ")));
+}
+
+CLI::Option *addChoice(CLI::App &command, const std::string &option, std::string &target,
+                       const std::vector<std::string> &words, const std::string &help) {
+  Choices<std::string> choices;
+  for (const std::string &word : words)
+    choices.emplace_back(word, word);
+  return addChoice(command, option, target, choices, help);
+}
+
+std::uint64_t parseWhole(const std::string &option, const std::string &text, std::uint64_t low,
+                         std::uint64_t high) {
+  std::uint64_t number = 0;
+  const char *end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end || number < low || number > high)
+    throw CLI::ValidationError(
+        option, fmt::format("`{}` is not a whole number from {} to {}", text, low, high));
+  return number;
+}
+
+std::string rangeText(std::uint64_t low, std::uint64_t high) {
+  return fmt::format(" ({} to {})", low, high);
+}
+
+CLI::Option *addNotNegative(CLI::App &command, const std::string &option, double &target,
+                            const std::string &help) {
+  const auto read = [&target, option](const std::string &text) {
+    char *end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != 0 || std::isnan(number) || number < 0)
+      throw CLI::ValidationError(option, fmt::format("`{}` is not a number of at least 0", text));
+    target = number;
+  };
+  return command.add_option_function<std::string>(option, read, help)->type_name("X");
+}
+
+} // namespace rtsl::tool

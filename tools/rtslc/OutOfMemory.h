@@ -1,0 +1,23 @@
+//===- OutOfMemory.h - memory that runs out is named so --------------------===//
+//
+// It is no fault of the program, wherever it happens: in our code, in a thread of a library, or in
+// code that was compiled without exceptions.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <exception>
+
+namespace rtsl::tool {
+
+/// Whether an exception says that memory, or threads, ran out.
+bool isOutOfMemory(const std::exception &error);
+
+/// Says so on standard error.
+void sayOutOfMemory(const char *program);
+
+/// From now on the process says so and ends with status 1 where memory runs out and no exception
+/// can be caught.
+void nameOutOfMemory(const char *program);
+
+} // namespace rtsl::tool

@@ -1,0 +1,42 @@
+//===- Outcome.cpp - what a rendering met, in words ------------------------===//
+#include "Outcome.h"
+
+#include "Interruption.h"
+
+#include <fmt/format.h>
+
+namespace rtsl::tool {
+
+std::string notFiniteText(const runtime::RenderStatistics &statistics) {
+  std::string text = fmt::format("{} of {} samples were infinite or not a number, and are left out of "
+                                 "the means of their pixels",
+                                 statistics.samplesNotFinite, statistics.samples);
+  if (statistics.pixelsWithoutSample)
+    text += fmt::format("; {} pixels have no other samples and are black",
+                        statistics.pixelsWithoutSample);
+  return text;
+}
+
+std::string sampleText(const runtime::SampleId &sample) {
+  return fmt::format("pixel {},{} sample {}", sample.x, sample.y, sample.sample);
+}
+
+std::string tooDeepText(const runtime::RenderStatistics &statistics,
+                        const runtime::RenderOptions &options) {
+  return fmt::format("{} rays in {} samples were deeper than {} and saw nothing: give a larger "
+                     "`--depth`, or end the recursion in the shader",
+                     statistics.raysTooDeep, statistics.samples, options.maxDepth);
+}
+
+std::string unfinishedText(const runtime::RenderStatistics &statistics,
+                           const runtime::RenderOptions &options) {
+  const double pixels = double(options.width) * options.height;
+  const char *const signal = interruption();
+  return fmt::format("stopped by {} after {:.1f} % of the samples: {} of {:.0f} pixels are done, and "
+                     "black is where nothing is",
+                     signal ? signal : "the caller",
+                     100 * double(statistics.samples) / (pixels * options.samplesPerPixel),
+                     statistics.pixels, pixels);
+}
+
+} // namespace rtsl::tool

@@ -1,0 +1,24 @@
+//===- Outcome.h - what a rendering met, in words --------------------------===//
+#pragma once
+
+#include "runtime/RenderOptions.h"
+
+#include <string>
+
+namespace rtsl::tool {
+
+/// "3 samples of 1000 were infinite or not a number, and are left out of the means of their pixels"
+std::string notFiniteText(const runtime::RenderStatistics &statistics);
+
+/// "pixel 12,40 sample 3"
+std::string sampleText(const runtime::SampleId &sample);
+
+/// "25 rays in 1000 samples were deeper than 8 and saw nothing: give a larger `--depth` ..."
+std::string tooDeepText(const runtime::RenderStatistics &statistics,
+                        const runtime::RenderOptions &options);
+
+/// "stopped by SIGINT after 12.5 % of the samples: 100 of 800 pixels are done, ..."
+std::string unfinishedText(const runtime::RenderStatistics &statistics,
+                           const runtime::RenderOptions &options);
+
+} // namespace rtsl::tool
