@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace rtsl::runtime {
 
@@ -167,6 +168,8 @@ struct Scene::Implementation {
   void setColor(const std::vector<float> &color, float *to, const char *what) const;
   std::uint32_t addInstance(RtslRef primitive, std::uint32_t mesh, RtslRef material,
                             std::string name, std::uint32_t primitives, std::uint32_t mask);
+  /// The objects, and those behind their references.
+  std::vector<RtslRef> reachedFrom(std::vector<RtslRef> objects) const;
   /// RtslInstance::needs of whatever has this material: what it reads, and the objects behind it.
   std::uint32_t needsAt(RtslRef material) const;
   /// Counts the references that lead on from an object that is complete. Those that it refers to were
@@ -236,19 +239,24 @@ void Scene::Implementation::measureChain(const ObjectInfo &object) {
   referenceChain = std::max(referenceChain, chain);
 }
 
-std::uint32_t Scene::Implementation::needsAt(RtslRef material) const {
-  std::uint32_t needs = 0;
-  std::vector<RtslRef> reached = {material};
-  for (std::size_t next = 0; next < reached.size(); ++next) {
-    const ObjectInfo &object = info(reached[next]);
-    needs |= object.classInfo->needs;
+std::vector<RtslRef> Scene::Implementation::reachedFrom(std::vector<RtslRef> objects) const {
+  std::unordered_set<RtslRef> seen(objects.begin(), objects.end());
+  for (std::size_t next = 0; next < objects.size(); ++next) {
+    const ObjectInfo object = info(objects[next]);
     for (const MemberInfo &member : object.classInfo->members)
       forEachReference(member.type, records.data() + object.object + member.offset,
                        [&](RtslRef reference) {
-                         if (std::find(reached.begin(), reached.end(), reference) == reached.end())
-                           reached.push_back(reference);
+                         if (seen.insert(reference).second)
+                           objects.push_back(reference);
                        });
   }
+  return objects;
+}
+
+std::uint32_t Scene::Implementation::needsAt(RtslRef material) const {
+  std::uint32_t needs = 0;
+  for (RtslRef object : reachedFrom({material}))
+    needs |= info(object).classInfo->needs;
   return program->needs & needs;
 }
 
@@ -499,8 +507,19 @@ const ClassInfo &Scene::classOf(RtslRef object) const {
 }
 SceneFacts Scene::facts() const {
   SceneFacts facts;
+  std::vector<RtslRef> roots = self->lights;
+  for (RtslRef root : {self->camera, self->rayGeneration, self->background, self->exception})
+    if (root != 0)
+      roots.push_back(root);
+  for (const RtslInstance &instance : self->instances)
+    for (RtslRef root : {instance.primitive, instance.material})
+      if (root != 0)
+        roots.push_back(root);
+  const std::vector<RtslRef> list = self->reachedFrom(std::move(roots));
+  const std::unordered_set<RtslRef> reached(list.begin(), list.end());
   for (const ObjectInfo &object : self->objects)
-    facts.objects.push_back({object.classInfo->name, self->records.data() + object.object});
+    if (reached.count(object.object))
+      facts.objects.push_back({object.classInfo->name, self->records.data() + object.object});
   facts.lightCount = std::uint32_t(self->lights.size());
   facts.ambient.assign(self->ambient, self->ambient + self->program->colorComponents);
   return facts;

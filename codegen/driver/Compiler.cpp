@@ -25,6 +25,7 @@
 
 #include "mlir/IR/Verifier.h"
 #include "llvm/IR/Module.h"
+#include "llvm/IR/StructuralHash.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -326,7 +327,7 @@ void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOpt
   // Constructors and bounds may have large local variables.
   runtime::SceneFacts facts;
   runtime::runOnThreads(1, constructors->stackBytes(0, 0), [&](unsigned) { facts = makeObjects(constructors); });
-  bindScene(ir, facts, request.keep, findings);
+  bindScene(ir, facts, request, findings);
 }
 
 } // namespace
@@ -379,7 +380,9 @@ SourceRange firstPrint(const typed::Module &module, const LinkRequest &request) 
   return range;
 }
 
-void describeEvents(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+/// `hasChecks`: whether an index of the program is kept in range that could be out of it.
+void describeEvents(const typed::Module &module, const LinkRequest &request,
+                    const CompileOptions &options, bool hasChecks, const runtime::Program &program,
                     const SourceManager &sources, Findings &findings) {
   const bool hasExceptions = (request.features & RTSL_FEATURE_EXCEPTIONS) && !(request.features & RTSL_FEATURE_UNHEEDED);
   Finding exceptions = {Item::Events, "exceptions", hasExceptions, {}, {}};
@@ -387,19 +390,60 @@ void describeEvents(const typed::Module &module, const LinkRequest &request, con
                                     : "the scene has no `exception`, and --exceptions is not given";
   findings.push_back(std::move(exceptions));
 
-  const bool prints = request.features & RTSL_FEATURE_PRINT;
+  const bool prints = !program.prints.empty();
   const SourceRange print = firstPrint(module, request);
-  Finding printing = {Item::Events, "print", prints, prints ? "--print" : "no shader prints", {}};
+  Finding printing = {
+      Item::Events, "print", prints, prints ? "--print" : "no shader that runs prints", {}};
   if (print.isValid()) {
     const ShownPlace place = shownBegin(sources, print);
     printing.place = {std::string(place.file), place.at.line, place.at.column};
-    if (!prints)
+    if (!(request.features & RTSL_FEATURE_PRINT))
       printing.reason = "--print is not given";
   }
   findings.push_back(std::move(printing));
 
-  findings.push_back({Item::Events, "index checks", options.checkIndices,
-                      options.checkIndices ? "an index that is not constant is kept in range" : "--unchecked", {}});
+  findings.push_back({Item::Events,
+                      "index checks",
+                      hasChecks,
+                      !options.checkIndices ? "--unchecked"
+                      : hasChecks           ? "an index is kept in range that is not known to be"
+                                            : "every index is known to be in range",
+                      {}});
+}
+
+/// What tells two programs apart: the structure of what a GPU runs, or of what this machine does in
+/// double. `ir` is used up.
+llvm::stable_hash fingerprint(mlir::ModuleOp ir, const CompileOptions &options,
+                              const runtime::Program &program) {
+  const bool forGpu = options.floatingPoint != FloatingPoint::Double;
+  runToSsa(ir, options, TraceMode::Split);
+  LlvmCode code =
+      translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
+  defineFacts(code, program);
+  linkDeviceCode(code, megakernelCode(forGpu),
+                 forGpu ? std::vector<std::string>{"rtsl_render"}
+                        : std::vector<std::string>{"rtsl_lane_bytes", "rtsl_run_lane"});
+  codegen::optimize(*code.module, *code.machine, code.options);
+  return llvm::StructuralHash(*code.module, /*DetailedHash=*/true);
+}
+
+/// Whether checks of indices change the program.
+bool hasIndexChecks(const typed::Module &module, const LinkRequest &request,
+                    const CompileOptions &options, const SourceManager &sources,
+                    const runtime::SceneFacts &facts) {
+  if (!options.checkIndices)
+    return false;
+  const auto compiled = [&](bool checks) {
+    CompileOptions checking = options;
+    checking.checkIndices = checks;
+    Diagnostics unheard(sources);
+    const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+    runtime::Program program;
+    const auto ir = linkScene(module, request, checking, unheard, *context, program);
+    bindScene(*ir, facts, request);
+    return fingerprint(*ir, checking, program);
+  };
+  return compiled(true) != compiled(false);
 }
 
 /// What a bound program takes on a GPU. `ir` is used up.
@@ -436,7 +480,9 @@ std::optional<SceneExplanation> explainScene(const typed::Module &module, const 
       return std::nullopt;
     bindToScene(*ir, request, options, [&](const auto &constructors) { return facts = makeObjects(constructors); }, *program,
                 &explanation.findings);
-    describeEvents(module, request, options, diagnostics.sources(), explanation.findings);
+    describeEvents(module, request, options,
+                   hasIndexChecks(module, request, options, diagnostics.sources(), facts), *program,
+                   diagnostics.sources(), explanation.findings);
     explanation.size = measure(*ir, options, *program);
     explanation.program = program;
   }
@@ -459,7 +505,7 @@ std::optional<SceneExplanation> explainScene(const typed::Module &module, const 
     const auto ir = linkScene(module, keeping, keepingOptions, unheard, *context, program);
     if (!ir)
       continue; // the item cannot be kept: a class that the scene does not use may be incomplete
-    bindScene(*ir, facts, keeping.keep);
+    bindScene(*ir, facts, keeping);
     explanation.sizeKeeping[item] = measure(*ir, keepingOptions, program);
   }
   return explanation;

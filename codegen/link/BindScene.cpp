@@ -59,7 +59,8 @@ std::map<mlir::Operation *, Objects> objectsByClass(const mlir::SymbolTable &sym
 }
 
 /// The words of a member if they are the same in all objects; or else nothing.
-std::vector<std::int32_t> commonWords(const mlir::SymbolTable &symbols, ir::MemberDeclOp member, const Objects &objects) {
+std::vector<std::int32_t> commonWords(const mlir::SymbolTable &symbols, ir::MemberDeclOp member,
+                                      llvm::ArrayRef<Objects::value_type> objects) {
   std::vector<std::int32_t> common;
   for (const runtime::SceneFacts::Object *object : objects) {
     const auto own = symbols.lookup<ir::ClassOp>(object->className);
@@ -155,7 +156,9 @@ void keepConstructors(mlir::ModuleOp ir) {
       hide(function);
 }
 
-void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, ItemSet keep, Findings *findings) {
+void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request,
+               Findings *findings) {
+  const ItemSet keep = request.keep;
   for (auto function : llvm::make_early_inc_range(ir.getOps<mlir::func::FuncOp>()))
     if (isForBuilding(function))
       function.erase(); // nobody calls them but the runtime
@@ -171,9 +174,12 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, ItemSet keep
     for (auto member : record.getBody().getOps<ir::MemberDeclOp>()) {
       if (member.isScratch())
         continue;
-      const std::vector<std::int32_t> words = commonWords(symbols, member, objects->second);
+      std::vector<std::int32_t> words = commonWords(symbols, member, objects->second);
       if (findings)
         findings->push_back(describe(record, member, objects->second.size(), words, readers));
+      if (request.without.count(
+              {Item::Parameters, (record.getSymName() + "." + member.getSymName()).str()}))
+        words = commonWords(symbols, member, llvm::ArrayRef(objects->second).take_front());
       if (!words.empty() && !keep.has(Item::Parameters))
         member->setAttr(codegen::boundWords, builder.getDenseI32ArrayAttr(words));
     }
@@ -181,7 +187,10 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, ItemSet keep
   if (findings)
     describeLights(ir, scene, *findings);
   if (!keep.has(Item::Lights)) {
-    ir->setAttr(codegen::boundLightCount, builder.getI32IntegerAttr(static_cast<std::int32_t>(scene.lightCount)));
+    const std::uint32_t lights =
+        request.without.count({Item::Lights, "illuminance"}) ? 0 : scene.lightCount;
+    ir->setAttr(codegen::boundLightCount,
+                builder.getI32IntegerAttr(static_cast<std::int32_t>(lights)));
     ir->setAttr(codegen::boundAmbient, builder.getDenseF32ArrayAttr(scene.ambient));
   }
 }

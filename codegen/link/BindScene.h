@@ -1,7 +1,7 @@
 //===- BindScene.h - what the objects of a scene say of a program ---------===//
 #pragma once
 
-#include "codegen/link/Items.h"
+#include "codegen/driver/Compiler.h"
 #include "mlir/IR/BuiltinOps.h"
 #include "runtime/Program.h"
 
@@ -10,9 +10,12 @@ namespace rtsl {
 /// Keeps of a linked program what makes the objects of a scene: constructors, member defaults and bounds.
 void keepConstructors(mlir::ModuleOp ir);
 
-/// Notes in a linked program what is the same in all objects of its scene, and takes out what made them. The pass
-/// `rtsl-bind-members` makes constants of the notes. The objects must have been made with a program that was linked from the
-/// same classes. What `keep` names is noted as if nothing were known of it. Adds to `findings`, if given.
-void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, ItemSet keep = {}, Findings *findings = nullptr);
+/// Notes in a linked program what is the same in all objects of its scene, and takes out what made
+/// them. The pass `rtsl-bind-members` makes constants of the notes. The objects must have been made
+/// with a program that was linked from the same classes; those that no ray comes to are left out.
+/// What LinkRequest::keep names is noted as if nothing were known of it. Adds to `findings`, if
+/// given.
+void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request = {},
+               Findings *findings = nullptr);
 
 } // namespace rtsl

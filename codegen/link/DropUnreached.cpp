@@ -10,6 +10,7 @@
 #include "llvm/ADT/MapVector.h"
 
 #include <algorithm>
+#include <set>
 
 namespace rtsl::linking {
 
@@ -25,19 +26,30 @@ struct Cause {
 
 class Reach {
 public:
-  explicit Reach(LinkContext &context) : context(context) {}
+  explicit Reach(const LinkContext &context) : context(context) {}
 
-  /// All functions that are reached, with the first cause that was found.
+  /// All functions that are reached, with the first cause that was found: first those that
+  /// rendering reaches, and then those that run only while the scene is built.
   const llvm::MapVector<mlir::Operation *, Cause> &run() {
     addRoots();
-    for (std::size_t next = 0; next < reached.size(); ++next) {
-      const auto function = llvm::cast<FuncOp>((reached.begin() + next)->first);
-      look(function);
-    }
+    follow();
+    rendering = reached.size();
+    addBuildingRoots();
+    follow();
     return reached;
   }
 
+  bool isReachedByRendering(FuncOp function) const {
+    const auto found = reached.find(function);
+    return found != reached.end() && std::size_t(found - reached.begin()) < rendering;
+  }
+
 private:
+  void follow() {
+    for (; next < reached.size(); ++next)
+      look(llvm::cast<FuncOp>((reached.begin() + std::ptrdiff_t(next))->first));
+  }
+
   void add(FuncOp function, Cause cause) {
     if (function)
       reached.insert({function, std::move(cause)});
@@ -46,14 +58,18 @@ private:
   /// The methods of this name that classes below `root` have.
   void addMethods(llvm::StringRef root, const std::string &method, const Cause &cause) {
     for (const LinkedClass &linked : context.classes)
-      if (linked.info->root == root)
+      if (linked.isUsed && linked.info->root == root)
         add(findMethod(context, linked, method), cause);
   }
 
-  void addRoots() {
-    for (auto function : context.ir.getOps<FuncOp>())
+  void addBuildingRoots() {
+    for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
       if (function->hasAttr("rtsl.constructor"))
         add(function, {"makes the object", {}});
+    addMethods("rt_Primitive", "computeBounds", {"says where the tree has it", {}});
+  }
+
+  void addRoots() {
     if (context.request.engine == runtime::Engine::Classic) {
       addMethods("rt_Camera", "generateRay", {"begins every sample", {}});
       addClassicRays({"for the camera's rays", {}});
@@ -61,7 +77,6 @@ private:
       addMethods("rt_RayGeneration", "generate", {"begins every sample", {}});
     }
     addMethods("rt_Primitive", "intersect", {"finds hits", {}});
-    addMethods("rt_Primitive", "computeBounds", {"says where the tree has it", {}});
     if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
       addMethods("rt_Exception", "exception", {"for samples that meet an exception", {}});
     if (context.request.isSampled) {
@@ -81,7 +96,16 @@ private:
       const auto by = [&](const char *does) { return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())}; };
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
         const bool isDispatch = function.getSymName().starts_with(dispatchPrefix); // stands for those that call it
-        add(context.ir.lookupSymbol<FuncOp>(call.getCallee()), isDispatch ? reached.lookup(function) : by("called by"));
+        add(mlir::ModuleOp(context.ir).lookupSymbol<FuncOp>(call.getCallee()),
+            isDispatch ? reached.lookup(function) : by("called by"));
+      } else if (auto slot = llvm::dyn_cast<ir::CallMethodOp>(op)) { // not resolved yet
+        const llvm::StringRef base =
+            llvm::cast<ir::RefType>(slot.getObject().getType()).getClassName();
+        if (!slots.insert((base + "." + slot.getMethod()).str()).second)
+          return;
+        for (const LinkedClass &linked : context.classes)
+          if (linked.isUsed && derivesFrom(*linked.info, base))
+            add(findMethod(context, linked, slot.getMethod().str()), by("called by"));
       } else if (llvm::isa<ir::TraceOp>(op)) {
         addClassicRays(by("for rays of"));
       } else if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op)) {
@@ -107,8 +131,10 @@ private:
       addMethods("rt_Primitive", "computeDerivatives", cause);
   }
 
-  LinkContext &context;
+  const LinkContext &context;
   llvm::MapVector<mlir::Operation *, Cause> reached;
+  std::size_t next = 0, rendering = 0;
+  std::set<std::string> slots; // that are not resolved, and were followed
 };
 
 /// "closestHit.Radiance" begins for a ray; "lookup" does not.
@@ -137,8 +163,22 @@ std::string shownName(FuncOp function) {
   return function.getSymName().str();
 }
 
+bool asksForLights(const LinkContext &context) {
+  Reach reach(context);
+  reach.run();
+  return llvm::any_of(mlir::ModuleOp(context.ir).getOps<FuncOp>(), [&](FuncOp function) {
+    const auto asks = [](ir::IlluminanceOp) { return mlir::WalkResult::interrupt(); };
+    return reach.isReachedByRendering(function) && function.walk(asks).wasInterrupted();
+  });
+}
+
 void dropUnreached(LinkContext &context) {
-  const llvm::MapVector<mlir::Operation *, Cause> reached = Reach(context).run();
+  Reach reach(context);
+  const llvm::MapVector<mlir::Operation *, Cause> reached = reach.run();
+  for (auto &[name, finding] : context.dispatches)
+    if (auto function = context.ir.lookupSymbol<FuncOp>(name);
+        function && reach.isReachedByRendering(function))
+      context.findings.push_back(finding);
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
     const auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
     const auto found = reached.find(function);
@@ -146,15 +186,20 @@ void dropUnreached(LinkContext &context) {
       Finding finding;
       finding.item = isStartedByRays(method.getValue()) ? Item::States : Item::Methods;
       finding.subject = shownName(function);
-      finding.isNeeded = found != reached.end();
+      finding.isNeeded = reach.isReachedByRendering(function);
       if (finding.isNeeded) {
         finding.reason = found->second.reason;
         finding.place = found->second.place;
+      } else if (found != reached.end()) {
+        finding.reason = "runs while the scene is built, and what renders is without it";
+        function->setAttr(whileBuilding, mlir::UnitAttr::get(function.getContext()));
       } else {
         finding.reason = finding.item == Item::States ? "no ray of this scene starts it" : "nothing in this scene runs it";
       }
       if (!finding.place.isKnown())
         finding.place = ir::placeOf(function.getLoc());
+      if (finding.isNeeded && context.isWithout(finding.item, finding.subject))
+        makeEmpty(function);
       const Item item = finding.item;
       context.findings.push_back(std::move(finding));
       if (found == reached.end() && context.request.keep.has(item)) {

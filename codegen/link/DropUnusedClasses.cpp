@@ -9,6 +9,7 @@
 #include "frontend/Expansion.h"
 
 #include <algorithm>
+#include <set>
 
 namespace rtsl::linking {
 
@@ -19,16 +20,34 @@ bool isWanted(const LinkRequest &request, const std::string &name) {
          std::find(request.classes.begin(), request.classes.end(), name) != request.classes.end();
 }
 
-void note(LinkContext &context, const LinkedClass &linked) {
+/// The classes of which something runs a method, beside the making of their objects.
+std::set<llvm::StringRef> classesThatRun(mlir::ModuleOp ir) {
+  std::set<llvm::StringRef> names;
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (function->hasAttr("rtsl.method") && !function->hasAttr(whileBuilding) &&
+        !function->hasAttr(keptMethod))
+      if (const auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+        names.insert(owner.getValue());
+  return names;
+}
+
+Finding describe(const LinkContext &context, const LinkedClass &linked, bool runs) {
   const ShownPlace declared = shownBegin(context.diagnostics.sources(), linked.info->range);
-  Finding finding = {Item::Classes, linked.info->name, linked.hasObjects, "no object has it",
+  Finding finding = {Item::Classes,
+                     linked.info->name,
+                     false,
+                     "no object has it",
                      {std::string(declared.file), declared.at.line, declared.at.column}};
-  if (linked.hasObjects) {
-    finding.reason = "an object has it";
-    if (const auto place = context.request.places.find(linked.info->name); place != context.request.places.end())
-      finding.place = place->second;
-  }
-  context.findings.push_back(std::move(finding));
+  if (!linked.hasObjects)
+    return finding;
+  finding.isNeeded = linked.isUsed && runs;
+  finding.reason = finding.isNeeded ? "an object has it"
+                   : linked.isUsed  ? "an object has it, but no ray runs a method of it"
+                                    : "only objects have it that nothing refers to";
+  if (const auto place = context.request.places.find(linked.info->name);
+      place != context.request.places.end())
+    finding.place = place->second;
+  return finding;
 }
 
 } // namespace
@@ -42,15 +61,22 @@ void dropUnusedClasses(LinkContext &context) {
     linked.hasObjects = isWanted(context.request, info->name);
     linked.record = symbols.lookup<ir::ClassOp>(info->name);
     linked.id = static_cast<std::uint32_t>(context.classes.size()) + 1;
-    note(context, linked);
     if (linked.record && (linked.hasObjects || isKept))
       context.classes.push_back(linked);
+    else
+      context.findings.push_back(describe(context, linked, false));
   }
 
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<mlir::func::FuncOp>()))
     if (auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
       if (!isWanted(context.request, name.str()) && !isKept)
         function.erase();
+}
+
+void noteClasses(LinkContext &context) {
+  const std::set<llvm::StringRef> running = classesThatRun(context.ir);
+  for (const LinkedClass &linked : context.classes)
+    context.findings.push_back(describe(context, linked, running.count(linked.info->name) != 0));
 }
 
 } // namespace rtsl::linking

@@ -96,7 +96,7 @@ std::uint32_t ownNeeds(const LinkContext &context, const LinkedClass &linked) {
   // `illuminance` runs the lights on the material's own state.
   if (linked.info->root == "rt_Material" && findMethod(context, linked, "shade"))
     for (const LinkedClass &light : context.classes)
-      if (light.info->root == "rt_Light")
+      if (light.isUsed && light.info->root == "rt_Light")
         if (mlir::func::FuncOp illumination = findMethod(context, light, "illumination"))
           needs |= needsReachedFrom({illumination}, context.ir, /*onItself=*/false);
   return needs;

@@ -15,10 +15,13 @@ std::string intersectSymbol(const std::string &className) { return className + "
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program, Findings *findings) {
   Findings unasked;
-  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked, {}, {}};
+  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked,
+                               {}, {},     {}};
   linking::dropUnusedClasses(context);
+  linking::findUsedObjects(context);
   linking::resolveSlots(context);
   linking::dropUnreached(context);
+  linking::noteClasses(context);
   linking::dropUnreadOutputs(context);
   linking::placeAttributes(context);
   linking::resolveRayTypes(context);
@@ -39,7 +42,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.engine = request.engine;
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
-  program.needs = request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : linking::findNeeds(ir);
+  program.needs = (request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : linking::findNeeds(ir)) &
+                  ~linking::needsLeftOut(context);
   program.keepsMeshes = request.keep.has(Item::Meshes);
   return true;
 }

@@ -1,16 +1,24 @@
 //===- Link.h - from classes to a program ---------------------------------===//
 //
-// Lowering leaves classes beside each other: a method called through a reference is a declared slot, an attribute has no
-// place yet. Linking knows which classes a scene uses. In order, it
-//   1. drops the classes that the scene has no objects of (DropUnusedClasses.cpp),
-//   2. resolves each slot to a switch over the classes that are there, or a direct call if there is one
+// Lowering leaves classes beside each other: a method called through a reference is a declared
+// slot, an attribute has no place yet. Linking knows which classes a scene uses. In order, it
+//   1. drops the classes that the scene has no objects of (DropUnusedClasses.cpp), and finds those
+//   whose objects nothing refers to
+//      (UsedObjects.cpp): they are made and checked, and no code calls them,
+//   2. resolves each slot to a switch over the classes that are there, or a direct call if there is
+//   one
 //      (ResolveSlots.cpp),
-//   3. drops the methods that nothing runs (DropUnreached.cpp) and the results that nobody reads (Outputs.cpp),
-//   4. gives each attribute its place, matched by name and type between primitives and materials (PlaceAttributes.cpp),
-//   5. numbers the types of rays that carry a payload, and finds out how their hits are searched for (RayTypes.cpp),
-//   6. makes an entry for each way in from the runtime, and hides everything else (MakeEntries.cpp),
+//   3. drops the methods that nothing runs (DropUnreached.cpp) and the results that nobody reads
+//   (Outputs.cpp),
+//   4. gives each attribute its place, matched by name and type between primitives and materials
+//   (PlaceAttributes.cpp),
+//   5. numbers the types of rays that carry a payload, and finds out how their hits are searched
+//   for (RayTypes.cpp),
+//   6. makes an entry for each way in from the runtime, and hides everything else
+//   (MakeEntries.cpp),
 //   7. finds out what of a hit anybody reads (FindNeeds.cpp).
-// What LinkRequest::keep names stays although the scene does not need it. Each step notes what it left out, and why.
+// What LinkRequest::keep names stays although the scene does not need it. Each step notes what it
+// left out, and why.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

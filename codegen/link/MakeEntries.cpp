@@ -34,13 +34,14 @@ void exportFunction(mlir::func::FuncOp function) {
 void makeSlot(LinkContext &context, const Slot &slot) {
   std::vector<const LinkedClass *> classes;
   for (const LinkedClass &linked : context.classes)
-    if (linked.info->root == slot.base)
+    if (linked.isUsed && linked.info->root == slot.base)
       classes.push_back(&linked);
   const std::string subject = std::string(slot.base) + "." + slot.method;
   const bool isNoted = llvm::any_of(context.findings, [&](const Finding &finding) { return finding.subject == subject; });
   const auto hasMethod = [&](const LinkedClass *linked) { return findMethod(context, *linked, slot.method); };
-  if (!isNoted && llvm::any_of(classes, hasMethod))
-    noteDispatch(context, subject, classes, {});
+  const bool isForBuilding = std::string_view(slot.method) == "computeBounds";
+  if (!isNoted && !isForBuilding && llvm::any_of(classes, hasMethod))
+    context.findings.push_back(describeDispatch(subject, classes, {}));
 
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
   const mlir::Type object = ir::RefType::get(builder.getContext(), slot.base);

@@ -66,6 +66,14 @@ Finding findReader(mlir::ModuleOp ir, const Computed &one) {
 
 } // namespace
 
+std::uint32_t needsLeftOut(const LinkContext &context) {
+  std::uint32_t needs = 0;
+  for (const Computed &one : computed)
+    if (context.isWithout(Item::Outputs, one.subject))
+      needs |= one.need;
+  return needs;
+}
+
 void dropUnreadOutputs(LinkContext &context) {
   for (const Computed &one : computed)
     context.findings.push_back(findReader(context.ir, one));

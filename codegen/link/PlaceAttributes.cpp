@@ -123,12 +123,16 @@ std::uint32_t firstFit(const Attribute &attribute, const std::vector<const Attri
   return offset;
 }
 
-void eraseStores(const Attribute &attribute) {
-  for (ir::AttributeOp op : attribute.uses) {
+void eraseStores(Attribute &attribute) {
+  llvm::erase_if(attribute.uses, [](ir::AttributeOp op) {
     for (mlir::Operation *user : llvm::make_early_inc_range(op->getUsers()))
-      user->erase();
+      if (llvm::isa<ir::StoreOp>(user))
+        user->erase();
+    if (!op->use_empty())
+      return false;
     op.erase();
-  }
+    return true;
+  });
 }
 
 } // namespace
@@ -144,6 +148,8 @@ void placeAttributes(LinkContext &context) {
   std::uint32_t words = 0;
   for (Attribute &attribute : attributes) {
     note(context, attribute);
+    if (attribute.isRead && context.isWithout(Item::Attributes, attribute.name))
+      eraseStores(attribute);
     attribute.offset = firstFit(attribute, placed);
     if (!attribute.isRead) {
       // Nobody asked for more than there is room for: what is kept only for its own sake gives way.

@@ -29,7 +29,8 @@ using mlir::func::FuncOp;
 std::vector<FuncOp> programsFor(const LinkContext &context, const RayType &type, const std::string &method) {
   std::vector<FuncOp> programs;
   for (const LinkedClass &linked : context.classes)
-    if (FuncOp program = findMethod(context, linked, method + "." + type.name()))
+    if (FuncOp program =
+            linked.isUsed ? findMethod(context, linked, method + "." + type.name()) : FuncOp())
       programs.push_back(program);
   return programs;
 }
@@ -143,9 +144,10 @@ bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
 
 /// Whether all writes of the payload are such stores, and every material asks.
 bool writesShowNoOrder(const LinkContext &context, const std::vector<FuncOp> &anyHits) {
-  const auto materials = std::count_if(context.classes.begin(), context.classes.end(), [](const LinkedClass &linked) {
-    return linked.info->root == "rt_Material";
-  });
+  const auto materials =
+      std::count_if(context.classes.begin(), context.classes.end(), [](const LinkedClass &linked) {
+        return linked.isUsed && linked.info->root == "rt_Material";
+      });
   if (static_cast<std::size_t>(materials) != anyHits.size())
     return false; // some material accepts without writing
   std::optional<ConstantStores> stores;
@@ -208,7 +210,7 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
   };
   std::vector<const LinkedClass *> classes;
   for (const LinkedClass &linked : context.classes)
-    if (linked.info->root == base)
+    if (linked.isUsed && linked.info->root == base)
       classes.push_back(&linked);
 
   std::vector<FuncOp> targets;

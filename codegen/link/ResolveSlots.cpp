@@ -13,16 +13,6 @@ namespace rtsl::linking {
 
 namespace {
 
-/// Whether objects of the class may stand where a reference to `base` (an rt_ class or one of the user's) is asked for.
-bool derivesFrom(const typed::Class &info, llvm::StringRef base) {
-  if (info.root == base)
-    return true;
-  for (const typed::Class *at = &info; at; at = at->base)
-    if (at->name == base)
-      return true;
-  return false;
-}
-
 /// Calls the method of one class and hands on what it gives.
 void buildCall(mlir::OpBuilder &builder, const LinkedClass &linked, mlir::func::FuncOp target,
                mlir::func::FuncOp function) {
@@ -45,20 +35,27 @@ void buildZeroReturn(mlir::OpBuilder &builder, mlir::func::FuncOp function) {
 
 } // namespace
 
-void noteDispatch(LinkContext &context, const std::string &subject,
-                  const std::vector<const LinkedClass *> &classes, const ir::SourcePlace &place,
-                  bool mayBeNone) {
-  if (classes.empty())
-    return;
+bool derivesFrom(const typed::Class &info, llvm::StringRef base) {
+  if (info.root == base)
+    return true;
+  for (const typed::Class *at = &info; at; at = at->base)
+    if (at->name == base)
+      return true;
+  return false;
+}
+
+Finding describeDispatch(const std::string &subject,
+                         const std::vector<const LinkedClass *> &classes,
+                         const ir::SourcePlace &place, bool mayBeNone) {
   std::string names;
   for (const LinkedClass *linked : classes)
     names += (names.empty() ? "`" : ", `") + linked->info->name + "`";
   const bool isNeeded = classes.size() > 1 || mayBeNone;
-  context.findings.push_back({Item::Dispatch, subject, isNeeded,
-                              classes.size() > 1 ? "one of " + names
-                              : mayBeNone        ? names + ", or no object"
-                                                 : "always " + names + ", called directly",
-                              place});
+  return {Item::Dispatch, subject, isNeeded,
+          classes.size() > 1 ? "one of " + names
+          : mayBeNone        ? names + ", or no object"
+                             : "always " + names + ", called directly",
+          place};
 }
 
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method) {
@@ -66,9 +63,20 @@ mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &lin
   return ir.lookupSymbol<mlir::func::FuncOp>(linked.info->name + "." + method);
 }
 
+void makeEmpty(mlir::func::FuncOp function) {
+  function.getBody().dropAllReferences();
+  function.getBody().getBlocks().clear();
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(function.addEntryBlock());
+  buildZeroReturn(builder, function);
+}
+
 void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
                    const std::vector<const LinkedClass *> &classes, const std::string &method,
                    bool mayBeNone) {
+  const llvm::StringRef base =
+      llvm::cast<ir::RefType>(function.getArgumentTypes().front()).getClassName();
+  if (classes.size() > 1 && context.isWithout(Item::Dispatch, (base + "." + method).str()))
+    return buildDispatch(context, function, {classes.front()}, method, false);
   std::vector<std::pair<const LinkedClass *, mlir::func::FuncOp>> targets;
   for (const LinkedClass *linked : classes)
     if (mlir::func::FuncOp target = findMethod(context, *linked, method))
@@ -128,12 +136,14 @@ void resolveSlots(LinkContext &context) {
     for (const LinkedClass &linked : context.classes) {
       if (!derivesFrom(*linked.info, slot.base))
         continue;
-      classes.push_back(&linked);
+      if (linked.isUsed)
+        classes.push_back(&linked);
       if (linked.hasObjects && !findMethod(context, linked, slot.method))
         context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method, linked.info->name);
     }
-    noteDispatch(context, slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()),
-                 mayBeNone);
+    if (!classes.empty())
+      context.dispatches[function.getSymName().str()] = describeDispatch(
+          slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()), mayBeNone);
     buildDispatch(context, function, classes, slot.method, mayBeNone);
   });
 }

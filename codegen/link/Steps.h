@@ -17,7 +17,9 @@ namespace rtsl::linking {
 /// A class that objects of the program have.
 struct LinkedClass {
   const typed::Class *info = nullptr;
-  bool hasObjects = true; // without, it is there because somebody asked to keep it
+  bool hasObjects = true; // without, it is there to be kept
+  bool isUsed =
+      true; // an object of it may be met by a ray; otherwise its constructor alone is of use
   ir::ClassOp record;
   std::uint32_t id = 0; // from 1, in the order of the module
   ir::StructType parameters; // packed arguments of the constructor; null: it has none
@@ -38,11 +40,27 @@ struct LinkContext {
   Diagnostics &diagnostics;
   Findings &findings; // what the steps leave out, and what not
   std::vector<LinkedClass> classes;
+  std::map<std::string, Finding>
+      dispatches; // of the functions of this name, to be noted if something runs them
   std::vector<RayType> rayTypes;
+
+  /// LinkRequest::without.
+  bool isWithout(Item item, const std::string &subject) const {
+    return request.without.count({item, subject}) != 0;
+  }
 };
 
 /// Keeps the classes that are asked for: fills `context.classes` and erases the functions of the others.
 void dropUnusedClasses(LinkContext &context);
+
+/// UsedObjects.cpp: finds out which objects of the scene something refers to: LinkedClass::isUsed.
+void findUsedObjects(LinkContext &context);
+
+/// Whether a method that rendering runs loops over lights. Slots have not been resolved.
+bool asksForLights(const LinkContext &context);
+
+/// Notes which classes the program has, once it is known which methods run.
+void noteClasses(LinkContext &context);
 
 /// Erases the methods that nothing runs. Slots have been resolved.
 void dropUnreached(LinkContext &context);
@@ -50,11 +68,17 @@ void dropUnreached(LinkContext &context);
 /// On functions that nothing runs and that are compiled all the same.
 constexpr llvm::StringLiteral keptMethod = "rtsl.kept";
 
+/// On functions that run while a scene is built and never again: what renders is without them.
+constexpr llvm::StringLiteral whileBuilding = "rtsl.while_building";
+
 /// A function as an author would name it: "Painted.closestHit(Radiance)".
 std::string shownName(mlir::func::FuncOp function);
 
 /// Erases stores of state that nobody reads, and notes what is computed of hits and samples, for whom.
 void dropUnreadOutputs(LinkContext &context);
+
+/// RTSL_NEEDS_* of what LinkRequest::without names.
+std::uint32_t needsLeftOut(const LinkContext &context);
 
 /// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody reads.
 void placeAttributes(LinkContext &context);
@@ -71,6 +95,10 @@ struct SlotCall {
 /// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`. `define` is given each such function once,
 /// without a body.
 void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define);
+
+/// Whether objects of the class may stand where a reference to `base` (an rt_ class or one of the
+/// user's) is expected.
+bool derivesFrom(const typed::Class &info, llvm::StringRef base);
 
 /// Gives every slot its dispatch function.
 void resolveSlots(LinkContext &context);
@@ -109,10 +137,14 @@ std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked);
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);
 
-/// Notes between which classes a call through a reference or from the runtime chooses.
-void noteDispatch(LinkContext &context, const std::string &subject,
-                  const std::vector<const LinkedClass *> &classes, const ir::SourcePlace &place,
-                  bool mayBeNone = false);
+/// Says between which classes a call through a reference or from the runtime chooses; there is one
+/// at least.
+Finding describeDispatch(const std::string &subject,
+                         const std::vector<const LinkedClass *> &classes,
+                         const ir::SourcePlace &place, bool mayBeNone = false);
+
+/// Fills `function` with a return of zeros.
+void makeEmpty(mlir::func::FuncOp function);
 
 /// Fills the empty `function`, whose first argument is an object of class or base `base`: it calls
 /// `method` of whatever class the object has, with the remaining arguments. A class in `classes`

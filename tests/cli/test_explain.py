@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import unittest
 
@@ -161,6 +162,126 @@ class Explain(Case):
             pictures.append((self.folder / "x.exr").read_bytes())
         self.assertEqual(*pictures)
 
+    def ptx(self, *arguments):
+        return self.run_rtslc("compile", "scene.json", "--emit=ptx", *arguments)[0]
+
+    UNUSED = {"blue": {"class": "Paint", "tint": [0, 0, 1]}, "green": {"class": "Answering", "tint": [0, 1, 0]}}
+
+    def test_objects_that_nothing_refers_to_leave_the_program_as_it_is(self):
+        self.write_scene()
+        without = self.ptx()
+        self.write_scene(materials={**SCENE["materials"], **self.UNUSED})
+        self.assertEqual(self.ptx(), without)
+        self.assertGreater(len(self.ptx("--keep=objects")), len(without) + 1000)
+        items = self.entries()
+        self.assertEqual(items["objects"]["material blue"][:2], (False, "nothing that is used refers to it"))
+        self.assertEqual(items["objects"]["material red"][:2], (True, "referred to by objects.0"))
+        self.assertEqual(items["classes"]["Paint"][:2], (False, "only objects have it that nothing refers to"))
+        self.assertTrue(items["classes"]["Answering"][0])
+        self.assertIn("in the code", items["parameters"]["Answering.tint"][1]) # a green one that nothing has does not differ
+        saved = {item["item"]: item["saved"] for item in self.document["items"]}
+        self.assertGreater(saved["objects"]["instructions"], 100)
+
+    def change_methods(self, items):
+        """Empties the void methods that are left out, where no class needs one of that name. How many there were."""
+        needed = {subject.split(".")[-1] for item in ("methods", "states") for subject, entry in items[item].items() if entry[0]}
+        changed = 0
+        for item in self.document["items"]:
+            for entry in item["entries"] if item["item"] in ("methods", "states") else []:
+                if entry["needed"] or entry["subject"].split(".")[-1] in needed or "built" in entry["reason"] or "place" not in entry:
+                    continue
+                path = self.folder / entry["place"]["file"]
+                lines = path.read_text().split("\n")
+                start = sum(len(line) + 1 for line in lines[:entry["place"]["line"] - 1])
+                text = "\n".join(lines)
+                if "void " not in lines[entry["place"]["line"] - 1]:
+                    continue
+                begin = text.index("{", start)
+                depth, end = 1, begin + 1
+                while depth > 0:
+                    depth += {"{": 1, "}": -1}.get(text[end], 0)
+                    end += 1
+                # Lines stay where they are, and so do the places of everything else.
+                path.write_text(text[:begin + 1] + "\n" * text.count("\n", begin, end) + text[end - 1:])
+                changed += 1
+        return changed
+
+    def test_what_is_left_out_can_change_without_changing_the_program(self):
+        changed = 0
+        for example in sorted(EXAMPLES.glob("*/scene.json")):
+            for old in self.folder.iterdir():
+                shutil.rmtree(old) if old.is_dir() else old.unlink()
+            shutil.copytree(example.parent, self.folder, dirs_exist_ok=True)
+            items = self.entries()
+            before = self.ptx()
+            here = self.change_methods(items)
+            scene = json.loads((self.folder / "scene.json").read_text())
+            for kind in ("textures", "materials"): # numbers of objects that nothing refers to
+                for name, description in scene.get(kind, {}).items():
+                    if not items["objects"][f"{kind[:-1]} {name}"][0]:
+                        description.update({key: value * 1.5 for key, value in description.items() if isinstance(value, float)})
+            (self.folder / "scene.json").write_text(json.dumps(scene))
+            self.assertEqual(self.ptx(), before, example)
+            changed += here
+        self.assertGreater(changed, 0)
+
+    def test_lights_are_used_where_a_shader_looks_for_them(self):
+        lights = [{"class": "Lamp", "position": [3, 1, 2]}]
+        self.write_scene(lights=lights)
+        lit = self.entries()
+        self.assertEqual(lit["objects"]["lights.0 (Lamp)"][:2], (False, "no `illuminance` runs"))
+        self.assertFalse(lit["classes"]["Lamp"][0])
+        self.write_scene(lights=lights, materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}})
+        lit = self.entries()
+        self.assertTrue(lit["objects"]["lights.0 (Lamp)"][0])
+        self.assertTrue(lit["classes"]["Lamp"][0])
+
+    def test_what_is_referred_to_through_others_is_used(self):
+        self.write("all.rtsl", SHADERS + """
+class Plain : rt_Texture { public color value; void lookup() { rt_TextureColor = value; } };
+class Twice : rt_Texture { public rt_Texture inner; void lookup() { inner.lookup(); rt_TextureColor = rt_TextureColor + rt_TextureColor; } };
+class Papered : rt_Material { public rt_Texture paper; void shade() { paper.lookup(); rt_SampleColor = rt_TextureColor; } };
+""")
+        scene = {**SCENE, "textures": {"a": {"class": "Plain", "value": [1, 2, 3]}, "b": {"class": "Twice", "inner": "a"},
+                                       "c": {"class": "Twice", "inner": "b"}, "d": {"class": "Plain", "value": [3, 2, 1]}},
+                 "materials": {"red": {"class": "Papered", "paper": "b"}, "rest": {"class": "Papered", "paper": "c"}}}
+        self.write("scene.json", json.dumps(scene))
+        objects = self.entries()["objects"]
+        self.assertEqual({name: entry[0] for name, entry in objects.items()},
+                         {"texture a": True, "texture b": True, "texture c": False, "texture d": False,
+                          "material red": True, "material rest": False})
+        self.assertEqual(objects["texture a"][1], "referred to by texture b")
+
+    def test_what_is_left_out_is_checked_all_the_same(self):
+        self.write_scene(materials={**SCENE["materials"], "blue": {"class": "Paint", "tnt": [0, 0, 1]}})
+        for command in (("render", "scene.json", "-o", "a.exr"), ("compile", "scene.json", "--emit=ptx"), ("pack", "scene.json", "-o", "x.rtslpkg")):
+            _, error = self.run_rtslc(*command, status=1)
+            self.assertIn("class `Paint` has no member `tnt`", error)
+
+    def test_unused_objects_change_no_picture(self):
+        pictures = []
+        for materials in (SCENE["materials"], {**SCENE["materials"], **self.UNUSED}):
+            self.write_scene(materials=materials)
+            for arguments in (("--trace=recurse",), ("--trace=split",), ("--traversal=device",), ("--target=host-megakernel",), ("--keep=objects",)):
+                self.run_rtslc("render", "scene.json", "-o", "a.exr", *SMALL, *arguments)
+                pictures.append((self.folder / "a.exr").read_bytes())
+        self.assertEqual(len(set(pictures)), 1)
+
+    def test_index_checks_are_needed_where_they_change_the_program(self):
+        def shade(index):
+            return SHADERS.replace("void shade() { rt_SampleColor = tint * rt_TextureUV.x; }",
+                                   "void shade() { float a[4] = float[4](1.0, 2.0, 3.0, 4.0); rt_SampleColor = tint * a[%s]; }" % index)
+        for index, isNeeded in (("2", False), ("int(rt_HitDistance) & 3", False), ("int(rt_HitDistance)", True)):
+            self.write_scene()
+            self.write("all.rtsl", shade(index))
+            self.assertEqual(self.ptx() != self.ptx("--unchecked"), isNeeded, index)
+            self.assertEqual(self.entries()["events"]["index checks"][0], isNeeded, index)
+
+    def test_prints_are_needed_where_a_shader_that_runs_prints(self):
+        self.write_scene()
+        self.write("all.rtsl", SHADERS.replace("illuminance (rt_HitPoint)", 'print("paint"); illuminance (rt_HitPoint)'))
+        self.assertEqual(self.entries()["events"]["print"][:2], (False, "no shader that runs prints"))
+
     def test_ptx_of_a_scene_is_bound_to_it(self):
         self.write_scene()
         bound, _ = self.run_rtslc("compile", "scene.json", "--emit=ssa")
@@ -174,7 +295,7 @@ class Explain(Case):
                                 (("explain", "scene.json", "--measure", "--pairs=9"), "--pairs"),
                                 (("explain", "scene.json", "--measure", "--states"), "renders scenes"),
                                 (("explain", "scene.json", "--format=svg"), "only --states has pictures"),
-                                (("render", "scene.json", "-o", "a.exr", "--keep=everything"), "`everything` is none of all|classes"),
+                                (("render", "scene.json", "-o", "a.exr", "--keep=everything"), "`everything` is none of all|objects|classes"),
                                 (("compile", "all.rtsl", "--emit=ir", "--keep=all"), "a file alone keeps everything")):
             with self.subTest(arguments):
                 _, error = self.run_rtslc(*arguments, status=USAGE)

@@ -47,6 +47,36 @@ class Report(Case):
         self.assertNotRegex(page, r"https?://")
         self.assertFalse((self.folder / "out" / "partial").exists())
 
+    # Of 24x16 pixels with some 32 000 samples each in the reference an eighth meets one that is ten thousand times as bright.
+    HOT = "class Hot : rt_Miss { void miss() { rt_SampleColor = color(rand() < 0.000004 ? 1000000.0 : 0.05); } };"
+
+    def test_rare_hot_samples_have_no_interval(self):
+        self.glass_scene()
+        self.write("hot.rtsl", self.HOT)
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"] = (scene["import"] if isinstance(scene["import"], list) else [scene["import"]]) + ["hot.rtsl"]
+        scene["background"] = {"class": "Hot"}
+        self.write("hot.json", json.dumps(scene))
+        out, _ = self.run_rtslc("report", "hot.json", "--out", "hot", "--size", "24x16", "--budget", "300ms", "--runs", "4", "--only", "embree recurse")
+        self.assertIn("no interval can be given", out)
+        document = json.loads((self.folder / "hot" / "report.json").read_text())
+        self.assertTrue(document["reference"]["ownError"]["heavyTails"])
+        self.assertIsNone(document["reference"]["ownError"]["relMse"])
+        self.assertIsNone(document["configurations"][0]["relMseOverSeconds"])
+        self.assertIn("no interval can be given", (self.folder / "hot" / "index.html").read_text())
+
+    def test_a_bright_scene_is_shown_at_another_exposure(self):
+        self.glass_scene()
+        self.write("bright.rtsl", "class Bright : rt_Miss { void miss() { rt_SampleColor = color(300.0 * (0.1 + rt_RayDirection.y * rt_RayDirection.y)); } };")
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"] = (scene["import"] if isinstance(scene["import"], list) else [scene["import"]]) + ["bright.rtsl"]
+        scene["background"] = {"class": "Bright"}
+        self.write("bright.json", json.dumps(scene))
+        self.run_rtslc("report", "bright.json", "--out", "bright", *SMALL, "--only", "strict embree recurse")
+        page = (self.folder / "bright" / "index.html").read_text()
+        self.assertRegex(page, r"the reference, at an exposure of -\d+(\.5)? stops")
+        self.assertIn("brighter than a screen", page)
+
     def test_goes_on_after_an_interruption(self):
         self.glass_scene()
         arguments = [RTSLC, "report", "scene.json", "--out", "out", "--size", "48x32", "--budget", "3s", "--runs", "3", "--only", "embree recurse"]

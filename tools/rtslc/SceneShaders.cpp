@@ -5,6 +5,7 @@
 #include "frontend/FileSearch.h"
 #include "runtime/AtomicFile.h"
 #include "runtime/Scene.h"
+#include "scene/SceneParts.h"
 
 #include <fmt/format.h>
 
@@ -111,6 +112,12 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   for (const scene::LocatedName &mention : scene::classMentions(description))
     request.places.try_emplace(mention.text,
                                ir::SourcePlace{mention.place.file, mention.place.line, mention.place.column});
+  for (scene::Part &part : scene::partsOf(description))
+    request.parts.push_back({static_cast<ScenePart::Role>(part.role),
+                             std::move(part.name),
+                             std::move(part.classes),
+                             std::move(part.refersTo),
+                             {part.place.file, part.place.line, part.place.column}});
   request.engine = description.render.engine;
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;

@@ -1,0 +1,108 @@
+#include "scene/SceneParts.h"
+
+#include <fmt/format.h>
+
+namespace rtsl::scene {
+
+namespace {
+
+using Kind = JsonValue::Kind;
+
+class Collector {
+public:
+  explicit Collector(const SceneDescription &scene) : scene(scene) {}
+
+  std::vector<Part> run() {
+    // Names first, so that they have indices when somebody refers to them.
+    for (const auto &[name, texture] : scene.textures)
+      named(name, "texture ", texture);
+    for (const auto &[name, material] : scene.materials)
+      named(name, "material ", material);
+    std::size_t next = 0;
+    for (const auto *objects : {&scene.textures, &scene.materials})
+      for (const auto &[name, object] : *objects)
+        add(object, parts[next++]);
+    if (scene.render.engine == runtime::Engine::Classic)
+      root("camera", scene.camera);
+    else
+      root("rayGeneration", scene.rayGeneration);
+    for (std::size_t i = 0; i < scene.objects.size(); ++i)
+      geometry(scene.objects[i], fmt::format("objects.{}", i));
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+      add(scene.lights[i],
+          begin(Part::Role::Light, fmt::format("lights.{} ({})", i, scene.lights[i].className.text),
+                scene.lights[i].place));
+    root("background", scene.background);
+    root("exception", scene.exception);
+    return std::move(parts);
+  }
+
+private:
+  Part &begin(Part::Role role, std::string name, const Place &place) {
+    Part part;
+    part.role = role;
+    part.name = std::move(name);
+    part.place = place;
+    parts.push_back(std::move(part));
+    return parts.back();
+  }
+
+  void named(const std::string &name, const char *kind, const ObjectDescription &object) {
+    indices[name] = parts.size();
+    begin(Part::Role::Named, kind + name, object.place);
+  }
+
+  void root(const char *name, const std::optional<ObjectDescription> &object) {
+    if (object)
+      add(*object, begin(Part::Role::Root, name, object->place));
+  }
+
+  void geometry(const GeometryDescription &geometry, const std::string &name) {
+    Part &part = begin(Part::Role::Root, name, geometry.place);
+    if (geometry.primitive)
+      add(*geometry.primitive, part);
+    if (geometry.material.object)
+      add(*geometry.material.object, part);
+    else
+      refer(geometry.material.name.text, part);
+  }
+
+  void add(const ObjectDescription &object, Part &part) {
+    part.classes.push_back(object.className.text);
+    if (object.constructor)
+      add(*object.constructor, part);
+    for (const auto &member : object.members)
+      add(*member.second, part);
+  }
+
+  /// Strings are names of objects, but for that of a class.
+  void add(const JsonValue &value, Part &part) {
+    if (value.kind == Kind::String)
+      refer(value.string, part);
+    for (const auto &[key, member] : value.members) {
+      if (key.text == "class" && member.kind == Kind::String)
+        part.classes.push_back(member.string);
+      else
+        add(member, part);
+    }
+    for (const JsonValue &element : value.elements)
+      add(element, part);
+  }
+
+  void refer(const std::string &name, Part &part) {
+    if (const auto found = indices.find(name); found != indices.end())
+      part.refersTo.push_back(found->second);
+  }
+
+  const SceneDescription &scene;
+  std::vector<Part> parts;
+  std::map<std::string, std::size_t> indices;
+};
+
+} // namespace
+
+std::vector<Part> partsOf(const SceneDescription &description) {
+  return Collector(description).run();
+}
+
+} // namespace rtsl::scene

@@ -1,0 +1,134 @@
+// Is what `rtslc explain` says true? For each thing that it calls needed the examples are compiled
+// without it, and the PTX must be another; what it calls left out can be taken away again, and the
+// PTX must stay.
+#include "codegen/driver/Compiler.h"
+#include "scene/SceneFile.h"
+#include "tools/rtslc/SceneShaders.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+using namespace rtsl;
+
+namespace {
+
+/// A scene whose program can be compiled with changes.
+class Explained {
+public:
+  explicit Explained(const std::string &file, const std::vector<std::string> &overrides = {})
+      : description(scene::readSceneFile(file, overrides)),
+        module(tool::loadShaders(description, options, messages)) {
+    EXPECT_TRUE(module);
+    request = tool::linkRequest(description);
+  }
+
+  MakeObjects makeObjects() {
+    return [this](const auto &constructors) {
+      objects.emplace(scene::buildScene(description, constructors));
+      return objects->facts();
+    };
+  }
+
+  Findings findings() {
+    const auto explanation =
+        explainScene(*module, request, options.compile, messages.diagnostics, makeObjects());
+    EXPECT_TRUE(explanation);
+    return explanation ? explanation->findings : Findings();
+  }
+
+  /// The PTX without one thing, if the program can do without it.
+  std::optional<std::string> ptx(const Finding *without = nullptr) {
+    LinkRequest changed = request;
+    CompileOptions compile = options.compile;
+    if (without) {
+      changed.without.insert({without->item, without->subject});
+      if (without->item == Item::Events && without->subject == "index checks")
+        compile.checkIndices = false;
+      else if (without->item == Item::Events)
+        changed.features = 0;
+    }
+    Diagnostics unheard(messages.sources);
+    return emitScene(*module, changed, Stage::Ptx, compile, unheard, makeObjects());
+  }
+
+  LinkRequest request;
+
+private:
+  tool::CommonOptions options;
+  tool::Messages messages{options};
+  scene::SceneDescription description;
+  std::unique_ptr<typed::Module> module;
+  std::optional<runtime::Scene> objects;
+};
+
+/// What cannot be taken away so that PTX would show it.
+bool isExempt(const Finding &finding) {
+  if (finding.item == Item::Meshes) // memory, not code
+    return true;
+  if (finding.item ==
+      Item::Objects) // of two objects of one class the code is the same; their records are not
+    return true;
+  // A reference or a buffer is read where it is followed: there is nothing that could stand in its
+  // place.
+  return finding.item == Item::Parameters && finding.isNeeded &&
+         (finding.reason.find("a reference") != std::string::npos ||
+          finding.reason.find("a buffer") != std::string::npos);
+}
+
+std::vector<std::string> examples() {
+  std::vector<std::string> files;
+  for (const auto &entry : std::filesystem::directory_iterator(RTSL_EXAMPLES))
+    if (const auto scene = entry.path() / "scene.json"; std::filesystem::exists(scene))
+      files.push_back(scene.string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+class Truth : public testing::TestWithParam<std::string> {};
+
+} // namespace
+
+TEST_P(Truth, WhatIsNeededChangesTheProgramAndWhatIsLeftOutDoesNot) {
+  Explained scene(GetParam());
+  const std::optional<std::string> whole = scene.ptx();
+  ASSERT_TRUE(whole);
+  std::size_t needed = 0, leftOut = 0;
+  for (const Finding &finding : scene.findings()) {
+    if (isExempt(finding))
+      continue;
+    const std::string what =
+        std::string(nameOf(finding.item)) + ": " + finding.subject + ": " + finding.reason;
+    const std::optional<std::string> without = scene.ptx(&finding);
+    if (finding.isNeeded)
+      EXPECT_TRUE(!without || *without != *whole)
+          << what << " -- but the program is the same without it";
+    else
+      EXPECT_TRUE(without && *without == *whole)
+          << what << " -- but the program is another without it";
+    ++(finding.isNeeded ? needed : leftOut);
+  }
+  EXPECT_GE(needed, 5u);
+  EXPECT_GE(leftOut, 5u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, Truth, testing::ValuesIn(examples()), [](const auto &info) {
+  std::string name = std::filesystem::path(info.param).parent_path().filename().string();
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+});
+
+// The numbers of the glass example with a material that nothing has: the program is the one
+// without.
+TEST(Unused, AMaterialOnNoObjectLeavesTheProgramAsItIs) {
+  const std::string glass = std::string(RTSL_EXAMPLES) + "/glass/scene.json";
+  const std::string unused =
+      R"(materials.unused={"class":"Glass","constructor":{"index":1.7,"surroundings":1.0,"tint":[0.5,0.5,0.5]}})";
+  Explained plain(glass), with(glass, {unused});
+  EXPECT_EQ(*plain.ptx(), *with.ptx());
+}
