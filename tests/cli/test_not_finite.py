@@ -124,11 +124,12 @@ class NotFinite(ShaderCase):
 
     def test_exceptions_say_all(self):
         self.scene()
-        figures, error = self.render("--exceptions")
-        self.assertEqual(len(figures["notFinite"]), figures["samplesNotFinite"])
-        self.assertEqual(len(re.findall(r"note: pixel", error)), figures["samplesNotFinite"])
-        lines = {(one["pixel"][0] == 7, one["place"]["line"]) for one in figures["notFinite"]}
-        self.assertEqual(lines, {(True, INVERSE), (False, DIVISION)})
+        for way in ([], ["--target=host-megakernel"]):
+            figures, error = self.render("--exceptions", *way)
+            self.assertEqual(len(figures["notFinite"]), figures["samplesNotFinite"])
+            self.assertEqual(len(re.findall(r"note: pixel", error)), figures["samplesNotFinite"])
+            lines = {(one["pixel"][0] == 7, one["place"]["line"]) for one in figures["notFinite"]}
+            self.assertEqual(lines, {(True, INVERSE), (False, DIVISION)})
 
     def test_the_warning_is_one_like_others(self):
         self.scene()

@@ -31,7 +31,7 @@ SampleNotFinite explain(const runtime::SampleId &sample, const RtslLaunch &launc
 
 } // namespace
 
-std::vector<SampleNotFinite> explainNotFinite(const std::vector<runtime::SampleId> &samples,
+std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &statistics,
                                               const typed::Module &module,
                                               LinkRequest request, CompileOptions compile,
                                               runtime::Scene &scene, runtime::RenderOptions render,
@@ -50,6 +50,12 @@ std::vector<SampleNotFinite> explainNotFinite(const std::vector<runtime::SampleI
     return result;
   scene.useProgram(program);
   runtime::Renderer renderer(scene, render);
+  std::vector<runtime::SampleId> samples = statistics.notFinite;
+  if (samples.size() < std::min<std::uint64_t>(statistics.samplesNotFinite, render.mostNotFinite)) {
+    runtime::RenderStatistics again; // the same samples: every path has the same bits
+    renderer.render(&again);
+    samples = again.notFinite;
+  }
   RtslLaunch launch = renderer.launch();
   const std::uint64_t stackBytes = program->stackBytes(render.maxDepth, launch.referenceChain);
   runtime::runOnThreads(1, stackBytes, [&](unsigned) {

@@ -17,9 +17,10 @@ struct SampleNotFinite {
   std::optional<runtime::Place> place;
 };
 
-/// Renders the samples again, by a program that checks its numbers (runtime/NumberCheck.h), and finds
-/// out where each stopped being finite. The scene gets that program.
-std::vector<SampleNotFinite> explainNotFinite(const std::vector<runtime::SampleId> &samples,
+/// Renders samples of a rendering that are not finite again, by a program that checks its numbers
+/// (runtime/NumberCheck.h), and finds out where each stopped being finite: RenderOptions::mostNotFinite
+/// of them, where lanes have named fewer too. The scene gets that program.
+std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &statistics,
                                               const typed::Module &module,
                                               LinkRequest request, CompileOptions compile,
                                               runtime::Scene &scene, runtime::RenderOptions render,

@@ -260,7 +260,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
     printOut(summary.printed.empty() ? "" : fmt::format("{}\n", fmt::join(summary.printed, "\n")));
   if (!summary.statistics.notFinite.empty())
     try {
-      summary.notFinite = explainNotFinite(summary.statistics.notFinite, *module, request, compile, *scene, render,
+      summary.notFinite = explainNotFinite(summary.statistics, *module, request, compile, *scene, render,
                                            messages.diagnostics);
     } catch (const std::exception &error) { // the picture is written, and the samples are counted
       if (!isOutOfMemory(error))
