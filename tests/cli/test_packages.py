@@ -63,7 +63,7 @@ class Packages(Case):
         out, error = self.run_package("--target=host", *SMALL, "--json")
         figures = json.loads(out)
         self.assertEqual((figures["size"], figures["spp"], figures["frameBytes"]), ([32, 18], 2, 28))
-        self.assertEqual(error, "")
+        self.assertNotIn("rendered in", error)
 
     def test_needs_no_compiler(self):
         done = subprocess.run([os.environ["READELF"], "-d", RTSL_RUN], stdout=subprocess.PIPE, text=True, check=True)
