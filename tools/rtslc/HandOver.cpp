@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <new>
 #include <stdexcept>
 #include <unistd.h>
 
@@ -46,6 +47,8 @@ void handOver(char **argv) {
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
     const std::filesystem::path program = self.parent_path() / "rtslc-render";
     execv(program.c_str(), argv);
+    if (errno == ENOMEM)
+      throw std::bad_alloc();
     throw std::runtime_error(fmt::format("cannot start `{}`, which knows `rtslc {}`: {}", program.string(), command,
                                          std::strerror(errno)));
   }
