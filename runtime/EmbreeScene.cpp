@@ -20,8 +20,7 @@ void getBounds(const RTCBoundsFunctionArguments *arguments) {
 
 /// Calls `intersect`; returns whether it committed a hit.
 bool testPrimitive(const EmbreePrimitive &geometry, RtslState &state) {
-  state.candidateInstance = geometry.instance;
-  state.candidatePrimitive = 0;
+  device::beginCandidate(state, geometry.instance, 0);
   geometry.intersect(&state, geometry.object);
   return state.instance == geometry.instance;
 }

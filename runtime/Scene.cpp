@@ -539,7 +539,7 @@ std::uint32_t Scene::Implementation::addInstance(RtslRef primitive, std::uint32_
   if (primitiveTotal + primitives > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
   instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal), needsAt(material),
-                       mask, info(material).classInfo->anyHit});
+                       mask, info(material).classInfo->anyHit, {}, {}});
   primitiveTotal += primitives;
   instanceNames.push_back(std::move(name));
   instanceBounds.push_back({});
@@ -582,6 +582,8 @@ std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, std::uint
          info.place});
   std::uint32_t instance = self->addInstance(primitive, 0, material, info.name, 1, mask);
   Bounds &bounds = self->instanceBounds.back();
+  std::copy_n(given.lower, 3, self->instances.back().boundMin);
+  std::copy_n(given.upper, 3, self->instances.back().boundMax);
   for (int i = 0; i < 3; ++i) {
     bounds.lower[i] = outwards(given.lower[i], -1);
     bounds.upper[i] = outwards(given.upper[i], 1);

@@ -22,6 +22,30 @@ static std::string inMethod(const MethodModel &method) {
   return "`" + method.name + "`";
 }
 
+/// Why a variable that the class sees has no value in this method, and what has one.
+static void explainNoValue(Diagnostic &diagnostic, typed::StateVariable variable, const RootModel &root,
+                           const MethodModel &method) {
+  using S = typed::StateVariable;
+  if (method.name == "constructor") {
+    diagnostic.note("the constructor runs when the scene is built: there is no ray yet");
+  } else if (method.name == "computeBounds") {
+    diagnostic.note("`computeBounds` runs when the acceleration structure is built: there is no ray yet");
+  } else if (method.name == "generateRay") {
+    diagnostic.note("`generateRay` makes the ray; use `1.0 / direction` of the direction that it writes");
+  } else if (variable == S::HitPoint) {
+    diagnostic.note("nothing has been hit yet; the point at parameter `t` is `rt_RayOrigin + t * rt_RayDirection`");
+  } else if (variable == S::PDF) {
+    diagnostic.note("`rt_PDF` is what `generateSample` and `samplePDF` write; no point has been sampled here");
+  } else if (variable == S::SampleColor) {
+    diagnostic.note("no ray of the classic engine is under way here");
+  } else {
+    for (const MethodModel &other : root.methods)
+      if (other.name != "generateSample" && other.writes.has(variable))
+        diagnostic.note("`" + other.name + "` writes it for the hit that won, later than `" + method.name +
+                        "`; a function that both call can compute it for both");
+  }
+}
+
 static bool judgeState(const Use &use, const RootModel &root, const MethodModel &method,
                        Diagnostics &diagnostics, const typed::Function *through) {
   const std::string variable = typed::name(use.variable);
@@ -43,12 +67,7 @@ static bool judgeState(const Use &use, const RootModel &root, const MethodModel 
       return true;
     Diagnostic &diagnostic =
         diagnostics.report(Code::stateWithoutRay, use.range, "rt_" + variable, method.name);
-    diagnostic.note(
-        method.name == "constructor"
-            ? "the constructor runs when the scene is built: there is no ray yet"
-        : method.name == "computeBounds"
-            ? "`computeBounds` runs when the acceleration structure is built: there is no ray yet"
-            : "no ray of the classic engine is under way here");
+    explainNoValue(diagnostic, use.variable, root, method);
     return finish(diagnostic);
   }
   if (method.writes.has(use.variable))
@@ -345,6 +364,7 @@ void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope
     const Step step = pending.back();
     pending.pop_back();
     const FunctionFacts &facts = factsOf(step.function);
+    const_cast<typed::Function *>(step.function)->mayRunInLookup |= method.name == "lookup";
     if (step.function != &method) {
       reached.insert(step.function);
       for (const Use &use : facts.uses) {

@@ -27,27 +27,32 @@ static constexpr StateSet textureCoordinates = {S::TextureUV, S::TextureUVW};
 static constexpr StateSet normals = {S::GeometricNormal, S::ShadingNormal};
 
 static RootModel cameraModel() {
-  const StateSet sees = everyRay | ray | StateSet{S::ScreenCoord, S::LensCoord, S::du, S::dv};
+  const StateSet known = everyRay | StateSet{S::RayOrigin,   S::RayDirection, S::Epsilon, S::HitDistance,
+                                             S::ScreenCoord, S::LensCoord,    S::du,      S::dv};
   return {"rt_Camera",
-          sees,
-          {{"generateRay", sees, {S::RayOrigin, S::RayDirection}, {A::Random}}},
+          known | ray,
+          {{"generateRay", known, {S::RayOrigin, S::RayDirection}, {A::Random}}},
           false};
 }
 
 static RootModel primitiveModel() {
   const StateSet bounds = {S::BoundMin, S::BoundMax};
-  const StateSet sees = everyRay | placement | ray | bounds | normals | surfaceDerivatives |
-                        textureCoordinates | textureDerivatives | StateSet{S::HitPoint, S::PDF};
+  // Each method knows what the ones before it have found out.
+  const StateSet candidate = everyRay | placement | ray | bounds;
+  const StateSet withNormals = candidate | StateSet{S::HitPoint} | normals;
+  const StateSet withCoordinates = withNormals | textureCoordinates;
+  const StateSet withDerivatives = withCoordinates | surfaceDerivatives | textureDerivatives;
+  const StateSet sees = withDerivatives | StateSet{S::PDF};
   const AbilitySet ofAHit = {A::Random, A::ReadScratch};
   return {"rt_Primitive",
           sees,
           {
-              {"intersect", sees, {}, ofAHit | AbilitySet{A::Hit, A::WriteScratch}},
+              {"intersect", candidate, {}, ofAHit | AbilitySet{A::Hit, A::WriteScratch}},
               // Runs while the acceleration structure is built: there is no ray.
               {"computeBounds", bounds, bounds, {}},
-              {"computeNormal", sees, normals, ofAHit},
-              {"computeTextureCoordinates", sees, textureCoordinates, ofAHit},
-              {"computeDerivatives", sees, surfaceDerivatives | textureDerivatives, ofAHit},
+              {"computeNormal", withNormals, normals, ofAHit},
+              {"computeTextureCoordinates", withCoordinates, textureCoordinates, ofAHit},
+              {"computeDerivatives", withDerivatives, surfaceDerivatives | textureDerivatives, ofAHit},
               // These two choose and weigh a point on the primitive: there is no hit that could
               // have left scratch values.
               {"generateSample", sees, {S::HitPoint, S::GeometricNormal, S::PDF}, {A::Random}},
@@ -117,13 +122,15 @@ static RootModel rayGenerationModel() {
 static RootModel missModel() {
   const StateSet rayOnly =
       everyRay | StateSet{S::RayOrigin, S::RayDirection, S::InverseRayDirection};
-  const StateSet classic = rayOnly | StateSet{S::SampleColor};
+  // Textures are looked up where `miss` says: no surface does.
+  const StateSet withPayload = rayOnly | textureCoordinates;
+  const StateSet classic = withPayload | StateSet{S::SampleColor};
   const AbilitySet abilities = {A::Trace, A::Lookup, A::Random};
   return {"rt_Miss",
           classic,
           {
-              {"miss", classic, {S::SampleColor}, abilities, Payload::None},
-              {"miss", rayOnly, {}, abilities, Payload::Required},
+              {"miss", classic, textureCoordinates | StateSet{S::SampleColor}, abilities, Payload::None},
+              {"miss", withPayload, textureCoordinates, abilities, Payload::Required},
           },
           false};
 }

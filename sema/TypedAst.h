@@ -101,6 +101,7 @@ struct Function {
   bool isConstructor = false;
   bool isStateMethod = false; // one of its base class's table: intersect, shade, ...
   bool mayTrace = false;      // itself or through what it calls
+  bool mayRunInLookup = false; // a texture's `lookup` leads to it
   SourceRange range;          // of the name
   std::string comment;
 };

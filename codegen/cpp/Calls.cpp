@@ -101,7 +101,7 @@ Code FunctionPrinter::callWith(const std::string &callee, std::vector<std::strin
   }
 
   const std::string call = callee + "(" + join(texts, ", ") + ")";
-  const bool mayEnd = mayEndAnyHit() && mayAnswerHit(module.module, target);
+  const bool mayEnd = mayEndAnyHit() && module.mayAnswerHit(target);
   if (after.empty() && !mayEnd)
     return {call};
   std::string value;

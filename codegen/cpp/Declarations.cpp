@@ -17,8 +17,9 @@ ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options
                              Diagnostics &diagnostics, const StateProgram *states)
     : module(module), options(options), names(module),
       effects(module, options.prints, options.exceptions && options.checkIndices),
-      notes(diagnostics.sources()), tracing(module),
-      mayReferToNothing(lowering::mayReferToNothing(module)), states(states),
+      hitAnswers(module), notes(diagnostics.sources()), tracing(module),
+      mayReferToNothing(lowering::mayReferToNothing(module)),
+      lookupsNest(lowering::lookupsNest(module)), states(states),
       diagnostics(diagnostics) {
   if (states)
     findCalledMethods();

@@ -21,6 +21,7 @@ struct Options {
   bool lineDirectives = false;       // #line before what stands in the author's files
   bool prints = false;               // `print` prints; otherwise it is left out
   bool exceptions = false;           // samples end at what docs/language.md calls an exception
+  std::uint32_t undefined = 0;       // RTSL_FEATURE_UNDEFINED_*, for tests
   bool checkIndices = true;
   std::string whyCalls;              // what states cannot show, so that traces are calls though nobody asked; empty: nothing
   bool fast = false;                 // RTSL_FAST: the C++ compiler may change last digits (docs/fast.md)

@@ -111,9 +111,9 @@ std::string ModulePrinter::referenceMethods() {
       if (!through.function) {
         const bool isColor = through.method == "lookup";
         const std::string state = isColor ? "rt.TextureColor" : "rt.FloatTextureValue";
-        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n{} = {};\n", isColor ? "Color" : "float",
-                            names.reference(className), through.method, state,
-                            isColor ? "Color(0.0f)" : "0.0f");
+        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n", isColor ? "Color" : "float",
+                            names.reference(className), through.method);
+        text += lookupsNest ? "const rtsl::NestedLookup nested(rt);\n" : "rtsl::clearTexture(rt);\n";
         text += dispatch(
             classes,
             [&](const typed::Class &definition) -> std::string {
@@ -220,19 +220,29 @@ std::string ModulePrinter::slots() {
 // Description
 //===----------------------------------------------------------------------===//
 
-std::string ModulePrinter::needs(const Effects &facts) const {
-  using typed::StateVariable;
+namespace {
+
+using typed::StateVariable;
+
+bool readsAny(const Effects &facts, std::initializer_list<StateVariable> variables) {
+  return std::any_of(variables.begin(), variables.end(), [&](StateVariable variable) {
+    return facts.reads.count(EffectsOf::place(variable)) != 0;
+  });
+}
+
+constexpr auto coordinates = {StateVariable::TextureUV, StateVariable::TextureUVW};
+constexpr auto derivatives = {StateVariable::dPdu, StateVariable::dPdv, StateVariable::dsdu,
+                              StateVariable::dsdv, StateVariable::dtdu, StateVariable::dtdv};
+
+/// RTSL_NEEDS_* for what is read.
+std::vector<std::string> needsOf(const Effects &facts) {
   std::vector<std::string> words;
   auto ask = [&](const char *word, std::initializer_list<StateVariable> variables) {
-    for (StateVariable variable : variables)
-      if (facts.reads.count(EffectsOf::place(variable))) {
-        words.emplace_back(word);
-        return;
-      }
+    if (readsAny(facts, variables))
+      words.emplace_back(word);
   };
-  ask("RTSL_NEEDS_TEXTURE_COORDINATES", {StateVariable::TextureUV, StateVariable::TextureUVW});
-  ask("RTSL_NEEDS_DERIVATIVES", {StateVariable::dPdu, StateVariable::dPdv, StateVariable::dsdu, StateVariable::dsdv,
-                                 StateVariable::dtdu, StateVariable::dtdv});
+  ask("RTSL_NEEDS_TEXTURE_COORDINATES", coordinates);
+  ask("RTSL_NEEDS_DERIVATIVES", derivatives);
   ask("RTSL_NEEDS_TRANSFORMS", {StateVariable::ObjectToWorld, StateVariable::WorldToObject});
   ask("RTSL_NEEDS_INVERSE_DIRECTION", {StateVariable::InverseRayDirection});
   ask("RTSL_NEEDS_TIME", {StateVariable::Time, StateVariable::TimeSeed});
@@ -240,7 +250,68 @@ std::string ModulePrinter::needs(const Effects &facts) const {
   ask("RTSL_NEEDS_LENS", {StateVariable::LensCoord});
   ask("RTSL_NEEDS_SAMPLING", {StateVariable::EmissionColor, StateVariable::BSDFValue, StateVariable::BSDFSeed,
                               StateVariable::PDF, StateVariable::du, StateVariable::dv});
-  return words.empty() ? "" : join(words, " | ");
+  return words;
+}
+
+std::string call(const char *function, const std::vector<std::string> &words) {
+  return words.empty() ? "" : std::string(function) + "(" + join(words, " | ") + ")";
+}
+
+} // namespace
+
+/// What the methods of this name do in all classes below a base.
+Effects ModulePrinter::effectsOfAll(const char *root, const std::string &method) {
+  Effects all;
+  for (const auto &definition : module.classes)
+    if (definition->root == root)
+      for (const auto &function : definition->functions)
+        if (function->name == method)
+          all.add(effects.function(*function));
+  return all;
+}
+
+/// What a class's methods read of a hit, with what else runs on the same state for them.
+std::vector<std::string> ModulePrinter::needsAtHits(const typed::Class &definition) {
+  Effects facts;
+  auto add = [&](const Effects &inside) {
+    facts.add(inside);
+    if (inside.traces)
+      facts.add(effectsOfAll("rt_Light", "illumination"));
+    if (facts.writes.count(EffectsOf::place(StateVariable::TextureColor)))
+      facts.add(effectsOfAll("rt_Texture", "lookup"));
+  };
+  if (const typed::Function *shade = slotMethod(definition, "shade"))
+    add(effects.function(*shade));
+  for (const char *method : {"closestHit", "anyHit"})
+    for (const typed::Function *program : payloadMethods(definition, method))
+      add(effects.function(*program));
+  if (readsAny(facts, derivatives))
+    facts.add(effectsOfAll("rt_Primitive", "computeDerivatives"));
+  if (readsAny(facts, coordinates))
+    facts.add(effectsOfAll("rt_Primitive", "computeTextureCoordinates"));
+  facts.add(effectsOfAll("rt_Primitive", "computeNormal")); // which always runs
+  return needsOf(facts);
+}
+
+/// What the methods of the program read.
+std::vector<std::string> ModulePrinter::needsOfProgram() {
+  Effects everything, ofHits;
+  bool hasAnyHit = false;
+  for (const auto &definition : module.classes)
+    for (const auto &function : definition->functions) {
+      everything.add(effects.function(*function));
+      if (definition->root == "rt_Primitive" && function->isStateMethod && function->name != "computeBounds")
+        ofHits.add(effects.function(*function));
+      hasAnyHit |= function->isStateMethod && function->name == "anyHit";
+    }
+  std::vector<std::string> words = needsOf(everything);
+  if (readsAny(ofHits, {StateVariable::BoundMin, StateVariable::BoundMax}) ||
+      readsAny(effectsOfAll("rt_Primitive", "intersect"), {StateVariable::PrimitiveIndex, StateVariable::InstanceIndex,
+                                                           StateVariable::ObjectToWorld, StateVariable::WorldToObject}))
+    words.emplace_back("RTSL_NEEDS_CANDIDATE");
+  if (hasAnyHit)
+    words.emplace_back("RTSL_NEEDS_ANY_HIT");
+  return words;
 }
 
 /// All structs below a type.
@@ -276,25 +347,6 @@ std::string ModulePrinter::description() {
   }
 
   text += fmt::format("\nstatic RtslShaders describe() {{\nrtsl::Program<{}> program;\n", options.colorComponents);
-  Effects everything;
-  Effects lights, textures;
-  for (const auto &definition : module.classes)
-    for (const auto &function : definition->functions) {
-      const Effects &inside = effects.function(*function);
-      everything.add(inside);
-      if (definition->root == "rt_Light" && function->name == "illumination")
-        lights.add(inside);
-      if (definition->root == "rt_Texture" && function->name == "lookup")
-        textures.add(inside);
-    }
-  auto complete = [&](Effects facts) {
-    if (facts.traces)
-      facts.add(lights);
-    if (facts.writes.count(EffectsOf::place(typed::StateVariable::TextureColor)))
-      facts.add(textures);
-    return facts;
-  };
-
   for (const auto &definition : module.classes) {
     const std::string &name = names.of(definition.get());
     text += fmt::format("program.add<{0}>(static_cast<std::uint32_t>(Id::{0}), \"{1}\", \"{2}\", \"{3}\")", name,
@@ -324,14 +376,7 @@ std::string ModulePrinter::description() {
                            : "\"" + function->name + "\"");
     if (!methods.empty())
       text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
-    Effects atHits;
-    if (const typed::Function *shade = slotMethod(*definition, "shade"))
-      atHits.add(complete(effects.function(*shade)));
-    for (const char *method : {"closestHit", "anyHit"})
-      for (const typed::Function *program : payloadMethods(*definition, method))
-        atHits.add(complete(effects.function(*program)));
-    if (const std::string words = needs(atHits); !words.empty())
-      text += ".needs(" + words + ")";
+    text += call(".needs", needsAtHits(*definition));
     std::vector<std::string> asked;
     for (const typed::Function *anyHit : payloadMethods(*definition, "anyHit"))
       asked.push_back(names.of(anyHit->parameters.front()->type->structure));
@@ -339,8 +384,8 @@ std::string ModulePrinter::description() {
       text += fmt::format(".asks<{}>()", fmt::join(asked, ", "));
     text += ";\n";
   }
-  if (const std::string words = needs(everything); !words.empty())
-    text += "program.needs(" + words + ");\n";
+  if (const std::string needs = call("program.needs", needsOfProgram()); !needs.empty())
+    text += needs + ";\n";
   for (const Slot &slot : allSlots)
     for (const typed::Class *definition : classesBelow(slot.base))
       if (!isRunBySteps(slot.method) && slotMethod(*definition, slot.method)) {
@@ -352,6 +397,10 @@ std::string ModulePrinter::description() {
     features.emplace_back("RTSL_FEATURE_EXCEPTIONS");
   if (options.prints)
     features.emplace_back("RTSL_FEATURE_PRINT");
+  if (options.undefined & RTSL_FEATURE_UNDEFINED_BYTES)
+    features.emplace_back("RTSL_FEATURE_UNDEFINED_BYTES");
+  if (options.undefined & RTSL_FEATURE_UNDEFINED_NAN)
+    features.emplace_back("RTSL_FEATURE_UNDEFINED_NAN");
   if (!features.empty())
     text += "program.features(" + join(features, " | ") + ");\n";
   for (const typed::Class *definition : classesBelow("rt_RayGeneration"))

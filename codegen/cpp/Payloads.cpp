@@ -187,26 +187,17 @@ std::string ModulePrinter::describePayloads() {
 // Answers of anyHit
 //===----------------------------------------------------------------------===//
 
-bool mayAnswerHit(const typed::Module &module, const typed::Function &function) {
-  if (lowering::mayAnswerHit(function, function.owner))
-    return true;
-  return function.owner && std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
-           return definition->derivesFrom(function.owner) &&
-                  lowering::mayAnswerHit(lowering::resolve(function, definition.get()), definition.get());
-         });
+// A function is printed once for all classes that inherit it.
+bool ModulePrinter::mayAnswerHit(const typed::Function &function) {
+  return function.owner ? hitAnswers.mayAnswerOf(function) : hitAnswers.mayAnswer(function, nullptr);
 }
 
 bool FunctionPrinter::mayEndAnyHit() const {
-  return function && (!function->isStateMethod || function->name == "anyHit") && mayAnswerHit(module.module, *function);
-}
-
-static bool isAnswer(const typed::Expr &expr) {
-  auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
-  return builtin && (builtin->builtin == Builtin::IgnoreIntersection || builtin->builtin == Builtin::TerminateRay);
+  return function && (!function->isStateMethod || function->name == "anyHit") && module.mayAnswerHit(*function);
 }
 
 std::string FunctionPrinter::hitAnswer(const typed::Expr &expr) {
-  if (!isAnswer(expr))
+  if (!lowering::isHitAnswer(expr))
     return {};
   const std::string answer = fmt::format("rtsl::{}(rt)", typed::name(cast<typed::BuiltinExpr>(expr).builtin));
   return function->returnType->is(TypeKind::Void) ? "return " + answer + ";\n" : answer + ";\nreturn {};\n";

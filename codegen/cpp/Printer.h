@@ -12,6 +12,7 @@
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
 #include "codegen/cpp/Tracing.h"
+#include "codegen/lower/Analysis.h"
 
 #include <functional>
 #include <map>
@@ -86,6 +87,8 @@ public:
   /// Does the function ask for the ray's state, or for its class's scratch members?
   bool takesState(const typed::Function &function);
   bool takesScratch(const typed::Function &function);
+  /// May a call of the function, or of one that overrides it, end `anyHit`?
+  bool mayAnswerHit(const typed::Function &function);
   /// `in` parameters that C++ takes by reference to const.
   bool isByReference(const typed::Variable &parameter, const typed::Function &function);
   /// Is it an `out` parameter that the function may leave, or read, as it is? Then that is zero.
@@ -111,6 +114,7 @@ public:
   const Options &options;
   Names names;
   EffectsOf effects;
+  lowering::HitAnswers hitAnswers;
   SourceNotes notes;
   bool failed = false;
   std::set<const Type *> comparedStructs; // that need an operator ==
@@ -176,7 +180,9 @@ private:
   std::string referenceMethods();
   std::string slots();
   std::string description();
-  std::string needs(const Effects &reads) const;
+  Effects effectsOfAll(const char *root, const std::string &method);
+  std::vector<std::string> needsAtHits(const typed::Class &definition);
+  std::vector<std::string> needsOfProgram();
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
   std::string dispatch(const std::vector<const typed::Class *> &classes,
                        const std::function<std::string(const typed::Class &)> &call,
@@ -196,6 +202,7 @@ private:
   std::vector<std::string> frames, calledFrames;                                   // the structs
   TracingFunctions tracing;
   const bool mayReferToNothing; // some reference
+  const bool lookupsNest;       // some texture looks up another
   std::vector<CalledMethod> calledMethods;
 
   struct RayType {
@@ -333,8 +340,6 @@ private:
 bool isInMemory(const typed::Expr &expr);
 /// `text` in parentheses if it binds less tightly than `atLeast`.
 std::string bind(const Code &code, Binding atLeast);
-/// May a call of the function, or of one that overrides it, end `anyHit`?
-bool mayAnswerHit(const typed::Module &module, const typed::Function &function);
 std::string join(const std::vector<std::string> &parts, const char *between);
 /// `name = value`; `name{...}` where the value begins with the type that stands before the name.
 std::string declarator(const std::string &type, const std::string &name, const std::string &value);

@@ -211,6 +211,7 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   cpp::Options printing;
   printing.prints = features & RTSL_FEATURE_PRINT;
   printing.exceptions = features & RTSL_FEATURE_EXCEPTIONS;
+  printing.undefined = options.undefined;
   printing.checkIndices = options.checkIndices;
   printing.fast = options.floatingPoint == FloatingPoint::Fast;
   printing.name = name;
@@ -268,7 +269,9 @@ mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const L
                                             mlir::MLIRContext &context, runtime::Program &program,
                                             Findings *findings = nullptr) {
   mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, request, diagnostics, context);
-  if (!ir || !link(*ir, module, request, options.colorComponents, diagnostics, program, findings))
+  LinkRequest asked = request;
+  asked.features |= options.undefined;
+  if (!ir || !link(*ir, module, asked, options.colorComponents, diagnostics, program, findings))
     return nullptr;
   return ir;
 }

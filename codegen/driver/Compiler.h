@@ -51,6 +51,8 @@ struct CompileOptions {
   FloatingPoint floatingPoint = FloatingPoint::Strict;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
   std::string gpu = "sm_75";
+  /// RTSL_FEATURE_UNDEFINED_*: what nobody has written is filled with a pattern. For tests.
+  std::uint32_t undefined = 0;
 };
 
 /// A part of a scene that may refer to others: an object that has a name, or a place in a list.

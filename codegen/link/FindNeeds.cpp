@@ -29,12 +29,42 @@ std::uint32_t needsOf(llvm::StringRef state) {
       .Default(0);
 }
 
+/// The rt_ class below which the function's class is; empty for a function of no class.
+llvm::StringRef rootOf(mlir::func::FuncOp function) {
+  const auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
+  auto owner = name ? mlir::SymbolTable::lookupNearestSymbolFrom<ir::ClassOp>(function, name) : ir::ClassOp();
+  return owner ? owner.getRoot() : llvm::StringRef();
+}
+
+/// Whether the function may run before the ray is known to hit the primitive, for `intersect`; what it then reads of the
+/// hit has to be there for each candidate.
+bool mayRunForCandidates(mlir::func::FuncOp function) {
+  const llvm::StringRef root = rootOf(function);
+  const auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  return (root.empty() || root == "rt_Primitive") &&
+         !(method && llvm::StringSwitch<bool>(method.getValue())
+                         .Cases({"computeNormal", "computeTextureCoordinates", "computeDerivatives"}, true)
+                         .Cases({"generateSample", "samplePDF"}, true)
+                         .Default(false));
+}
+
+/// Whether reading this is reading of a candidate.
+bool isOfCandidate(llvm::StringRef state, mlir::func::FuncOp function) {
+  if (state == "BoundMin" || state == "BoundMax") {
+    const auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    return !method || method != "computeBounds";
+  }
+  return llvm::StringSwitch<bool>(state)
+             .Cases({"PrimitiveIndex", "InstanceIndex", "ObjectToWorld", "WorldToObject"}, true)
+             .Default(false) &&
+         mayRunForCandidates(function);
+}
+
 /// Whether rays that the function sends may begin where something was hit. How far from there they begin to see rests
 /// on the normal (runtime/device/Spawn.h).
 bool mayStartAtHits(mlir::func::FuncOp function) {
-  const auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
-  auto owner = name ? mlir::SymbolTable::lookupNearestSymbolFrom<ir::ClassOp>(function, name) : ir::ClassOp();
-  return !owner || owner.getRoot() == "rt_Material";
+  const llvm::StringRef root = rootOf(function);
+  return root.empty() || root == "rt_Material";
 }
 
 /// What one function reads itself.
@@ -69,7 +99,9 @@ std::uint32_t needsOf(mlir::func::FuncOp function, mlir::Operation *op) {
   if (auto state = llvm::dyn_cast<ir::StateOp>(op)) {
     const bool isRead =
         llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
-    return isRead ? needsOf(state.getName()) : 0;
+    if (!isRead)
+      return 0;
+    return needsOf(state.getName()) | (isOfCandidate(state.getName(), function) ? RTSL_NEEDS_CANDIDATE : 0);
   }
   if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op); trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(function) ? RTSL_NEEDS_NORMALS : 0);
@@ -123,6 +155,8 @@ std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked) {
     needs |= needsOfPrimitives(context, "computeDerivatives");
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
     needs |= needsOfPrimitives(context, "computeTextureCoordinates");
+  if (needs & RTSL_NEEDS_NORMALS)
+    needs |= needsOfPrimitives(context, "computeNormal");
   return needs;
 }
 

@@ -46,6 +46,7 @@ constexpr Computed computed[] = {
     {RTSL_NEEDS_TIME, "rt_Time, rt_TimeSeed"},
     {RTSL_NEEDS_LAUNCH, "rt_LaunchIndex, rt_LaunchSize"},
     {RTSL_NEEDS_LENS, "rt_LensCoord"},
+    {RTSL_NEEDS_CANDIDATE, "rt_BoundMin, rt_BoundMax and what else `intersect` knows of its object"},
 };
 
 /// Notes who reads it first, or that nobody does.

@@ -4,6 +4,8 @@
 #include "sema/Casting.h"
 #include "sema/TypeProperties.h"
 
+#include <algorithm>
+
 namespace rtsl::lowering {
 
 using ast::StmtKind;
@@ -236,26 +238,70 @@ bool takesPayload(const typed::Function &function) {
   return function.isStateMethod && !function.parameters.empty();
 }
 
-static bool mayAnswer(const typed::Function &function, const typed::Class *concrete,
-                      std::set<const typed::Function *> &visited) {
-  if (!function.body || !visited.insert(&function).second)
-    return false;
+bool isHitAnswer(const typed::Expr &expr) {
+  auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+  return builtin && (builtin->builtin == typed::Builtin::IgnoreIntersection ||
+                     builtin->builtin == typed::Builtin::TerminateRay);
+}
+
+/// Does some expression of a function of the module fulfil it? It takes both.
+template <typename Condition>
+static bool someExpression(const typed::Module &module, const Condition &condition) {
+  bool found = false;
+  const auto look = [&](const typed::Function &function) {
+    if (function.body && !found)
+      forEachExpr(*function.body, [&](const typed::Expr &expr) { found = found || condition(function, expr); });
+  };
+  for (const auto &function : module.functions)
+    look(*function);
+  for (const auto &definition : module.classes)
+    for (const auto &function : definition->functions)
+      look(*function);
+  return found;
+}
+
+HitAnswers::HitAnswers(const typed::Module &module)
+    : module(module), hasAnswers(someExpression(module, [](const typed::Function &, const typed::Expr &expr) {
+        return isHitAnswer(expr);
+      })) {}
+
+bool lookupsNest(const typed::Module &module) {
+  return someExpression(module, [](const typed::Function &function, const typed::Expr &expr) {
+    auto *call = dynCast<typed::MethodCallExpr>(&expr);
+    return function.mayRunInLookup && call && !call->function;
+  });
+}
+
+bool HitAnswers::isFoundIn(const typed::Function &function, const typed::Class *concrete) {
   bool found = false;
   forEachExpr(*function.body, [&](const typed::Expr &expr) {
-    if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-      found = found || builtin->builtin == typed::Builtin::IgnoreIntersection ||
-              builtin->builtin == typed::Builtin::TerminateRay;
-    else if (auto *call = dynCast<typed::CallExpr>(&expr))
-      found = found || mayAnswer(resolve(*call->function, concrete), concrete, visited);
-    else if (auto *method = dynCast<typed::MethodCallExpr>(&expr)) // which one runs is not known
-      found = found || (method->function && method->function->owner->root == "rt_Material");
+    if (found)
+      return;
+    found = isHitAnswer(expr);
+    if (auto *call = dynCast<typed::CallExpr>(&expr))
+      found = call->onSelf ? mayAnswer(resolve(*call->function, concrete), concrete)
+                           : mayAnswer(*call->function, nullptr);
+    else if (auto *method = dynCast<typed::MethodCallExpr>(&expr))
+      found = method->function && mayAnswerOf(*method->function);
   });
   return found;
 }
 
-bool mayAnswerHit(const typed::Function &function, const typed::Class *concrete) {
-  std::set<const typed::Function *> visited;
-  return mayAnswer(function, concrete, visited);
+bool HitAnswers::mayAnswer(const typed::Function &function, const typed::Class *concrete) {
+  if (!hasAnswers || !function.body)
+    return false;
+  // What closes a cycle traces, and adds nothing: `anyHit` leads to no trace.
+  const auto [entry, isNew] = known.try_emplace({&function, concrete}, false);
+  if (isNew)
+    entry->second = isFoundIn(function, concrete);
+  return entry->second;
+}
+
+bool HitAnswers::mayAnswerOf(const typed::Function &function) {
+  return hasAnswers && std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
+           return definition->derivesFrom(function.owner) &&
+                  mayAnswer(resolve(function, definition.get()), definition.get());
+         });
 }
 
 // Brackets have no place in a symbol: `float[4]` becomes `float_4`.

@@ -3,6 +3,7 @@
 
 #include "sema/Walk.h"
 
+#include <map>
 #include <string>
 #include <utility>
 
@@ -38,9 +39,28 @@ bool takesPartInIntersection(const typed::Function &function, const typed::Class
 /// ray.
 bool takesPayload(const typed::Function &function);
 
-/// Does `function`, or what it calls, use ignoreIntersection or terminateRay? Then `anyHit` may end
-/// in it.
-bool mayAnswerHit(const typed::Function &function, const typed::Class *concrete);
+/// ignoreIntersection() or terminateRay()?
+bool isHitAnswer(const typed::Expr &expr);
+
+/// Which functions end `anyHit`, because they, or what they call, use ignoreIntersection or
+/// terminateRay. The checker lets nothing but `anyHit` lead to these.
+class HitAnswers {
+public:
+  explicit HitAnswers(const typed::Module &module);
+
+  /// For an object of class `concrete`, whose definitions calls on the object itself run; null for a
+  /// free function.
+  bool mayAnswer(const typed::Function &function, const typed::Class *concrete);
+  /// For a call through a reference: whichever class below the function's has the object.
+  bool mayAnswerOf(const typed::Function &function);
+
+private:
+  bool isFoundIn(const typed::Function &function, const typed::Class *concrete);
+
+  const typed::Module &module;
+  const bool hasAnswers; // in some function of the module
+  std::map<std::pair<const typed::Function *, const typed::Class *>, bool> known;
+};
 
 /// The definition that a call on the object itself runs: that of the most derived class with the
 /// callee's parameters.
@@ -58,6 +78,9 @@ std::string slotName(const typed::Module &module, const typed::Function &method)
 /// May a reference of the module refer to no object? The scene sets all public members, so that it
 /// takes a variable or a private member that nobody has written, or a buffer without elements.
 bool mayReferToNothing(const typed::Module &module);
+
+/// Does some texture look up another?
+bool lookupsNest(const typed::Module &module);
 
 /// Does the expression stand for a place in memory (and not for a value)?
 bool isPlace(const typed::Expr &expr);

@@ -124,27 +124,47 @@ Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
   emitter.setLoc(module.location(expr.range));
   auto call = emitter.make<mlir::func::CallOp>(target, values);
   copyOut(outputs);
-  if (mayEndAnyHit && mayAnswerHit(callee, concrete))
+  if (mayEndAnyHit && module.hitAnswers.mayAnswer(callee, concrete))
     returnIfHitAnswered();
   if (livesInMemory(type))
     return loadFrom(result, type);
   return Parts(call.getResults().begin(), call.getResults().end());
 }
 
-// `lookup()` leaves what it finds in a state variable. It is cleared before, so that a texture that
-// sets nothing is black and not what another one has set.
-Parts FunctionLowering::lowerMethodCall(const typed::MethodCallExpr &expr) {
-  Value object = value(*expr.receiver);
-  if (!expr.function) {
-    bool isFloat = expr.method == "lookupFloat";
-    emitter.setLoc(module.location(expr.range));
-    Value state = emitter.make<ir::StateOp>(isFloat ? "FloatTextureValue" : "TextureColor",
-                                            module.type(expr.type));
-    emitter.store(emitter.zero(module.type(expr.type)), state);
-    emitter.make<ir::CallMethodOp>(mlir::TypeRange(), "lookup", object, mlir::ValueRange());
-    return {emitter.load(state)};
+// A texture leaves what it finds in two state variables. They are cleared before, so that what it
+// sets nothing of is zero and not what another one has set. One that looks up another keeps its own:
+//
+//   %mine = rtsl.load TextureColor      only where the caller may itself be looked up
+//   rtsl.store 0, TextureColor
+//   rtsl.call_method "lookup" on %t
+//   %found = rtsl.load TextureColor
+//   rtsl.store %mine, TextureColor
+Parts FunctionLowering::lowerLookup(const typed::MethodCallExpr &expr) {
+  const Value object = value(*expr.receiver);
+  emitter.setLoc(module.location(expr.range));
+  const TypeContext &types = module.languageTypes();
+  const Value color = emitter.make<ir::StateOp>("TextureColor", module.type(types.color));
+  const Value number = emitter.make<ir::StateOp>("FloatTextureValue", module.type(types.floatType));
+  Parts mine;
+  for (const Value state : {color, number}) {
+    if (key.function->mayRunInLookup)
+      mine.push_back(emitter.load(state));
+    emitter.store(emitter.zero(mlir::cast<ir::PtrType>(state.getType()).getPointee()), state);
   }
+  emitter.make<ir::CallMethodOp>(mlir::TypeRange(), "lookup", object, mlir::ValueRange());
+  const Value found = emitter.load(expr.method == "lookupFloat" ? number : color);
+  if (!mine.empty()) {
+    emitter.store(mine[0], color);
+    emitter.store(mine[1], number);
+  }
+  return {found};
+}
 
+Parts FunctionLowering::lowerMethodCall(const typed::MethodCallExpr &expr) {
+  if (!expr.function)
+    return lowerLookup(expr);
+
+  Value object = value(*expr.receiver);
   const typed::Function &callee = *expr.function;
   llvm::SmallVector<Value, 8> values;
   std::vector<CopyOut> outputs;
@@ -161,7 +181,7 @@ Parts FunctionLowering::lowerMethodCall(const typed::MethodCallExpr &expr) {
   emitter.setLoc(module.location(expr.range));
   auto call = emitter.make<ir::CallMethodOp>(results, module.slotName(callee), object, values);
   copyOut(outputs);
-  if (mayEndAnyHit && callee.owner->root == "rt_Material")
+  if (mayEndAnyHit && module.hitAnswers.mayAnswerOf(callee))
     returnIfHitAnswered();
   if (livesInMemory(type))
     return loadFrom(result, type);

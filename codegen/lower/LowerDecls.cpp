@@ -17,7 +17,7 @@ namespace rtsl::lowering {
 
 ModuleLowering::ModuleLowering(const typed::Module &source, const LowerOptions &options,
                                mlir::ModuleOp target)
-    : options(options), library(target), source(source), target(target),
+    : options(options), library(target), hitAnswers(source), source(source), target(target),
       emitter(target.getContext()) {
   emitter.setInsertionPointToEnd(target.getBody());
 }

@@ -37,7 +37,7 @@ Value FunctionLowering::self() {
 void FunctionLowering::run() {
   bindParameters();
   mayEndAnyHit = (!key.function->isStateMethod || key.function->name == "anyHit") &&
-                 mayAnswerHit(*key.function, key.concrete);
+                 module.hitAnswers.mayAnswer(*key.function, key.concrete);
   if (key.function->name == "intersect" && key.inIntersect)
     enterIntersect();
   lower(*key.function->body);

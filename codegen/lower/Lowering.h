@@ -8,6 +8,7 @@
 #pragma once
 
 #include "codegen/ir/Rtsl.h"
+#include "codegen/lower/Analysis.h"
 #include "codegen/lower/Library.h"
 #include "codegen/lower/Lower.h"
 
@@ -50,6 +51,7 @@ public:
 
   // LowerTypes.cpp
   mlir::Type type(const Type *type);
+  const TypeContext &languageTypes() const { return source.types; }
   mlir::Type pointer(const Type *type) { return ir::PtrType::get(this->type(type)); }
 
   // LowerDecls.cpp
@@ -69,6 +71,7 @@ public:
   mlir::MLIRContext *context() { return target.getContext(); }
   const LowerOptions &options;
   Library library;
+  HitAnswers hitAnswers;
 
 private:
   void lowerClass(const typed::Class &definition);
@@ -225,6 +228,7 @@ private:
   // LowerCalls.cpp
   Parts lowerCall(const typed::CallExpr &expr, Value result = nullptr);
   Parts lowerMethodCall(const typed::MethodCallExpr &expr);
+  Parts lowerLookup(const typed::MethodCallExpr &expr);
   /// Copies arguments in: values, and addresses of temporaries.
   struct CopyOut {
     Place target;

@@ -32,6 +32,7 @@ typedef struct RtslInstance {
   uint32_t needs;          // RTSL_NEEDS_* of its material
   uint32_t mask;           // seen by rays that have a bit of it in theirs
   uint32_t anyHit;         // rtslRayTypeBit of the payloads for which its material has `anyHit`
+  float boundMin[3], boundMax[3]; // of an RTSL primitive, as `computeBounds` gave them
 } RtslInstance;
 
 /// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
@@ -143,7 +144,7 @@ typedef struct RtslState {
   uint32_t rayType;   // 0: the built-in payload of `shade`; others are numbered when a program is linked
   uint32_t rayMask;   // instances that have no bit of it are not there
   int32_t rayRoot;    // where it enters the scene; so far there is one root, number 0
-  uint32_t hitAnswer; // RTSL_ACCEPT...: what `anyHit` makes of the candidate
+  uint32_t hitAnswer; // RTSL_ACCEPT...: what `anyHit` makes of the candidate; outside of it RTSL_ACCEPT
 
   // Counter-based random numbers: (pixel, sample) make the key, `dimension` counts what was drawn.
   uint32_t randomKey[2];
@@ -190,7 +191,8 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType 
 #define RTSL_NEEDS_LENS 128u              // LensCoord
 #define RTSL_NEEDS_NORMALS 256u           // GeometricNormal ShadingNormal; whoever sends rays from hits needs them too
 #define RTSL_NEEDS_ANY_HIT 512u           // not read, but asked: some ray's hits may be refused
-#define RTSL_NEEDS_ALL 1023u
+#define RTSL_NEEDS_CANDIDATE 1024u        // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
+#define RTSL_NEEDS_ALL 2047u
 
 // What rtsl_traverse answers.
 #define RTSL_MISS 0u
@@ -216,6 +218,10 @@ extern "C" {
 #define RTSL_FEATURE_EXCEPTIONS 1u
 #define RTSL_FEATURE_PRINT 2u
 #define RTSL_FEATURE_UNHEEDED 4u // exceptions are noted, and no sample ends by them
+#define RTSL_FEATURE_EVENTS 7u   // any of these: states have RtslState::events
+// For tests: what nobody has written is filled with a pattern (Undefined.h).
+#define RTSL_FEATURE_UNDEFINED_BYTES 8u
+#define RTSL_FEATURE_UNDEFINED_NAN 16u
 
 /// A set of RTSL_FEATURE_*; a constant.
 uint32_t rtsl_features(RtslState *state);

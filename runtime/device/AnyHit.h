@@ -15,6 +15,7 @@
 #pragma once
 
 #include "runtime/device/Abi.h"
+#include "runtime/device/Candidate.h"
 #include "runtime/device/Surface.h"
 #include "runtime/device/Traverse.h"
 
@@ -97,8 +98,7 @@ public:
     if (instance.primitive == 0)
       return testTriangle(state, triangleRay, state.launch->meshes[instance.mesh], item.instance,
                           item.primitive);
-    state.candidateInstance = item.instance;
-    state.candidatePrimitive = item.primitive;
+    beginCandidate(state, item.instance, item.primitive);
     slots.rt_Primitive_intersect(&state, instance.primitive);
     return state.instance == item.instance;
   }
@@ -120,7 +120,9 @@ public:
     describeHit(state, instance.needs, slots);
     state.hitAnswer = RTSL_ACCEPT;
     slots.rt_Material_anyHit_payload(&state, instance.material);
-    return state.hitAnswer;
+    const uint32_t answer = state.hitAnswer;
+    state.hitAnswer = RTSL_ACCEPT; // what runs for the hit that counts has not answered anything
+    return answer;
   }
 
   bool hasAnyHit(const RtslLeafItem &item) const {

@@ -13,6 +13,7 @@
 #include "runtime/device/Random.h"
 #include "runtime/device/Spawn.h"
 #include "runtime/device/Surface.h"
+#include "runtime/device/Undefined.h"
 #include "runtime/device/Vector.h"
 
 namespace rtsl::device {
@@ -57,6 +58,8 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon,
   state.Epsilon = epsilon;
   state.HitDistance = distance;
   state.isEasy = isEasy;
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_ANY_HIT)
+    state.hitAnswer = RTSL_ACCEPT;
   state.instance = RTSL_NO_HIT;
   state.primitive = RTSL_NO_HIT;
 }
@@ -106,6 +109,13 @@ struct Arrival {
   RtslRef object;
 };
 
+/// What is behind everything: there is no surface, so that textures have no coordinates but those
+/// that `miss` writes.
+inline Arrival arriveAtBackground(RtslState &state) {
+  clearCoordinates(state, rtsl_needs(state.launch));
+  return {Arrival::Background, state.launch->background};
+}
+
 /// Finds what state's ray meets and describes it.
 inline Arrival arrive(RtslState &state) {
   const RtslLaunch &launch = *state.launch;
@@ -118,7 +128,7 @@ inline Arrival arrive(RtslState &state) {
   }
   if (found == RTSL_MISS) {
     if (launch.background)
-      return {Arrival::Background, launch.background};
+      return arriveAtBackground(state);
     copyColor(state.SampleColor, launch.backgroundColor, components);
   }
   if (found == RTSL_BAD_RAY)
@@ -160,11 +170,13 @@ inline void descend(RtslState &child, const RtslState &parent, uint32_t dimensio
 /// Makes `child` the ray that `parent` sends. They may be the same.
 inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension, Vec3 origin,
                   Vec3 direction) {
-  descend(child, parent, dimension);
-  child.rayType = 0;
-  uint32_t isEasy;
-  float epsilon = spawnEpsilon(parent, origin, direction, &isEasy);
-  setRay(child, origin, direction, epsilon, infinity, isEasy);
+  beginChild(child, parent, [&](const RtslState &from) {
+    descend(child, from, dimension);
+    child.rayType = 0;
+    uint32_t isEasy;
+    float epsilon = spawnEpsilon(from, origin, direction, &isEasy);
+    setRay(child, origin, direction, epsilon, infinity, isEasy);
+  });
 }
 
 /// `trace(origin, direction)`. Deeper than the launch allows nothing is seen: color 0.
@@ -185,6 +197,7 @@ inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) 
 inline bool inShadow(const RtslState &shading, Vec3 point) {
   Vec3 direction = load(shading.LightDirection);
   RtslState state;
+  beginState(state, shading.launch);
   inherit(state, shading);
   state.Depth = shading.Depth + 1;
   uint32_t isEasy;
@@ -250,7 +263,7 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
 /// near 1.
 inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                         uint32_t index, RtslEvents &events) {
-  state.launch = &launch;
+  beginState(state, &launch);
   startEvents(state, events, x, y, index);
   Words4 key = hash4(x, y, index, launch.seed);
   state.randomKey[0] = key.x;
@@ -290,6 +303,8 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   state.du = state.dv = 0;
   setVector(state.RayOrigin, 0, 0, 0); // what the camera leaves out
   setVector(state.RayDirection, 0, 0, 0);
+  state.Epsilon = 0; // its ray sees everything in front of it
+  state.HitDistance = infinity;
   rtsl_rt_Camera_generateRay(&state, launch.camera);
   setRay(state, load(state.RayOrigin), load(state.RayDirection), 0, infinity, 0);
 }

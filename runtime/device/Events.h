@@ -14,7 +14,7 @@
 namespace rtsl::device {
 
 inline bool hasEvents(const RtslState &state) {
-  return rtsl_features(const_cast<RtslState *>(&state)) != 0;
+  return rtsl_features(const_cast<RtslState *>(&state)) & RTSL_FEATURE_EVENTS;
 }
 
 inline bool hasExceptions(const RtslState &state) {

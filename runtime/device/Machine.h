@@ -69,6 +69,7 @@ inline void *frameOf(Level *level) {
 
 /// The method of this object begins, on the level's first frame.
 inline void beginOn(Level &level, RtslRef object) {
+  makeUndefined(level.state, &level.color, above(&level, levelSize(&level.state)));
   level.object = object;
   if (rtsl_calls(&level.state))
     level.frame = 0;

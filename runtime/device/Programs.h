@@ -29,17 +29,19 @@ struct PayloadRay {
 /// of its origin it sees nothing, whatever tmin is.
 inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
                   const PayloadRay &ray) {
-  descend(child, parent, dimension);
-  child.Time = ray.time;
-  child.payload = ray.payload;
-  child.rayType = ray.rayType;
-  child.rayMask = ray.mask;
-  child.rayRoot = ray.root;
-  uint32_t isEasy;
-  float error = spawnEpsilon(parent, ray.origin, ray.direction, &isEasy);
-  if (!(ray.tmin == ray.tmin && ray.tmax == ray.tmax)) // one of them is no number
-    isEasy = 0;
-  setRay(child, ray.origin, ray.direction, ray.tmin < error ? error : ray.tmin, ray.tmax, isEasy);
+  beginChild(child, parent, [&](const RtslState &from) {
+    descend(child, from, dimension);
+    child.Time = ray.time;
+    child.payload = ray.payload;
+    child.rayType = ray.rayType;
+    child.rayMask = ray.mask;
+    child.rayRoot = ray.root;
+    uint32_t isEasy;
+    float error = spawnEpsilon(from, ray.origin, ray.direction, &isEasy);
+    if (!(ray.tmin == ray.tmin && ray.tmax == ray.tmax)) // one of them is no number
+      isEasy = 0;
+    setRay(child, ray.origin, ray.direction, ray.tmin < error ? error : ray.tmin, ray.tmax, isEasy);
+  });
 }
 
 /// Finds what state's ray meets and describes it, for its payload's programs.
@@ -56,7 +58,7 @@ inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
   if (found == RTSL_BAD_RAY)
     raise(state, RTSL_EXCEPTION_BAD_RAY);
   if (found == RTSL_MISS && launch.background)
-    return {Arrival::Background, launch.background};
+    return arriveAtBackground(state);
   return {Arrival::Nothing, 0};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/device/Abi.h"
+#include "runtime/device/Candidate.h"
 #include "runtime/device/Spawn.h"
 #include "runtime/device/Traverse.h"
 #include "runtime/device/Vector.h"
@@ -19,11 +20,6 @@ struct LinkedSlots {
 
 inline void setVector(float *p, float x, float y, float z) {
   store(p, {x, y, z});
-}
-
-inline void setIdentity(float m[16]) {
-  for (int i = 0; i < 16; ++i)
-    m[i] = i % 5 == 0 ? 1.0f : 0.0f;
 }
 
 /// dP/du and dP/dv of a triangle from the texture coordinates of its vertices (0 where these do not
@@ -97,12 +93,15 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t ne
 
 /// The same for an RTSL primitive, by its methods.
 template <typename Slots>
-void describePrimitive(RtslState &state, RtslRef primitive, uint32_t needs, const Slots &slots) {
+void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t needs, const Slots &slots) {
+  const RtslRef primitive = instance.primitive;
   Vec3 origin = load(state.RayOrigin), direction = load(state.RayDirection);
   float t = state.HitDistance;
   store(state.HitPoint, {fused(t, direction.x, origin.x), fused(t, direction.y, origin.y),
                          fused(t, direction.z, origin.z)});
   state.hitPointError = primitivePointError(origin, direction, t);
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_CANDIDATE)
+    describeBounds(state, instance);
   if (needs & RTSL_NEEDS_NORMALS) {
     setVector(state.GeometricNormal, 0, 0, 0);
     setVector(state.ShadingNormal, 0, 0, 0);
@@ -119,14 +118,8 @@ void describePrimitive(RtslState &state, RtslRef primitive, uint32_t needs, cons
     slots.rt_Primitive_computeDerivatives(&state, primitive);
 }
 
-/// Everything that a material may read of the hit, once traversal has found it. `needs` says
-/// what is read, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
-template <typename Slots>
-void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
-  const RtslLaunch &launch = *state.launch;
-  const RtslInstance &instance = launch.instances[state.instance];
-  state.PrimitiveIndex = int32_t(state.primitive);
-  state.InstanceIndex = int32_t(state.instance);
+/// Texture coordinates and derivatives that nobody computes.
+inline void clearCoordinates(RtslState &state, uint32_t needs) {
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES) {
     state.TextureUV[0] = state.TextureUV[1] = 0;
     setVector(state.TextureUVW, 0, 0, 0);
@@ -136,6 +129,17 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
     setVector(state.dPdv, 0, 0, 0);
     state.dsdu = state.dsdv = state.dtdu = state.dtdv = 0;
   }
+}
+
+/// Everything that a material may read of the hit, once traversal has found it. `needs` says
+/// what is read, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
+template <typename Slots>
+void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
+  const RtslLaunch &launch = *state.launch;
+  const RtslInstance &instance = launch.instances[state.instance];
+  state.PrimitiveIndex = int32_t(state.primitive);
+  state.InstanceIndex = int32_t(state.instance);
+  clearCoordinates(state, needs);
   if (needs & RTSL_NEEDS_TRANSFORMS) { // geometry is in world space so far
     setIdentity(state.ObjectToWorld);
     setIdentity(state.WorldToObject);
@@ -143,7 +147,7 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   if (instance.primitive == 0)
     describeTriangle(state, launch.meshes[instance.mesh], needs);
   else
-    describePrimitive(state, instance.primitive, needs, slots);
+    describePrimitive(state, instance, needs, slots);
 }
 
 inline void describeHit(RtslState &state) {

@@ -3,6 +3,7 @@
 
 #include "runtime/device/Abi.h"
 #include "runtime/device/Bvh.h"
+#include "runtime/device/Candidate.h"
 #include "runtime/device/Hit.h"
 #include "runtime/device/Triangle.h"
 #include "runtime/device/Vector.h"
@@ -71,8 +72,7 @@ uint32_t traverseDevice(RtslState &state, bool anyHit, Intersect intersect) {
               testTriangle(state, ray, launch.meshes[instance.mesh], item.instance, item.primitive);
           return found && anyHit;
         }
-        state.candidateInstance = item.instance;
-        state.candidatePrimitive = item.primitive;
+        beginCandidate(state, item.instance, item.primitive);
         intersect(&state, instance.primitive);
         return anyHit && state.instance != RTSL_NO_HIT;
       });

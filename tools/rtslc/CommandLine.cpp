@@ -7,6 +7,7 @@
 #include "codegen/driver/LlvmErrors.h"
 #include "frontend/ClosestName.h"
 #include "runtime/Error.h"
+#include "runtime/device/Abi.h"
 
 #include <fmt/format.h>
 
@@ -145,6 +146,10 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             {"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"},
             "the oldest NVIDIA GPU that PTX is for; sm_75 if not given");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation of machine code")->type_name("LEVEL");
+  addChoice(command, "--undefined", options.compile.undefined,
+            Choices<std::uint32_t>{
+                {"leave", 0}, {"bytes", RTSL_FEATURE_UNDEFINED_BYTES}, {"nan", RTSL_FEATURE_UNDEFINED_NAN}},
+            "state that nobody has written: leave it, or fill it with a pattern, on which no picture depends. For tests");
 }
 
 namespace {

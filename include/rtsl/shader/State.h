@@ -64,6 +64,30 @@ inline RtslState *rawState(State<N> &rt) {
   return reinterpret_cast<RtslState *>(&rt);
 }
 
+/// Before a texture is looked up: what it sets nothing of is zero.
+template <int N>
+inline void clearTexture(State<N> &rt) {
+  rt.TextureColor = Color<N>(0.0f);
+  rt.FloatTextureValue = 0.0f;
+}
+
+/// The same where one texture looks up another, which leaves alone what the first has found.
+template <int N>
+class NestedLookup {
+public:
+  explicit NestedLookup(State<N> &rt) : rt(rt), color(rt.TextureColor), value(rt.FloatTextureValue) { clearTexture(rt); }
+  NestedLookup(const NestedLookup &) = delete;
+  ~NestedLookup() {
+    rt.TextureColor = color;
+    rt.FloatTextureValue = value;
+  }
+
+private:
+  State<N> &rt;
+  const Color<N> color;
+  const float value;
+};
+
 /// An index, clamped; one that is out of range ends the sample (`rtslc compile --exceptions`).
 template <int N, typename Index, typename Count>
 inline uint checked(State<N> &rt, Index index, Count count) {

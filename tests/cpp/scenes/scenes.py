@@ -111,14 +111,14 @@ def names():
 
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
-    ("g++", ["-O2"], [], [example("whitted-programs")]),
-    ("clang++-22", ["-O1"], [], [example("metal"), example("quadrics")]),
+    ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
+    ("clang++-22", ["-O1"], ["--undefined=bytes"], [example("metal"), example("quadrics")]),
     ("clang++-22", ["-O1"], ["--exceptions"], [answers("programs"), answers("classic")]),
     ("g++", ["-O1"], ["--print"], [events(False)]),
     ("g++", ["-O1"], ["--exceptions"], [events(False), events(True)]),
     ("g++", ["-O1"], ["--unchecked"], [answers("programs")]),
-    ("g++", ["-O1"], [], [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)]),
-    ("clang++-22", ["-O1"], ["--trace=recurse"], [chains(3, 2)]),
+    ("g++", ["-O1"], ["--undefined=nan"], [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)]),
+    ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [chains(3, 2)]),
     ("g++", ["-O1"], [], [nothing()]),
     ("clang++-22", ["-O1"], ["--trace=recurse"], [nothing()]),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),

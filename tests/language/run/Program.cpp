@@ -27,6 +27,8 @@ class RunCamera : rt_Camera {
   void generateRay() {
     rt_RayOrigin = vec3(rt_ScreenCoord.x * count, 0.5, 5.0);
     rt_RayDirection = vec3(0.0, 0.0, -2.0);
+    bool begins = rt_Epsilon == 0.0 && isinf(rt_HitDistance) && rt_du == 0.0 && rt_dv == 0.0 && rt_Depth == 0;
+    if (!begins) rt_RayDirection.z = -3.0; // which StateRun sees
   }
 };
 class RunSquare : rt_Primitive {

@@ -1,0 +1,109 @@
+"""State of a ray that nobody has written: no picture depends on what lies there (docs/language.md, state.holds)."""
+
+import json
+import unittest
+
+from harness import EXAMPLES, Case
+
+PATTERNS = ("leave", "bytes", "nan")
+WAYS = {
+    "recursion": ["--traversal=device"],
+    "Embree": [],
+    "states": ["--trace=split", "--traversal=device"],
+    "the GPU's program": ["--target=host-megakernel"],
+    "everything kept": ["--target=host-megakernel", "--keep=all"],
+    "keeping, in recursion": ["--keep=all", "--traversal=device"],
+    "double": ["--fp=double"],
+    "unoptimised": ["-O", "0", "--traversal=device"],
+}
+
+CAMERA = """
+class Eye : rt_Camera;
+void generateRay() {
+  rt_RayOrigin = vec3(4.0 * rt_ScreenCoord - 2.0, 5.0 + rt_du + rt_dv + rt_Epsilon + 1.0 / rt_HitDistance);
+  rt_RayDirection = vec3(0.0, 0.0, -1.0);
+}
+"""
+
+# A material whose helper calls that of another, and a background with an environment map.
+SHADERS = """
+class Ball : rt_Primitive {
+  public vec3 center;
+  void computeBounds() { rt_BoundMin = center - vec3(1.0); rt_BoundMax = center + vec3(1.0); }
+  void intersect() {
+    vec3 c = 0.5 * (rt_BoundMin + rt_BoundMax), f = rt_RayOrigin - c;
+    float b = dot(f, rt_RayDirection), d = b * b - dot(rt_RayDirection, rt_RayDirection) * (dot(f, f) - 1.0);
+    if (d > 0.0) hit((-b - sqrt(d)) / dot(rt_RayDirection, rt_RayDirection));
+  }
+  void computeNormal() { rt_GeometricNormal = rt_HitPoint - center; }
+};
+class Base : rt_Material {
+  public color c = color(0.5);
+  color eval() { return c; }
+  void shade() { rt_SampleColor = c; }
+};
+class Coat : rt_Material {
+  public Base below;
+  color twice() { color a = below.eval(); return 2.0 * a; }
+  void shade() { rt_SampleColor = twice(); }
+};
+class Map : rt_Texture {
+  void lookup() { rt_TextureColor = color(rt_TextureUV.x, rt_TextureUV.y, rt_TextureUVW.z + rt_dPdu.x + rt_dtdv + rt_du); }
+};
+class Sky : rt_Miss {
+  public rt_Texture map;
+  public bool sets;
+  void miss() {
+    if (sets) rt_TextureUV = 0.125 * rt_RayOrigin.xy + vec2(0.5);
+    rt_SampleColor = color(0.25) + map.lookup();
+  }
+};
+"""
+
+
+class State(Case):
+    def pictures_are_one(self, scene, *options):
+        first = None
+        for pattern in PATTERNS:
+            for way, arguments in WAYS.items():
+                name = f"{pattern} {way}.exr"
+                with self.subTest(pattern=pattern, way=way, scene=str(scene)):
+                    self.run_rtslc("render", scene, "-o", name, "-q", f"--undefined={pattern}", *arguments, *options)
+                    if way == "double":  # other roundings: against itself
+                        reference = f"leave {way}.exr"
+                    else:
+                        reference = first = first or name
+                    self.run_rtslc("compare", reference, name, "--threshold", "0")
+
+    def scene(self, sets):
+        self.write("eye.rtsl", CAMERA)
+        self.write("shaders.rtsl", SHADERS)
+        self.write("scene.json", json.dumps({
+            "rtsl": 1, "import": ["eye.rtsl", "shaders.rtsl"], "camera": {"class": "Eye"},
+            "textures": {"map": {"class": "Map"}},
+            "objects": [{"primitive": {"class": "Ball", "center": [0, 0, 0]},
+                         "material": {"class": "Coat", "below": {"class": "Base"}}}],
+            "background": {"class": "Sky", "map": "map", "sets": sets},
+            "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 2}}))
+        return "scene.json"
+
+    def test_helpers_call_other_materials(self):
+        self.pictures_are_one(self.scene(sets=False))
+
+    def test_environment_maps_have_the_coordinates_that_miss_writes(self):
+        self.pictures_are_one(self.scene(sets=True))
+
+    def test_examples(self):
+        for scene in sorted(EXAMPLES.glob("*/scene.json")):
+            self.pictures_are_one(scene, "--size", "48x27", "--spp", "1")
+
+    def test_states_are_printed(self):
+        self.write("shaders.rtsl", SHADERS)
+        mirror = "class Mirror : Coat { void shade() { rt_SampleColor = trace(rt_HitPoint, rt_GeometricNormal) + twice(); } };"
+        self.write("mirror.rtsl", 'import "shaders.rtsl";\n' + mirror)
+        out, _ = self.run_rtslc("compile", "mirror.rtsl", "--emit=cpp", "--trace=split")
+        self.assertIn("enum class Step", out)
+
+
+if __name__ == "__main__":
+    unittest.main()
