@@ -60,7 +60,9 @@ NodePtr Generator::builtinCall(const Type *result, unsigned depth) {
 
 bool Generator::mayCall(const Function &function) const {
   return function.traces * context.weight <= context.traces &&
-         work + function.work * context.weight <= workLimit;
+         work + function.work * context.weight <= workLimit && isIn(function.reads, context.reads) &&
+         (context.rand || !function.draws) && (context.lookup || !function.looksUp) &&
+         (context.answers || !function.answers);
 }
 
 void Generator::account(const Function &function) {

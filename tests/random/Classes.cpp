@@ -9,30 +9,72 @@ namespace rtsl::random {
 
 static const char *const toColor = "rt_SampleColor = toColor(h); ";
 
-/// What every method that runs for a ray sees.
-static std::vector<Variable> everyRay(TypeContext &types) {
-  return {{"rt_LaunchIndex", types.vector(types.uintType, 2), false},
-          {"rt_LaunchSize", types.vector(types.uintType, 2), false},
-          {"rt_Depth", types.intType, false},
-          {"rt_TimeSeed", types.floatType, false}};
+static void append(std::vector<Variable> &to, const std::vector<Variable> &more) {
+  to.insert(to.end(), more.begin(), more.end());
 }
 
-static std::vector<Variable> named(const Type *type, std::initializer_list<const char *> names,
-                                   bool writable = false) {
+static const std::vector<typed::StateVariable> &stateVariables() {
+  static const std::vector<typed::StateVariable> all = {
+#define RTSL_STATE_VARIABLE(name, type) typed::StateVariable::name,
+#include "runtime/device/StateVariables.def"
+  };
+  return all;
+}
+
+StateSet common(StateSet a, StateSet b) {
+  StateSet both;
+  for (typed::StateVariable variable : stateVariables())
+    if (a.has(variable) && b.has(variable))
+      both = both | StateSet{variable};
+  return both;
+}
+
+bool isIn(StateSet part, StateSet all) {
+  return std::all_of(stateVariables().begin(), stateVariables().end(),
+                     [&](typed::StateVariable variable) { return all.has(variable) || !part.has(variable); });
+}
+
+/// Some of the state that has a value, and all that may be written.
+std::vector<Variable> Generator::stateOf(StateSet reads, StateSet writes) {
   std::vector<Variable> variables;
-  for (const char *name : names)
-    variables.push_back({std::string("rt_") + name, type, writable});
+  const unsigned percent = chance(25) ? 100 : 30;
+  for (typed::StateVariable variable : stateVariables())
+    if (writes.has(variable) || (reads.has(variable) && chance(percent)))
+      variables.push_back({std::string("rt_") + typed::name(variable), typeOf(variable, types), writes.has(variable)});
   return variables;
 }
 
-static void append(std::vector<Variable> &to, const std::vector<Variable> &more) {
-  to.insert(to.end(), more.begin(), more.end());
+/// What a function may read that methods call: what has a value in one of them. Of a class below `root`, or of any.
+StateSet Generator::someReads(const std::string &root) {
+  std::vector<const MethodModel *> methods;
+  for (const RootModel &model : rootModels())
+    for (const MethodModel &method : model.methods)
+      if (root.empty() || model.name == root)
+        methods.push_back(&method);
+  return chance(40) ? pick(methods)->reads : StateSet();
 }
 
 std::vector<Variable> Generator::around(const ClassPlan &plan) {
   std::vector<Variable> variables = constants;
   append(variables, plan.members);
   return variables;
+}
+
+std::vector<Variable> Generator::around(const ClassPlan &plan, const Function &function) {
+  std::vector<Variable> variables = around(plan);
+  append(variables, stateOf(function.reads, {}));
+  return variables;
+}
+
+/// What a function of the class may do.
+Context Generator::contextOf(const Function &function, const ClassPlan &plan) const {
+  Context rules;
+  rules.self = &plan;
+  rules.reads = function.reads;
+  rules.rand = function.draws;
+  rules.lookup = function.looksUp;
+  rules.answers = function.answers;
+  return rules;
 }
 
 //===----------------------------------------------------------------------===//
@@ -88,9 +130,17 @@ void Generator::addMembers(ClassPlan &plan, Node &members, unsigned count) {
   }
 }
 
+/// Few classes refer to all that they may.
+Generator::Targets Generator::someOf(const Targets &targets) {
+  Targets chosen;
+  for (const ClassPlan *target : targets)
+    if (likely(40))
+      chosen.push_back(target);
+  return chosen;
+}
+
 /// References to objects of earlier classes, so that there are no circles.
-void Generator::addReferences(ClassPlan &plan, Node &members,
-                              const std::vector<const ClassPlan *> &targets) {
+void Generator::addReferences(ClassPlan &plan, Node &members, const Targets &targets) {
   for (const ClassPlan *target : targets) {
     const std::string name = fresh("o");
     const unsigned form = below(4);
@@ -119,9 +169,15 @@ void Generator::addConstructor(ClassPlan &plan, Node &members) {
   members.children.push_back(function(made, "constructor", visible));
 }
 
-void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces) {
+void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces, bool answers) {
   Function made;
   made.remote = remote;
+  made.reads = someReads(plan.root);
+  if (remote && chance(50)) // by methods of another class
+    made.reads = common(made.reads, someReads(""));
+  made.answers = answers;
+  made.draws = plan.root != "rt_Primitive" || chance(50);
+  made.looksUp = plan.root != "rt_Primitive" && plan.root != "rt_Camera";
   made.signature.result = chance(12) ? types.voidType : anyType();
   if (traces != 0 && chance(70))
     made.signature.result = types.color;
@@ -133,13 +189,10 @@ void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigne
                             : ast::Direction::InOut});
   }
   made.name = fresh("g");
-  context = Context();
-  context.self = &plan;
+  context = contextOf(made, plan);
   context.traces = traces;
-  context.lookup = plan.root != "rt_Primitive";
-  context.rand = plan.root != "rt_Primitive";
   references = plan.references;
-  members.children.push_back(function(made, made.name, around(plan)));
+  members.children.push_back(function(made, made.name, around(plan, made)));
   plan.functions.push_back(std::move(made));
 }
 
@@ -151,29 +204,36 @@ void Generator::overrideFunction(ClassPlan &plan, Node &members) {
   Function made = plan.functions[number];
   ClassPlan visible = plan;
   visible.functions.resize(number);
-  context = Context();
-  context.self = &visible;
+  context = contextOf(made, visible);
   context.traces = made.traces;
-  context.lookup = plan.root != "rt_Primitive";
-  context.rand = plan.root != "rt_Primitive";
   references = plan.references;
-  members.children.push_back(function(made, made.name, around(plan)));
+  members.children.push_back(function(made, made.name, around(plan, made)));
 }
 
 /// A method of the engine's: some statements, then everything that they made, as one hash, then
-/// `result`, which makes the state that the method writes from it.
-void Generator::addMethod(const ClassPlan &plan, Node &members, const std::string &name,
-                          std::vector<Variable> state, const std::string &result,
-                          unsigned statementCount, Context rules, const std::string &parameters) {
+/// `result`, which makes the state that the method writes from it. What it may do is the checker's table; `rules` is what it
+/// does of that. `more` is what it sees beside state.
+void Generator::addMethod(const ClassPlan &plan, Node &members, const std::string &name, std::vector<Variable> more,
+                          const std::string &result, unsigned statementCount, Context rules,
+                          const std::string &parameters) {
+  const MethodModel &model = *rootModel(plan.root)->method(name, !parameters.empty());
   context = rules;
   context.self = &plan;
   context.onReturn = result;
+  context.reads = model.reads;
+  context.lookup = model.abilities.has(Ability::Lookup);
+  context.rand = model.abilities.has(Ability::Random) && name != "intersect"; // which runs as often as traversal has it
+  context.answers = model.abilities.has(Ability::AnyHit);
   references = plan.references;
   work = 0;
   workLimit = large ? 400 : 60;
   scope = around(plan);
-  if (context.ray)
-    append(scope, everyRay(types));
+  std::vector<Variable> state = stateOf(model.reads, model.writes);
+  if (name == "intersect") // the order of candidates would show
+    state.erase(std::remove_if(state.begin(), state.end(),
+                               [](const Variable &variable) { return variable.name == "rt_HitDistance"; }),
+                state.end());
+  append(state, more);
   append(scope, state);
   scope.push_back({"h", types.uintType, false});
   const std::size_t first = scope.size();
@@ -182,7 +242,7 @@ void Generator::addMethod(const ClassPlan &plan, Node &members, const std::strin
   body->children.push_back(makeNode(
       Role::Statement, "uint h = " + std::to_string(static_cast<std::uint32_t>(random())) + "u;"));
   for (const Variable &variable : state)
-    if (!variable.writable && chance(12) && scalarCount(variable.type) <= 12)
+    if (chance(12) && scalarCount(variable.type) <= 12)
       body->children.push_back(hashed(variable));
   statements(*body, some(statementCount), nesting());
   hashAll(*body, first);
@@ -210,25 +270,23 @@ void Generator::addPayloadMethod(const ClassPlan &plan, Node &members, const std
 // Classes
 //===----------------------------------------------------------------------===//
 
-void Generator::makeCamera() {
+void Generator::makeCamera(const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Camera", "rt_Camera", nullptr, members);
   if (likely(30))
     addMembers(*plan, *members, 1 + below(2));
-  Context rules;
-  rules.rand = true;
-  addMethod(*plan, *members, "generateRay",
-            named(types.vector(types.floatType, 2), {"ScreenCoord", "LensCoord"}),
-            "rt_RayOrigin = toVector(h); rt_RayDirection = toVector(h * 2654435761u); ", below(2),
-            rules);
+  addReferences(*plan, *members, someOf(targets));
+  if (likely(40))
+    addFunction(*plan, *members, false, 0);
+  addMethod(*plan, *members, "generateRay", {},
+            "rt_RayOrigin = toVector(h); rt_RayDirection = toVector(h * 2654435761u); ", below(2), Context());
   members->children.back()->children[0]->children.insert(
       members->children.back()->children[0]->children.begin() + 1,
       makeNode(Role::Statement, "h = hash_vec2(h, rt_ScreenCoord);"));
   program.camera = plan->name;
 }
 
-void Generator::makePrimitive(const ClassPlan *base) {
-  const Type *vec3 = types.vector(types.floatType, 3);
+const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Primitive", "rt_Primitive", base, members);
   if (!base)
@@ -236,18 +294,17 @@ void Generator::makePrimitive(const ClassPlan *base) {
       members->children.push_back(makeNode(
           Role::Fixed, "scratch " + toString(attribute.type) + " " + attribute.name + ";"));
   addMembers(*plan, *members, some(below(3)));
+  addReferences(*plan, *members, someOf(targets));
   if (!base && likely(40))
     addConstructor(*plan, *members);
   if (base)
     overrideFunction(*plan, *members);
-  else if (likely(70))
-    addFunction(*plan, *members, false, 0);
+  else
+    for (unsigned n = some(below(4)); n-- > 0;)
+      addFunction(*plan, *members, chance(50), 0);
 
-  std::vector<Variable> ray = named(vec3, {"RayOrigin", "RayDirection", "InverseRayDirection"});
-  append(ray, named(types.floatType, {"Epsilon"}));
   if (!base || chance(50)) {
-    Context rules;
-    addMethod(*plan, *members, "intersect", ray, "", below(4), rules);
+    addMethod(*plan, *members, "intersect", {}, "", below(4), Context());
     // Scratch members have a value before a hit is reported.
     Node &body = *members->children.back()->children[0];
     body.children.insert(body.children.begin() + 1,
@@ -273,68 +330,53 @@ void Generator::makePrimitive(const ClassPlan *base) {
     }
   }
 
-  // Everything below runs for the hit that won.
-  std::vector<Variable> hit = ray;
-  append(hit, named(vec3, {"HitPoint"}));
-  append(hit, named(types.floatType, {"HitDistance"}));
-  append(hit, named(types.intType, {"PrimitiveIndex", "InstanceIndex"}));
+  // What runs for the hit that won reads what `intersect` has left.
+  std::vector<Variable> left;
   for (const Variable &attribute : attributes)
-    hit.push_back({attribute.name, attribute.type, false});
-  Context rules;
-  rules.rand = true;
-  addMethod(*plan, *members, "computeNormal", hit,
-            "rt_GeometricNormal = toVector(h); " +
-                std::string(chance(50) ? "rt_ShadingNormal = toVector(h * 3u); " : ""),
-            below(3), rules);
-  append(hit, named(vec3, {"GeometricNormal", "ShadingNormal"}));
+    left.push_back({attribute.name, attribute.type, false});
+  const auto add = [&](const char *name, const std::vector<Variable> &more, const std::string &result, unsigned count) {
+    addMethod(*plan, *members, name, more, result, count, Context());
+  };
+  add("computeNormal", left,
+      "rt_GeometricNormal = toVector(h); " + std::string(chance(50) ? "rt_ShadingNormal = toVector(h * 3u); " : ""),
+      below(3));
   if (likely(60))
-    addMethod(*plan, *members, "computeTextureCoordinates", hit,
-              "rt_TextureUVW = toVector(h); rt_TextureUV = vec2(toUnit(h), toUnit(h * 5u)); ",
-              below(3), rules);
+    add("computeTextureCoordinates", left, "rt_TextureUVW = toVector(h); rt_TextureUV = vec2(toUnit(h), toUnit(h * 5u)); ",
+        below(3));
   if (likely(40))
-    addMethod(*plan, *members, "computeDerivatives", hit,
-              "rt_dPdu = toVector(h); rt_dPdv = toVector(h * 7u); rt_dsdu = toUnit(h); rt_dtdv = "
-              "toUnit(h * 9u); ",
-              below(2), rules);
+    add("computeDerivatives", left,
+        "rt_dPdu = toVector(h); rt_dPdv = toVector(h * 7u); rt_dsdu = toUnit(h); rt_dtdv = toUnit(h * 9u); ", below(2));
   if (likely(25)) {
-    addMethod(*plan, *members, "generateSample", named(types.floatType, {"PDF"}, true),
-              "rt_HitPoint = toVector(h); rt_GeometricNormal = toVector(h * 7u); rt_PDF = toUnit(h); ", 1 + below(2), rules);
-    addMethod(*plan, *members, "samplePDF", named(types.floatType, {"PDF"}, true), "rt_PDF = toUnit(h); ", below(2), rules);
+    add("generateSample", {}, "rt_HitPoint = toVector(h); rt_GeometricNormal = toVector(h * 7u); rt_PDF = toUnit(h); ",
+        1 + below(2));
+    add("samplePDF", {}, "rt_PDF = toUnit(h); ", below(2));
   }
-  if (likely(25)) {
-    Context noRay;
-    noRay.ray = false;
-    addMethod(*plan, *members, "computeBounds", {}, "rt_BoundMin = toVector(h); rt_BoundMax = toVector(h * 3u); ", below(2),
-              noRay);
-  }
+  if (likely(50))
+    add("computeBounds", {}, "rt_BoundMin = toVector(h); rt_BoundMax = toVector(h * 3u); ", below(2));
   program.primitives.push_back(plan->name);
+  return plan;
 }
 
-void Generator::makeLight() {
-  const Type *vec3 = types.vector(types.floatType, 3);
+const ClassPlan *Generator::makeLight(const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Light", "rt_Light", nullptr, members);
   addMembers(*plan, *members, some(below(3)));
   if (chance(40))
     addConstructor(*plan, *members);
-  std::vector<Variable> state = named(vec3, {"HitPoint", "GeometricNormal", "ShadingNormal"});
-  append(state, named(vec3, {"LightDirection"}, true));
-  append(state, named(types.floatType, {"LightDistance"}, true));
-  append(state, named(types.color, {"LightColor"}, true));
-  Context rules;
-  rules.rand = true;
-  addMethod(*plan, *members, "illumination", state,
+  addReferences(*plan, *members, someOf(targets));
+  for (unsigned n = some(below(3)); n-- > 0;)
+    addFunction(*plan, *members, chance(60), 0);
+  addMethod(*plan, *members, "illumination", {},
             "rt_LightDirection = toVector(h); rt_LightDistance = 0.5 + 8.0 * toUnit(h); "
             "rt_LightColor = toColor(h); ",
-            1 + below(3), rules);
+            1 + below(3), Context());
   program.lights.push_back(plan->name);
   if (chance(40))
     program.lights.push_back(plan->name);
+  return plan;
 }
 
-/// Textures read where they are looked up only if every caller is on a surface.
-const ClassPlan *Generator::makeTexture(const ClassPlan *base,
-                                        const std::vector<const ClassPlan *> &targets) {
+const ClassPlan *Generator::makeTexture(const ClassPlan *base, const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Texture", "rt_Texture", base, members);
   addMembers(*plan, *members, some(1 + below(3)));
@@ -345,53 +387,32 @@ const ClassPlan *Generator::makeTexture(const ClassPlan *base,
     overrideFunction(*plan, *members);
   if (!base || chance(40))
     addFunction(*plan, *members, true, 0);
-  if (!base || chance(60)) {
-    std::vector<Variable> state;
-    append(state, named(types.color, {"TextureColor"}, true));
-    append(state, named(types.floatType, {"FloatTextureValue"}, true));
-    append(state, named(types.vector(types.floatType, 2), {"TextureUV"}));
-    append(state, named(types.vector(types.floatType, 3), {"TextureUVW"}));
-    if (chance(40))
-      append(state, named(types.floatType, {"dsdu", "dtdu", "dsdv", "dtdv", "du", "dv"}));
-    Context rules;
-    rules.rand = rules.lookup = true;
-    addMethod(*plan, *members, "lookup", state,
-              "rt_TextureColor = toColor(h); rt_FloatTextureValue = toUnit(h); ", 1 + below(3),
-              rules);
-    Node &body = *members->children.back()->children[0];
-    body.children.insert(body.children.begin(),
-                         makeNode(Role::Statement,
-                                  "rt_TextureColor = color(0.5); rt_FloatTextureValue = 0.25;"));
-  }
+  if (!base || chance(60))
+    addMethod(*plan, *members, "lookup", {}, "rt_TextureColor = toColor(h); rt_FloatTextureValue = toUnit(h); ",
+              1 + below(3), Context());
   program.textures.push_back(plan->name);
   return plan;
 }
 
-void Generator::makeMiss(const std::vector<const ClassPlan *> &) {
+void Generator::makeMiss(const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Miss", "rt_Miss", nullptr, members);
   addMembers(*plan, *members, some(below(3)));
+  addReferences(*plan, *members, someOf(targets));
   const unsigned traces = program.traces && chance(50) ? 2 : 0;
   if (chance(40))
     addFunction(*plan, *members, false, traces);
-  std::vector<Variable> state = named(types.vector(types.floatType, 3),
-                                      {"RayOrigin", "RayDirection", "InverseRayDirection"});
-  append(state, named(types.color, {"SampleColor"}, true));
   Context rules;
-  rules.rand = true;
   rules.traces = traces;
   rules.print = true;
-  addMethod(*plan, *members, "miss", state, toColor, 1 + below(4), rules);
-  state.erase(state.end() - 1);
+  addMethod(*plan, *members, "miss", {}, toColor, 1 + below(4), rules);
   for (const Type *payload : payloads)
     if (chance(70))
-      addPayloadMethod(*plan, *members, "miss", payload, state, rules);
+      addPayloadMethod(*plan, *members, "miss", payload, {}, rules);
   program.miss = plan->name;
 }
 
-const ClassPlan *Generator::makeMaterial(const ClassPlan *base,
-                                         const std::vector<const ClassPlan *> &targets) {
-  const Type *vec3 = types.vector(types.floatType, 3);
+const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Material", "rt_Material", base, members);
   addMembers(*plan, *members, some(below(4)));
@@ -411,34 +432,25 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base,
     overrideFunction(*plan, *members);
   for (unsigned n = some(below(3)); n-- > 0;)
     addFunction(*plan, *members, chance(60), chance(60) ? traces / 2 : 0);
+  if (!base && !payloads.empty() && likely(60))
+    addFunction(*plan, *members, chance(60), 0, /*answers=*/true);
   if (!base || chance(60)) {
-    std::vector<Variable> state = named(vec3, {"RayOrigin", "RayDirection", "HitPoint",
-                                               "GeometricNormal", "ShadingNormal"});
-    if (chance(20))
-      append(state, named(vec3, {"InverseRayDirection", "dPdu", "dPdv", "TextureUVW"}));
-    if (chance(30))
-      append(state, named(types.vector(types.floatType, 2), {"TextureUV"}));
-    append(state, named(types.floatType, {"HitDistance"}));
-    append(state, named(types.intType, {"PrimitiveIndex", "InstanceIndex"}));
-    append(state, named(types.color, {"SampleColor"}, true));
-    append(state, plan->scratch);
-    for (std::size_t i = state.size() - plan->scratch.size(); i != state.size(); ++i)
-      state[i].writable = false;
+    std::vector<Variable> attributesOfHit = plan->scratch;
+    for (Variable &attribute : attributesOfHit)
+      attribute.writable = false;
     Context rules;
-    rules.rand = rules.lookup = true;
     rules.illuminance = chance(50);
     rules.print = true;
     rules.traces = traces;
-    addMethod(*plan, *members, "shade", state, toColor, 4 + below(6), rules);
+    addMethod(*plan, *members, "shade", attributesOfHit, toColor, 4 + below(6), rules);
     rules.illuminance = false;
-    state.erase(std::find_if(state.begin(), state.end(), [](const Variable &each) { return each.writable; }));
     for (const Type *payload : payloads) {
       rules.traces = traces / 2;
       if (chance(80))
-        addPayloadMethod(*plan, *members, "closestHit", payload, state, rules);
+        addPayloadMethod(*plan, *members, "closestHit", payload, attributesOfHit, rules);
       rules.traces = 0;
       if (chance(50))
-        addPayloadMethod(*plan, *members, "anyHit", payload, state, rules);
+        addPayloadMethod(*plan, *members, "anyHit", payload, attributesOfHit, rules);
     }
   }
   if (!base || chance(40))
@@ -453,31 +465,19 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base,
 void Generator::addBsdf(const ClassPlan &plan, Node &members) {
   if (!likely(40))
     return;
-  const Type *vec3 = types.vector(types.floatType, 3);
-  std::vector<Variable> read = named(vec3, {"RayDirection", "HitPoint", "GeometricNormal", "ShadingNormal"});
-  append(read, named(types.vector(types.floatType, 2), {"TextureUV"}));
-  append(read, plan.scratch);
-  for (Variable &variable : read)
-    variable.writable = false;
+  std::vector<Variable> attributesOfHit = plan.scratch;
+  for (Variable &attribute : attributesOfHit)
+    attribute.writable = false;
   Context rules;
-  rules.rand = rules.lookup = rules.print = true;
-  auto add = [&](const char *name, std::vector<Variable> state, const std::string &result) {
-    append(state, read);
-    addMethod(plan, members, name, std::move(state), result, 1 + below(3), rules);
+  rules.print = true;
+  auto add = [&](const char *name, const std::string &result) {
+    addMethod(plan, members, name, attributesOfHit, result, 1 + below(3), rules);
   };
-  std::vector<Variable> sampled = named(types.color, {"BSDFValue"}, true);
-  append(sampled, named(vec3, {"LightDirection"}, true));
-  append(sampled, named(types.floatType, {"PDF"}, true));
-  append(sampled, named(types.vector(types.floatType, 2), {"BSDFSeed"}));
-  add("sampleBSDF", sampled, "rt_LightDirection = toVector(h); rt_BSDFValue = toColor(h); rt_PDF = toUnit(h); ");
-  std::vector<Variable> evaluated = named(types.color, {"BSDFValue"}, true);
-  append(evaluated, named(vec3, {"LightDirection"}));
-  add("BSDF", evaluated, "rt_BSDFValue = toColor(h); ");
-  evaluated = named(types.floatType, {"PDF"}, true);
-  append(evaluated, named(vec3, {"LightDirection"}));
-  add("evaluatePDF", evaluated, "rt_PDF = toUnit(h); ");
+  add("sampleBSDF", "rt_LightDirection = toVector(h); rt_BSDFValue = toColor(h); rt_PDF = toUnit(h); ");
+  add("BSDF", "rt_BSDFValue = toColor(h); ");
+  add("evaluatePDF", "rt_PDF = toUnit(h); ");
   if (chance(50))
-    add("emission", named(types.color, {"EmissionColor"}, true), "rt_EmissionColor = toColor(h); ");
+    add("emission", "rt_EmissionColor = toColor(h); ");
 }
 
 void Generator::makeClasses() {
@@ -490,14 +490,7 @@ void Generator::makeClasses() {
   if (program.traces && likely(80))
     for (unsigned n = 1 + below(2); n-- > 0;)
       makePayload();
-  makeCamera();
-  makePrimitive(nullptr);
-  if (likely(30))
-    makePrimitive(plans.back().get());
-  if (chance(50))
-    makeLight();
-
-  std::vector<const ClassPlan *> textures;
+  Targets textures, all;
   if (likely(80)) {
     textures.push_back(makeTexture(nullptr, {}));
     if (likely(70))
@@ -505,16 +498,28 @@ void Generator::makeClasses() {
     if (likely(40))
       textures.push_back(makeTexture(nullptr, {textures[0]}));
   }
-  const ClassPlan *first = makeMaterial(nullptr, textures);
+  all = textures;
+  if (chance(50))
+    all.push_back(makeLight(textures));
+  const ClassPlan *primitive = makePrimitive(nullptr, all);
+  if (likely(30))
+    makePrimitive(primitive, {});
+  all.push_back(primitive);
+  Targets met = textures; // by materials, nearly always textures
+  for (const ClassPlan *other : someOf(all))
+    if (std::find(met.begin(), met.end(), other) == met.end())
+      met.push_back(other);
+  const ClassPlan *first = makeMaterial(nullptr, met);
   if (likely(60))
     makeMaterial(first, {});
   if (likely(50)) {
-    std::vector<const ClassPlan *> targets = textures;
-    targets.push_back(first);
-    makeMaterial(nullptr, targets);
+    met.push_back(first);
+    makeMaterial(nullptr, met);
   }
+  all.push_back(first);
+  makeCamera(all);
   if (likely(80))
-    makeMiss(textures);
+    makeMiss(all);
 }
 
 } // namespace rtsl::random

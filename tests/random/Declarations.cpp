@@ -83,8 +83,13 @@ void Generator::makeFreeFunction() {
       made.name = global("f");
   }
   context = Context();
+  context.reads = made.reads = someReads("");
+  context.rand = made.draws = chance(30);
   references.clear();
-  program.tree->children.push_back(function(made, made.name, constants));
+  std::vector<Variable> around = constants;
+  for (const Variable &variable : stateOf(made.reads, {}))
+    around.push_back(variable);
+  program.tree->children.push_back(function(made, made.name, around));
   functions.push_back(std::move(made));
 }
 

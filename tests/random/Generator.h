@@ -10,6 +10,8 @@
 #include "Program.h"
 #include "Vocabulary.h"
 
+#include "sema/ClassModel.h"
+
 #include <random>
 #include <set>
 
@@ -24,14 +26,20 @@ struct Variable {
 
 struct ClassPlan;
 
+/// What is in both.
+StateSet common(StateSet a, StateSet b);
+bool isIn(StateSet part, StateSet all);
+
 /// A function of the program's.
 struct Function {
   std::string name;
   Signature signature;
   unsigned work = 0;   // about how many operations a call runs
   unsigned traces = 0; // at most so many rays
-  bool remote = false; // may be called on another object: it reads no state of its ray
-  bool isVirtual = false;
+  bool remote = false; // may be called on another object
+  StateSet reads;      // at most this state
+  bool draws = false, looksUp = false; // perhaps: random numbers, textures
+  bool answers = false;                // may end `anyHit`
 };
 
 /// A value of class type: `refs[$]` where an index belongs.
@@ -54,8 +62,9 @@ struct ClassPlan {
 /// What may be done where code stands.
 struct Context {
   bool constantOnly = false;
-  bool ray = true; // is under way
+  StateSet reads; // what has a value
   bool rand = false, lookup = false, illuminance = false, print = false;
+  bool answers = false; // ignoreIntersection() and terminateRay() may stand here
   unsigned traces = 0;                    // rays that may still be sent
   const ClassPlan *self = nullptr;        // null: a free function
   const Type *result = nullptr;           // of `return`; null: void
@@ -159,6 +168,7 @@ private:
   NodePtr loop(unsigned depth);
   NodePtr switchStatement(unsigned depth);
   NodePtr jump();
+  NodePtr answer();
   NodePtr illuminance(unsigned depth);
   NodePtr payloadRay();
   NodePtr print();
@@ -174,31 +184,33 @@ private:
 
   // Classes (Classes.cpp)
   void makeClasses();
-  struct Shape {
-    bool simple = false;
-    bool overrides = false;
-  };
+  using Targets = std::vector<const ClassPlan *>; // of references
   ClassPlan *startClass(const char *stem, const std::string &root, const ClassPlan *base,
                         Node *&members);
   void addMembers(ClassPlan &plan, Node &members, unsigned count);
-  void addReferences(ClassPlan &plan, Node &members, const std::vector<const ClassPlan *> &targets);
+  void addReferences(ClassPlan &plan, Node &members, const Targets &targets);
   void addConstructor(ClassPlan &plan, Node &members);
-  void addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces);
+  void addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces, bool answers = false);
+  StateSet someReads(const std::string &root);
+  std::vector<Variable> stateOf(StateSet reads, StateSet writes);
   void overrideFunction(ClassPlan &plan, Node &members);
   void addMethod(const ClassPlan &plan, Node &members, const std::string &name,
-                 std::vector<Variable> state, const std::string &result, unsigned statementCount,
+                 std::vector<Variable> more, const std::string &result, unsigned statementCount,
                  Context rules, const std::string &parameters = "");
   void addPayloadMethod(const ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
                         std::vector<Variable> state, Context rules);
-  const ClassPlan *makeTexture(const ClassPlan *base, const std::vector<const ClassPlan *> &targets);
-  void makeCamera();
-  void makePrimitive(const ClassPlan *base);
-  void makeLight();
-  void makeMiss(const std::vector<const ClassPlan *> &textures);
+  const ClassPlan *makeTexture(const ClassPlan *base, const Targets &targets);
+  void makeCamera(const Targets &targets);
+  const ClassPlan *makePrimitive(const ClassPlan *base, const Targets &targets);
+  const ClassPlan *makeLight(const Targets &targets);
+  void makeMiss(const Targets &targets);
+  Targets someOf(const Targets &targets);
   const ClassPlan *makeMaterial(const ClassPlan *base,
-                                const std::vector<const ClassPlan *> &targets);
+                                const Targets &targets);
   void addBsdf(const ClassPlan &plan, Node &members);
   std::vector<Variable> around(const ClassPlan &plan);
+  std::vector<Variable> around(const ClassPlan &plan, const Function &function);
+  Context contextOf(const Function &function, const ClassPlan &plan) const;
 
   std::mt19937 random;
   Vocabulary &vocabulary;

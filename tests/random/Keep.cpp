@@ -66,6 +66,8 @@ public:
     options.colorComponents = program.colorComponents;
     options.trace = isSplit ? TraceMode::Split : TraceMode::Recurse;
     keep(kept, keeping, options);
+    // What keeping something writes, and nothing else does, must not be read.
+    options.undefined = kept.isEmpty() ? RTSL_FEATURE_UNDEFINED_NAN : RTSL_FEATURE_UNDEFINED_BYTES;
     std::shared_ptr<const runtime::Program> constructors;
     std::unique_ptr<World> made;
     Diagnostics unheard(sources);

@@ -70,9 +70,9 @@ Compile megakernel(unsigned optimization) {
 }
 
 Compile printed(bool checked, TraceMode trace) {
-  return [=](const typed::Module &module, const LinkRequest &, unsigned colorComponents, const PathOptions &options,
+  return [=](const typed::Module &module, const LinkRequest &request, unsigned colorComponents, const PathOptions &options,
                  Diagnostics &diagnostics) {
-    return compilePrinted(module, trace, checked, colorComponents, options.cpp, diagnostics);
+    return compilePrinted(module, trace, checked, request.features, colorComponents, options.cpp, diagnostics);
   };
 }
 
@@ -131,7 +131,6 @@ struct Checked {
       for (auto &[primitive, material] : World::surfaces(*program))
         if ((primitive.empty() || module->findClass(primitive)) && module->findClass(material))
           request.surfaces.emplace_back(primitive, material);
-    request.features = RTSL_FEATURE_PRINT;
     request.isSampled = true;
   }
   /// The errors, without the warnings, of which there may be many.
@@ -190,6 +189,7 @@ private:
   using Numbers = std::vector<std::size_t>; // of programs
   using Code = std::shared_ptr<const runtime::Program>;
 
+  std::uint32_t undefinedOn(const Path &path) const;
   void runReference(const std::vector<const Path *> &paths, const Numbers &all);
   void runPath(const Path &path, const Numbers &which);
   /// Null if the programs cannot be compiled together.
@@ -221,9 +221,18 @@ void Comparison::fail(const Numbers &which, Failure failure, const std::string &
     }
 }
 
+/// Nothing that a program does depends on what nobody has written: the first path has one pattern there, the others have
+/// another one, or what happens to be there.
+std::uint32_t Comparison::undefinedOn(const Path &path) const {
+  if (&path == &allPaths().front())
+    return RTSL_FEATURE_UNDEFINED_BYTES;
+  return programs.front()->seed / 100 % 3 == 2 ? 0 : RTSL_FEATURE_UNDEFINED_NAN;
+}
+
 Comparison::Code Comparison::compile(const Path &path, Checked &checked, const PathOptions &how) const {
   if (checked.diagnostics.hasErrors())
     return nullptr;
+  checked.request.features = RTSL_FEATURE_PRINT | undefinedOn(path);
   return path.compile(*checked.module, checked.request, programs.front()->colorComponents, how, checked.diagnostics);
 }
 

@@ -86,13 +86,14 @@ std::string firstError(const std::string &messages) {
 } // namespace
 
 std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &module, TraceMode trace,
-                                                       bool checkIndices, unsigned colorComponents,
+                                                       bool checkIndices, std::uint32_t features, unsigned colorComponents,
                                                        const CppOptions &cpp, Diagnostics &diagnostics) {
   CompileOptions options;
   options.colorComponents = colorComponents;
   options.checkIndices = checkIndices;
+  options.undefined = features & (RTSL_FEATURE_UNDEFINED_BYTES | RTSL_FEATURE_UNDEFINED_NAN);
   const std::optional<std::string> text =
-      emitCpp(module, "programs", /*lineDirectives=*/false, trace, RTSL_FEATURE_PRINT, options, diagnostics);
+      emitCpp(module, "programs", /*lineDirectives=*/false, trace, features, options, diagnostics);
   if (!text)
     return nullptr;
   if (cpp.compiler.empty())

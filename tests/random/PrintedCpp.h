@@ -14,10 +14,10 @@ struct CppOptions {
   std::string keep;                 // the file that is left of the last one that was compiled; empty: none is
 };
 
-/// Prints the module as one file of C++, has a compiler make a shared object of it and loads that. Null if it cannot be
+/// Prints the module with these RTSL_FEATURE_* as one file of C++, has a compiler make a shared object of it and loads that. Null if it cannot be
 /// printed, which is reported; an empty program if there is no compiler. Throws CompilerRefuses.
 std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &module, TraceMode trace,
-                                                       bool checkIndices, unsigned colorComponents,
+                                                       bool checkIndices, std::uint32_t features, unsigned colorComponents,
                                                        const CppOptions &cpp, Diagnostics &diagnostics);
 
 /// What a compiler says of C++ that it does not take.

@@ -87,6 +87,10 @@ NodePtr Generator::statement(unsigned depth) {
       if (context.print && context.weight < 4)
         return print();
       break;
+    case 16:
+      if (context.answers)
+        return answer();
+      break;
     default:
       break;
     }
@@ -247,6 +251,11 @@ NodePtr Generator::jump() {
     return makeNode(Role::Statement, "if ($) return $;", std::move(test),
                     converted(context.result, 2));
   return makeNode(Role::Statement, "if ($) { " + context.onReturn + "return; }", std::move(test));
+}
+
+/// Ends `anyHit` for some hits, from a function that it calls too.
+NodePtr Generator::answer() {
+  return makeNode(Role::Statement, chance(50) ? "if ($) ignoreIntersection();" : "if ($) terminateRay();", condition(2));
 }
 
 NodePtr Generator::illuminance(unsigned depth) {

@@ -227,14 +227,39 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
   }
 }
 
-/// One in three is not there for some rays.
+/// What of a hit the methods of a class read, and those of objects that it may refer to.
+std::uint32_t World::needsOf(const ClassInfo &info, std::set<const ClassInfo *> &seen) const {
+  if (!seen.insert(&info).second)
+    return 0;
+  std::uint32_t needs = info.needs;
+  for (const MemberInfo &member : info.members)
+    if (member.type.kind == ValueType::Kind::Reference)
+      for (const ClassInfo &other : code.classes)
+        if (derivesFrom(other, member.type.className))
+          needs |= needsOf(other, seen);
+  return needs;
+}
+
+void World::describeMaterial(RtslInstance &instance, const ClassInfo &material) const {
+  std::set<const ClassInfo *> seen;
+  instance.needs = code.needs & needsOf(material, seen);
+  instance.anyHit = material.anyHit;
+}
+
+/// One in three is not there for some rays. Its bounds are what the primitive says, and never used to cull it.
 void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
+  if (instance.primitive != 0 && code.slots.rt_Primitive_computeBounds) {
+    RtslState state{};
+    state.launch = &launch;
+    code.slots.rt_Primitive_computeBounds(&state, instance.primitive);
+    std::copy_n(state.BoundMin, 3, instance.boundMin);
+    std::copy_n(state.BoundMax, 3, instance.boundMax);
+  }
   const auto number = static_cast<std::uint32_t>(instances.size());
   instance.mask = number % 3 == 2 ? 0xaaaaaaaau : ~0u;
-  instance.needs = code.needs; // what single objects read, behind their materials too, is Scene.cpp's to find
   for (const Object &object : objects)
     if (object.reference == instance.material)
-      instance.anyHit = object.info->anyHit;
+      describeMaterial(instance, *code.find(object.info->name));
   instances.push_back(instance);
   for (std::uint32_t primitive = 0; primitive != primitives; ++primitive)
     items.push_back({number, primitive});
@@ -319,10 +344,9 @@ World::World(const runtime::Program &code, const Program &program)
 World::World(const runtime::Program &bound, const World &made)
     : code(bound), program(made.program), host{bound.slots}, instances(made.instances), mesh(made.mesh), launch(made.launch) {
   for (RtslInstance &instance : instances) {
-    instance.needs = bound.needs;
     for (const Object &object : made.objects)
       if (object.reference == instance.material)
-        instance.anyHit = bound.find(object.info->name)->anyHit;
+        describeMaterial(instance, *bound.find(object.info->name));
   }
   launch.instances = instances.data();
   launch.needs = bound.needs;

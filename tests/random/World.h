@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <set>
 #include <vector>
 
 namespace rtsl::random {
@@ -40,6 +41,8 @@ private:
   void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void addInstance(RtslInstance instance, std::uint32_t primitives);
+  void describeMaterial(RtslInstance &instance, const runtime::ClassInfo &material) const;
+  std::uint32_t needsOf(const runtime::ClassInfo &info, std::set<const runtime::ClassInfo *> &seen) const;
   RtslRef choose(const std::string &className, std::uint32_t key) const;
   bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
 
