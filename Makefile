@@ -6,13 +6,14 @@
 #   make bench    build and run the benchmarks
 #   make fuzz     feed mutated inputs to the front end for TIME seconds (TARGET=scene: to the reader of scenes)
 #   make mutations break the continuation passes, and see the tests notice
+#   make memory   render the examples under MemorySanitizer
 #   make numerics run the stiff and extreme cases in full, and renew their table in docs/numerics.md
 
 PRESET ?= release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 
-.PHONY: demo check build configure dependencies golden bench fuzz mutations numerics format install clean
+.PHONY: demo check build configure dependencies golden bench fuzz mutations memory numerics format install clean
 
 demo: build
 	$(BUILD)/bin/rtslc render examples/glass/scene.json -o $(BUILD)/glass.png
@@ -47,6 +48,9 @@ fuzz: dependencies
 
 mutations: build
 	tests/mutations/run $(BUILD)
+
+memory: build
+	tests/memory/run $(BUILD)
 
 numerics: build
 	tests/numerics/robustness/table $(BUILD)
