@@ -194,6 +194,7 @@ void addOptions(CLI::App &app, Options &options) {
              "Exit status: 0 fine, 1 the package, the device or a file is not as it must be, or no memory or disk,\n"
              "2 wrong arguments, 3 a fault of the program; 130 and 143: SIGINT (Ctrl-C) or SIGTERM stopped it.");
   app.callback([&options] {
+    tool::checkPictureName(options.output, options.format);
     if (options.json && options.output == "-")
       throw CLI::ValidationError("--json", "standard output is the picture; give a file to `-o`");
   });

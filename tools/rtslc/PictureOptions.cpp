@@ -39,4 +39,13 @@ void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFo
             "how the picture is written; as its name says if not given, and - as png");
 }
 
+void checkPictureName(const std::string &output, runtime::PictureFormat format) {
+  const std::size_t dot = output.find_last_of("./");
+  const bool hasEnding = dot != std::string::npos && output[dot] == '.';
+  const std::string ending = hasEnding ? CLI::detail::to_lower(output.substr(dot + 1)) : std::string();
+  if (format == runtime::PictureFormat::ByName && output != "-" && ending != "png" && ending != "exr")
+    throw CLI::ValidationError("--output", "a picture's name ends in .png or .exr, unless --format says what `" + output +
+                                               "` is to be");
+}
+
 } // namespace rtsl::tool

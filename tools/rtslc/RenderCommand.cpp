@@ -319,6 +319,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
     for (const auto &[name, isGiven] : {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
       if (isGiven && options->output == "-")
         throw CLI::ValidationError(name, "standard output is the picture; give a file to `-o`");
+    checkPictureName(options->output, options->format);
     action = [options] { return render(*options); };
   });
 }

@@ -48,7 +48,13 @@ scene::SceneDescription readScene(const std::string &file, const std::vector<std
 }
 
 void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {
+  const auto check = [](const std::string &text) {
+    const std::size_t equals = text.find('=');
+    const bool isOverride = equals != std::string::npos && equals != 0;
+    return isOverride ? std::string() : "write `path.to.key=value`, not `" + text + "`";
+  };
   command.add_option("--set", overrides, "change a value of the scene file, such as objects.3.mesh=bunny.obj")
+      ->check(CLI::Validator(check, ""))
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
 }
