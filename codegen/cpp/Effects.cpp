@@ -75,9 +75,14 @@ const Effects &EffectsOf::function(const typed::Function &named) {
     return found->second;
   known[&function]; // a method through a reference may lead back here
   Effects effects;
+  std::set<const void *> locals;
   auto addBody = [&](const typed::Function &definition) {
     if (definition.body)
       effects.add(statement(*definition.body));
+    for (const auto &parameter : definition.parameters)
+      locals.insert(parameter.get());
+    for (const auto &local : definition.locals)
+      locals.insert(local.get());
   };
   addBody(function);
   if (function.owner && !function.isConstructor)
@@ -86,19 +91,7 @@ const Effects &EffectsOf::function(const typed::Function &named) {
         for (const auto &method : other->functions)
           if (method->name == function.name && lowering::sameParameters(*method, function))
             addBody(*method);
-  // What is local to the function does not show.
-  std::set<const void *> locals;
-  auto addLocals = [&](const typed::Function &definition) {
-    for (const auto &parameter : definition.parameters)
-      locals.insert(parameter.get());
-    for (const auto &local : definition.locals)
-      locals.insert(local.get());
-  };
-  addLocals(function);
-  for (const auto &other : module.classes)
-    for (const auto &method : other->functions)
-      if (method->name == function.name)
-        addLocals(*method);
+  // What is local to them does not show.
   for (const void *local : locals) {
     effects.reads.erase(local);
     effects.writes.erase(local);

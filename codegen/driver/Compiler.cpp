@@ -258,7 +258,8 @@ void checkLiveState(const typed::Module &module, const CompileOptions &options, 
     return;
   for (const FunctionReport &function : runToStates(*ir, splitOptions(options)).functions)
     for (const TraceReport &trace : function.traces)
-      warnOfLiveState(trace, function.frame, options.largeLiveState, diagnostics);
+      if (!trace.isJoin)
+        warnOfLiveState(trace, function.frame, options.largeLiveState, diagnostics);
 }
 
 namespace {

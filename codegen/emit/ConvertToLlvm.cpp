@@ -3,9 +3,11 @@
 
 #include "codegen/emit/Patterns.h"
 #include "codegen/emit/RuntimeFunctions.h"
+#include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslDialect.h"
 #include "codegen/ir/RtslOps.h"
+#include "codegen/ir/Separate.h"
 #include "runtime/device/Abi.h"
 
 #include "mlir/Conversion/ArithToLLVM/ArithToLLVM.h"
@@ -76,9 +78,9 @@ void markWriters(mlir::ModuleOp module) {
   for (FuncOp function : module.getOps<FuncOp>())
     if (function->hasAttr("rtsl.constructor"))
       mark(function);
+  const mlir::SymbolTable symbols(module);
   while (!worklist.empty())
-    worklist.pop_back_val().walk(
-        [&](CallOp call) { mark(module.lookupSymbol<FuncOp>(call.getCallee())); });
+    worklist.pop_back_val().walk([&](CallOp call) { mark(symbols.lookup<FuncOp>(call.getCallee())); });
 }
 
 //===----------------------------------------------------------------------===//
@@ -204,13 +206,15 @@ void declareNullRecord(mlir::ModuleOp module) {
 void declareTables(mlir::ModuleOp module) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
   llvm::DenseMap<mlir::Attribute, mlir::StringAttr> symbols; // by words
+  mlir::SymbolTable taken(module);
+  llvm::StringMap<unsigned> last; // number behind a name
   module.walk([&](ir::TableOp table) {
     mlir::StringAttr &symbol = symbols[table.getWordsAttr()];
     if (!symbol) {
       const std::string wanted = "constant." + table.getName().str();
       std::string name = wanted;
-      for (unsigned number = 1; module.lookupSymbol(name); ++number)
-        name = wanted + "." + std::to_string(number);
+      while (taken.lookup(name))
+        name = wanted + "." + std::to_string(++last[wanted]);
       symbol = builder.getStringAttr(name);
       const auto count = static_cast<int64_t>(table.getWords().size());
       auto words = mlir::DenseIntElementsAttr::get(
@@ -219,8 +223,20 @@ void declareTables(mlir::ModuleOp module) {
                                            LLVM::LLVMArrayType::get(builder.getI32Type(), static_cast<unsigned>(count)),
                                            /*isConstant=*/true, LLVM::Linkage::Private, name, words, ir::memoryAlignment);
       global.setUnnamedAddr(LLVM::UnnamedAddr::Global);
+      taken.insert(global);
     }
     table->setAttr(tableSymbol, symbol);
+  });
+}
+
+/// While the classes can be found.
+void noteMemberOffsets(mlir::ModuleOp module) {
+  const ir::ClassTable classes(module);
+  mlir::Builder builder(module.getContext());
+  module.walk([&](ir::MemberOp op) {
+    llvm::StringRef className = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
+    const uint32_t offset = *classes.find(className, op.getMember())->offset;
+    op->setAttr(ir::offsetInRecord, builder.getI32IntegerAttr(static_cast<int32_t>(offset)));
   });
 }
 
@@ -233,12 +249,13 @@ LogicalResult convertOperations(mlir::ModuleOp module) {
       [](ir::PtrType type) -> mlir::Type { return LLVM::LLVMPointerType::get(type.getContext()); });
 
   mlir::RewritePatternSet patterns(context);
+  mlir::SymbolTableCollection symbols;
   addMemoryPatterns(converter, patterns);
   addRayPatterns(converter, patterns);
   addNumberPatterns(converter, patterns);
   mlir::arith::populateArithToLLVMConversionPatterns(converter, patterns);
   mlir::cf::populateControlFlowToLLVMConversionPatterns(converter, patterns);
-  mlir::populateFuncToLLVMConversionPatterns(converter, patterns);
+  mlir::populateFuncToLLVMConversionPatterns(converter, patterns, &symbols);
   mlir::populateMathToLLVMConversionPatterns(converter, patterns);
   mlir::populateVectorToLLVMConversionPatterns(converter, patterns);
   mlir::ub::populateUBToLLVMConversionPatterns(converter, patterns);
@@ -271,8 +288,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     declareRuntimeFunctions(module);
     declareNullRecord(module);
     declareTables(module);
-    // Members find their classes by name, so the declarations go last; members are converted by
-    // then or not at all.
+    noteMemberOffsets(module);
     llvm::SmallVector<ir::ClassOp> classes(module.getOps<ir::ClassOp>());
     if (mlir::failed(convertOperations(module)))
       return signalPassFailure();
@@ -285,6 +301,8 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
   /// What holds for every function: it throws nothing. Our own attributes have done their work.
   static void finish(LLVM::LLVMFuncOp function) {
     function.setNoUnwind(true);
+    if (function->hasAttr(ir::separateFunction))
+      function.setNoInline(true);
     llvm::SmallVector<mlir::StringAttr> ours;
     for (mlir::NamedAttribute attribute : function->getDiscardableAttrs())
       if (attribute.getName().strref().starts_with("rtsl."))

@@ -1,5 +1,6 @@
 //===- MemoryPatterns.cpp - memory and references to LLVM -----------------===//
 #include "codegen/emit/Patterns.h"
+#include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslOps.h"
 #include "runtime/device/Abi.h"
@@ -166,15 +167,14 @@ struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::MemberOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    llvm::StringRef className = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
-    std::optional<uint32_t> offset = ir::memberOffset(ir::findClass(op, className), op.getMember());
+    const int64_t offset = op->getAttrOfType<mlir::IntegerAttr>(ir::offsetInRecord).getInt();
     Location location = op.getLoc();
     Value field = launchAddress(rewriter, location, offsetof(RtslLaunch, records));
     Value records = LLVM::LoadOp::create(rewriter, location, field.getType(), field,
                                          alignof(void *), false, false, /*isInvariant=*/true);
     Value record = indexedAddress(rewriter, location, records,
                                   widen(rewriter, location, adaptor.getObject()), 1);
-    rewriter.replaceOp(op, offsetAddress(rewriter, location, record, *offset));
+    rewriter.replaceOp(op, offsetAddress(rewriter, location, record, static_cast<uint32_t>(offset)));
     return mlir::success();
   }
 };

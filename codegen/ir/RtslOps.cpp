@@ -89,11 +89,6 @@ Value createZero(mlir::OpBuilder &builder, mlir::Location location, mlir::Type t
   return mlir::arith::ConstantOp::create(builder, location, builder.getZeroAttr(type));
 }
 
-ClassOp findClass(mlir::Operation *from, llvm::StringRef name) {
-  auto module = from->getParentOfType<mlir::ModuleOp>();
-  return module ? module.lookupSymbol<ClassOp>(name) : ClassOp();
-}
-
 static mlir::Type pointee(Value address) {
   return llvm::cast<PtrType>(address.getType()).getPointee();
 }

@@ -35,7 +35,4 @@ namespace rtsl::ir {
 /// Zero of a value type: `arith.constant` or `rtsl.null_ref`.
 mlir::Value createZero(mlir::OpBuilder &builder, mlir::Location location, mlir::Type type);
 
-/// The class of that name in the module around `from`; null if it is not declared.
-ClassOp findClass(mlir::Operation *from, llvm::StringRef name);
-
 } // namespace rtsl::ir

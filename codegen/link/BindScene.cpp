@@ -7,6 +7,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/link/BindScene.h"
 
+#include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/BindMembers.h"
@@ -59,13 +60,12 @@ std::map<mlir::Operation *, Objects> objectsByClass(const mlir::SymbolTable &sym
 }
 
 /// The words of a member if they are the same in all objects; or else nothing.
-std::vector<std::int32_t> commonWords(const mlir::SymbolTable &symbols, ir::MemberDeclOp member,
+std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberDeclOp member,
                                       llvm::ArrayRef<Objects::value_type> objects) {
   std::vector<std::int32_t> common;
   for (const runtime::SceneFacts::Object *object : objects) {
-    const auto own = symbols.lookup<ir::ClassOp>(object->className);
     std::vector<std::int32_t> words(ir::sizeInBytes(member.getType()) / 4);
-    std::memcpy(words.data(), object->record + *ir::memberOffset(own, member.getSymName()), words.size() * 4);
+    std::memcpy(words.data(), object->record + *classes.find(object->className, member.getSymName())->offset, words.size() * 4);
     if (!common.empty() && common != words)
       return {};
     common = std::move(words);
@@ -165,6 +165,7 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
 
   mlir::Builder builder(ir.getContext());
   const mlir::SymbolTable symbols(ir);
+  const ir::ClassTable classes(ir);
   const Readers readers = findReaders(ir);
   const std::map<mlir::Operation *, Objects> byClass = objectsByClass(symbols, scene);
   for (auto record : ir.getOps<ir::ClassOp>()) {
@@ -174,12 +175,12 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
     for (auto member : record.getBody().getOps<ir::MemberDeclOp>()) {
       if (member.isScratch())
         continue;
-      std::vector<std::int32_t> words = commonWords(symbols, member, objects->second);
+      std::vector<std::int32_t> words = commonWords(classes, member, objects->second);
       if (findings)
         findings->push_back(describe(record, member, objects->second.size(), words, readers));
       if (request.without.count(
               {Item::Parameters, (record.getSymName() + "." + member.getSymName()).str()}))
-        words = commonWords(symbols, member, llvm::ArrayRef(objects->second).take_front());
+        words = commonWords(classes, member, llvm::ArrayRef(objects->second).take_front());
       if (!words.empty() && !keep.has(Item::Parameters))
         member->setAttr(codegen::boundWords, builder.getDenseI32ArrayAttr(words));
     }

@@ -23,7 +23,8 @@ void declareSlots(mlir::ModuleOp ir) {
     op.setOffset(place->second);
   });
   linking::numberRayTypes(ir);
-  linking::replaceSlots(ir, [](const linking::SlotCall &, mlir::func::FuncOp declaration) { declaration.setPrivate(); });
+  mlir::SymbolTable symbols(ir);
+  linking::replaceSlots(ir, symbols, [](const linking::SlotCall &, mlir::func::FuncOp declaration) { declaration.setPrivate(); });
 }
 
 } // namespace rtsl

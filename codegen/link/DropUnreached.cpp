@@ -8,6 +8,7 @@
 #include "codegen/link/Steps.h"
 
 #include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/StringSet.h"
 
 #include <algorithm>
 #include <set>
@@ -57,6 +58,8 @@ private:
 
   /// The methods of this name that classes below `root` have.
   void addMethods(llvm::StringRef root, const std::string &method, const Cause &cause) {
+    if (!added.insert((root + " " + method).str()).second)
+      return; // a function keeps its first cause
     for (const LinkedClass &linked : context.classes)
       if (linked.isUsed && linked.info->root == root)
         add(findMethod(context, linked, method), cause);
@@ -92,12 +95,12 @@ private:
 
   void look(FuncOp function) {
     const std::string name = shownName(function);
+    const Reader reader = readerOf(context.symbols, function);
     function.walk([&](mlir::Operation *op) {
       const auto by = [&](const char *does) { return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())}; };
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
         const bool isDispatch = function.getSymName().starts_with(dispatchPrefix); // stands for those that call it
-        add(mlir::ModuleOp(context.ir).lookupSymbol<FuncOp>(call.getCallee()),
-            isDispatch ? reached.lookup(function) : by("called by"));
+        add(context.function(call.getCallee()), isDispatch ? reached.lookup(function) : by("called by"));
       } else if (auto slot = llvm::dyn_cast<ir::CallMethodOp>(op)) { // not resolved yet
         const llvm::StringRef base =
             llvm::cast<ir::RefType>(slot.getObject().getType()).getClassName();
@@ -117,7 +120,7 @@ private:
       } else if (llvm::isa<ir::IlluminanceOp>(op)) {
         addMethods("rt_Light", "illumination", by("for `illuminance` in"));
       }
-      if (const std::uint32_t needs = needsOf(function, op))
+      if (const std::uint32_t needs = needsOf(reader, op))
         addComputations(needs, by(llvm::isa<ir::StateOp>(op) ? "read by" : "for rays of"));
     });
   }
@@ -135,6 +138,7 @@ private:
   llvm::MapVector<mlir::Operation *, Cause> reached;
   std::size_t next = 0, rendering = 0;
   std::set<std::string> slots; // that are not resolved, and were followed
+  llvm::StringSet<> added; // roots and methods
 };
 
 /// "closestHit.Radiance" begins for a ray; "lookup" does not.
@@ -176,7 +180,7 @@ void dropUnreached(LinkContext &context) {
   Reach reach(context);
   const llvm::MapVector<mlir::Operation *, Cause> reached = reach.run();
   for (auto &[name, finding] : context.dispatches)
-    if (auto function = context.ir.lookupSymbol<FuncOp>(name);
+    if (FuncOp function = context.function(name);
         function && reach.isReachedByRendering(function))
       context.findings.push_back(finding);
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
@@ -211,7 +215,7 @@ void dropUnreached(LinkContext &context) {
     }
     const bool mayBeCalledByKept = !context.request.keep.isEmpty() && !method;
     if (found == reached.end() && !mayBeCalledByKept)
-      function.erase();
+      context.symbols.erase(function);
   }
 }
 

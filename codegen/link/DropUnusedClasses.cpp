@@ -8,16 +8,20 @@
 
 #include "frontend/Expansion.h"
 
-#include <algorithm>
+#include "llvm/ADT/StringSet.h"
+
 #include <set>
 
 namespace rtsl::linking {
 
 namespace {
 
-bool isWanted(const LinkRequest &request, const std::string &name) {
-  return request.classes.empty() ||
-         std::find(request.classes.begin(), request.classes.end(), name) != request.classes.end();
+/// The classes of which there are objects; empty: all.
+llvm::StringSet<> wantedOf(const LinkRequest &request) {
+  llvm::StringSet<> names;
+  for (const std::string &name : request.classes)
+    names.insert(name);
+  return names;
 }
 
 /// The classes of which something runs a method, beside the making of their objects.
@@ -53,13 +57,14 @@ Finding describe(const LinkContext &context, const LinkedClass &linked, bool run
 } // namespace
 
 void dropUnusedClasses(LinkContext &context) {
-  mlir::SymbolTable symbols(context.ir);
+  const llvm::StringSet<> wanted = wantedOf(context.request);
+  const auto isWanted = [&](llvm::StringRef name) { return wanted.empty() || wanted.contains(name); };
   const bool isKept = context.request.keep.has(Item::Classes);
   for (const auto &info : context.module.classes) {
     LinkedClass linked;
     linked.info = info.get();
-    linked.hasObjects = isWanted(context.request, info->name);
-    linked.record = symbols.lookup<ir::ClassOp>(info->name);
+    linked.hasObjects = isWanted(info->name);
+    linked.record = context.symbols.lookup<ir::ClassOp>(info->name);
     linked.id = static_cast<std::uint32_t>(context.classes.size()) + 1;
     if (linked.record && (linked.hasObjects || isKept))
       context.classes.push_back(linked);
@@ -69,8 +74,8 @@ void dropUnusedClasses(LinkContext &context) {
 
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<mlir::func::FuncOp>()))
     if (auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
-      if (!isWanted(context.request, name.str()) && !isKept)
-        function.erase();
+      if (!isWanted(name.getValue()) && !isKept)
+        context.symbols.erase(function);
 }
 
 void noteClasses(LinkContext &context) {

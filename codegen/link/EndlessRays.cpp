@@ -23,7 +23,7 @@ struct Untraced {
 class AlwaysTraces {
 public:
   /// For rays with this payload; null: rays for a color.
-  AlwaysTraces(mlir::ModuleOp module, mlir::Type payload) : module(module), payload(payload) {}
+  AlwaysTraces(const mlir::SymbolTable &symbols, mlir::Type payload) : symbols(symbols), payload(payload) {}
 
   bool operator()(FuncOp function) {
     const auto [known, isNew] = answers.try_emplace(function, false); // false while it is being asked
@@ -40,7 +40,7 @@ private:
     if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op))
       return payload && llvm::cast<ir::PtrType>(trace.getPayload().getType()).getPointee() == payload;
     if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
-      if (auto callee = module.lookupSymbol<FuncOp>(call.getCallee()))
+      if (auto callee = symbols.lookup<FuncOp>(call.getCallee()))
         return (*this)(callee);
     return false;
   }
@@ -103,13 +103,13 @@ private:
     return true;
   }
 
-  mlir::ModuleOp module;
+  const mlir::SymbolTable &symbols;
   mlir::Type payload;
   llvm::DenseMap<mlir::Operation *, bool> answers;
 };
 
 void check(LinkContext &context, const std::string &method, mlir::Type payload, const std::string &what) {
-  AlwaysTraces alwaysTraces(context.ir, payload);
+  AlwaysTraces alwaysTraces(context.symbols, payload);
   std::string names;
   SourceRange range;
   for (const LinkedClass &linked : context.classes) {

@@ -32,6 +32,7 @@ void makeFeatures(LinkContext &context) {
   const mlir::Location location = builder.getUnknownLoc();
   auto function = mlir::func::FuncOp::create(builder, location, "rtsl_features",
                                              builder.getFunctionType({}, {builder.getI32Type()}));
+  context.symbols.insert(function);
   builder.setInsertionPointToEnd(function.addEntryBlock());
   const mlir::Value features = mlir::arith::ConstantOp::create(
       builder, location, builder.getI32IntegerAttr(static_cast<std::int32_t>(context.request.features)));

@@ -15,8 +15,7 @@ std::string intersectSymbol(const std::string &className) { return className + "
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program, Findings *findings) {
   Findings unasked;
-  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked,
-                               {}, {},     {}};
+  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked};
   linking::dropUnusedClasses(context);
   linking::findUsedObjects(context);
   linking::resolveSlots(context);
@@ -31,10 +30,11 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::makeEntries(context);
   assert(mlir::succeeded(mlir::verify(ir)) && "linking broke the IR");
 
-  for (const linking::LinkedClass &linked : context.classes) {
+  const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context);
+  for (const auto &[index, linked] : llvm::enumerate(context.classes)) {
     runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
     info.id = linked.id;
-    info.needs = linking::findNeeds(context, linked);
+    info.needs = needs[index];
     if (info.root == "rt_Material")
       info.anyHit = linking::anyHitTypes(context, linked);
     program.classes.push_back(std::move(info));
@@ -42,7 +42,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.engine = request.engine;
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
-  program.needs = (request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : linking::findNeeds(ir)) &
+  program.needs = (request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : linking::findNeeds(context)) &
                   ~linking::needsLeftOut(context);
   program.keepsMeshes = request.keep.has(Item::Meshes);
   return true;

@@ -48,6 +48,7 @@ void makeSlot(LinkContext &context, const Slot &slot) {
   auto function = mlir::func::FuncOp::create(builder, builder.getUnknownLoc(),
                                              std::string("rtsl_") + slot.base + "_" + slot.method,
                                              builder.getFunctionType({object}, {}));
+  context.symbols.insert(function);
   buildDispatch(context, function, classes, slot.method);
   exportFunction(function);
 }
@@ -76,6 +77,7 @@ void makeConstruct(LinkContext &context, LinkedClass &linked) {
   auto function = mlir::func::FuncOp::create(
       builder, location, constructSymbol(linked.info->name),
       builder.getFunctionType({target.getArgumentTypes().front(), ir::PtrType::get(linked.parameters)}, {}));
+  context.symbols.insert(function);
   function->setAttr("rtsl.constructor", mlir::UnitAttr::get(mlirContext));
 
   mlir::Block *entry = function.addEntryBlock();
@@ -111,7 +113,7 @@ void makeEntries(LinkContext &context) {
     if (linked.info->root == "rt_Primitive") // whoever knows the class need not ask the slot
       if (mlir::func::FuncOp intersect = findMethod(context, linked, "intersect"))
         exportFunction(intersect);
-    if (auto initialize = context.ir.lookupSymbol<mlir::func::FuncOp>(initializeSymbol(linked.info->name)))
+    if (auto initialize = context.function(initializeSymbol(linked.info->name)))
       exportFunction(initialize);
   }
 }

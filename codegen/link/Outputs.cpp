@@ -50,18 +50,22 @@ constexpr Computed computed[] = {
 };
 
 /// Notes who reads it first, or that nobody does.
-Finding findReader(mlir::ModuleOp ir, const Computed &one) {
+Finding findReader(const LinkContext &context, const Computed &one) {
   Finding finding = {Item::Outputs, one.subject, false, "nobody reads it", {}};
-  ir.walk([&](mlir::Operation *op) {
-    const auto function = op->getParentOfType<FuncOp>();
-    if (!function || !(needsOf(function, op) & one.need))
-      return mlir::WalkResult::advance();
-    finding.isNeeded = true;
-    finding.reason =
-        (llvm::isa<ir::StateOp>(op) ? "read by `" : "where rays begin to see that leave the hit: `") + shownName(function) + "`";
-    finding.place = ir::placeOf(op->getLoc());
-    return mlir::WalkResult::interrupt();
-  });
+  for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>()) {
+    const Reader reader = readerOf(context.symbols, function);
+    const auto read = function.walk([&](mlir::Operation *op) {
+      if (!(needsOf(reader, op) & one.need))
+        return mlir::WalkResult::advance();
+      finding.isNeeded = true;
+      finding.reason =
+          (llvm::isa<ir::StateOp>(op) ? "read by `" : "where rays begin to see that leave the hit: `") + shownName(function) + "`";
+      finding.place = ir::placeOf(op->getLoc());
+      return mlir::WalkResult::interrupt();
+    });
+    if (read.wasInterrupted())
+      break;
+  }
   return finding;
 }
 
@@ -77,7 +81,7 @@ std::uint32_t needsLeftOut(const LinkContext &context) {
 
 void dropUnreadOutputs(LinkContext &context) {
   for (const Computed &one : computed)
-    context.findings.push_back(findReader(context.ir, one));
+    context.findings.push_back(findReader(context, one));
 
   llvm::MapVector<mlir::StringAttr, Output> outputs;
   context.ir.walk([&](ir::StateOp state) {

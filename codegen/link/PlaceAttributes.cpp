@@ -10,17 +10,25 @@
 #include "codegen/link/Steps.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace rtsl::linking {
 
 namespace {
 
-const typed::Class *findClass(const LinkContext &context, const std::string &name) {
+using ClassesByName = std::map<std::string, const typed::Class *>;
+
+ClassesByName classesOf(const LinkContext &context) {
+  ClassesByName classes;
   for (const LinkedClass &linked : context.classes)
-    if (linked.info->name == name)
-      return linked.info;
-  return nullptr;
+    classes[linked.info->name] = linked.info;
+  return classes;
+}
+
+const typed::Class *findClass(const ClassesByName &classes, const std::string &name) {
+  const auto found = classes.find(name);
+  return found == classes.end() ? nullptr : found->second;
 }
 
 const typed::Member *findScratch(const typed::Class &info, const std::string &name) {
@@ -31,8 +39,9 @@ const typed::Member *findScratch(const typed::Class &info, const std::string &na
 }
 
 /// Every scratch member that the material declares must be one of the primitive's, of the same type.
-void matchSurface(LinkContext &context, const std::string &primitiveName, const typed::Class &material) {
-  const typed::Class *primitive = findClass(context, primitiveName);
+void matchSurface(LinkContext &context, const ClassesByName &classes, const std::string &primitiveName,
+                  const typed::Class &material) {
+  const typed::Class *primitive = findClass(classes, primitiveName);
   const std::string shownName = primitive ? primitiveName : "mesh";
   for (const typed::Member *read : allMembers(material)) {
     if (read->access != ast::Access::Scratch)
@@ -138,10 +147,11 @@ void eraseStores(Attribute &attribute) {
 } // namespace
 
 void placeAttributes(LinkContext &context) {
+  const ClassesByName classes = classesOf(context);
   std::set<std::pair<std::string, std::string>> seen;
   for (const auto &[primitive, material] : context.request.surfaces)
-    if (const typed::Class *info = findClass(context, material); info && seen.insert({primitive, material}).second)
-      matchSurface(context, primitive, *info);
+    if (const typed::Class *info = findClass(classes, material); info && seen.insert({primitive, material}).second)
+      matchSurface(context, classes, primitive, *info);
 
   std::vector<Attribute> attributes = collect(context.ir);
   std::vector<const Attribute *> placed;

@@ -36,13 +36,13 @@ std::vector<FuncOp> programsFor(const LinkContext &context, const RayType &type,
 }
 
 /// Functions and all that they call.
-std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, mlir::ModuleOp ir) {
+std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, const LinkContext &context) {
   llvm::SetVector<mlir::Operation *> reached;
   for (FuncOp root : roots)
     reached.insert(root);
   for (std::size_t i = 0; i < reached.size(); ++i)
     reached[i]->walk([&](mlir::func::CallOp call) {
-      if (auto callee = ir.lookupSymbol<FuncOp>(call.getCallee()))
+      if (auto callee = context.function(call.getCallee()))
         reached.insert(callee);
     });
   std::vector<FuncOp> functions;
@@ -167,7 +167,7 @@ bool writesShowNoOrder(const LinkContext &context, const std::vector<FuncOp> &an
 }
 
 bool orderShows(const LinkContext &context, const std::vector<FuncOp> &anyHits, bool hasClosestHit) {
-  const Asking asking = askingOf(reachedFrom(anyHits, context.ir));
+  const Asking asking = askingOf(reachedFrom(anyHits, context));
   if (asking.draws || (asking.terminates && hasClosestHit))
     return true;
   if (!asking.writes)
@@ -206,7 +206,9 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
   const mlir::Type object = ir::RefType::get(builder.getContext(), base);
   auto create = [&](const std::string &name) {
     builder.setInsertionPointToEnd(context.ir.getBody());
-    return FuncOp::create(builder, location, name, builder.getFunctionType({object}, {}));
+    auto function = FuncOp::create(builder, location, name, builder.getFunctionType({object}, {}));
+    context.symbols.insert(function);
+    return function;
   };
   std::vector<const LinkedClass *> classes;
   for (const LinkedClass &linked : context.classes)

@@ -6,6 +6,7 @@
 // which switches over the classes below rt_Texture that the scene uses; with one class it is a direct call.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Separate.h"
 #include "codegen/link/Steps.h"
 #include "codegen/lower/Analysis.h"
 
@@ -59,8 +60,7 @@ Finding describeDispatch(const std::string &subject,
 }
 
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method) {
-  mlir::ModuleOp ir = context.ir; // lookups are not const in MLIR
-  return ir.lookupSymbol<mlir::func::FuncOp>(linked.info->name + "." + method);
+  return context.function(linked.info->name + "." + method);
 }
 
 void makeEmpty(mlir::func::FuncOp function) {
@@ -89,6 +89,7 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
     buildCall(builder, *targets.front().first, targets.front().second, function);
     return;
   }
+  ir::keepSeparateIfMany(llvm::to_vector(llvm::make_second_range(targets)));
   if (!targets.empty()) {
     const mlir::Value id = ir::ClassIdOp::create(builder, function.getLoc(), entry->getArgument(0));
     llvm::SmallVector<llvm::SmallVector<std::int32_t>> values;
@@ -103,7 +104,8 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
   buildZeroReturn(builder, function);
 }
 
-void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define) {
+void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
+                  llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define) {
   llvm::SmallVector<ir::CallMethodOp> calls;
   ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
 
@@ -113,12 +115,13 @@ void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, m
     const std::string name = dispatchPrefix.str() + slot.base + "." + slot.method;
     llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
     llvm::append_range(arguments, call.getArguments());
-    auto function = ir.lookupSymbol<mlir::func::FuncOp>(name);
+    auto function = symbols.lookup<mlir::func::FuncOp>(name);
     if (!function) {
       mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(ir.getBody());
       function = mlir::func::FuncOp::create(
           builder, call.getLoc(), name,
           builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
+      symbols.insert(function);
       define(slot, function);
     }
     mlir::OpBuilder builder(call);
@@ -131,7 +134,7 @@ void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, m
 void resolveSlots(LinkContext &context) {
   const bool mayBeNone =
       lowering::mayReferToNothing(context.module); // then nothing happens, and zero is returned
-  replaceSlots(context.ir, [&](const SlotCall &slot, mlir::func::FuncOp function) {
+  replaceSlots(context.ir, context.symbols, [&](const SlotCall &slot, mlir::func::FuncOp function) {
     std::vector<const LinkedClass *> classes;
     for (const LinkedClass &linked : context.classes) {
       if (!derivesFrom(*linked.info, slot.base))

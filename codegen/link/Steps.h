@@ -6,6 +6,7 @@
 #include "codegen/link/Items.h"
 #include "codegen/link/Link.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/IR/SymbolTable.h"
 
 #include <cstdint>
 #include <map>
@@ -39,10 +40,14 @@ struct LinkContext {
   const LinkRequest &request;
   Diagnostics &diagnostics;
   Findings &findings; // what the steps leave out, and what not
-  std::vector<LinkedClass> classes;
+  std::vector<LinkedClass> classes = {};
   std::map<std::string, Finding>
-      dispatches; // of the functions of this name, to be noted if something runs them
-  std::vector<RayType> rayTypes;
+      dispatches = {}; // of the functions of this name, to be noted if something runs them
+  std::vector<RayType> rayTypes = {};
+  /// Of `ir`. Who adds or erases a function does it through this, so that every name is found at once.
+  mlir::SymbolTable symbols = mlir::SymbolTable(ir);
+
+  mlir::func::FuncOp function(llvm::StringRef name) const { return symbols.lookup<mlir::func::FuncOp>(name); }
 
   /// LinkRequest::without.
   bool isWithout(Item item, const std::string &subject) const {
@@ -94,7 +99,8 @@ struct SlotCall {
 
 /// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`. `define` is given each such function once,
 /// without a body.
-void replaceSlots(mlir::ModuleOp ir, llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define);
+void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
+                  llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define);
 
 /// Whether objects of the class may stand where a reference to `base` (an rt_ class or one of the
 /// user's) is expected.
@@ -127,12 +133,18 @@ std::vector<runtime::PrintFormat> numberPrints(mlir::ModuleOp ir);
 /// Adds the entries of runtime/device/Slots.def and those that make objects; everything else becomes private.
 void makeEntries(LinkContext &context);
 
+/// A function, and the rt_ class below which its class is: empty for a function of no class.
+struct Reader {
+  mlir::func::FuncOp function;
+  llvm::StringRef root;
+};
+Reader readerOf(const mlir::SymbolTable &symbols, mlir::func::FuncOp function);
 /// RTSL_NEEDS_*: what an operation of this function reads.
-std::uint32_t needsOf(mlir::func::FuncOp function, mlir::Operation *op);
+std::uint32_t needsOf(const Reader &reader, mlir::Operation *op);
 /// What some function of the program reads, so that the runtime computes nothing else.
-std::uint32_t findNeeds(mlir::ModuleOp ir);
-/// ClassInfo::needs.
-std::uint32_t findNeeds(const LinkContext &context, const LinkedClass &linked);
+std::uint32_t findNeeds(const LinkContext &context);
+/// ClassInfo::needs of each of the context's classes.
+std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context);
 
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);

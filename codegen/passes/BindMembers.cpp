@@ -1,6 +1,7 @@
 //===- BindMembers.cpp - members that are the same in all objects ---------===//
 #include "codegen/passes/BindMembers.h"
 
+#include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslOps.h"
 
@@ -10,6 +11,7 @@
 #include "mlir/Pass/Pass.h"
 
 #include <cstring>
+#include <memory>
 #include <optional>
 
 namespace rtsl::codegen {
@@ -54,12 +56,12 @@ mlir::TypedAttr valueOf(mlir::Type type, Words words) {
 }
 
 /// What is known to lie at `address`, from there to the end of the member; nothing if that is open.
-std::optional<Words> wordsAt(Value address) {
+std::optional<Words> wordsAt(const ir::ClassTable &classes, Value address) {
   mlir::Operation *op = address.getDefiningOp();
   if (auto member = llvm::dyn_cast_or_null<ir::MemberOp>(op)) {
     llvm::StringRef className =
         llvm::cast<ir::RefType>(member.getObject().getType()).getClassName();
-    ir::MemberDeclOp declaration = ir::findClass(op, className).findMember(member.getMember());
+    ir::MemberDeclOp declaration = classes.find(className, member.getMember())->declaration;
     auto words = declaration->getAttrOfType<mlir::DenseI32ArrayAttr>(boundWords);
     return words ? std::optional(words.asArrayRef()) : std::nullopt;
   }
@@ -77,7 +79,7 @@ std::optional<Words> wordsAt(Value address) {
   } else {
     return std::nullopt;
   }
-  std::optional<Words> base = wordsAt(op->getOperand(0));
+  std::optional<Words> base = wordsAt(classes, op->getOperand(0));
   mlir::Type type = llvm::cast<ir::PtrType>(address.getType()).getPointee();
   // An index out of range stands in code that never runs.
   if (!base || bytes / 4 + ir::sizeInBytes(type) / 4 > base->size())
@@ -94,11 +96,15 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
 
   void runOnOperation() override {
     auto module = getOperation()->getParentOfType<mlir::ModuleOp>();
+    if (module != described) {
+      classes = std::make_shared<ir::ClassTable>(module);
+      described = module;
+    }
     auto lights = module->getAttrOfType<mlir::IntegerAttr>(boundLightCount);
     auto ambient = module->getAttrOfType<mlir::DenseF32ArrayAttr>(boundAmbient);
     getOperation().walk([&](mlir::Operation *op) {
       if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
-        if (std::optional<Words> words = wordsAt(load.getAddress()))
+        if (std::optional<Words> words = wordsAt(*classes, load.getAddress()))
           replace(op, valueOf(load.getType(), *words));
       } else if (llvm::isa<ir::LightCountOp>(op)) {
         replace(op, lights);
@@ -108,12 +114,12 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
                         ambient.asArrayRef()));
       }
     });
-    getOperation().walk([](ir::MemberOp member) { placeInTable(member); });
+    getOperation().walk([&](ir::MemberOp member) { placeInTable(member); });
   }
 
   /// What is read at an index that only the running shader knows.
-  static void placeInTable(ir::MemberOp member) {
-    const std::optional<Words> words = wordsAt(member);
+  void placeInTable(ir::MemberOp member) {
+    const std::optional<Words> words = wordsAt(*classes, member);
     const mlir::Type type = llvm::cast<ir::PtrType>(member.getType()).getPointee();
     if (!words || !ir::isNumbers(type) || words->size() * sizeof(int32_t) > largestTable)
       return;
@@ -131,6 +137,9 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
     op->replaceAllUsesWith(mlir::arith::ConstantOp::create(builder, op->getLoc(), value));
     op->erase();
   }
+
+  mlir::ModuleOp described; // by `classes`: one module in all functions of a run
+  std::shared_ptr<const ir::ClassTable> classes;
 };
 
 } // namespace

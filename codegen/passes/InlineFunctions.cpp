@@ -2,6 +2,7 @@
 #include "codegen/passes/InlineFunctions.h"
 
 #include "codegen/ir/RtslOps.h"
+#include "codegen/ir/Separate.h"
 
 #include "mlir/Analysis/CallGraph.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -47,7 +48,8 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
   bool isWorthIt(const mlir::Inliner::ResolvedCall &resolved) {
     auto callee = resolved.targetNode->getCallableRegion()->getParentOfType<mlir::func::FuncOp>();
     auto caller = resolved.call->getParentOfType<mlir::func::FuncOp>();
-    if (!callee || !caller || callee->hasAttr("rtsl.noinline"))
+    if (!callee || !caller || callee->hasAttr("rtsl.noinline") ||
+        callee->hasAttr(ir::separateFunction))
       return false;
     if (callee->hasAttr("rtsl.constructor") && !caller->hasAttr("rtsl.constructor"))
       return false;

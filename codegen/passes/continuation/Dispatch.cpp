@@ -9,6 +9,7 @@
 //   func @rtsl_rays_sent(%kind: i32) -> i32                     what bounds the stack (RayGraph.h)
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Separate.h"
 #include "codegen/passes/continuation/RayGraph.h"
 #include "codegen/passes/continuation/Steps.h"
 #include "runtime/device/Abi.h"
@@ -382,6 +383,7 @@ mlir::LogicalResult Dispatcher::run() {
       if (mlir::failed(number(next)))
         return mlir::failure();
   }
+  ir::keepSeparateIfMany(states);
   makeRunState();
   makeFrameSize();
   makeConstant("rtsl_calls", hasCalls);

@@ -28,7 +28,7 @@ llvm::SmallPtrSet<mlir::Block *, 16> blocksThatMayEnd(FuncOp function) {
   bool changed = true;
   while (changed) {
     changed = false;
-    for (mlir::Block &block : function.getBody()) {
+    for (mlir::Block &block : llvm::reverse(function.getBody())) { // successors mostly stand behind
       if (mayEnd.contains(&block) || traces(block))
         continue;
       if (block.getNumSuccessors() == 0 || llvm::any_of(block.getSuccessors(), [&](mlir::Block *next) {

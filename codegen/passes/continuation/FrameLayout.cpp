@@ -71,6 +71,7 @@ private:
   std::uint32_t base = 0; // bytes: behind what a call hands over
   llvm::SmallVector<ir::SuspendOp> suspends;
   std::vector<Item> items;
+  std::vector<unsigned> objects; // among them
   std::vector<SavedBool> bools;
   llvm::StringMap<unsigned> itemOf, boolOf;
   std::uint32_t size = 0;
@@ -96,6 +97,7 @@ void Layouter::collect() {
   // The same object stands in several blocks, once it is recomputed; its name is unique.
   for (auto [number, lifetime] : llvm::enumerate(lifetimesOfObjects(function, suspends))) {
     itemOf[("object " + lifetime.object.getName()).str()] = items.size();
+    objects.push_back(items.size());
     mlir::Type type = llvm::cast<ir::PtrType>(lifetime.object.getType()).getPointee();
     items.push_back({lifetime.object.getName().str(), ir::sizeInBytes(type), lifetime.traces, true,
                      lifetime.objects, static_cast<unsigned>(number)});
@@ -126,12 +128,22 @@ void Layouter::placeBools() {
 std::uint32_t Layouter::place(const std::vector<unsigned> &order,
                               std::vector<std::uint32_t> &offsets) const {
   std::uint32_t end = base;
-  std::vector<unsigned> placed;
+  std::vector<std::vector<unsigned>> placedAt(suspends.size()); // by trace
+  std::vector<unsigned> placedObjects;
+  std::vector<unsigned> seenFor(items.size(), ~0u); // an item that is saved at several of the same traces
   for (unsigned index : order) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> taken; // from, to
-    for (unsigned other : placed)
-      if (interfere(items[index], items[other]))
-        taken.push_back({offsets[other], offsets[other] + items[other].size});
+    const auto look = [&](const std::vector<unsigned> &placed) {
+      for (unsigned other : placed)
+        if (seenFor[other] != index && interfere(items[index], items[other])) {
+          seenFor[other] = index;
+          taken.push_back({offsets[other], offsets[other] + items[other].size});
+        }
+    };
+    if (items[index].isObject)
+      look(placedObjects);
+    for (unsigned trace : items[index].traces.set_bits())
+      look(placedAt[trace]);
     std::sort(taken.begin(), taken.end());
     std::uint32_t offset = base;
     for (auto [from, to] : taken) {
@@ -141,7 +153,10 @@ std::uint32_t Layouter::place(const std::vector<unsigned> &order,
     }
     offsets[index] = offset;
     end = std::max(end, offset + items[index].size);
-    placed.push_back(index);
+    for (unsigned trace : items[index].traces.set_bits())
+      placedAt[trace].push_back(index);
+    if (items[index].isObject)
+      placedObjects.push_back(index);
   }
   return end;
 }
@@ -194,8 +209,9 @@ FrameLayout Layouter::describe() const {
 
 /// Does an object take some of these words, at other times?
 bool Layouter::isShared(std::uint32_t offset, std::uint32_t size) const {
-  return llvm::any_of(items, [&](const Item &item) {
-    return item.isObject && item.offset < offset + size && offset < item.offset + item.size;
+  return llvm::any_of(objects, [&](unsigned index) {
+    const Item &item = items[index];
+    return item.offset < offset + size && offset < item.offset + item.size;
   });
 }
 

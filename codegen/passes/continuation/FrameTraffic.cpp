@@ -75,7 +75,7 @@ void FrameTraffic::add(FuncOp state) {
     at.isStored = true;
   };
   state.walk([&](mlir::Operation *op) {
-    if (auto next = llvm::dyn_cast<ir::NextOp>(op); next && next.getTransition() == ir::Transition::Trace)
+    if (auto next = llvm::dyn_cast<ir::NextOp>(op); next && next.getState())
       storesBefore(op, *next.getState());
     else if (auto call = llvm::dyn_cast<ir::EnterOp>(op); call && call.getResume())
       storesBefore(op, *call.getResume());

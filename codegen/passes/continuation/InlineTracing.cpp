@@ -17,59 +17,128 @@
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/SetVector.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace rtsl::continuation {
 
 using mlir::func::CallOp;
 
-llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
-  llvm::SmallSetVector<mlir::Operation *, 16> tracing;
-  mlir::SymbolTable symbols(module);
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (FuncOp function : module.getOps<FuncOp>()) {
-      if (tracing.contains(function))
+namespace {
+
+/// The functions of a module and who calls whom.
+struct Calls {
+  explicit Calls(mlir::ModuleOp module);
+
+  struct Function {
+    FuncOp op;
+    bool traces = false; // itself
+    llvm::SmallVector<unsigned> callees, callers;
+  };
+  std::vector<Function> functions; // in the order of the module
+  /// Of each function: does it trace, or call one that does?
+  std::vector<bool> tracing() const;
+  /// Of each function: do its calls lead back to it?
+  std::vector<bool> inCycles() const;
+};
+
+Calls::Calls(mlir::ModuleOp module) {
+  llvm::DenseMap<mlir::StringAttr, unsigned> numbers;
+  for (FuncOp function : module.getOps<FuncOp>()) {
+    numbers[function.getSymNameAttr()] = functions.size();
+    functions.push_back({function, false, {}, {}});
+  }
+  for (auto [number, function] : llvm::enumerate(functions))
+    function.op.walk([&, number = number, &function = function](mlir::Operation *op) {
+      function.traces |= llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp, ir::SpawnOp, ir::SpawnPayloadOp>(op);
+      if (auto call = llvm::dyn_cast<CallOp>(op)) {
+        function.traces |= isFramed(call);
+        if (auto callee = numbers.find(call.getCalleeAttr().getAttr()); callee != numbers.end()) {
+          function.callees.push_back(callee->second);
+          functions[callee->second].callers.push_back(number);
+        }
+      }
+    });
+}
+
+std::vector<bool> Calls::tracing() const {
+  std::vector<bool> found(functions.size());
+  llvm::SmallVector<unsigned> pending;
+  const auto add = [&](unsigned number) {
+    if (!found[number])
+      pending.push_back(number);
+    found[number] = true;
+  };
+  for (unsigned number = 0; number != functions.size(); ++number)
+    if (functions[number].traces)
+      add(number);
+  while (!pending.empty())
+    for (unsigned caller : functions[pending.pop_back_val()].callers)
+      add(caller);
+  return found;
+}
+
+/// Strongly connected components (Tarjan, "Depth-first search and linear graph algorithms", 1972), without recursion.
+std::vector<bool> Calls::inCycles() const {
+  constexpr unsigned none = ~0u;
+  std::vector<bool> found(functions.size()), isOpen(functions.size());
+  std::vector<unsigned> index(functions.size(), none), low(functions.size()), next(functions.size());
+  llvm::SmallVector<unsigned> path, open;
+  unsigned count = 0;
+  for (unsigned start = 0; start != functions.size(); ++start) {
+    if (index[start] != none)
+      continue;
+    path.push_back(start);
+    while (!path.empty()) {
+      const unsigned at = path.back();
+      if (index[at] == none) {
+        index[at] = low[at] = count++;
+        open.push_back(at);
+        isOpen[at] = true;
+      }
+      if (next[at] != functions[at].callees.size()) {
+        const unsigned callee = functions[at].callees[next[at]++];
+        if (index[callee] == none)
+          path.push_back(callee);
+        else if (isOpen[callee])
+          low[at] = std::min(low[at], index[callee]);
+        found[at] = found[at] || callee == at;
         continue;
-      bool traces = function
-                        .walk([&](mlir::Operation *op) {
-                          auto call = llvm::dyn_cast<CallOp>(op);
-                          bool here =
-                              llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp, ir::SpawnOp,
-                                        ir::SpawnPayloadOp>(op) ||
-                              (call && (isFramed(call) || tracing.contains(symbols.lookup(call.getCallee()))));
-                          return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
-                        })
-                        .wasInterrupted();
-      if (traces)
-        changed |= tracing.insert(function);
+      }
+      path.pop_back();
+      if (!path.empty())
+        low[path.back()] = std::min(low[path.back()], low[at]);
+      if (low[at] != index[at])
+        continue;
+      const bool isAlone = open.back() == at;
+      unsigned member;
+      do {
+        member = open.pop_back_val();
+        isOpen[member] = false;
+        found[member] = found[member] || !isAlone;
+      } while (member != at);
     }
   }
-  llvm::SmallVector<FuncOp> inOrder;
-  for (FuncOp function : module.getOps<FuncOp>())
-    if (tracing.contains(function))
-      inOrder.push_back(function);
-  return inOrder;
+  return found;
+}
+
+} // namespace
+
+llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
+  const Calls calls(module);
+  llvm::SmallVector<FuncOp> found;
+  for (auto [function, traces] : llvm::zip(calls.functions, calls.tracing()))
+    if (traces)
+      found.push_back(function.op);
+  return found;
 }
 
 llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module) {
-  const llvm::SmallVector<FuncOp> tracing = tracingFunctions(module);
-  llvm::DenseMap<mlir::StringAttr, FuncOp> byName;
-  for (FuncOp function : tracing)
-    byName[function.getSymNameAttr()] = function;
-  llvm::DenseMap<mlir::Operation *, llvm::SmallSetVector<mlir::Operation *, 8>> callees;
-  for (FuncOp function : tracing)
-    function.walk([&, function = function](CallOp call) {
-      if (FuncOp callee = byName.lookup(call.getCalleeAttr().getAttr()))
-        callees[function].insert(callee);
-    });
+  const Calls calls(module);
   llvm::SmallVector<FuncOp> found;
-  for (FuncOp function : tracing) {
-    llvm::SmallSetVector<mlir::Operation *, 16> reached(callees[function].begin(), callees[function].end());
-    for (std::size_t i = 0; i < reached.size(); ++i)
-      reached.insert(callees[reached[i]].begin(), callees[reached[i]].end());
-    if (reached.contains(function))
-      found.push_back(function);
-  }
+  for (auto [function, traces, isInCycle] : llvm::zip(calls.functions, calls.tracing(), calls.inCycles()))
+    if (traces && isInCycle) // what calls what traces does so itself
+      found.push_back(function.op);
   return found;
 }
 
@@ -92,7 +161,9 @@ private:
     return callee && tracing.contains(callee) ? callee : FuncOp();
   }
   bool isTail(CallOp call, FuncOp callee);
-  void inlineCall(CallOp call, FuncOp callee);
+  /// The calls that the copy has.
+  llvm::SmallVector<CallOp> inlineCall(CallOp call, FuncOp callee);
+  void eraseUncalled();
 
   mlir::ModuleOp module;
   mlir::SymbolTable symbols;
@@ -124,7 +195,7 @@ bool Inliner::isTail(CallOp call, FuncOp callee) {
 }
 
 /// ^a: x; call @f(%v); y      ==>      ^a: x; br ^f(%v)   ^f(%p): ...; br ^b(%results)   ^b(...): y
-void Inliner::inlineCall(CallOp call, FuncOp callee) {
+llvm::SmallVector<CallOp> Inliner::inlineCall(CallOp call, FuncOp callee) {
   mlir::Block *before = call->getBlock();
   mlir::Block *after = before->splitBlock(call);
   mlir::OpBuilder builder(call.getContext());
@@ -170,6 +241,10 @@ void Inliner::inlineCall(CallOp call, FuncOp callee) {
                 [](mlir::Value value) { return !llvm::isa<ir::PtrType>(value.getType()); });
   mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()), passed);
   call.erase();
+  llvm::SmallVector<CallOp> calls;
+  for (mlir::Operation *clone : clones)
+    clone->walk([&](CallOp copied) { calls.push_back(copied); });
+  return calls;
 }
 
 /// One that is marked already may call itself.
@@ -183,27 +258,25 @@ void Inliner::visit(FuncOp function) {
   if (state != Visit::New)
     return;
   state = Visit::Open;
-  while (true) {
-    CallOp found;
-    FuncOp callee;
-    function.walk([&](CallOp call) {
-      callee = tracingCallee(call);
-      if (!callee || call->hasAttr("rtsl.tail") || isFramed(call))
-        return mlir::WalkResult::advance();
-      found = call;
-      return mlir::WalkResult::interrupt();
-    });
-    if (!found)
-      break;
+  llvm::SmallVector<CallOp> pending; // the first in the end
+  const auto add = [&](llvm::ArrayRef<CallOp> calls) { pending.append(calls.rbegin(), calls.rend()); };
+  llvm::SmallVector<CallOp> calls;
+  function.walk([&](CallOp call) { calls.push_back(call); });
+  add(calls);
+  while (!pending.empty()) {
+    CallOp call = pending.pop_back_val();
+    FuncOp callee = tracingCallee(call);
+    if (!callee || call->hasAttr("rtsl.tail") || isFramed(call))
+      continue;
     visit(callee);
     auto mark = mlir::UnitAttr::get(module.getContext());
-    if (visits[callee] == Visit::Done && isTail(found, callee)) {
-      found->setAttr("rtsl.tail", mark);
+    if (visits[callee] == Visit::Done && isTail(call, callee)) {
+      call->setAttr("rtsl.tail", mark);
     } else if (wantsFrame(callee)) {
       callee->setAttr("rtsl.framed", mark);
-      found->setAttr("rtsl.framed", mark);
+      call->setAttr("rtsl.framed", mark);
     } else {
-      inlineCall(found, callee);
+      add(inlineCall(call, callee));
     }
   }
   visits[function] = Visit::Done;
@@ -219,19 +292,37 @@ void Inliner::run() {
     for (mlir::Operation *function : tracing)
       if (isFramed(function) == framed)
         visit(llvm::cast<FuncOp>(function));
-  // What was only called from where it is now inlined has done its work.
-  llvm::SmallVector<mlir::Operation *> callersFirst(tracing.begin(), tracing.end());
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (mlir::Operation *&op : callersFirst) {
-      if (!op || !llvm::cast<FuncOp>(op).isPrivate() ||
-          !mlir::SymbolTable::symbolKnownUseEmpty(op, module))
-        continue;
-      op->erase();
-      op = nullptr;
-      changed = true;
-    }
+  eraseUncalled();
+}
+
+/// What was only called from where it is now inlined has done its work.
+void Inliner::eraseUncalled() {
+  llvm::DenseMap<mlir::StringAttr, unsigned> uses;
+  const auto forEachUse = [](mlir::Region &region, llvm::function_ref<void(mlir::StringAttr)> act) {
+    if (auto all = mlir::SymbolTable::getSymbolUses(&region))
+      for (const mlir::SymbolTable::SymbolUse &use : *all)
+        act(use.getSymbolRef().getRootReference());
+  };
+  forEachUse(module.getBodyRegion(), [&](mlir::StringAttr name) { ++uses[name]; });
+  llvm::SmallVector<FuncOp> idle;
+  const auto addIfIdle = [&](mlir::Operation *op) {
+    auto function = llvm::dyn_cast_or_null<FuncOp>(op);
+    if (function && tracing.contains(function) && function.isPrivate() && uses.lookup(function.getSymNameAttr()) == 0)
+      idle.push_back(function);
+  };
+  for (mlir::Operation *function : tracing)
+    addIfIdle(function);
+  while (!idle.empty()) {
+    FuncOp function = idle.pop_back_val();
+    llvm::SmallVector<mlir::StringAttr> called;
+    forEachUse(function.getBody(), [&](mlir::StringAttr name) {
+      if (--uses[name] == 0)
+        called.push_back(name);
+    });
+    tracing.remove(function);
+    symbols.erase(function);
+    for (mlir::StringAttr name : called)
+      addIfIdle(symbols.lookup(name));
   }
 }
 

@@ -82,7 +82,7 @@ static mlir::OpBuilder suspendAt(mlir::Operation *trace, mlir::Value origin,
   return builder;
 }
 
-void insertSuspends(FuncOp function) {
+void insertSuspends(FuncOp function, const WriteSummary &summary) {
   if (function.isExternal())
     return;
   mlir::IRRewriter rewriter(function.getContext());
@@ -94,7 +94,6 @@ void insertSuspends(FuncOp function) {
         (llvm::isa<mlir::func::CallOp>(op) && isFramed(op)))
       traces.push_back(op);
   });
-  std::optional<WriteSummary> summary;
   for (mlir::Operation *op : traces) {
     if (auto trace = llvm::dyn_cast<ir::TraceOp>(op)) {
       mlir::OpBuilder builder = suspendAt(trace, trace.getOrigin(), trace.getDirection());
@@ -104,9 +103,7 @@ void insertSuspends(FuncOp function) {
       continue;
     }
     if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
-      if (!summary)
-        summary.emplace(function->getParentOfType<mlir::ModuleOp>());
-      suspendAtCall(call, suspendAt(call, {}, {}), *summary);
+      suspendAtCall(call, suspendAt(call, {}, {}), summary);
       continue;
     }
     auto trace = llvm::cast<ir::TracePayloadOp>(op);
@@ -119,6 +116,10 @@ void insertSuspends(FuncOp function) {
                                trace.getRayTypeAttr(), trace.getHowAttr(), /*last=*/nullptr);
     trace.erase();
   }
+}
+
+void insertSuspends(FuncOp function) {
+  insertSuspends(function, WriteSummary(function->getParentOfType<mlir::ModuleOp>()));
 }
 
 } // namespace rtsl::continuation

@@ -62,6 +62,22 @@ void Liveness::compute(const HandedOn *handedOn) {
   }
 }
 
+void Liveness::extend(ir::SuspendOp suspend, const llvm::BitVector &handedOn) {
+  llvm::SmallVector<std::pair<mlir::Block *, llvm::BitVector>> worklist = {{suspend->getBlock(), handedOn}};
+  while (!worklist.empty()) {
+    auto [block, added] = worklist.pop_back_val();
+    BlockSets &sets = blocks[block];
+    added.reset(sets.defined);
+    added.reset(sets.in);
+    if (added.none())
+      continue;
+    sets.in |= added;
+    for (mlir::Block *predecessor : block->getPredecessors())
+      if (blocks.count(predecessor) && !llvm::isa<ir::SuspendOp>(predecessor->back()))
+        worklist.push_back({predecessor, added});
+  }
+}
+
 llvm::SmallVector<mlir::Value> Liveness::valuesOf(const llvm::BitVector &set) const {
   llvm::SmallVector<mlir::Value> values;
   for (unsigned index : set.set_bits())

@@ -5,6 +5,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/Passes.h"
 
+#include "codegen/passes/continuation/CutJoins.h"
 #include "codegen/passes/continuation/Names.h"
 #include "codegen/passes/continuation/Split.h"
 
@@ -50,6 +51,25 @@ RTSL_FUNCTION_STEP(LastTracesPass, "rtsl-last-traces",
                      endAtLastTraces(function);
                      return mlir::success();
                    })
+struct CutJoinsPass : FunctionStep<CutJoinsPass> {
+  MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(CutJoinsPass)
+  static constexpr llvm::StringLiteral argument = "rtsl-cut-joins";
+  static constexpr llvm::StringLiteral description = "gives code that many states would copy a state of its own";
+  CutJoinsPass() = default;
+  CutJoinsPass(const CutJoinsPass &other) : FunctionStep(other) {}
+  Option<unsigned> free{*this, "free", llvm::cl::desc("copies of operations that are always fine"), llvm::cl::init(4000)};
+  Option<unsigned> copies{*this, "copies", llvm::cl::desc("so many times the function's operations are fine"), llvm::cl::init(4)};
+  Option<unsigned> shortest{*this, "shortest", llvm::cl::desc("operations between two cuts, at least"), llvm::cl::init(16)};
+  mlir::LogicalResult step(FuncOp function) {
+    JoinOptions options;
+    options.free = free;
+    options.copies = copies;
+    options.shortest = shortest;
+    cutJoins(function, options);
+    return mlir::success();
+  }
+};
+
 RTSL_FUNCTION_STEP(FrameObjectsPass, "rtsl-frame-objects",
                    "moves variables that outlive a trace to the frame", {
                      moveVariablesToFrame(function);
@@ -187,6 +207,7 @@ void registerContinuationPasses() {
   mlir::PassRegistration<InlineTracingPass>();
   mlir::PassRegistration<InsertSuspendsPass>();
   mlir::PassRegistration<LastTracesPass>();
+  mlir::PassRegistration<CutJoinsPass>();
   mlir::PassRegistration<FrameObjectsPass>();
   mlir::PassRegistration<TrimVectorsPass>();
   mlir::PassRegistration<RematerialisePass>();

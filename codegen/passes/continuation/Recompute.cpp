@@ -12,10 +12,12 @@ static constexpr llvm::StringLiteral fixedState[] = {
     "LaunchIndex",   "LaunchSize",     "Time",          "Depth",        "ObjectToWorld",
     "WorldToObject", "PrimitiveIndex", "InstanceIndex", "ExceptionCode"};
 
-void StateWrites::add(const StateWrites &other) {
+bool StateWrites::add(const StateWrites &other) {
+  bool isNew = other.any && !any;
   any |= other.any;
   for (const auto &entry : other.names)
-    names.insert(entry.getKey());
+    isNew |= names.insert(entry.getKey()).second;
+  return isNew;
 }
 
 /// Under this name, which no state variable has, goes what the ray carries.
@@ -47,51 +49,62 @@ static StateWrites writesThrough(mlir::Value address) {
   return writes;
 }
 
+static bool isLight(FuncOp function) {
+  auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  return (method && method.getValue() == "illumination") || function.getSymName() == "rtsl_rt_Light_illumination";
+}
+
 WriteSummary::WriteSummary(mlir::ModuleOp module) {
   for (llvm::StringRef name : {"LightDirection", "LightDistance", "LightColor"})
     illumination.names.insert(name);
   bool hasLights = false;
-  llvm::SmallVector<FuncOp> bodies;
   for (FuncOp function : module.getOps<FuncOp>()) {
+    StateWrites &writes = functions[function.getSymNameAttr()];
     if (!function.isExternal()) {
-      functions[function.getSymNameAttr()] = {};
-      bodies.push_back(function);
+      hasLights |= isLight(function);
       continue;
     }
-    StateWrites &writes = functions[function.getSymNameAttr()];
     const auto known = function->getAttrOfType<mlir::ArrayAttr>("rtsl.writes"); // OpenCalls.cpp
     writes.any = !known;
     if (known)
       for (auto name : known.getAsRange<mlir::StringAttr>())
         writes.names.insert(name.getValue());
   }
-  auto isLight = [](FuncOp function) {
-    auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
-    return (method && method.getValue() == "illumination") ||
-           function.getSymName() == "rtsl_rt_Light_illumination";
-  };
-  // Calls go round in circles through references, so until nothing changes.
-  auto size = [](const StateWrites &writes) {
-    return writes.names.size() + (writes.any ? 1000 : 0);
-  };
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (FuncOp function : bodies) {
-      StateWrites &writes = functions[function.getSymNameAttr()];
-      unsigned before = size(writes);
-      StateWrites found;
-      function.walk([&](mlir::Operation *op) { found.add(of(op)); });
-      writes.add(found);
-      if (isLight(function)) {
-        hasLights = true;
-        illumination.add(writes);
-      }
-      changed |= size(writes) != before;
-    }
-  }
+  propagate(module);
   if (!hasLights) // not linked yet: any light may come
     illumination.any = true;
+}
+
+/// From what functions write themselves to their callers. Cycles of calls through references end where nothing is new.
+void WriteSummary::propagate(mlir::ModuleOp module) {
+  // Lights are as if called where a point is lit: under this name, which no function has.
+  const auto lights = mlir::StringAttr::get(module.getContext(), "");
+  llvm::DenseMap<mlir::StringAttr, llvm::SmallVector<mlir::StringAttr, 2>> callers;
+  llvm::SmallVector<mlir::StringAttr> changed;
+  for (FuncOp function : module.getOps<FuncOp>()) {
+    const mlir::StringAttr name = function.getSymNameAttr();
+    changed.push_back(name);
+    if (function.isExternal())
+      continue;
+    if (isLight(function))
+      callers[name].push_back(lights);
+    StateWrites &writes = functions[name];
+    function.walk([&](mlir::Operation *op) {
+      if (llvm::isa<ir::IlluminateOp>(op))
+        callers[lights].push_back(name);
+      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op); call && functions.contains(call.getCalleeAttr().getAttr()))
+        callers[call.getCalleeAttr().getAttr()].push_back(name);
+      else
+        writes.add(of(op));
+    });
+  }
+  while (!changed.empty()) {
+    const mlir::StringAttr name = changed.pop_back_val();
+    const StateWrites &writes = name == lights ? illumination : functions[name];
+    for (mlir::StringAttr caller : callers.lookup(name))
+      if ((caller == lights ? illumination : functions[caller]).add(writes))
+        changed.push_back(caller);
+  }
 }
 
 StateWrites WriteSummary::of(mlir::Operation *op) const {
@@ -143,6 +156,14 @@ bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendO
     StateWrites found = summary.of(op);
     return found.names.contains(state) || (found.any && !fixed);
   };
+  if (auto [anywhere, isFirst] = written.try_emplace(state, false); isFirst)
+    anywhere->second = function
+                           .walk([&](mlir::Operation *op) {
+                             return writes(op) ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+                           })
+                           .wasInterrupted();
+  if (!written.lookup(state))
+    return unchanged[{load, suspend}] = true;
   llvm::SmallPtrSet<mlir::Block *, 16> seen;
   llvm::SmallVector<mlir::Operation *> ends = {suspend};
   while (!ends.empty()) {

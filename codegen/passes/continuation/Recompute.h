@@ -13,6 +13,7 @@
 #include "codegen/passes/continuation/Steps.h"
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/StringMap.h"
 #include "llvm/ADT/StringSet.h"
 
 namespace rtsl::continuation {
@@ -23,7 +24,8 @@ struct StateWrites {
   llvm::StringSet<> names;
 
   bool mayWrite(llvm::StringRef name) const { return any || names.contains(name); }
-  void add(const StateWrites &other);
+  /// True if there was anything new.
+  bool add(const StateWrites &other);
 };
 
 /// Which state variables the functions of a module may write, calls included.
@@ -35,9 +37,16 @@ public:
   StateWrites ofFunction(FuncOp function) const { return functions.lookup(function.getSymNameAttr()); }
 
 private:
+  void propagate(mlir::ModuleOp module);
+
   llvm::DenseMap<mlir::StringAttr, StateWrites> functions;
   StateWrites illumination; // what lights write when a point is lit
 };
+
+/// As those of Steps.h, where the summary is known already: it takes a walk over the module.
+void insertSuspends(FuncOp function, const WriteSummary &summary);
+mlir::FailureOr<llvm::SmallVector<SuspendPlan>> planContinuations(FuncOp function, const RematerialiseOptions &options,
+                                                                 const WriteSummary &summary);
 
 class Recompute {
 public:
@@ -54,6 +63,7 @@ private:
   const WriteSummary &summary;
   llvm::DenseMap<std::pair<mlir::Operation *, mlir::Operation *>, bool> unchanged;
   llvm::DenseMap<mlir::Operation *, bool> free; // of effects; asked for again at each trace
+  llvm::StringMap<bool> written;                // by the function anywhere
 };
 
 } // namespace rtsl::continuation

@@ -52,9 +52,8 @@ namespace {
 
 class Planner {
 public:
-  Planner(FuncOp function, const RematerialiseOptions &options)
-      : function(function), options(options), liveness(function),
-        summary(function->getParentOfType<mlir::ModuleOp>()), recompute(function, summary),
+  Planner(FuncOp function, const RematerialiseOptions &options, const WriteSummary &summary)
+      : function(function), options(options), liveness(function), recompute(function, summary),
         dominance(function), loops(dominance.getDomTree(&function.getBody())),
         object(objectOf(function)), operandNumbers(liveness.values().size()),
         costs(liveness.values().size(), -1) {}
@@ -82,7 +81,6 @@ private:
   FuncOp function;
   RematerialiseOptions options;
   Liveness liveness;
-  WriteSummary summary;
   Recompute recompute;
   mlir::DominanceInfo dominance;
   mlir::CFGLoopInfo loops;
@@ -233,10 +231,15 @@ mlir::LogicalResult Planner::decideAll(Decisions &decisions) {
       needed |= decisions[i].needed;
       if (needed == decisions[i].needed)
         continue;
-      changed = isStale = true;
+      changed = true;
       decisions[i].needed = needed;
+      BitVector lost = decisions[i].saved;
       if (mlir::failed(decide(i, decisions[i])))
         return mlir::failure();
+      lost.reset(decisions[i].saved);
+      isStale = lost.any();
+      if (!isStale)
+        liveness.extend(suspends[i], decisions[i].saved);
     }
   }
   // And here they only shrink: on the way some plans may have wanted what the last ones do not.
@@ -331,10 +334,15 @@ mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
 } // namespace
 
 mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
-planContinuations(FuncOp function, const RematerialiseOptions &options) {
+planContinuations(FuncOp function, const RematerialiseOptions &options, const WriteSummary &summary) {
   if (suspendsOf(function).empty())
     return llvm::SmallVector<SuspendPlan>();
-  return Planner(function, options).run();
+  return Planner(function, options, summary).run();
+}
+
+mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
+planContinuations(FuncOp function, const RematerialiseOptions &options) {
+  return planContinuations(function, options, WriteSummary(function->getParentOfType<mlir::ModuleOp>()));
 }
 
 void rematerialise(FuncOp function, llvm::ArrayRef<SuspendPlan> plans) {
@@ -353,8 +361,9 @@ void rematerialise(FuncOp function, llvm::ArrayRef<SuspendPlan> plans) {
       redefinitions[value][resume] = again;
     }
   }
+  const BlockOrder order(function.getBody());
   for (auto &[value, ofValue] : redefinitions)
-    repairSsa(value, ofValue);
+    repairSsa(value, ofValue, order);
 }
 
 } // namespace rtsl::continuation

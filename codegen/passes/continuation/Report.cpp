@@ -116,7 +116,9 @@ std::string toText(const SplitReport &report) {
           << ", the last: its ray takes the place of this one, so recursion runs as a loop\n";
     for (const TraceReport &trace : function.traces) {
       const std::string place = trace.place.text();
-      out << (trace.callee.empty() ? "  trace" : "  call of " + trace.callee)
+      out << (trace.isJoin            ? "  join"
+              : trace.callee.empty() ? "  trace"
+                                     : "  call of " + trace.callee)
           << (place.empty() ? "" : " at " + place) << ", resumes at " << trace.resumesAt << "\n";
       writeTrace(out, trace);
       if (trace.onlyScalesAndAdds)
@@ -219,6 +221,8 @@ std::string toJson(const SplitReport &report) {
             for (const TraceReport &trace : function.traces)
               json.object([&] {
                 json.attribute("location", trace.place.text());
+                if (trace.isJoin)
+                  json.attribute("join", true);
                 if (!trace.callee.empty())
                   json.attribute("callee", trace.callee);
                 json.attribute("resumesAt", trace.resumesAt);

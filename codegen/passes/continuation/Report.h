@@ -62,6 +62,8 @@ struct TraceReport {
   std::uint32_t rematerialisedBytes = 0;   // of these, had they been saved
   std::vector<StepReport> steps;           // in the order of the optimisations
   ExtraReport extra, plainly;              // as it is, and if all that is live were saved
+  /// No ray is sent: code that many states reach begins here (CutJoins.h).
+  bool isJoin = false;
   /// Nothing follows but sums and products of what came back: recursion keeps what these need.
   bool onlyScalesAndAdds = false;
 };

@@ -41,8 +41,9 @@ mlir::LogicalResult saveLive(FuncOp function) {
     suspend.setNamesAttr(mlir::ArrayAttr::get(function.getContext(), namesHere));
     suspend.getSavedMutable().assign(values);
   }
+  const BlockOrder order(function.getBody());
   for (auto &[value, ofValue] : redefinitions)
-    repairSsa(value, ofValue);
+    repairSsa(value, ofValue, order);
   return mlir::success();
 }
 

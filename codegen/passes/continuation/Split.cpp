@@ -4,8 +4,10 @@
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/continuation/CostTable.h"
+#include "codegen/passes/continuation/CutJoins.h"
 #include "codegen/passes/continuation/FrameTraffic.h"
 #include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/Recompute.h"
 
 #include "mlir/IR/Verifier.h"
 #include "llvm/ADT/StringSet.h"
@@ -44,8 +46,8 @@ std::int64_t costOf(const TraceTraffic &traffic) {
 class FunctionSplitter {
 public:
   FunctionSplitter(FuncOp function, const SplitOptions &options, const codegen::Simplify &simplify,
-                   FunctionReport &report)
-      : function(function), options(options), simplify(simplify), report(report) {}
+                   const WriteSummary &summary, FunctionReport &report)
+      : function(function), options(options), simplify(simplify), summary(summary), report(report) {}
 
   mlir::LogicalResult run();
 
@@ -62,6 +64,7 @@ private:
   FuncOp function;
   const SplitOptions &options;
   const codegen::Simplify &simplify;
+  const WriteSummary &summary;
   FunctionReport &report;
   UniqueNames plainNames;
 };
@@ -83,7 +86,8 @@ void FunctionSplitter::listTraces() {
   for (ir::SuspendOp suspend : suspendsOf(function)) {
     TraceReport trace;
     trace.place = ir::placeOf(suspend.getLoc());
-    trace.onlyScalesAndAdds = onlyScalesAndAdds(suspend);
+    trace.isJoin = suspend->hasAttr(joinMark);
+    trace.onlyScalesAndAdds = !trace.isJoin && onlyScalesAndAdds(suspend);
     if (auto call = llvm::dyn_cast_or_null<ir::EnterOp>(suspend->getPrevNode()))
       trace.callee = call.getCallee().str();
     trace.resumesAt = report.name + ".state" + std::to_string(report.traces.size() + 1);
@@ -96,7 +100,7 @@ void FunctionSplitter::listTraces() {
 mlir::LogicalResult FunctionSplitter::reportPlainLiveness(const char *step) {
   RematerialiseOptions plain;
   plain.onlyAddresses = true;
-  auto plans = planContinuations(function, plain);
+  auto plans = planContinuations(function, plain, summary);
   if (mlir::failed(plans))
     return mlir::failure();
   for (auto [plan, trace] : llvm::zip(*plans, report.traces)) {
@@ -113,7 +117,7 @@ mlir::LogicalResult FunctionSplitter::reportPlainLiveness(const char *step) {
 mlir::LogicalResult FunctionSplitter::planAndRematerialise() {
   RematerialiseOptions how;
   how.onlyAddresses = !options.rematerialise;
-  auto plans = planContinuations(function, how);
+  auto plans = planContinuations(function, how, summary);
   if (mlir::failed(plans))
     return mlir::failure();
   UniqueNames names;
@@ -216,9 +220,12 @@ mlir::LogicalResult FunctionSplitter::run() {
   report.endings = endingsOf(function);
 
   decide(function);
-  insertSuspends(function);
+  insertSuspends(function, summary);
   for (mlir::Location last : endAtLastTraces(function))
     report.lastTraces.push_back(ir::placeOf(last));
+  // A program that is printed for people has no states but those that its traces make.
+  if (!function->getParentOfType<mlir::ModuleOp>()->hasAttr("rtsl.source"))
+    cutJoins(function);
   moveVariablesToFrame(function);
   if (function->getParentOfType<mlir::ModuleOp>()->hasAttr("rtsl.source"))
     removeIdleClears(function);
@@ -308,22 +315,24 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
   if (options.trim)
     report.trimmed = trimPayloads(module);
   llvm::SmallVector<FuncOp> functions = tracingFunctions(module);
+  llvm::SmallPtrSet<mlir::Operation *, 16> listed(functions.begin(), functions.end());
   for (llvm::StringRef name : machineEntries())
     if (auto entry = module.lookupSymbol<FuncOp>(name);
-        entry && !entry.isExternal() && !isEmpty(entry) && !llvm::is_contained(functions, entry))
+        entry && !entry.isExternal() && !isEmpty(entry) && listed.insert(entry).second)
       functions.push_back(entry);
   for (FuncOp function : module.getOps<FuncOp>())
-    if (function->hasAttr("rtsl.states") && !llvm::is_contained(functions, function))
+    if (function->hasAttr("rtsl.states") && listed.insert(function).second)
       functions.push_back(function);
   // What is called comes after its callers, which ask what it writes.
   std::stable_partition(functions.begin(), functions.end(), [](FuncOp function) { return !isFramed(function); });
+  const WriteSummary summary(module);
   for (FuncOp function : functions) {
     if (isFramed(function))
       takeArgumentsFromFrame(function);
     if (!isRunnable(function))
       continue; // a function of the author's that others could call, if they were in this program
     FunctionReport ofFunction;
-    if (mlir::failed(FunctionSplitter(function, options, simplify, ofFunction).run()))
+    if (mlir::failed(FunctionSplitter(function, options, simplify, summary, ofFunction).run()))
       return false;
     report.functions.push_back(std::move(ofFunction));
   }

@@ -18,7 +18,7 @@
 // several ways is there several times, as `^loop` here.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/CutJoins.h"
 
 #include "mlir/IR/IRMapping.h"
 #include "llvm/ADT/SmallPtrSet.h"
@@ -34,7 +34,10 @@ bool isJump(mlir::Operation &op) {
 
 class Splitter {
 public:
-  explicit Splitter(FuncOp function) : function(function), suspends(suspendsOf(function)) {}
+  explicit Splitter(FuncOp function) : function(function), suspends(suspendsOf(function)) {
+    for (auto [number, suspend] : llvm::enumerate(suspends))
+      numbers[suspend] = number;
+  }
   llvm::SmallVector<FuncOp> run();
 
 private:
@@ -49,6 +52,7 @@ private:
 
   FuncOp function;
   llvm::SmallVector<ir::SuspendOp> suspends;
+  llvm::DenseMap<mlir::Operation *, unsigned> numbers;
 };
 
 /// Blocks up to the next trace, in reverse postorder: definitions come before uses.
@@ -100,10 +104,12 @@ void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
       if (suspend.getOrigin())
         ir::SpawnOp::create(builder, op.getLoc(), mapping.lookup(suspend.getOrigin()),
                             mapping.lookup(suspend.getDirection()), /*last=*/false);
-      unsigned index = llvm::find(suspends, suspend) - suspends.begin();
+      const unsigned index = numbers.lookup(suspend);
       if (llvm::isa<ir::CallReturnedOp>(suspend.getResume()->front())) {
         call.setResume(stateName(index + 1));
         endState(builder, op.getLoc(), ir::Transition::Jump, call.getCallee().str() + ".state0");
+      } else if (suspend->hasAttr(joinMark)) {
+        endState(builder, op.getLoc(), ir::Transition::Jump, stateName(index + 1));
       } else {
         endState(builder, op.getLoc(), ir::Transition::Trace, stateName(index + 1));
       }

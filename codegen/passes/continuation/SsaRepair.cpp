@@ -21,8 +21,8 @@ namespace {
 
 class Repair {
 public:
-  Repair(mlir::Value value, const Redefinitions &redefinitions)
-      : value(value), redefinitions(redefinitions), home(value.getParentBlock()) {}
+  Repair(mlir::Value value, const Redefinitions &redefinitions, const BlockOrder &blocks)
+      : value(value), redefinitions(redefinitions), blocks(blocks), home(value.getParentBlock()) {}
 
   void run();
 
@@ -36,6 +36,7 @@ private:
 
   mlir::Value value;
   const Redefinitions &redefinitions;
+  const BlockOrder &blocks;
   mlir::Block *home;
   llvm::SmallPtrSet<mlir::Block *, 16> liveInto;
   // What the value is at the beginning of a block: a definition, or the block itself, which merges
@@ -73,7 +74,7 @@ void Repair::findReaching(llvm::ArrayRef<mlir::Block *> order) {
   while (changed) {
     changed = false;
     for (mlir::Block *block : order) {
-      if (!liveInto.contains(block) || merges.contains(block))
+      if (merges.contains(block))
         continue;
       mlir::Value unique;
       bool several = false;
@@ -149,8 +150,7 @@ void Repair::run() {
     uses.push_back(&use);
   findLiveBlocks(uses);
 
-  llvm::ReversePostOrderTraversal<mlir::Block *> traversal(&home->getParent()->front());
-  llvm::SmallVector<mlir::Block *> order(traversal.begin(), traversal.end());
+  const llvm::SmallVector<mlir::Block *> order = blocks.sorted(liveInto);
   findReaching(order);
   while (dropTrivialArgument(order))
     ;
@@ -166,8 +166,22 @@ void Repair::run() {
 
 } // namespace
 
-void repairSsa(mlir::Value value, const Redefinitions &redefinitions) {
-  Repair(value, redefinitions).run();
+BlockOrder::BlockOrder(mlir::Region &body) {
+  for (mlir::Block *block : llvm::ReversePostOrderTraversal<mlir::Block *>(&body.front()))
+    numbers.try_emplace(block, numbers.size());
+}
+
+llvm::SmallVector<mlir::Block *> BlockOrder::sorted(const llvm::SmallPtrSetImpl<mlir::Block *> &blocks) const {
+  llvm::SmallVector<std::pair<unsigned, mlir::Block *>> numbered;
+  for (mlir::Block *block : blocks)
+    if (const auto number = numbers.find(block); number != numbers.end())
+      numbered.push_back({number->second, block});
+  llvm::sort(numbered, llvm::less_first());
+  return llvm::to_vector(llvm::make_second_range(numbered));
+}
+
+void repairSsa(mlir::Value value, const Redefinitions &redefinitions, const BlockOrder &order) {
+  Repair(value, redefinitions, order).run();
 }
 
 } // namespace rtsl::continuation

@@ -2,17 +2,31 @@
 #pragma once
 
 #include "mlir/IR/Block.h"
+#include "mlir/IR/Region.h"
 #include "mlir/IR/Value.h"
 #include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/SmallPtrSet.h"
 
 namespace rtsl::continuation {
 
 /// New definitions of one value, each in force from the beginning of a block.
 using Redefinitions = llvm::MapVector<mlir::Block *, mlir::Value>;
 
+/// The blocks of a function in reverse postorder, for many repairs: arguments of blocks come and go meanwhile, blocks and
+/// branches do not.
+class BlockOrder {
+public:
+  explicit BlockOrder(mlir::Region &body);
+  /// Those of `blocks` that can be reached, in that order.
+  llvm::SmallVector<mlir::Block *> sorted(const llvm::SmallPtrSetImpl<mlir::Block *> &blocks) const;
+
+private:
+  llvm::DenseMap<mlir::Block *, unsigned> numbers;
+};
+
 /// Makes each use of `value` read the definition that reaches it: `value` itself or one of
 /// `redefinitions`, through block arguments where several meet. A use in a block that has a
 /// redefinition reads that one. `value` must dominate all blocks with redefinitions.
-void repairSsa(mlir::Value value, const Redefinitions &redefinitions);
+void repairSsa(mlir::Value value, const Redefinitions &redefinitions, const BlockOrder &order);
 
 } // namespace rtsl::continuation

@@ -27,7 +27,7 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
     if (trace.resumesAt != state)
       continue;
     const std::string place = trace.place.text();
-    const std::string what = trace.callee.empty() ? "trace" : "call of " + trace.callee;
+    const std::string what = trace.isJoin ? "join" : trace.callee.empty() ? "trace" : "call of " + trace.callee;
     lines.push_back(place.empty() ? "behind a " + what : "behind the " + what + " at " + place);
     lines.push_back(std::to_string(trace.savedBytes) + " of " + std::to_string(trace.liveBytes) + " bytes saved" +
                     listOf(trace.saved));

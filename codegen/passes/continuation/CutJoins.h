@@ -1,0 +1,24 @@
+//===- CutJoins.h - states of their own for code that many states reach ---===//
+#pragma once
+
+#include "codegen/passes/continuation/Steps.h"
+
+namespace rtsl::continuation {
+
+/// When joins are cut.
+struct JoinOptions {
+  /// Copies of operations, over all states, that are always fine.
+  std::size_t free = 4000;
+  /// And so many times the operations of the function.
+  std::size_t copies = 4;
+  /// Operations between two cuts, at least.
+  std::size_t shortest = 16;
+};
+
+/// On suspends that send no ray: the state goes on in the next at once.
+constexpr llvm::StringLiteral joinMark = "rtsl.join";
+
+/// Gives code that many states would have copies of a state of its own. After insertSuspends() and endAtLastTraces().
+void cutJoins(FuncOp function, const JoinOptions &options = {});
+
+} // namespace rtsl::continuation

@@ -1,0 +1,80 @@
+"""Large programs: code grows with the program and not with its square, and what is done about that shows in no picture.
+How long it takes is measured by `bench/run scaling`."""
+
+import json
+import unittest
+
+from harness import EXAMPLES, Case
+
+SMALL = ["--size", "24x16", "--spp", "1"]
+WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversal=device"], ["--target=host-megakernel"])
+
+
+def traces(count):
+    """A material with so many traces, each in an `if`: from behind each of them all later ones can be reached."""
+    steps = "".join(f"    if (d.x * {i + 1}.5 > w - {i % 3}.0) {{\n      sum += w * trace(rt_HitPoint, d);\n      w *= 0.75;\n"
+                    f"      d = normalize(d + vec3(0.1, {i % 5}.0, 0.2));\n    }}\n" for i in range(count))
+    return ("class Many : rt_Material {\n  void shade() {\n    vec3 d = reflect(rt_RayDirection, rt_ShadingNormal);\n"
+            "    float w = 0.5;\n    color sum = color(0.1);\n" + steps + "    rt_SampleColor = sum;\n  }\n};\n")
+
+
+def classes(count):
+    return "".join(f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n"
+                   f"    rt_SampleColor = color(gloss * 0.01);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
+                   f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
+                   for i in range(count))
+
+
+class Growth(Case):
+    def write_scene(self, names):
+        glass = EXAMPLES / "glass"
+        ball = lambda i, name: {"primitive": {"class": "Sphere", "center": [i % 8 - 3.5, i // 8 * 0.8 - 1, 0], "radius": 0.6},
+                                "material": name}
+        self.write("scene.json", json.dumps({
+            "rtsl": 1,
+            "import": [str(glass / "PinholeCamera.rtsl"), str(glass / "Sphere.rtsl"), "large.rtsl"],
+            "camera": {"class": "PinholeCamera",
+                       "constructor": {"eye": [0, 0, 9], "up": [0, 1, 0], "gaze": [0, 0, -1], "uv0": [-1.6, -0.9],
+                                       "uv1": [1.6, 0.9], "d": 2.2}},
+            "materials": {name: {"class": name} for name in names},
+            "objects": [ball(i, name) for i, name in enumerate(names)],
+            "background": [0.2, 0.3, 0.4],
+            "render": {"engine": "classic", "depth": 3}}))
+
+    def assert_same_pictures(self):
+        pictures = []
+        for number, way in enumerate(WAYS):
+            self.run_rtslc("render", "scene.json", "-o", f"{number}.exr", "-q", *SMALL, *way)
+            pictures.append((self.folder / f"{number}.exr").read_bytes())
+        self.assertEqual(pictures[0], pictures[1])
+        self.assertEqual(pictures[0], pictures[2])
+
+    def lines_of_states(self, count):
+        self.write("large.rtsl", traces(count))
+        text, _ = self.run_rtslc("compile", "large.rtsl", "--emit=split", "-o", "-")
+        return text.count("\n")
+
+    def test_states_grow_with_the_number_of_traces(self):
+        few, many = self.lines_of_states(60), self.lines_of_states(120)
+        self.assertLess(many, 2.6 * few)
+
+    def test_a_few_traces_are_cut_at_no_join(self):
+        self.write("large.rtsl", traces(12))
+        text, _ = self.run_rtslc("explain", "--states", "large.rtsl")
+        self.assertNotIn("join", text)
+
+    def test_joins_are_reported_and_change_no_picture(self):
+        self.write("large.rtsl", traces(60))
+        text, _ = self.run_rtslc("explain", "--states", "large.rtsl")
+        self.assertIn("\n  join at large.rtsl:", text)
+        self.write_scene(["Many"])
+        self.assert_same_pictures()
+
+    def test_many_classes_change_no_picture(self):
+        self.write("large.rtsl", classes(40))
+        self.write_scene([f"M{i}" for i in range(40)])
+        self.assert_same_pictures()
+
+
+if __name__ == "__main__":
+    unittest.main()
