@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/EmbreeScene.h"
+#include "runtime/TriangleBlock.h"
 #include "runtime/device/Hit.h"
 #include "runtime/device/Traverse.h"
 
@@ -15,6 +16,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -24,7 +27,13 @@ namespace rtsl::runtime {
 struct EmbreeContext {
   RTCIntersectContext embree;
   RtslState *state;
-  float toEmbree, fromEmbree; // powers of two that turn our t into Embree's, and back
+  const device::TriangleRay *ray;
+  const EmbreeScene::Implementation *scene;
+  const EmbreeVisitor *visitor; // null: what is found is tested, and committed if it wins
+  float toEmbree;         // a power of two that turns our t into Embree's
+
+  /// Where Embree need not look any further, once hits beyond t do not matter.
+  float end(float t) const { return t * toEmbree * device::cullSlack; }
 };
 
 /// An RTSL primitive in Embree.
@@ -32,15 +41,23 @@ struct EmbreePrimitive {
   void (*intersect)(RtslState *, RtslRef);
   RtslRef object;
   std::uint32_t instance;
-  Bounds bounds;
+};
+
+/// A tree for rays from origins up to some distance.
+struct EmbreeLevel {
+  const EmbreeScene::Implementation *owner = nullptr;
+  float largestOrigin = 0; // the sum of its coordinates
+  RTCScene scene = nullptr;
+  std::once_flag built;
 };
 
 struct EmbreeScene::Implementation {
   RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  const RtslMesh *meshes = nullptr;
   const RtslInstance *instances = nullptr;
-  std::vector<EmbreePrimitive> primitives; // by instance; Embree holds pointers into it
+  std::vector<TriangleBlock> blocks;
+  std::vector<EmbreePrimitive> primitives;
+  void (*intersect)(RtslState *, RtslRef) = nullptr; // of any class
+  mutable std::vector<std::unique_ptr<EmbreeLevel>> levels; // by largestOrigin; the first one is built
   RTCError error = RTC_ERROR_NONE;
   std::string errorText;
 
@@ -48,8 +65,15 @@ struct EmbreeScene::Implementation {
   Implementation(const Implementation &) = delete;
   ~Implementation();
 
+  /// The tree for rays from there.
+  RTCScene treeFor(const float *origin) const {
+    float size = __builtin_fabsf(origin[0]) + __builtin_fabsf(origin[1]) + __builtin_fabsf(origin[2]);
+    return size <= levels[0]->largestOrigin ? levels[0]->scene : treeForFar(size);
+  }
+  RTCScene treeForFar(float origin) const;
+
   /// Embree's ray of the state's. What a factor of 1 multiplies is copied.
-  static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree) {
+  static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree, float end) {
     std::memcpy(&ray.org_x, state.RayOrigin, sizeof state.RayOrigin);
     if (fromEmbree == 1) {
       std::memcpy(&ray.dir_x, state.RayDirection, sizeof state.RayDirection);
@@ -58,8 +82,9 @@ struct EmbreeScene::Implementation {
       ray.dir_y = state.RayDirection[1] * fromEmbree;
       ray.dir_z = state.RayDirection[2] * fromEmbree;
     }
-    ray.tnear = device::maximum(state.Epsilon * toEmbree, 0.0f);
-    ray.tfar = state.HitDistance * toEmbree;
+    ray.tnear =
+        device::maximum(state.Epsilon * toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
+    ray.tfar = end;
     ray.time = 0;
     ray.mask = ~0u;
     ray.id = 0;
@@ -67,49 +92,37 @@ struct EmbreeScene::Implementation {
   }
 
   /// `toEmbree` and `fromEmbree` are powers of two and turn our t into Embree's, and back.
-  [[gnu::always_inline]] EmbreeAnswer query(RtslState &state, bool anyHit, float toEmbree,
-                                            float fromEmbree) const {
+  [[gnu::always_inline]] std::uint32_t query(RtslState &state, bool anyHit, float toEmbree,
+                                             float fromEmbree) const {
+    const device::TriangleRay triangleRay =
+        device::makeTriangleRay(device::load(state.RayOrigin), device::load(state.RayDirection));
+    device::beginSearch(state);
     EmbreeContext context;
     rtcInitIntersectContext(&context.embree);
     context.state = &state;
+    context.ray = &triangleRay;
+    context.scene = this;
+    context.visitor = nullptr;
     context.toEmbree = toEmbree;
-    context.fromEmbree = fromEmbree;
+    const RTCScene tree = treeFor(state.RayOrigin);
     if (anyHit) {
       RTCRay ray;
-      fill(ray, state, toEmbree, fromEmbree);
-      rtcOccluded1(scene, &context.embree, &ray);
-      return ray.tfar < 0 ? EmbreeAnswer::Hit : EmbreeAnswer::Miss;
+      fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
+      rtcOccluded1(tree, &context.embree, &ray);
+    } else {
+      RTCRayHit rayHit;
+      fill(rayHit.ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
+      rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(tree, &context.embree, &rayHit);
+      device::findLostAttributes(state, triangleRay, intersect);
     }
-
-    const float distance = state.HitDistance;
-    RTCRayHit rayHit;
-    fill(rayHit.ray, state, toEmbree, fromEmbree);
-    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context.embree, &rayHit);
-    const std::uint32_t instance = rayHit.hit.geomID;
-    if (instance == RTC_INVALID_GEOMETRY_ID)
-      return EmbreeAnswer::Miss;
-    if (instances[instance].primitive != 0)
-      return EmbreeAnswer::Hit; // its `intersect` has committed it
-    return checkTriangle(state, instance, rayHit.hit.primID, distance);
-  }
-
-  /// Of a triangle only the name is taken from Embree. `distance` is where the ray ends.
-  EmbreeAnswer checkTriangle(RtslState &state, std::uint32_t instance, std::uint32_t triangle,
-                             float distance) const {
-    using namespace device;
-    state.HitDistance = distance;
-    state.instance = RTSL_NO_HIT;
-    const TriangleRay ray = makeTriangleRay(load(state.RayOrigin), load(state.RayDirection));
-    return testTriangle(state, ray, meshes[instances[instance].mesh], instance, triangle)
-               ? EmbreeAnswer::Hit
-               : EmbreeAnswer::Refused;
+    return device::endSearch(state);
   }
 };
 
-[[gnu::always_inline]] inline EmbreeAnswer EmbreeScene::traverseEasy(RtslState &state,
-                                                                     bool anyHit) const {
+[[gnu::always_inline]] inline std::uint32_t EmbreeScene::traverseEasy(RtslState &state,
+                                                                      bool anyHit) const {
   return self->query(state, anyHit, 1, 1);
 }
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -12,79 +14,121 @@ namespace rtsl::runtime {
 
 namespace {
 
-void getBounds(const RTCBoundsFunctionArguments *arguments) {
-  const Bounds &bounds = static_cast<const EmbreePrimitive *>(arguments->geometryUserPtr)->bounds;
-  *arguments->bounds_o = {bounds.lower[0], bounds.lower[1], bounds.lower[2], 0,
-                          bounds.upper[0], bounds.upper[1], bounds.upper[2], 0};
+using Implementation = EmbreeScene::Implementation;
+
+//===----------------------------------------------------------------------===//
+// What Embree calls for a ray
+//===----------------------------------------------------------------------===//
+
+template <typename Arguments>
+const EmbreeContext &contextOf(const Arguments *arguments) {
+  return *reinterpret_cast<const EmbreeContext *>(arguments->context);
 }
 
-/// Calls `intersect`; returns whether it committed a hit.
-bool testPrimitive(const EmbreePrimitive &geometry, RtslState &state) {
-  device::beginCandidate(state, geometry.instance, 0);
-  geometry.intersect(&state, geometry.object);
-  return state.instance == geometry.instance;
+/// Hands an item to the visitor of the ray. False if the search is over.
+bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &item) {
+  const EmbreeVisitor &visitor = *context.visitor;
+  const bool isOver = visitor.visit(visitor.self, item);
+  ray.tfar = isOver ? -std::numeric_limits<float>::infinity()
+                    : context.end(visitor.limit(visitor.self));
+  return !isOver;
 }
 
-void intersectUser(const RTCIntersectFunctionNArguments *arguments) {
-  if (!arguments->valid[0])
-    return;
-  const auto &geometry = *static_cast<const EmbreePrimitive *>(arguments->geometryUserPtr);
-  auto &context = *reinterpret_cast<EmbreeContext *>(arguments->context);
-  auto &rayHit = *reinterpret_cast<RTCRayHit *>(arguments->rayhit);
-  RtslState &state = *context.state;
-  // Embree may have found a triangle meanwhile, which the state does not know yet.
-  float distance = rayHit.ray.tfar * context.fromEmbree;
-  if (distance < state.HitDistance) {
-    state.HitDistance = distance;
-    state.instance = rayHit.hit.geomID;
-    state.primitive = rayHit.hit.primID;
-  }
-  if (!testPrimitive(geometry, state))
-    return;
-  rayHit.ray.tfar = state.HitDistance * context.toEmbree;
-  rayHit.hit.geomID = geometry.instance;
-  rayHit.hit.primID = 0;
+[[gnu::cold, gnu::noinline]] void visitBlock(const EmbreeContext &context, RTCRay &ray,
+                                             const TriangleBlock &block) {
+  for (unsigned i = 0; i < TriangleBlock::lanes && block.instance[i] != RTSL_NO_HIT; ++i)
+    if (!visitItem(context, ray, {block.instance[i], block.triangle[i]}))
+      return;
 }
 
-void occludedUser(const RTCOccludedFunctionNArguments *arguments) {
-  if (!arguments->valid[0])
-    return;
-  const auto &geometry = *static_cast<const EmbreePrimitive *>(arguments->geometryUserPtr);
-  auto &context = *reinterpret_cast<EmbreeContext *>(arguments->context);
-  if (testPrimitive(geometry, *context.state))
+void intersectBlock(const RTCIntersectFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  const TriangleBlock &block = context.scene->blocks[arguments->primID];
+  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
+  if (context.visitor)
+    visitBlock(context, ray, block);
+  else if (testBlock(*context.state, *context.ray, block, false))
+    ray.tfar = context.end(context.state->nearest);
+}
+
+void occludedBlock(const RTCOccludedFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  if (testBlock(*context.state, *context.ray, context.scene->blocks[arguments->primID], true))
     reinterpret_cast<RTCRay *>(arguments->ray)->tfar = -std::numeric_limits<float>::infinity();
 }
 
-} // namespace
-
-/// Takes back what shadows a ray where it starts. Embree's t of the triangle that a ray leaves is off by roundings of the
-/// triangle's size, which may be more than Epsilon; ours is not (runtime/device/Triangle.h).
-void checkNearOccluder(const RTCFilterFunctionNArguments *arguments) {
-  auto &context = *reinterpret_cast<EmbreeContext *>(arguments->context);
-  const RtslState &state = *context.state;
-  constexpr float far = 32; // Epsilons; Embree's error is at most 10
-  const float t = reinterpret_cast<const RTCRay *>(arguments->ray)->tfar * context.fromEmbree;
-  if (!arguments->valid[0] || t > far * state.Epsilon)
-    return;
-  const auto &mesh = *static_cast<const RtslMesh *>(arguments->geometryUserPtr);
-  const auto [v0, v1, v2] = device::triangleVertices(mesh, RTCHitN_primID(arguments->hit, 1, 0));
-  device::TriangleHit hit;
-  if (device::intersectTriangle(device::makeTriangleRay(device::load(state.RayOrigin), device::load(state.RayDirection)), v0, v1,
-                                v2, hit) &&
-      !(hit.t > state.Epsilon))
-    arguments->valid[0] = 0;
+bool testPrimitive(const EmbreeContext &context, unsigned number) {
+  const EmbreePrimitive &primitive = context.scene->primitives[number];
+  return device::testPrimitive(*context.state, *context.ray,
+                               context.scene->instances[primitive.instance],
+                               {primitive.instance, 0}, primitive.intersect);
 }
 
-EmbreeScene::Implementation::~Implementation() {
-  if (scene)
-    rtcReleaseScene(scene);
-  if (device)
-    rtcReleaseDevice(device);
+void intersectPrimitive(const RTCIntersectFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
+  if (context.visitor)
+    visitItem(context, ray, {context.scene->primitives[arguments->primID].instance, 0});
+  else if (testPrimitive(context, arguments->primID))
+    ray.tfar = context.end(context.state->nearest);
 }
 
-namespace {
+void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
+  if (testPrimitive(contextOf(arguments), arguments->primID))
+    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = -std::numeric_limits<float>::infinity();
+}
 
-using Implementation = EmbreeScene::Implementation;
+//===----------------------------------------------------------------------===//
+// Boxes
+//===----------------------------------------------------------------------===//
+
+/// Embree computes distances to the sides of boxes as products of coordinates, and for a hit a ray may
+/// pass a box by what bvhSlack allows: together less than this share of the coordinates of both. See
+/// TravRay and intersectNode in kernels/bvh/node_intersector1.h of Embree 3.13.
+constexpr float boxShare = 32 * device::roundingUnit;
+/// Embree leaves out primitives whose boxes are larger.
+constexpr float largestSide = 1.8e18f;
+
+const EmbreeLevel &levelOf(const RTCBoundsFunctionArguments *arguments) {
+  return *static_cast<const EmbreeLevel *>(arguments->geometryUserPtr);
+}
+
+void setBounds(const RTCBoundsFunctionArguments *arguments, const float lower[3],
+               const float upper[3]) {
+  float size = levelOf(arguments).largestOrigin;
+  for (int i = 0; i < 3; ++i)
+    size = std::max({size, std::fabs(lower[i]), std::fabs(upper[i])});
+  float low[3], high[3];
+  for (int i = 0; i < 3; ++i) {
+    low[i] = std::max(lower[i] - 2 * boxShare * size, -largestSide);
+    high[i] = std::min(upper[i] + 2 * boxShare * size, largestSide);
+  }
+  *arguments->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
+}
+
+void boundBlock(const RTCBoundsFunctionArguments *arguments) {
+  const TriangleBlock &block = levelOf(arguments).owner->blocks[arguments->primID];
+  float lower[3], upper[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    lower[axis] = upper[axis] = block.vertices[0][axis][0];
+    for (const auto &vertex : block.vertices)
+      for (float x : vertex[axis]) {
+        lower[axis] = std::min(lower[axis], x);
+        upper[axis] = std::max(upper[axis], x);
+      }
+  }
+  setBounds(arguments, lower, upper);
+}
+
+void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
+  const Implementation &owner = *levelOf(arguments).owner;
+  const RtslInstance &instance = owner.instances[owner.primitives[arguments->primID].instance];
+  setBounds(arguments, instance.lower, instance.upper);
+}
+
+//===----------------------------------------------------------------------===//
+// Trees
+//===----------------------------------------------------------------------===//
 
 void noteError(void *self, RTCError code, const char *text) {
   auto &implementation = *static_cast<Implementation *>(self);
@@ -102,36 +146,166 @@ void check(const Implementation &implementation) {
     throw Error(ErrorCode::Internal, fmt::format("Embree fails: {}", implementation.errorText));
 }
 
-void attach(const Implementation &implementation, RTCGeometry geometry, std::uint32_t instance) {
+void attach(const Implementation &owner, EmbreeLevel &level, std::size_t count,
+            RTCBoundsFunction bounds, RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
+  if (count == 0)
+    return;
+  RTCGeometry geometry = rtcNewGeometry(owner.device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(count));
+  rtcSetGeometryUserData(geometry, &level);
+  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryOccludedFunction(geometry, occluded);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(implementation.scene, geometry, instance);
+  rtcAttachGeometry(level.scene, geometry);
   rtcReleaseGeometry(geometry);
 }
 
-void addMesh(const Implementation &implementation, std::uint32_t instance, const RtslMesh &mesh) {
-  RTCGeometry geometry = rtcNewGeometry(implementation.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                             mesh.positions, 0, 3 * sizeof(float), mesh.vertexCount);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices, 0,
-                             3 * sizeof(std::uint32_t), mesh.triangleCount);
-  rtcSetGeometryUserData(geometry, const_cast<RtslMesh *>(&mesh));
-  rtcSetGeometryOccludedFilterFunction(geometry, checkNearOccluder);
-  attach(implementation, geometry, instance);
+void buildLevel(const Implementation &owner, EmbreeLevel &level) {
+  level.scene = rtcNewScene(owner.device);
+  rtcSetSceneBuildQuality(level.scene, RTC_BUILD_QUALITY_MEDIUM);
+  attach(owner, level, owner.blocks.size(), boundBlock, intersectBlock, occludedBlock);
+  attach(owner, level, owner.primitives.size(), boundPrimitive, intersectPrimitive,
+         occludedPrimitive);
+  rtcCommitScene(level.scene);
+  check(owner);
 }
 
-void addPrimitive(const Implementation &implementation, std::uint32_t instance,
-                  const EmbreePrimitive &primitive) {
-  RTCGeometry geometry = rtcNewGeometry(implementation.device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, 1);
-  rtcSetGeometryUserData(geometry, const_cast<EmbreePrimitive *>(&primitive));
-  rtcSetGeometryBoundsFunction(geometry, getBounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersectUser);
-  rtcSetGeometryOccludedFunction(geometry, occludedUser);
-  attach(implementation, geometry, instance);
+/// Levels for origins up to 4 times what half of the things in the scene reach, then 64 times as far
+/// each. An infinite plane must not make all boxes large.
+void addLevels(Implementation &self) {
+  std::vector<float> reaches;
+  for (const TriangleBlock &block : self.blocks)
+    reaches.push_back(std::fabs(block.vertices[0][0][0]) + std::fabs(block.vertices[0][1][0]) +
+                      std::fabs(block.vertices[0][2][0]));
+  for (const EmbreePrimitive &primitive : self.primitives) {
+    const RtslInstance &instance = self.instances[primitive.instance];
+    float reach = 0;
+    for (int i = 0; i < 3; ++i)
+      reach += std::max(std::fabs(instance.lower[i]), std::fabs(instance.upper[i]));
+    reaches.push_back(reach);
+  }
+  float reach = 1;
+  if (!reaches.empty()) {
+    auto middle = reaches.begin() + std::ptrdiff_t(reaches.size() / 2);
+    std::nth_element(reaches.begin(), middle, reaches.end());
+    reach = std::max(*middle, std::numeric_limits<float>::min());
+  }
+  constexpr float largest = 4e18f;
+  for (float origin = 4 * reach;; origin *= 64) {
+    auto level = std::make_unique<EmbreeLevel>();
+    level->owner = &self;
+    level->largestOrigin = std::min(origin, largest);
+    self.levels.push_back(std::move(level));
+    if (!(origin < largest))
+      return;
+  }
+}
+
+//===----------------------------------------------------------------------===//
+// Blocks
+//===----------------------------------------------------------------------===//
+
+/// Every triangle with its box. geomID is the instance.
+std::vector<RTCBuildPrimitive> triangleBoxes(const RtslLaunch &launch) {
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
+    if (launch.instances[i].primitive == 0)
+      count += launch.meshes[launch.instances[i].mesh].triangleCount;
+  std::vector<RTCBuildPrimitive> boxes;
+  boxes.reserve(count);
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
+    if (launch.instances[i].primitive != 0)
+      continue;
+    const RtslMesh &mesh = launch.meshes[launch.instances[i].mesh];
+    for (std::uint32_t triangle = 0; triangle < mesh.triangleCount; ++triangle) {
+      const auto [a, b, c] = device::triangleVertices(mesh, triangle);
+      RTCBuildPrimitive box;
+      box.lower_x = std::min({a.x, b.x, c.x}), box.upper_x = std::max({a.x, b.x, c.x});
+      box.lower_y = std::min({a.y, b.y, c.y}), box.upper_y = std::max({a.y, b.y, c.y});
+      box.lower_z = std::min({a.z, b.z, c.z}), box.upper_z = std::max({a.z, b.z, c.z});
+      box.geomID = i;
+      box.primID = triangle;
+      boxes.push_back(box);
+    }
+  }
+  return boxes;
+}
+
+/// Sorts the boxes into runs of up to TriangleBlock::lanes that lie together, by Embree's builder. At
+/// the beginning of each run there is how many they are.
+std::vector<std::uint8_t> sortIntoRuns(RTCDevice device, std::vector<RTCBuildPrimitive> &boxes) {
+  struct Runs {
+    const RTCBuildPrimitive *first;
+    std::vector<std::uint8_t> lengths;
+  } runs{boxes.data(), std::vector<std::uint8_t>(boxes.size())};
+  RTCBVH tree = rtcNewBVH(device);
+  RTCBuildArguments arguments = rtcDefaultBuildArguments();
+  arguments.byteSize = sizeof arguments;
+  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+  arguments.maxBranchingFactor = 2; // more would make leaves that are not full
+  arguments.maxDepth = 1024;
+  arguments.sahBlockSize = TriangleBlock::lanes;
+  arguments.minLeafSize = 1;
+  arguments.maxLeafSize = TriangleBlock::lanes;
+  arguments.bvh = tree;
+  arguments.primitives = boxes.data();
+  arguments.primitiveCount = arguments.primitiveArrayCapacity = boxes.size();
+  arguments.userPtr = &runs;
+  // Of the tree only its leaves are wanted: nodes are nothing, but not null.
+  arguments.createNode = [](RTCThreadLocalAllocator, unsigned, void *user) { return user; };
+  arguments.setNodeChildren = [](void *, void **, unsigned, void *) {};
+  arguments.setNodeBounds = [](void *, const RTCBounds **, unsigned, void *) {};
+  arguments.createLeaf = [](RTCThreadLocalAllocator, const RTCBuildPrimitive *leaf,
+                            std::size_t count, void *user) -> void * {
+    Runs &runs = *static_cast<Runs *>(user);
+    runs.lengths[std::size_t(leaf - runs.first)] = std::uint8_t(count);
+    return user;
+  };
+  rtcBuildBVH(&arguments);
+  rtcReleaseBVH(tree);
+  return std::move(runs.lengths);
+}
+
+void addBlocks(Implementation &self, const RtslLaunch &launch) {
+  std::vector<RTCBuildPrimitive> boxes = triangleBoxes(launch);
+  if (boxes.empty())
+    return;
+  const std::vector<std::uint8_t> lengths = sortIntoRuns(self.device, boxes);
+  check(self);
+  self.blocks.reserve(
+      std::size_t(std::count_if(lengths.begin(), lengths.end(), [](std::uint8_t n) { return n != 0; })));
+  for (std::size_t first = 0; first < boxes.size(); first += lengths[first]) {
+    TriangleBlock &block = self.blocks.emplace_back();
+    for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
+      const bool isEmpty = lane >= lengths[first];
+      const RTCBuildPrimitive &box = boxes[first + (isEmpty ? 0 : lane)];
+      const RtslMesh &mesh = launch.meshes[launch.instances[box.geomID].mesh];
+      block.setLane(lane, device::triangleVertices(mesh, box.primID),
+                    isEmpty ? RTSL_NO_HIT : box.geomID, box.primID);
+    }
+  }
 }
 
 } // namespace
+
+EmbreeScene::Implementation::~Implementation() {
+  for (const auto &level : levels)
+    if (level->scene)
+      rtcReleaseScene(level->scene);
+  if (device)
+    rtcReleaseDevice(device);
+}
+
+RTCScene EmbreeScene::Implementation::treeForFar(float origin) const {
+  std::size_t i = 1;
+  while (i + 1 < levels.size() && !(origin <= levels[i]->largestOrigin))
+    ++i;
+  EmbreeLevel &level = *levels[i];
+  std::call_once(level.built, [&] { buildLevel(*this, level); });
+  return level.scene;
+}
 
 EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsigned threads)
     : self(std::make_unique<Implementation>()) {
@@ -141,44 +315,58 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
     throw Error(ErrorCode::Internal,
                 fmt::format("Embree does not start (error {})", int(rtcGetDeviceError(nullptr))));
   rtcSetDeviceErrorFunction(self->device, noteError, self.get());
-  self->scene = rtcNewScene(self->device);
-  rtcSetSceneFlags(self->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(self->scene, RTC_BUILD_QUALITY_MEDIUM);
 
   RtslLaunch launch = scene.launch();
-  self->meshes = launch.meshes;
   self->instances = launch.instances;
-  self->primitives.resize(launch.instanceCount);
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
-    const RtslInstance &instance = launch.instances[i];
-    if (instance.primitive == 0) {
-      addMesh(*self, i, launch.meshes[instance.mesh]);
-      continue;
+  self->intersect = slots.rt_Primitive_intersect;
+  addBlocks(*self, launch);
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
+    if (RtslRef object = launch.instances[i].primitive) {
+      auto *intersect = scene.classOf(object).intersect;
+      self->primitives.push_back({intersect ? intersect : slots.rt_Primitive_intersect, object, i});
     }
-    auto *intersect = scene.classOf(instance.primitive).intersect;
-    self->primitives[i] = {intersect ? intersect : slots.rt_Primitive_intersect,
-                           instance.primitive, i, scene.primitiveBounds(i)};
-    addPrimitive(*self, i, self->primitives[i]);
-  }
-  check(*self);
-  rtcCommitScene(self->scene);
-  check(*self);
+  addLevels(*self);
+  buildLevel(*self, *self->levels[0]);
 }
 
 EmbreeScene::~EmbreeScene() = default;
 
-EmbreeAnswer EmbreeScene::traverse(RtslState &state, bool anyHit) const {
-  if (!(device::largest(device::load(state.RayOrigin)) < largestOrigin))
-    return EmbreeAnswer::Refused;
-  float length = device::largest(device::load(state.RayDirection));
-  if (length > shortest && length < longest)
+bool EmbreeScene::canFollow(const RtslState &state) {
+  if (isEasy(state))
+    return true;
+  const int exponent = device::exponentOf(device::largest(device::load(state.RayDirection)));
+  return device::largest(device::load(state.RayOrigin)) < largestOrigin &&
+         exponent >= -largestExponent && exponent <= largestExponent;
+}
+
+std::uint32_t EmbreeScene::traverse(RtslState &state, bool anyHit) const {
+  if (isEasy(state))
     return traverseEasy(state, anyHit);
-  // Beyond these exponents the scale or its inverse would not be exact.
-  int exponent = device::exponentOf(length);
-  if (exponent < -100 || exponent > 100)
-    return EmbreeAnswer::Refused;
   ++rayCounters().rescaledRays;
+  const int exponent = device::exponentOf(device::largest(device::load(state.RayDirection)));
   return self->query(state, anyHit, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
+}
+
+void EmbreeScene::visit(const RtslState &state, const device::TriangleRay &ray,
+                        const EmbreeVisitor &visitor) const {
+  int exponent = 0;
+  if (!isEasy(state)) {
+    ++rayCounters().rescaledRays;
+    exponent = device::exponentOf(device::largest(device::load(state.RayDirection)));
+  }
+  EmbreeContext context;
+  rtcInitIntersectContext(&context.embree);
+  context.state = nullptr;
+  context.ray = &ray;
+  context.scene = self.get();
+  context.visitor = &visitor;
+  context.toEmbree = device::powerOfTwo(exponent);
+  RTCRayHit rayHit;
+  Implementation::fill(rayHit.ray, state, context.toEmbree, device::powerOfTwo(-exponent),
+                       context.end(visitor.limit(visitor.self)));
+  rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(self->treeFor(state.RayOrigin), &context.embree, &rayHit);
 }
 
 } // namespace rtsl::runtime

@@ -1,26 +1,36 @@
 //===- EmbreeScene.h - a scene in Embree, and rays through it -------------===//
 //
-// Triangle meshes are Embree's own triangles, RTSL primitives its user geometry. Embree is built
-// with assertions by some distributions: a ray that is not finite, or whose direction is too long,
-// would end the process, and short directions give wrong hits. So rays are checked, and directions
-// scaled by powers of two, which changes no bit of what comes out.
+// Embree finds the boxes that a ray meets; what is in them is tested by the same functions as in our
+// own tree, so that both find the same hits, to the bit. Embree's own triangles would not do: near
+// edges, between coincident triangles and for needles its test decides by roundings of its own. So
+// triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower. RTSL
+// primitives are user geometry as well.
+//
+// Embree's boxes are compared with roundings that depend on how far the origin of a ray lies out.
+// They are made larger by as much as is needed for origins up to some distance; for others there is
+// another tree over the same blocks, made when the first such ray comes.
+//
+// Embree is built with assertions by some distributions: a ray that is not finite, or whose
+// direction is too long, would end the process, and short directions give wrong hits. So rays are
+// checked, and directions scaled by powers of two, which changes no bit of what comes out.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/Scene.h"
 #include "runtime/device/Abi.h"
+#include "runtime/device/Triangle.h"
 
 #include <cstdint>
 #include <memory>
 
 namespace rtsl::runtime {
 
-/// Embree's answer for a ray.
-enum class EmbreeAnswer : std::uint8_t {
-  Miss,
-  Hit,     // committed to the state
-  Refused, // our own traversal is to be asked
+/// What is done with all that a ray may hit.
+struct EmbreeVisitor {
+  bool (*visit)(void *self, const RtslLeafItem &item); // true: the search is over
+  float (*limit)(void *self);                          // hits beyond it do not matter
+  void *self;
 };
 
 class EmbreeScene {
@@ -31,11 +41,17 @@ public:
   EmbreeScene(const EmbreeScene &) = delete;
   EmbreeScene &operator=(const EmbreeScene &) = delete;
 
-  /// The ray of `state` must be good (device::isGoodRay) and have no hit yet.
-  EmbreeAnswer traverse(RtslState &state, bool anyHit) const;
+  /// Can Embree follow the ray of `state`, which must be good (device::isGoodRay)?
+  static bool canFollow(const RtslState &state);
+
+  /// rtsl_traverse for a ray that it can follow. It sees all instances, and they accept all hits.
+  std::uint32_t traverse(RtslState &state, bool anyHit) const;
 
   /// The same for a ray that isEasy. In EmbreeRay.h.
-  EmbreeAnswer traverseEasy(RtslState &state, bool anyHit) const;
+  std::uint32_t traverseEasy(RtslState &state, bool anyHit) const;
+
+  /// Calls `visitor` for what the ray may hit. It must be one that it can follow.
+  void visit(const RtslState &state, const device::TriangleRay &ray, const EmbreeVisitor &visitor) const;
 
   struct Implementation;
 
@@ -59,8 +75,29 @@ private:
   static constexpr float largestOrigin = 1e18f;
   /// Lengths of directions for which Embree works as it should, with room on both sides.
   static constexpr float shortest = 0x1p-20f, longest = 0x1p20f;
+  /// Beyond these the powers of two that scale them or their inverses would not be exact.
+  static constexpr int largestExponent = 100;
 
   std::unique_ptr<Implementation> self;
+};
+
+/// A tree for runtime/device/Traverse.h and AnyHit.h.
+struct EmbreeTree {
+  const EmbreeScene &scene;
+
+  template <typename Limit, typename Visit>
+  void forEach(const RtslState &state, const device::TriangleRay &ray, Limit limit,
+               Visit visit) const {
+    struct Both {
+      Limit &limit;
+      Visit &visit;
+    } both{limit, visit};
+    EmbreeVisitor visitor{[](void *self, const RtslLeafItem &item) {
+                            return static_cast<Both *>(self)->visit(item);
+                          },
+                          [](void *self) { return static_cast<Both *>(self)->limit(); }, &both};
+    scene.visit(state, ray, visitor);
+  }
 };
 
 } // namespace rtsl::runtime

@@ -24,8 +24,12 @@ class HostScene : public ProgramHost {
 public:
   HostScene(const Scene &scene, bool useEmbree, unsigned threads);
 
-  /// The launch with our own tree; with Embree it is built when the first ray needs it.
+  /// The launch with our own tree. With Embree it is built when it is asked for, by a ray that Embree
+  /// cannot follow, say (EmbreeScene::canFollow).
   const RtslLaunch &deviceLaunch() const;
+
+  /// Has somebody asked for it, or some ray needed it?
+  bool hasOwnTree() const { return launch.host != nullptr; }
 
   /// rtsl_traverse.
   std::uint32_t traverse(RtslState &state, std::uint32_t how) const;
@@ -33,11 +37,10 @@ public:
   std::uint32_t traverseFast(RtslState &state, std::uint32_t how) const;
 
 private:
-  std::uint32_t traverseCarefully(RtslState &state, bool anyHit) const;
-  std::uint32_t traverseOurselves(RtslState &state, std::uint32_t how) const;
-  template <typename Work>
-  std::uint32_t withNodes(RtslState &state, Work work) const;
-  std::uint32_t retrace(RtslState &state, bool anyHit, float distance) const;
+  std::uint32_t traverseAny(RtslState &state, std::uint32_t how) const;
+  template <typename Tree>
+  std::uint32_t search(RtslState &state, std::uint32_t how, const Tree &tree) const;
+  std::uint32_t searchOwnTree(RtslState &state, std::uint32_t how) const;
 
   const Scene &scene;
   std::unique_ptr<EmbreeScene> embree; // null: our own traversal

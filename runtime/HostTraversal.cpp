@@ -29,67 +29,51 @@ const RtslLaunch &HostScene::deviceLaunch() const {
   return launch;
 }
 
-std::uint32_t HostScene::traverseCarefully(RtslState &state, bool anyHit) const {
+/// By some tree.
+template <typename Tree>
+std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree &tree) const {
+  return how & RTSL_ASK_ANY_HIT
+             ? device::findHitAsking(state, how, FilledSlots{slots}, tree)
+             : device::findHit(state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect, tree);
+}
+
+/// By our own tree, on a launch that has it: the ray's may not have any.
+std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) const {
+  const RtslLaunch *given = state.launch;
+  if (given->nodeCount != 0)
+    return search(state, how, device::LaunchTree());
+  deviceLaunch();
+  RtslLaunch withNodes = *given;
+  bvh.install(withNodes);
+  state.launch = &withNodes;
+  std::uint32_t answer = search(state, how, device::LaunchTree());
+  state.launch = given;
+  return answer;
+}
+
+/// Any ray: also those whose hits may be refused, and those for which some instances are not there.
+std::uint32_t HostScene::traverseAny(RtslState &state, std::uint32_t how) const {
   if (!device::isGoodRay(state)) {
     ++rayCounters().badRays;
     return RTSL_BAD_RAY;
   }
   if (!embree)
-    return device::traverseDevice(state, anyHit, slots.rt_Primitive_intersect);
-  float distance = state.HitDistance;
-  EmbreeAnswer answer = embree->traverse(state, anyHit);
-  if (answer == EmbreeAnswer::Refused)
-    return retrace(state, anyHit, distance);
-  return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
-}
-
-std::uint32_t HostScene::retrace(RtslState &state, bool anyHit, float distance) const {
-  ++rayCounters().retracedRays;
-  state.HitDistance = distance;
-  state.instance = state.primitive = RTSL_NO_HIT;
-  return withNodes(
-      state, [&] { return device::traverseDevice(state, anyHit, slots.rt_Primitive_intersect); });
-}
-
-/// Runs `work` on a launch that has our tree: the ray's may not have any.
-template <typename Work>
-std::uint32_t HostScene::withNodes(RtslState &state, Work work) const {
-  const RtslLaunch *given = state.launch;
-  if (given->nodeCount != 0)
-    return work();
-  deviceLaunch();
-  RtslLaunch withNodes = *given;
-  bvh.install(withNodes);
-  state.launch = &withNodes;
-  std::uint32_t answer = work();
-  state.launch = given;
-  return answer;
-}
-
-/// Rays whose hits may be refused, and those for which some instances are not there: for Embree
-/// they would be strangers too, for it gives hits in its own order.
-std::uint32_t HostScene::traverseOurselves(RtslState &state, std::uint32_t how) const {
-  std::uint32_t answer = withNodes(state, [&] {
-    return how & RTSL_ASK_ANY_HIT
-               ? device::traverseAsking(state, how, FilledSlots{slots})
-               : device::traverseDevice(state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect);
-  });
-  rayCounters().badRays += answer == RTSL_BAD_RAY;
-  return answer;
+    return searchOwnTree(state, how);
+  if (!EmbreeScene::canFollow(state)) {
+    ++rayCounters().retracedRays;
+    return searchOwnTree(state, how);
+  }
+  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0)
+    return search(state, how, EmbreeTree{*embree});
+  return embree->traverse(state, how & RTSL_FIRST_HIT);
 }
 
 [[gnu::always_inline]] inline std::uint32_t HostScene::traverseFast(RtslState &state,
                                                                     std::uint32_t how) const {
-  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0)
-    return traverseOurselves(state, how);
-  bool anyHit = how & RTSL_FIRST_HIT;
-  if (!embree || !EmbreeScene::isEasy(state))
-    return traverseCarefully(state, anyHit);
-  float distance = state.HitDistance;
-  EmbreeAnswer answer = embree->traverseEasy(state, anyHit);
-  if (answer == EmbreeAnswer::Refused)
-    return retrace(state, anyHit, distance);
-  return answer == EmbreeAnswer::Hit ? RTSL_HIT : RTSL_MISS;
+  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !embree ||
+      !EmbreeScene::isEasy(state))
+    return traverseAny(state, how);
+  return embree->traverseEasy(state, how & RTSL_FIRST_HIT);
 }
 
 std::uint32_t HostScene::traverse(RtslState &state, std::uint32_t how) const {

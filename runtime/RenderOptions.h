@@ -58,7 +58,7 @@ struct RenderStatistics {
   double buildSeconds = 0;            // acceleration structures
   double renderSeconds = 0;           // samples
   std::uint64_t badRays = 0;          // not finite or without a direction: they saw color 0
-  std::uint64_t retracedRays = 0;     // Embree's answer was refused, and our own traversal asked
+  std::uint64_t retracedRays = 0;     // beyond what Embree can follow: by our own tree
   std::uint64_t rescaledRays = 0;     // directions too long or short for Embree
   std::uint64_t raysTooDeep = 0;      // deeper than maxDepth: they were not sent
   std::uint64_t samplesNotFinite = 0; // left out of the means of their pixels

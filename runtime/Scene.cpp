@@ -66,7 +66,6 @@ struct Scene::Implementation {
   std::vector<RtslMesh> meshTable;
   std::vector<RtslInstance> instances;
   std::vector<std::string> instanceNames;
-  std::vector<Bounds> instanceBounds; // of RTSL primitives
   std::uint64_t primitiveTotal = 0;
   std::unordered_map<RtslRef, std::uint32_t> chains; // measureChain
   std::uint32_t referenceChain = 0;                  // the longest
@@ -539,10 +538,9 @@ std::uint32_t Scene::Implementation::addInstance(RtslRef primitive, std::uint32_
   if (primitiveTotal + primitives > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
   instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal), needsAt(material),
-                       mask, info(material).classInfo->anyHit, {}, {}});
+                       mask, info(material).classInfo->anyHit, {}, {}, {}, {}});
   primitiveTotal += primitives;
   instanceNames.push_back(std::move(name));
-  instanceBounds.push_back({});
   return std::uint32_t(instances.size() - 1);
 }
 
@@ -581,12 +579,12 @@ std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, std::uint
                      flatSides == 3 ? "a single point" : "a line without width"),
          info.place});
   std::uint32_t instance = self->addInstance(primitive, 0, material, info.name, 1, mask);
-  Bounds &bounds = self->instanceBounds.back();
-  std::copy_n(given.lower, 3, self->instances.back().boundMin);
-  std::copy_n(given.upper, 3, self->instances.back().boundMax);
+  RtslInstance &added = self->instances.back();
+  std::copy_n(given.lower, 3, added.boundMin);
+  std::copy_n(given.upper, 3, added.boundMax);
   for (int i = 0; i < 3; ++i) {
-    bounds.lower[i] = outwards(given.lower[i], -1);
-    bounds.upper[i] = outwards(given.upper[i], 1);
+    added.lower[i] = outwards(given.lower[i], -1);
+    added.upper[i] = outwards(given.upper[i], 1);
   }
   return instance;
 }
@@ -638,8 +636,12 @@ std::vector<Scene::BufferPlace> Scene::buffers() const {
   return places;
 }
 
-const Bounds &Scene::primitiveBounds(std::uint32_t instance) const {
-  return self->instanceBounds.at(instance);
+Bounds Scene::primitiveBounds(std::uint32_t instance) const {
+  const RtslInstance &one = self->instances.at(instance);
+  Bounds bounds;
+  std::copy_n(one.lower, 3, bounds.lower);
+  std::copy_n(one.upper, 3, bounds.upper);
+  return bounds;
 }
 
 std::uint32_t Scene::primitiveCount(std::uint32_t instance) const {

@@ -113,7 +113,7 @@ public:
 
   /// World bounds of an RTSL primitive's instance, as computeBounds gave them, a few units in the
   /// last place larger.
-  const Bounds &primitiveBounds(std::uint32_t instance) const;
+  Bounds primitiveBounds(std::uint32_t instance) const;
   /// Number of primitives that the instance holds: 1, or the triangles of its mesh.
   std::uint32_t primitiveCount(std::uint32_t instance) const;
   /// The name of an instance for messages: that of its primitive or mesh.

@@ -33,6 +33,7 @@ typedef struct RtslInstance {
   uint32_t mask;           // seen by rays that have a bit of it in theirs
   uint32_t anyHit;         // rtslRayTypeBit of the payloads for which its material has `anyHit`
   float boundMin[3], boundMax[3]; // of an RTSL primitive, as `computeBounds` gave them
+  float lower[3], upper[3];       // the box in which it is looked for, a little larger
 } RtslInstance;
 
 /// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
@@ -162,6 +163,12 @@ typedef struct RtslState {
 
   // What `intersect` wrote to scratch members for the hit so far.
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
+
+  // What a traversal keeps meanwhile (Hit.h).
+  float foundDistance;               // t of the hit so far
+  float nearest;                     // t by which it is compared; without a hit, where the ray ends
+  float candidateNear, candidateFar; // where the ray is in the box of the RTSL primitive that is being tested
+  uint32_t areAttributesLost;        // 1: a hit that did not win has written over those of the hit so far
 } RtslState;
 
 #define RTSL_NO_HIT 0xffffffffu
@@ -241,7 +248,8 @@ uint32_t rtsl_color_components(const RtslLaunch *launch);
 /// RTSL_ASK_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT or RTSL_BAD_RAY.
 uint32_t rtsl_traverse(RtslState *state, uint32_t how);
 
-/// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 and commits t if the candidate wins.
+/// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 if t is the candidate's nearest hit, and commits
+/// it if the candidate wins.
 uint32_t rtsl_hit(RtslState *state, float t);
 
 /// `trace(origin, direction)`: the color that arrives at `origin` against `direction`. Writes colorComponents floats.

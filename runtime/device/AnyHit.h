@@ -9,7 +9,7 @@
 // hit that counts is ever asked. The tree does not give hits in order, so the nearest few are
 // collected in one descent and asked in turn; when all of them refuse, the next few are collected,
 // behind the last. What an `intersect` leaves in the state is not kept meanwhile: it runs again for
-// the one that is asked.
+// the one that is asked, and finds the same, for what it sees of the ray is the same.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -34,7 +34,6 @@ struct LinkedPayloadSlots : LinkedSlots {
 struct Candidate {
   float t;
   uint32_t instance, primitive;
-  uint32_t dimension; // of the ray's random numbers, before `intersect` ran
 };
 
 inline bool isBefore(const Candidate &a, const Candidate &b) {
@@ -80,13 +79,15 @@ struct NearestCandidates {
   }
 };
 
-/// One ray's way through the tree.
-template <typename Slots>
+/// One ray's way through a tree (LaunchTree in Traverse.h says what that is).
+template <typename Slots, typename Tree>
 class Search {
 public:
-  Search(RtslState &state, const Slots &slots)
-      : state(state), slots(slots),
-        triangleRay(makeTriangleRay(load(state.RayOrigin), load(state.RayDirection))) {}
+  Search(RtslState &state, const Slots &slots, const Tree &tree)
+      : state(state), slots(slots), tree(tree),
+        triangleRay(makeTriangleRay(load(state.RayOrigin), load(state.RayDirection))) {
+    beginSearch(state);
+  }
 
   const RtslInstance &instanceOf(const RtslLeafItem &item) const {
     return state.launch->instances[item.instance];
@@ -98,28 +99,27 @@ public:
     if (instance.primitive == 0)
       return testTriangle(state, triangleRay, state.launch->meshes[instance.mesh], item.instance,
                           item.primitive);
-    beginCandidate(state, item.instance, item.primitive);
-    slots.rt_Primitive_intersect(&state, instance.primitive);
-    return state.instance == item.instance;
+    return testPrimitive(state, triangleRay, instance, item, intersect());
   }
 
   /// Calls visit(item) for what may be hit before limit() until it returns true.
   template <typename Limit, typename Visit>
   void forEach(Limit limit, Visit visit) const {
-    Vec3 direction = load(state.RayDirection);
-    Vec3 inverse = {1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z};
-    traverseBvh(
-        *state.launch, load(state.RayOrigin), inverse, maximum(state.Epsilon, 0.0f), limit,
-        [&](const RtslLeafItem &item) { return isSeen(state, instanceOf(item)) && visit(item); });
+    tree.forEach(state, triangleRay, limit, [&](const RtslLeafItem &item) {
+      return isSeen(state, instanceOf(item)) && visit(item);
+    });
   }
 
   /// Describes the hit that state has and runs `anyHit`. Returns RTSL_ACCEPT, RTSL_IGNORE or
   /// RTSL_TERMINATE.
   uint32_t ask() const {
     const RtslInstance &instance = state.launch->instances[state.instance];
+    const float end = state.HitDistance;
+    state.HitDistance = state.foundDistance;
     describeHit(state, instance.needs, slots);
     state.hitAnswer = RTSL_ACCEPT;
     slots.rt_Material_anyHit_payload(&state, instance.material);
+    state.HitDistance = end;
     const uint32_t answer = state.hitAnswer;
     state.hitAnswer = RTSL_ACCEPT; // what runs for the hit that counts has not answered anything
     return answer;
@@ -129,53 +129,56 @@ public:
     return instanceOf(item).anyHit & rtslRayTypeBit(state.rayType);
   }
 
-  void forgetHit(float distance) const {
-    state.HitDistance = distance;
+  /// As if nothing had been hit: a primitive's nearest hit is always the same.
+  void forgetHit() const {
+    beginSearch(state);
     state.instance = state.primitive = RTSL_NO_HIT;
   }
 
+  uint32_t end() const {
+    findLostAttributes(state, triangleRay, intersect());
+    return endSearch(state);
+  }
+
 private:
+  auto intersect() const {
+    return [this](RtslState *ray, RtslRef object) { slots.rt_Primitive_intersect(ray, object); };
+  }
+
   RtslState &state;
   const Slots &slots;
+  const Tree &tree;
   TriangleRay triangleRay;
 };
 
 /// Materials are asked in the order of hits.
-template <typename Slots>
-uint32_t searchInOrder(RtslState &state, const Slots &slots) {
-  const float tMax = state.HitDistance;
-  const Search<Slots> search(state, slots);
+template <typename Slots, typename Tree>
+uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
+  const Search<Slots, Tree> search(state, slots, tree);
   bool isFirst = true;
-  Candidate last = {0, 0, 0, 0};
+  Candidate last = {0, 0, 0};
   for (;;) {
     NearestCandidates nearest;
-    search.forEach(
-        [&] { return nearest.limit(tMax); },
-        [&](const RtslLeafItem &item) {
-          // As if nothing had been hit: a primitive's nearest hit is always the same.
-          search.forgetHit(tMax);
-          uint32_t dimension = state.dimension;
-          if (search.test(item)) {
-            Candidate candidate = {state.HitDistance, item.instance, item.primitive, dimension};
-            if (isFirst || isBefore(last, candidate))
-              nearest.insert(candidate, !search.hasAnyHit(item));
-          }
-          return false;
-        });
+    search.forEach([&] { return nearest.limit(state.HitDistance); },
+                   [&](const RtslLeafItem &item) {
+                     search.forgetHit();
+                     if (search.test(item)) {
+                       Candidate candidate = {state.nearest, item.instance, item.primitive};
+                       if (isFirst || isBefore(last, candidate))
+                         nearest.insert(candidate, !search.hasAnyHit(item));
+                     }
+                     return false;
+                   });
     for (uint32_t i = 0; i < nearest.count; ++i) {
-      const Candidate &candidate = nearest.found[i];
-      const RtslLeafItem item = {candidate.instance, candidate.primitive};
-      search.forgetHit(tMax);
-      uint32_t dimension = state.dimension;
-      state.dimension = candidate.dimension;
+      const RtslLeafItem item = {nearest.found[i].instance, nearest.found[i].primitive};
+      search.forgetHit();
       search.test(item);
-      state.dimension = dimension;
       if (!search.hasAnyHit(item) || search.ask() != RTSL_IGNORE)
-        return RTSL_HIT;
+        return search.end();
     }
-    search.forgetHit(tMax);
+    search.forgetHit();
     if (nearest.isComplete())
-      return RTSL_MISS;
+      return search.end();
     last = nearest.found[nearest.count - 1];
     isFirst = false;
   }
@@ -183,18 +186,19 @@ uint32_t searchInOrder(RtslState &state, const Slots &slots) {
 
 /// The hit that state has, to come back to.
 struct CommittedHit {
-  float distance, u, v;
+  float found, nearest, u, v;
   uint32_t instance, primitive;
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
 
   explicit CommittedHit(const RtslState &state)
-      : distance(state.HitDistance), u(state.u), v(state.v), instance(state.instance),
-        primitive(state.primitive) {
+      : found(state.foundDistance), nearest(state.nearest), u(state.u), v(state.v),
+        instance(state.instance), primitive(state.primitive) {
     for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
       attributes[i] = state.attributes[i];
   }
   void restore(RtslState &state) const {
-    state.HitDistance = distance;
+    state.foundDistance = found;
+    state.nearest = nearest;
     state.u = u;
     state.v = v;
     state.instance = instance;
@@ -205,10 +209,10 @@ struct CommittedHit {
 };
 
 /// Materials are asked as hits are found. With `first` the first that accepts ends the search.
-template <typename Slots>
-uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots) {
-  const Search<Slots> search(state, slots);
-  search.forEach([&] { return state.HitDistance; },
+template <typename Slots, typename Tree>
+uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const Tree &tree) {
+  const Search<Slots, Tree> search(state, slots, tree);
+  search.forEach([&] { return state.nearest; },
                  [&](const RtslLeafItem &item) {
                    if (!search.hasAnyHit(item))
                      return search.test(item) && first;
@@ -222,17 +226,21 @@ uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots) {
                    }
                    return first || answer == RTSL_TERMINATE;
                  });
-  return state.instance != RTSL_NO_HIT ? RTSL_HIT : RTSL_MISS;
+  return search.end();
 }
 
-/// rtsl_traverse by our own tree for a ray whose hits may be refused. `slots` has the methods that
+/// rtsl_traverse for a good ray whose hits may be refused, by some tree. `slots` has the methods that
 /// it needs as members with the names of Slots.def and PayloadSlots.def.
+template <typename Slots, typename Tree>
+uint32_t findHitAsking(RtslState &state, uint32_t how, const Slots &slots, const Tree &tree) {
+  return how & RTSL_IN_ORDER ? searchInOrder(state, slots, tree)
+                             : searchAsFound(state, how & RTSL_FIRST_HIT, slots, tree);
+}
+
+/// The same for any ray, by the tree of the launch.
 template <typename Slots>
 uint32_t traverseAsking(RtslState &state, uint32_t how, const Slots &slots) {
-  if (!isGoodRay(state))
-    return RTSL_BAD_RAY;
-  return how & RTSL_IN_ORDER ? searchInOrder(state, slots)
-                             : searchAsFound(state, how & RTSL_FIRST_HIT, slots);
+  return isGoodRay(state) ? findHitAsking(state, how, slots, LaunchTree()) : RTSL_BAD_RAY;
 }
 
 } // namespace rtsl::device

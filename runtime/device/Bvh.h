@@ -10,18 +10,32 @@ namespace rtsl::device {
 /// pushes one child at most.
 constexpr int maxBvhDepth = 64;
 
-/// Nodes are entered if the slabs say so within this factor. It covers three roundings of the
-/// slab's distance (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013: 1 + 2 gamma(3)) and as much
-/// again for the roundings of the hit distance that it is compared with, so that which of two
-/// nearly equal hits wins does not depend on the order of traversal.
+/// A ray meets a box if it leaves it no earlier than it enters it, within this factor. That covers
+/// three roundings of each distance (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013: 1 + 2
+/// gamma(3)), and as much again for those of intersectTriangle.
 constexpr float bvhSlack = 1.0f + 16 * roundingUnit;
 
-/// Where the ray enters the box, or infinity if it does not within [tMin, tMax], both ends
-/// included. Where a component of the direction is 0, `inverse` is infinite, and 0 * inf is no
-/// number for an origin in the plane of a side: comparisons are written so that this leaves the
-/// interval as it is.
-inline float enterBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
-                      float tMin, float tMax) {
+/// What is in a box is hit where the ray is in the box, within this share of the distance: hits of
+/// triangles are moved there (Traverse.h), those of RTSL primitives compared as if they were there
+/// (Hit.h). So a box that begins behind the nearest hit by more than two such shares has nothing that
+/// could win, and which boxes a traversal enters, of whatever tree and in whatever order, cannot
+/// show. That holds for outer boxes too, for rounding is monotonic: of two boxes, one in the other,
+/// the outer one begins no later and ends no earlier, to the bit.
+constexpr float rangeShare = 0x1p-12f;
+constexpr float cullSlack = 1.0f + 2 * rangeShare;
+
+/// The part of a ray in a box.
+struct Range {
+  float near, far;
+
+  bool isEmpty() const { return !(near <= far * bvhSlack); }
+};
+
+/// Where the ray is in the box and between tMin and tMax. Where a component of the direction is 0,
+/// `inverse` is infinite, and 0 * inf is no number for an origin in the plane of a side:
+/// comparisons are written so that this leaves the range as it is.
+inline Range rangeInBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
+                        float tMin, float tMax) {
   float near = tMin, far = tMax;
   float x0 = ((inverse.x < 0 ? upper : lower)[0] - origin.x) * inverse.x;
   float x1 = ((inverse.x < 0 ? lower : upper)[0] - origin.x) * inverse.x;
@@ -35,11 +49,18 @@ inline float enterBox(const float lower[3], const float upper[3], Vec3 origin, V
   far = x1 < far ? x1 : far;
   far = y1 < far ? y1 : far;
   far = z1 < far ? z1 : far;
-  return near <= far * bvhSlack ? near : infinity;
+  return {near, far};
 }
 
-/// Calls test(item) for every leaf item whose boxes the ray meets between tMin and tMax(), nearer
-/// boxes first. tMax() may shrink meanwhile. test returns true to stop; then so does this.
+/// Where the ray enters the box, or infinity if it does not between tMin and tMax.
+inline float enterBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
+                      float tMin, float tMax) {
+  Range range = rangeInBox(lower, upper, origin, inverse, tMin, tMax);
+  return range.isEmpty() ? infinity : range.near;
+}
+
+/// Calls test(item) for every leaf item that may have hits between tMin and tMax(), nearer boxes
+/// first. tMax() may shrink meanwhile. test returns true to stop; then so does this.
 /// `inverse` is 1 / direction by component.
 template <typename Limit, typename Test>
 bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin, Limit tMax,
@@ -50,6 +71,7 @@ bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin
         return true;
     return false;
   }
+  tMin *= 1.0f - 2 * rangeShare;
   struct Entry {
     int32_t child;
     uint32_t count;
@@ -61,7 +83,7 @@ bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin
   for (;;) {
     if (current.child >= 0) {
       const RtslBvhNode &node = launch.nodes[current.child];
-      float limit = tMax();
+      float limit = tMax() * cullSlack;
       float near0 = enterBox(node.lower[0], node.upper[0], origin, inverse, tMin, limit);
       float near1 = enterBox(node.lower[1], node.upper[1], origin, inverse, tMin, limit);
       bool enter0 = near0 < infinity, enter1 = near1 < infinity;
@@ -85,7 +107,7 @@ bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin
       if (top == 0)
         return false;
       current = stack[--top];
-    } while (!(current.near <= tMax() * bvhSlack));
+    } while (!(current.near <= tMax() * cullSlack));
   }
 }
 

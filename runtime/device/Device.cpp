@@ -21,7 +21,7 @@ __attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
 }
 
 uint32_t rtsl_hit(RtslState *state, float t) {
-  return device::commitCandidate(*state, t);
+  return device::reportHit(*state, t);
 }
 
 void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz,

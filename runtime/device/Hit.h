@@ -1,30 +1,63 @@
 //===- Hit.h - which of two hits wins -------------------------------------===//
+//
+// The order in which traversal finds hits must not show, and each traversal has another one. So the
+// nearest hit wins, the lower (instance, primitive) of two at the same distance; and `intersect` of
+// a primitive runs as if the primitive were alone: HitDistance is where the ray ends, or where the
+// primitive's own hit is, and the nearest hit of all is kept apart.
+//
+// A traversal leaves out boxes that begin behind the nearest hit. By rounding, or by a mistake of its
+// author, a primitive may report a hit that lies outside of its box. Such a hit is compared as if it
+// were where the ray enters or leaves the box: then it wins or loses whichever traversal finds it.
+//
+//===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/device/Abi.h"
 
 namespace rtsl::device {
 
-/// The rule of `hit(t)`: a candidate wins iff Epsilon < t < HitDistance, or t == HitDistance and
-/// (instance, primitive) is lower than that of the hit so far, so that the order of traversal
-/// cannot show.
+/// Does a hit beat the one so far?
 inline bool wins(const RtslState &state, float t, uint32_t instance, uint32_t primitive) {
-  if (!(t > state.Epsilon))
-    return false;
-  if (t < state.HitDistance)
+  if (t < state.nearest)
     return true;
-  return t == state.HitDistance && state.instance != RTSL_NO_HIT &&
+  return t == state.nearest && state.instance != RTSL_NO_HIT &&
          (instance < state.instance || (instance == state.instance && primitive < state.primitive));
 }
 
-/// Applies the rule to the candidate that state names.
-inline bool commitCandidate(RtslState &state, float t) {
-  if (!wins(state, t, state.candidateInstance, state.candidatePrimitive))
+/// `t` is where the hit is, `compared` where it is for `wins`.
+inline void commit(RtslState &state, float t, float compared, uint32_t instance,
+                   uint32_t primitive) {
+  state.foundDistance = t;
+  state.nearest = compared;
+  state.instance = instance;
+  state.primitive = primitive;
+}
+
+/// `hit(t)`: is it the nearest hit of the primitive that is being tested?
+inline bool reportHit(RtslState &state, float t) {
+  if (!(t > state.Epsilon && t < state.HitDistance))
     return false;
   state.HitDistance = t;
-  state.instance = state.candidateInstance;
-  state.primitive = state.candidatePrimitive;
+  float compared = t < state.candidateNear  ? state.candidateNear
+                   : t > state.candidateFar ? state.candidateFar
+                                            : t;
+  if (wins(state, compared, state.candidateInstance, state.candidatePrimitive))
+    commit(state, t, compared, state.candidateInstance, state.candidatePrimitive);
   return true;
+}
+
+/// Before a traversal: nothing is hit up to HitDistance, the ray's end.
+inline void beginSearch(RtslState &state) {
+  state.nearest = state.HitDistance;
+  state.areAttributesLost = 0;
+}
+
+/// After it: HitDistance is where the hit is, if there is one. Returns RTSL_HIT or RTSL_MISS.
+inline uint32_t endSearch(RtslState &state) {
+  if (state.instance == RTSL_NO_HIT)
+    return RTSL_MISS;
+  state.HitDistance = state.foundDistance;
+  return RTSL_HIT;
 }
 
 } // namespace rtsl::device

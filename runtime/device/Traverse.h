@@ -34,49 +34,125 @@ inline TriangleVertices triangleVertices(const RtslMesh &mesh, uint32_t triangle
           load(mesh.positions + 3 * size_t(index[2]))};
 }
 
+/// Moves t, where intersectTriangle has found a hit, to where the ray is in the triangle's box, within
+/// rangeShare. False if the ray misses the box: then so does every traversal.
+inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float &t) {
+  float lower[3], upper[3];
+  for (int i = 0; i < 3; ++i) {
+    float a = p.v0[i], b = p.v1[i], c = p.v2[i];
+    lower[i] = minimum(minimum(a, b), c);
+    upper[i] = maximum(maximum(a, b), c);
+  }
+  Range range = rangeInBox(lower, upper, ray.origin, ray.inverse, 0, infinity);
+  if (range.isEmpty())
+    return false;
+  float near = range.near * (1.0f - rangeShare), far = range.far * (1.0f + rangeShare);
+  t = t < near ? near : t > far ? far : t;
+  return true;
+}
+
 /// Tests one triangle and commits it if it wins.
-inline bool testTriangle(RtslState &state, const TriangleRay &ray, const RtslMesh &mesh,
+inline bool testTriangle(RtslState &state, const TriangleRay &ray, const TriangleVertices &vertices,
                          uint32_t instance, uint32_t triangle) {
-  TriangleVertices vertices = triangleVertices(mesh, triangle);
   TriangleHit hit;
-  if (!intersectTriangle(ray, vertices.v0, vertices.v1, vertices.v2, hit))
+  if (!intersectTriangle(ray, vertices.v0, vertices.v1, vertices.v2, hit) ||
+      !moveIntoBox(ray, vertices, hit.t) || !(hit.t > state.Epsilon) ||
+      !wins(state, hit.t, instance, triangle))
     return false;
-  if (!wins(state, hit.t, instance, triangle))
-    return false;
-  state.HitDistance = hit.t;
-  state.instance = instance;
-  state.primitive = triangle;
+  commit(state, hit.t, hit.t, instance, triangle);
   state.u = hit.u;
   state.v = hit.v;
   return true;
 }
 
-/// rtsl_traverse by our own tree. intersect(state, object) is the slot of rt_Primitive.
+inline bool testTriangle(RtslState &state, const TriangleRay &ray, const RtslMesh &mesh,
+                         uint32_t instance, uint32_t triangle) {
+  return testTriangle(state, ray, triangleVertices(mesh, triangle), instance, triangle);
+}
+
+/// The count of random numbers that `intersect` of a primitive begins with. Beyond that of any
+/// method that runs once a ray, and not the same for each primitive.
+inline uint32_t dimensionOf(uint32_t instance, uint32_t primitive) {
+  uint32_t mixed = (instance + 1) * 0x9e3779b9u ^ (primitive + 1) * 0x85ebca6bu;
+  return 0x80000000u | mixed >> 4;
+}
+
+/// Runs `intersect` of an RTSL primitive, intersect(state, object), as if the ray had met nothing
+/// else. True if it commits a hit that wins. It must not be the hit so far.
 template <typename Intersect>
-uint32_t traverseDevice(RtslState &state, bool anyHit, Intersect intersect) {
-  if (!isGoodRay(state))
-    return RTSL_BAD_RAY;
+bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance &instance,
+                   const RtslLeafItem &item, Intersect intersect) {
+  Range range = rangeInBox(instance.lower, instance.upper, ray.origin, ray.inverse, 0, infinity);
+  float near = range.near * (1.0f - rangeShare), far = range.far * (1.0f + rangeShare);
+  if (range.isEmpty() || near > state.nearest || far < state.Epsilon)
+    return false;
+  const float end = state.HitDistance;
+  const uint32_t dimension = state.dimension;
+  beginCandidate(state, item.instance, item.primitive);
+  state.candidateNear = near;
+  state.candidateFar = far;
+  state.dimension = dimensionOf(item.instance, item.primitive);
+  intersect(&state, instance.primitive);
+  const bool hasHit = state.HitDistance < end;
+  const bool hasWon = state.instance == item.instance && state.primitive == item.primitive;
+  state.dimension = dimension;
+  state.HitDistance = end;
+  if (hasHit && !hasWon)
+    state.areAttributesLost = 1;
+  return hasWon;
+}
+
+/// After a search: `intersect` stores the attributes of its hit, whether it wins or not. If they are
+/// not those of the hit that won, that one's `intersect` runs again.
+template <typename Intersect>
+void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect intersect) {
+  if (!state.areAttributesLost || state.instance == RTSL_NO_HIT)
+    return;
+  const RtslInstance &instance = state.launch->instances[state.instance];
+  if (instance.primitive == 0)
+    return;
+  const RtslLeafItem item = {state.instance, state.primitive};
+  state.nearest = state.HitDistance;
+  state.instance = RTSL_NO_HIT;
+  testPrimitive(state, ray, instance, item, intersect);
+}
+
+/// The tree of the launch. A tree calls visit(item) for each leaf item that may have hits before
+/// limit(), nearer ones first on the whole, until it returns true.
+struct LaunchTree {
+  template <typename Limit, typename Visit>
+  void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Visit visit) const {
+    traverseBvh(*state.launch, ray.origin, ray.inverse, maximum(state.Epsilon, 0.0f), limit, visit);
+  }
+};
+
+/// rtsl_traverse for a good ray, by some tree. intersect(state, object) is the slot of rt_Primitive.
+template <typename Intersect, typename Tree>
+uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree &tree) {
   const RtslLaunch &launch = *state.launch;
   TriangleRay ray = makeTriangleRay(load(state.RayOrigin), load(state.RayDirection));
-  Vec3 direction = load(state.RayDirection);
-  Vec3 inverse = {1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z};
-  bool stopped = traverseBvh(
-      launch, load(state.RayOrigin), inverse, maximum(state.Epsilon, 0.0f),
-      [&] { return state.HitDistance; },
+  beginSearch(state);
+  tree.forEach(
+      state, ray, [&] { return state.nearest; },
       [&](const RtslLeafItem &item) {
         const RtslInstance &instance = launch.instances[item.instance];
         if (!isSeen(state, instance))
           return false;
-        if (instance.primitive == 0) {
-          bool found =
-              testTriangle(state, ray, launch.meshes[instance.mesh], item.instance, item.primitive);
-          return found && anyHit;
-        }
-        beginCandidate(state, item.instance, item.primitive);
-        intersect(&state, instance.primitive);
-        return anyHit && state.instance != RTSL_NO_HIT;
+        bool found =
+            instance.primitive == 0
+                ? testTriangle(state, ray, launch.meshes[instance.mesh], item.instance, item.primitive)
+                : testPrimitive(state, ray, instance, item, intersect);
+        return found && anyHit;
       });
-  return stopped || state.instance != RTSL_NO_HIT ? RTSL_HIT : RTSL_MISS;
+  if (!anyHit)
+    findLostAttributes(state, ray, intersect);
+  return endSearch(state);
+}
+
+/// rtsl_traverse by the tree of the launch.
+template <typename Intersect>
+uint32_t traverseDevice(RtslState &state, bool anyHit, Intersect intersect) {
+  return isGoodRay(state) ? findHit(state, anyHit, intersect, LaunchTree()) : RTSL_BAD_RAY;
 }
 
 } // namespace rtsl::device

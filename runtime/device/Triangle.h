@@ -19,6 +19,7 @@ namespace rtsl::device {
 /// What the test needs of a ray; made once a ray.
 struct TriangleRay {
   Vec3 origin;
+  Vec3 inverse;     // 1 / direction by component, for boxes
   int kx, ky, kz;   // kz: the axis along which the direction is longest
   float sx, sy, sz; // shear and scale, of the direction scaled by 2^-exponent
   int directionExponent;
@@ -32,6 +33,7 @@ struct TriangleHit {
 inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
   TriangleRay ray;
   ray.origin = origin;
+  ray.inverse = {1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z};
   float x = absolute(direction.x), y = absolute(direction.y), z = absolute(direction.z);
   ray.kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
   ray.kx = ray.kz == 2 ? 0 : ray.kz + 1;

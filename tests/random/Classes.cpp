@@ -222,17 +222,13 @@ void Generator::addMethod(const ClassPlan &plan, Node &members, const std::strin
   context.onReturn = result;
   context.reads = model.reads;
   context.lookup = model.abilities.has(Ability::Lookup);
-  context.rand = model.abilities.has(Ability::Random) && name != "intersect"; // which runs as often as traversal has it
+  context.rand = model.abilities.has(Ability::Random);
   context.answers = model.abilities.has(Ability::AnyHit);
   references = plan.references;
   work = 0;
   workLimit = large ? 400 : 60;
   scope = around(plan);
   std::vector<Variable> state = stateOf(model.reads, model.writes);
-  if (name == "intersect") // the order of candidates would show
-    state.erase(std::remove_if(state.begin(), state.end(),
-                               [](const Variable &variable) { return variable.name == "rt_HitDistance"; }),
-                state.end());
   append(state, more);
   append(scope, state);
   scope.push_back({"h", types.uintType, false});

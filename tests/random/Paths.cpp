@@ -253,6 +253,7 @@ Comparison::Numbers Comparison::takenBy(const Path &path, const Numbers &which) 
 
 void Comparison::compare(const Path &path, const runtime::Program &code, std::size_t number) {
   World world(code, *programs[number]);
+  world.reverseOrder();
   const Words words = path.renders ? world.render() : world.run();
   if (const std::string what = difference((path.renders ? pictures : samples)[number], words); !what.empty())
     fail({number}, Failure::Mismatch, fmt::format("{} against {}: {}", path.name, allPaths().front().name, what));

@@ -257,6 +257,8 @@ void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
   }
   const auto number = static_cast<std::uint32_t>(instances.size());
   instance.mask = number % 3 == 2 ? 0xaaaaaaaau : ~0u;
+  std::fill_n(instance.lower, 3, -1e18f); // primitives are hit where the dice say
+  std::fill_n(instance.upper, 3, 1e18f);
   for (const Object &object : objects)
     if (object.reference == instance.material)
       describeMaterial(instance, *code.find(object.info->name));
@@ -351,6 +353,10 @@ World::World(const runtime::Program &bound, const World &made)
   launch.instances = instances.data();
   launch.needs = bound.needs;
   launch.host = &host;
+}
+
+void World::reverseOrder() {
+  std::reverse(items.begin(), items.end());
 }
 
 runtime::SceneFacts World::facts() const {

@@ -21,6 +21,9 @@ public:
   World(const runtime::Program &bound, const World &made);
   World(const World &) = delete;
 
+  /// Rays try the primitives the other way round from now on. That must not show.
+  void reverseOrder();
+
   /// What a program can be bound to.
   runtime::SceneFacts facts() const;
 

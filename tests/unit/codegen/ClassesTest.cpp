@@ -224,11 +224,13 @@ TEST(Classes, IntersectionStoresScratchOfAcceptedHitsOnly) {
   Record record;
   record.add({0, 0, 5, 1}); // center and radius
   shader.launch.records = reinterpret_cast<std::uint8_t *>(record.words.data());
+  shader.state.candidateFar = INFINITY;
   auto intersect = [&](float x, float farthest, float epsilon = 0.0F) {
     shader.state.RayOrigin[0] = x;
     shader.state.RayDirection[2] = 1;
     shader.state.Epsilon = epsilon;
     shader.state.HitDistance = farthest;
+    shader.state.nearest = farthest;
     shader.state.instance = RTSL_NO_HIT;
     for (std::uint32_t &word : shader.state.attributes)
       word = 0;
@@ -240,7 +242,7 @@ TEST(Classes, IntersectionStoresScratchOfAcceptedHitsOnly) {
   EXPECT_EQ(attribute(shader, 4), 1.0F) << "list[1]";
   EXPECT_EQ(intersect(2.0F, 100.0F), 100.0F) << "a miss";
   EXPECT_EQ(attribute(shader, 4), 0.0F);
-  EXPECT_EQ(intersect(0.0F, 3.0F), 3.0F) << "behind another hit";
+  EXPECT_EQ(intersect(0.0F, 3.0F), 3.0F) << "behind the ray's end";
   EXPECT_EQ(attribute(shader, 2), 0.0F);
   EXPECT_EQ(intersect(0.0F, 100.0F, 5.0F), 6.0F)
       << "the second root, reported by the helper's second call";
@@ -364,7 +366,7 @@ class P : rt_Primitive {
   void computeBounds() { rt_BoundMin = vec3(0); rt_BoundMax = vec3(1); }
 };
 )");
-  shader.state.HitDistance = 10;
+  shader.state.HitDistance = shader.state.nearest = shader.state.candidateFar = 10;
   shader.state.instance = RTSL_NO_HIT;
   shader.callMethod("P.intersect", 0u);
   EXPECT_EQ(attribute(shader, 0), 0.0F);

@@ -111,14 +111,13 @@ std::uint32_t expected(RtslState state, float distance, Asked &inOrder, RtslStat
     for (std::uint32_t p = 0; p < count; ++p) {
       RtslState one = state;
       one.HitDistance = distance;
+      rtsl::device::beginSearch(one);
       if (instance.primitive) {
-        one.candidateInstance = i;
-        one.candidatePrimitive = 0;
-        rtsl_rt_Primitive_intersect(&one, instance.primitive);
+        rtsl::device::testPrimitive(one, triangleRay, instance, {i, 0}, rtsl_rt_Primitive_intersect);
       } else {
         rtsl::device::testTriangle(one, triangleRay, launch.meshes[instance.mesh], i, p);
       }
-      if (one.instance != RTSL_NO_HIT)
+      if (rtsl::device::endSearch(one) == RTSL_HIT)
         hits.push_back(one);
     }
   }
