@@ -1,150 +1,29 @@
 //===- Main.cpp - examples/glass by hand ----------------------------------===//
 //
 // The program that rtslc is measured against: the picture of examples/glass/scene.json, with the
-// scene and its shaders written in C++ on the same Embree. Meshes and images go through the
-// runtime, for they are not what is compared. Writes times to standard output as JSON, named as
-// `rtslc render --json` names them.
+// scene and its shaders written in C++ on the same Embree.
 //
 //===----------------------------------------------------------------------===//
+#include "Program.h"
 #include "Radiance.h"
 #include "Scene.h"
 
-#include "runtime/Image.h"
 #include "runtime/Mesh.h"
 
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
+#include <memory>
 
 using namespace handwritten;
 namespace runtime = rtsl::runtime;
 
-namespace {
-
-constexpr std::uint32_t tileSize = 16;
-
-void renderTile(const Scene &scene, const Picture &picture, std::uint32_t tile,
-                runtime::Image &image) {
-  const std::uint32_t tilesAcross = (picture.width + tileSize - 1) / tileSize;
-  const std::uint32_t left = tile % tilesAcross * tileSize, top = tile / tilesAcross * tileSize;
-  const std::uint32_t right = std::min(left + tileSize, picture.width);
-  const std::uint32_t bottom = std::min(top + tileSize, picture.height);
-  for (std::uint32_t y = top; y < bottom; ++y)
-    for (std::uint32_t x = left; x < right; ++x) {
-      vec3 sum(0);
-      for (std::uint32_t i = 0; i < picture.samplesPerPixel; ++i) {
-        const vec3 color = sample(scene, picture, x, y, i);
-        if (std::isfinite(color.x + color.y + color.z))
-          sum += color;
-      }
-      float *pixel = image.at(x, y);
-      for (int channel = 0; channel < 3; ++channel)
-        pixel[channel] = sum[channel] / float(picture.samplesPerPixel);
-    }
-}
-
-/// Threads take one tile after the other until none is left.
-void render(const Scene &scene, const Picture &picture, unsigned threadCount,
-            runtime::Image &image) {
-  const std::uint32_t tiles =
-      ((picture.width + tileSize - 1) / tileSize) * ((picture.height + tileSize - 1) / tileSize);
-  std::atomic<std::uint32_t> next{0};
-  auto work = [&] {
-    // As Embree's manual advises: denormals cost time and show nowhere.
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-    for (std::uint32_t tile = next++; tile < tiles; tile = next++)
-      renderTile(scene, picture, tile, image);
-  };
-  std::vector<std::thread> threads;
-  for (unsigned i = 1; i < threadCount; ++i)
-    threads.emplace_back(work);
-  work();
-  for (std::thread &thread : threads)
-    thread.join();
-}
-
-class Stopwatch {
-public:
-  /// Seconds since the last lap.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last, now)).count();
-  }
-
-private:
-  std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
-};
-
-void parseSize(const std::string &text, Picture &picture) {
-  int used = 0;
-  const bool isSize =
-      std::sscanf(text.c_str(), "%5ux%5u%n", &picture.width, &picture.height, &used) == 2 &&
-      std::size_t(used) == text.size();
-  if (!isSize || !picture.width || !picture.height)
-    throw CLI::ValidationError("--size", "give WIDTHxHEIGHT in pixels, such as 960x540");
-}
-
-} // namespace
-
 int main(int argc, char **argv) {
-  CLI::App app("renders examples/glass, written by hand");
-  std::string mesh, output;
-  unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-  Picture picture;
-  app.add_option("MESH", mesh, "knot.obj of examples/glass")->required();
-  app.add_option("-o,--output", output, "the picture: .png or .exr")->required();
-  app.add_option("--spp", picture.samplesPerPixel, "samples a pixel")
-      ->check(CLI::Range(1u, 1u << 24));
-  app.add_option_function<std::string>(
-         "--size", [&](const std::string &text) { parseSize(text, picture); }, "size in pixels")
-      ->type_name("WxH");
-  app.add_option("--threads", threads, "all cores if not given")->check(CLI::Range(1u, 4096u));
-  app.add_option("--depth", picture.maxDepth, "0: camera rays only");
-  app.add_option("--seed", picture.seed, "seed of the random numbers");
-  CLI11_PARSE(app, argc, argv);
-
-  try {
-    runtime::checkWritable(output);
-    Stopwatch watch;
-    runtime::Mesh knot = runtime::loadMesh(mesh);
-    knot.apply(runtime::Transform::translate(1.5, 1.15, -0.7));
-    const double sceneSeconds = watch.lap();
-    const Scene scene(std::move(knot));
-    const double buildSeconds = watch.lap();
-    runtime::Image image(picture.width, picture.height, 3);
-    render(scene, picture, threads, image);
-    const double renderSeconds = watch.lap();
-    runtime::writeImage(output, image);
-    const nlohmann::ordered_json document = {
-        {"version", 1},
-        {"output", output},
-        {"flags", compilerFlags()},
-        {"size", {picture.width, picture.height}},
-        {"spp", picture.samplesPerPixel},
-        {"seed", picture.seed},
-        {"seconds",
-         {{"scene", sceneSeconds},
-          {"build", buildSeconds},
-          {"render", renderSeconds},
-          {"image", watch.lap()}}},
-        {"samples", std::uint64_t(picture.width) * picture.height * picture.samplesPerPixel}};
-    fmt::print("{}\n", document.dump(2));
-    return 0;
-  } catch (const std::exception &error) {
-    fmt::print(stderr, "bench-handwritten: {}\n", error.what());
-    return 1;
-  }
+  const Description description = {"bench-handwritten", "renders examples/glass, written by hand",
+                                   "knot.obj of examples/glass", compilerFlags()};
+  return runProgram(
+      description, argc, argv,
+      [](const std::vector<std::string> &files) {
+        runtime::Mesh knot = runtime::loadMesh(files[0]);
+        knot.apply(runtime::Transform::translate(1.5, 1.15, -0.7));
+        return knot;
+      },
+      [](runtime::Mesh knot) { return std::make_unique<Scene>(std::move(knot)); }, sample);
 }

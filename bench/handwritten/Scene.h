@@ -6,17 +6,15 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "Picture.h"
+
 #include "runtime/Mesh.h"
 
 #include <embree3/rtcore.h>
-#include <glm/glm.hpp>
 
 #include <array>
 
 namespace handwritten {
-
-using glm::vec2;
-using glm::vec3;
 
 struct Sphere {
   vec3 center;
@@ -29,24 +27,6 @@ struct Floor {
   // dot(inverse1, p - anchor) is the coordinate of p along side1, in [0, 1].
   vec3 inverse1 = side1 / glm::dot(side1, side1);
   vec3 inverse2 = side2 / glm::dot(side2, side2);
-};
-
-struct BallLight {
-  vec3 position;
-  float radius;
-  vec3 intensity;
-};
-
-/// A pinhole camera at `eye`; a sample at (x, y) in [0, 1]^2 looks along corner + x across + y
-/// upward.
-struct Camera {
-  vec3 eye{0, 2.2f, 7.5f};
-  vec3 gaze = glm::normalize(vec3(0, -0.19f, -1));
-  vec3 right = glm::normalize(glm::cross(gaze, vec3(0, 1, 0)));
-  vec3 up = glm::cross(right, gaze);
-  vec3 corner = -1.6f * right - 0.9f * up + 2.7f * gaze;
-  vec3 across = 3.2f * right;
-  vec3 upward = 1.8f * up;
 };
 
 /// Embree's ids of the geometries, in the order in which they are attached.

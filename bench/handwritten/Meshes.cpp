@@ -1,0 +1,171 @@
+//===- Meshes.cpp - many meshes under two lights, by hand -----------------===//
+//
+// The twin of the scene that bench/measure/meshes.py writes: diffuse meshes with interpolated
+// normals, a camera ray and two shadow rays a sample. Written as one writes a small renderer on
+// Embree: each mesh is a geometry of Embree's, and a hit is what Embree says.
+//
+//===----------------------------------------------------------------------===//
+#include "Program.h"
+
+#include "runtime/Mesh.h"
+#include "runtime/device/Random.h"
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+using namespace handwritten;
+namespace runtime = rtsl::runtime;
+
+namespace {
+
+/// Where shadow rays begin to see. The scene is some ten units large, so rounding is near 1e-6.
+constexpr float epsilon = 1e-4f;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+using Meshes = std::vector<runtime::Mesh>;
+
+class Scene {
+public:
+  explicit Scene(Meshes given) : meshes(std::move(given)) {
+    device = rtcNewDevice(nullptr);
+    if (!device)
+      throw std::runtime_error("Embree gives no device");
+    embree = rtcNewScene(device);
+    rtcSetSceneFlags(embree, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(embree, RTC_BUILD_QUALITY_MEDIUM);
+    for (unsigned i = 0; i < meshes.size(); ++i)
+      attach(i);
+    rtcCommitScene(embree);
+    if (RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree fails with error " + std::to_string(error));
+  }
+  ~Scene() {
+    rtcReleaseScene(embree);
+    rtcReleaseDevice(device);
+  }
+  Scene(const Scene &) = delete;
+  Scene &operator=(const Scene &) = delete;
+
+  /// The interpolated normal at a hit; not unit.
+  vec3 normal(const RTCHit &hit) const {
+    const runtime::Mesh &mesh = meshes[hit.geomID];
+    const unsigned *index = &mesh.indices[3 * std::size_t(hit.primID)];
+    auto at = [&](unsigned vertex) {
+      const float *n = &mesh.normals[3 * std::size_t(vertex)];
+      return vec3(n[0], n[1], n[2]);
+    };
+    return (1 - hit.u - hit.v) * at(index[0]) + hit.u * at(index[1]) + hit.v * at(index[2]);
+  }
+
+  RTCScene embree = nullptr;
+  Camera camera;
+  std::array<BallLight, 2> lights{{{{4, 6, 4}, 0.4f, {38, 36, 33}}, {{-5, 4, 2}, 0.4f, {6, 7, 9}}}};
+  vec3 ambient{0.12f, 0.13f, 0.16f}, albedo{0.8f, 0.35f, 0.2f}, background{0.25f, 0.45f, 0.8f};
+
+private:
+  void attach(unsigned number) {
+    runtime::Mesh &mesh = meshes[number];
+    const std::size_t vertices = mesh.vertexCount();
+    mesh.positions.push_back(0); // Embree reads 16 bytes at each vertex
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               mesh.positions.data(), 0, 3 * sizeof(float), vertices);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.indices.data(), 0, 3 * sizeof(unsigned), mesh.triangleCount());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(embree, geometry, number);
+    rtcReleaseGeometry(geometry);
+  }
+
+  Meshes meshes;
+  RTCDevice device = nullptr;
+};
+
+RTCRay embreeRay(vec3 origin, vec3 direction, float start, float end) {
+  RTCRay ray;
+  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+  ray.tnear = start, ray.tfar = end;
+  ray.time = 0, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+  return ray;
+}
+
+bool isOccluded(const Scene &scene, vec3 from, vec3 direction, float distance) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray = embreeRay(from, direction, epsilon, distance);
+  rtcOccluded1(scene.embree, &context, &ray);
+  return ray.tfar < 0;
+}
+
+/// What arrives of both lights, and of the ambient one. Random numbers are drawn as BallLight.rtsl of
+/// examples/glass draws them.
+vec3 arriving(const Scene &scene, const std::uint32_t key[2], vec3 point, vec3 normal) {
+  vec3 sum = scene.ambient;
+  std::uint32_t dimension = 0;
+  for (const BallLight &ball : scene.lights) {
+    const float height = 2 * rtsl::device::randomNumber(key, dimension) - 1;
+    const float around = 6.2831853f * rtsl::device::randomNumber(key, dimension + 1);
+    dimension += 3; // RTSL counts one for the shadow ray
+    const float ring = std::sqrt(std::max(1 - height * height, 0.0f));
+    const vec3 source =
+        ball.position + ball.radius * vec3(ring * std::cos(around), height, ring * std::sin(around));
+    const vec3 path = source - point;
+    const float squared = glm::dot(path, path), distance = std::sqrt(squared);
+    const vec3 toLight = path * (1 / distance);
+    const float cosine = glm::dot(normal, toLight);
+    if (cosine > 0 && !isOccluded(scene, point, toLight, distance))
+      sum += (cosine / squared) * ball.intensity;
+  }
+  return sum;
+}
+
+vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::uint32_t y,
+            std::uint32_t index) {
+  using namespace rtsl::device;
+  const Words4 words = hash4(x, y, index, picture.seed);
+  const Words4 shift = hash4(x, y, 0xffffffffu, picture.seed); // the same for the whole pixel
+  float jitterX, jitterY;
+  pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
+  const Camera &camera = scene.camera;
+  const vec3 direction = glm::normalize(
+      camera.corner + (float(x) + jitterX) / float(picture.width) * camera.across +
+      (1 - (float(y) + jitterY) / float(picture.height)) * camera.upward);
+
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit found;
+  found.ray = embreeRay(camera.eye, direction, 0, infinity);
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene.embree, &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    return scene.background;
+  const vec3 point = camera.eye + found.ray.tfar * direction;
+  const vec3 geometric(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
+  const vec3 normal = glm::normalize(scene.normal(found.hit));
+  // The normals of the file say which side is outside, not its winding.
+  const bool isFront = (glm::dot(geometric, direction) < 0) == (glm::dot(geometric, normal) > 0);
+  const std::uint32_t key[2] = {words.x, words.y};
+  return scene.albedo * arriving(scene, key, point, isFront ? normal : -normal);
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  const Description description = {"bench-meshes", "renders diffuse meshes under two lights",
+                                   "the meshes", HANDWRITTEN_FLAGS};
+  return runProgram(
+      description, argc, argv,
+      [](const std::vector<std::string> &files) {
+        Meshes meshes;
+        for (const std::string &file : files)
+          meshes.push_back(runtime::loadMesh(file));
+        return meshes;
+      },
+      [](Meshes meshes) { return std::make_unique<Scene>(std::move(meshes)); }, sample);
+}

@@ -1,0 +1,161 @@
+"""Many meshes: rtslc beside the program that was written by hand, in turns, by processor time."""
+
+import json
+import math
+import random
+import tempfile
+from pathlib import Path
+
+from . import process
+from .render import ROOT, compare
+from .statistics import summarise
+
+SHADERS = ROOT / "examples" / "glass"
+MESHES = 382
+AROUND, ACROSS = 49, 7  # quads of a torus: 686 triangles
+
+
+def write_torus(path, center, axes, large, small):
+    """A torus with normals, as an OBJ file."""
+    lines = []
+    for i in range(AROUND):
+        for j in range(ACROSS):
+            a, b = 2 * math.pi * i / AROUND, 2 * math.pi * j / ACROSS
+            out = [math.cos(a) * axes[0][k] + math.sin(a) * axes[1][k] for k in range(3)]
+            normal = [math.cos(b) * out[k] + math.sin(b) * axes[2][k] for k in range(3)]
+            point = [center[k] + large * out[k] + small * normal[k] for k in range(3)]
+            lines.append("v {:.6f} {:.6f} {:.6f}".format(*point))
+            lines.append("vn {:.6f} {:.6f} {:.6f}".format(*normal))
+    for i in range(AROUND):
+        for j in range(ACROSS):
+            corners = [
+                (i + di) % AROUND * ACROSS + (j + dj) % ACROSS + 1 for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))
+            ]
+            for triangle in (corners[:3], [corners[0], corners[2], corners[3]]):
+                lines.append("f " + " ".join(f"{corner}//{corner}" for corner in triangle))
+    path.write_text("\n".join(lines) + "\n")
+
+
+def write_scene(folder):
+    """382 tori, 262,052 triangles, in a box that the camera looks into. Gives the scene's file and the meshes'."""
+    dice = random.Random(7)
+    files = []
+    for number in range(MESHES):
+        center = [dice.uniform(-4, 4), dice.uniform(0, 4), dice.uniform(-6, 2)]
+        z = [dice.gauss(0, 1) for _ in range(3)]
+        z = [c / math.hypot(*z) for c in z]
+        x = [z[1], -z[0], 0] if abs(z[2]) < 0.9 else [0, z[2], -z[1]]
+        x = [c / math.hypot(*x) for c in x]
+        y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]]
+        large = dice.uniform(0.25, 0.6)
+        files.append(folder / f"torus{number}.obj")
+        write_torus(files[-1], center, (x, y, z), large, large * dice.uniform(0.2, 0.5))
+    scene = {
+        "rtsl": 1,
+        "import": [str(SHADERS / name) for name in ("PinholeCamera.rtsl", "Lambert.rtsl", "Solid.rtsl", "BallLight.rtsl")],
+        "camera": {
+            "class": "PinholeCamera",
+            "constructor": {"eye": [0, 2.2, 7.5], "up": [0, 1, 0], "gaze": [0, -0.19, -1],
+                            "uv0": [-1.6, -0.9], "uv1": [1.6, 0.9], "d": 2.7},
+        },
+        "textures": {"terracotta": {"class": "Solid", "value": [0.8, 0.35, 0.2]}},
+        "materials": {"clay": {"class": "Lambert", "albedo": "terracotta"}},
+        "objects": [{"mesh": file.name, "material": "clay"} for file in files],
+        "lights": [
+            {"class": "BallLight", "position": [4, 6, 4], "radius": 0.4, "intensity": [38, 36, 33]},
+            {"class": "BallLight", "position": [-5, 4, 2], "radius": 0.4, "intensity": [6, 7, 9]},
+        ],
+        "ambient": [0.12, 0.13, 0.16],
+        "background": [0.25, 0.45, 0.8],
+        "render": {"engine": "classic", "size": [640, 360], "spp": 16, "depth": 8, "seed": 1},
+    }
+    path = folder / "scene.json"
+    path.write_text(json.dumps(scene))
+    return path, files
+
+
+class Program:
+    """One of the programs, by the processor time that samples beyond one a pixel take."""
+
+    def __init__(self, name, arguments, picture):
+        self.name, self.picture = name, picture
+        self.arguments = arguments + ["-o", str(picture)]
+        self.seconds, self.scene = [], []
+
+    def run(self, spp):
+        times = []
+        for count in (1, spp):
+            run = process.run(self.arguments + ["--spp", str(count)])
+            times.append(run.user + run.system)
+        self.scene.append(json.loads(run.output)["seconds"]["scene"])
+        self.seconds.append(times[1] - times[0])
+
+    def forget(self):
+        self.seconds.clear()
+        self.scene.clear()
+
+
+def measure(build, pairs, spp, size):
+    binaries = build / "bin"
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        scene, files = write_scene(folder)
+        options = ["--size", size, "--threads", "1"]
+
+        def rtslc(name, *more):
+            arguments = [str(binaries / "rtslc"), "render", str(scene), "--json", "-q", *more]
+            return Program(name, arguments + options, folder / f"{name}.exr")
+
+        byhand = Program("bench-meshes", [str(binaries / "bench-meshes"), *map(str, files)] + options, folder / "byhand.exr")
+        ours = [rtslc("strict"), rtslc("fast", "--fp=fast")]
+        programs = [byhand, *ours]
+        for program in programs:  # once, to warm the caches
+            program.run(2)
+            program.forget()
+        for round_ in range(pairs):
+            first = round_ % len(programs)
+            for program in programs[first:] + programs[:first]:
+                program.run(spp)
+        return {
+            "size": size,
+            "spp": spp,
+            "samples": [
+                {"program": program.name, "seconds": summarise(program.seconds).as_json(),
+                 "scene": summarise(program.scene).as_json()}
+                for program in programs
+            ],
+            "ratios": [
+                {
+                    "program": program.name,
+                    "speed": summarise([b / a for a, b in zip(program.seconds, byhand.seconds)]).as_json(),
+                    "pictures": compare(build, program, byhand),
+                }
+                for program in ours
+            ],
+        }
+
+
+def show(report):
+    print(f"382 meshes, 262,052 triangles, {report['size']}, processor time of {report['spp'] - 1} samples a pixel on one thread")
+    for program in report["samples"]:
+        print(f"  {program['program']:14} {program['seconds']['median']:7.3f} s, reading {program['scene']['median']:.3f} s")
+    print("rtslc's speed over that of the program by hand, round by round")
+    for ratio in report["ratios"]:
+        speed, pictures = ratio["speed"], ratio["pictures"]
+        low, high = speed["interval"]
+        print(f"  {ratio['program']:14} {speed['median']:.3f}   {low:.3f} to {high:.3f} ({speed['confidence']:.1%});"
+              f" the pictures {'agree' if pictures['agree'] else 'DIFFER: the ratio means nothing'}"
+              f" (means within {pictures['largestMeanDifference']:.1e}, root mean square {pictures['rmse']:.1e})")
+
+
+def add(subcommands, common):
+    parser = subcommands.add_parser("meshes", parents=[common], help="many meshes beside the hand-written program")
+    parser.add_argument("--pairs", type=int, default=8, help="rounds in which every program runs (default: 8)")
+    parser.add_argument("--spp", type=int, default=9, help="samples a pixel, of which the first is not counted (default: 9)")
+    parser.add_argument("--size", metavar="WxH", default="640x360", help="of the picture (default: 640x360)")
+    parser.set_defaults(parts=[part])
+
+
+def part(options):
+    """Name, measured report, and how to show it."""
+    return ("meshes", measure(options.build, max(1, options.pairs), max(2, options.spp), options.size), show)
