@@ -130,9 +130,11 @@ struct CommaExpr : ExprOf<ExprKind::Comma> {
   ExprPtr left, right;
 };
 
-/// `callee(args)` or `receiver.callee(args)`. The callee may turn out to be a type (`vec3(...)`, `Ray(...)`).
+/// `callee(args)`, `receiver.callee(args)` or `Base::callee(args)`. The callee may turn out to be a type (`vec3(...)`,
+/// `Ray(...)`).
 struct CallExpr : ExprOf<ExprKind::Call> {
   ExprPtr receiver; // null: a plain call
+  Name base;        // whose definition is called; empty text: that of the object's own class
   Name callee;
   std::vector<ExprPtr> args;
 };

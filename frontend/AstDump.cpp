@@ -244,7 +244,8 @@ void Dumper::expression(const char *role, const Expr *expr) {
   }
   case ExprKind::Call: {
     const auto &call = as<CallExpr>(*expr);
-    head(fmt::format("call {}{}", call.receiver ? "." : "", call.callee.text));
+    head(fmt::format("call {}{}{}{}", call.receiver ? "." : "", call.base.text,
+                     call.base.text.empty() ? "" : "::", call.callee.text));
     const Indent indent(depth);
     expression("receiver: ", call.receiver.get());
     expressions("", call.args);

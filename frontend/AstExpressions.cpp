@@ -145,8 +145,15 @@ ExprPtr AstBuilder::buildExpr(Parser::ExprContext *context) {
   if (context->exception)
     return error(range(context));
   if (auto *identifier = dynamic_cast<Parser::NameContext *>(context)) {
+    if (identifier->COLON_COLON()) {
+      diagnostics
+          .report(Code::qualifiedName, range(context), text(range(identifier->IDENTIFIER(0))),
+                  text(range(identifier->IDENTIFIER(1))))
+          .note("members have one name in a class and all of its bases");
+      return error(range(context));
+    }
     auto result = make<NameExpr>(context);
-    result->name = text(range(identifier->IDENTIFIER()));
+    result->name = text(range(identifier->IDENTIFIER(0)));
     return result;
   }
   if (auto *constant = dynamic_cast<Parser::ConstantContext *>(context))
@@ -247,7 +254,9 @@ ExprPtr AstBuilder::buildCall(Parser::CallContext *context) {
     return buildConstruct(context);
   auto result = make<CallExpr>(context);
   if (auto *function = dynamic_cast<Parser::NameContext *>(callee)) {
-    result->callee = name(function->IDENTIFIER());
+    if (function->COLON_COLON())
+      result->base = name(function->IDENTIFIER(0));
+    result->callee = name(function->IDENTIFIER().back());
   } else if (auto *method = dynamic_cast<Parser::MemberContext *>(callee)) {
     result->receiver = buildExpr(method->expr());
     result->callee = name(method->IDENTIFIER());
@@ -275,11 +284,11 @@ ExprPtr AstBuilder::buildConstruct(Parser::CallContext *context) {
   }
   std::reverse(result->type.dimensions.begin(), result->type.dimensions.end());
   auto *type = dynamic_cast<Parser::NameContext *>(callee);
-  if (!type) {
+  if (!type || type->COLON_COLON()) {
     diagnostics.report(Code::notCallable, result->type.range);
     return error(range(context));
   }
-  result->type.name = name(type->IDENTIFIER());
+  result->type.name = name(type->IDENTIFIER(0));
   result->args = buildArguments(context->arguments());
   return result;
 }

@@ -295,21 +295,22 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
 // Constructs
 //===----------------------------------------------------------------------===//
 
-/// `std::`
+/// `std::`. Another name in front of a function is that of a base class.
 std::size_t ForeignWords::skipNamespace(std::size_t index) {
   const bool isNamed = typeAt(index) == RtslLexer::IDENTIFIER;
   const std::size_t colons = index + (isNamed ? 1 : 0);
-  if (!touches(colons, RtslLexer::COLON, RtslLexer::COLON) ||
-      typeAt(colons + 2) != RtslLexer::IDENTIFIER)
+  if (typeAt(colons) != RtslLexer::COLON_COLON || typeAt(colons + 1) != RtslLexer::IDENTIFIER)
     return 0;
   const std::string_view word = isNamed ? textOf(at(index)) : std::string_view();
   bool isKnown = false;
   for (std::string_view name : {"std", "glm", "optix", "optixu", "rtsl", "metal", "hlsl", "vk"})
     isKnown |= word == name;
+  if (isNamed && !isKnown && typeAt(colons + 2) != RtslLexer::COLON_COLON)
+    return 0;
   diagnostics
-      .report(Code::foreignConstruct, rangeOf(at(index)).to(rangeOf(at(colons + 1))), "namespaces")
-      .fix({file, at(index).begin, at(colons + 2).begin}, "", isKnown);
-  return colons + 2 - index;
+      .report(Code::foreignConstruct, rangeOf(at(index)).to(rangeOf(at(colons))), "namespaces")
+      .fix({file, at(index).begin, at(colons + 1).begin}, "", isKnown);
+  return colons + 1 - index;
 }
 
 /// The word in front, which may be a type, begins a declaration. Variables may have such names,

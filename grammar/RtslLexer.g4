@@ -87,6 +87,7 @@ RIGHT_BRACE   : '}' ;
 SEMICOLON     : ';' ;
 COMMA         : ',' ;
 COLON         : ':' ;
+COLON_COLON   : '::' ;
 QUESTION      : '?' ;
 DOT           : '.' ;
 

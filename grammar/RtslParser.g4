@@ -195,11 +195,11 @@ expression
 // a ? b : c = d is a ? b : (c = d).
 //
 // A call is whatever stands in front of parentheses: `max(a, b)`, `albedo.lookup()`, `vec3(1)`, `float[3](1, 2, 3)`,
-// and only there may brackets be empty, as in `float[](1, 2)`.
+// and only there may brackets be empty, as in `float[](1, 2)`. `Base::shade()` calls the definition of a base class.
 expr
     : LEFT_PAREN expression RIGHT_PAREN                                                 # paren
     | literal                                                                           # constant
-    | IDENTIFIER                                                                        # name
+    | IDENTIFIER ( COLON_COLON IDENTIFIER )?                                            # name
     | expr DOT IDENTIFIER                                                               # member
     | expr LEFT_BRACKET expression? RIGHT_BRACKET                                       # index
     | expr LEFT_PAREN arguments RIGHT_PAREN                                             # call

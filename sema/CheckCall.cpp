@@ -42,6 +42,8 @@ static bool isOfMember(const typed::Expr &expr) {
 }
 
 ExprPtr FunctionChecker::checkCall(const ast::CallExpr &expr) {
+  if (!expr.base.text.empty())
+    return checkBaseCall(expr);
   return expr.receiver ? checkReceiverCall(expr) : checkPlainCall(expr);
 }
 
@@ -257,7 +259,10 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   const Signature &signature = signatures[static_cast<std::size_t>(chosen)];
   if (signature.result->isError())
     return errorExpr(expr.range);
-  if (callee.isConstructor || callee.isStateMethod) {
+  const bool isOfBase = !expr.base.text.empty();
+  if (isOfBase && !requireSameMethod(callee, expr.base.range.to(expr.callee.range)))
+    return errorExpr(expr.range);
+  if (!isOfBase && (callee.isConstructor || callee.isStateMethod)) {
     diagnostics.report(Code::engineCalls, expr.callee.range, callee.name)
         .label(callee.range, "defined here")
         .note(callee.isConstructor ? "the constructor runs once, when the scene makes the object"
@@ -272,7 +277,7 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
     diagnostics.report(Code::useOutsideFunction, expr.callee.range, callee.name);
     return errorExpr(expr.range);
   }
-  facts->calls.push_back({&callee, callee.owner != nullptr, receiver != nullptr,
+  facts->calls.push_back({&callee, callee.owner != nullptr && !isOfBase, receiver != nullptr,
                           receiver && isOfMember(*receiver), expr.callee.range});
   convertArguments(signature, args);
   if (receiver) {
@@ -286,8 +291,72 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   auto node = makeExpr<typed::CallExpr>(signature.result, expr.range);
   node->function = &callee;
   node->onSelf = callee.owner != nullptr;
+  node->isOfBase = isOfBase;
   node->args = std::move(args);
   return node;
+}
+
+//===----------------------------------------------------------------------===//
+// Base::function(...)
+//===----------------------------------------------------------------------===//
+
+/// What the engine calls may be called by what overrides it: there it may do the same.
+bool FunctionChecker::requireSameMethod(const typed::Function &callee, SourceRange range) {
+  if (!callee.isConstructor && !callee.isStateMethod)
+    return true;
+  const bool isSame = function && function->name == callee.name &&
+                      (callee.isConstructor || sameParameters(callee, *function));
+  if (!isSame)
+    diagnostics.report(Code::baseMethodElsewhere, range, callee.owner->name, callee.name, callee.name)
+        .label(callee.range, "defined here")
+        .note(callee.isConstructor ? "the constructor runs once, when the scene makes the object"
+                                   : "put what both need into a function of its own");
+  return isSame;
+}
+
+ExprPtr FunctionChecker::checkBaseCall(const ast::CallExpr &expr) {
+  const ClassScope *base = scope ? scope->base : nullptr;
+  while (base && base->definition->name != expr.base.text)
+    base = base->base;
+  if (base) {
+    const std::vector<const typed::Function *> candidates =
+        program.findMethods(base, expr.callee.text);
+    if (!candidates.empty())
+      return checkUserCall(expr, candidates, nullptr);
+  }
+  for (const ast::ExprPtr &arg : expr.args)
+    checkExpr(*arg);
+  if (base) {
+    Diagnostic &diagnostic = diagnostics.report(Code::unknownMethod, expr.callee.range,
+                                                base->definition->name, expr.callee.text);
+    std::vector<std::string> names;
+    for (const ClassScope *at = base; at; at = at->base)
+      for (const auto &entry : at->functions)
+        names.push_back(entry.first);
+    std::sort(names.begin(), names.end());
+    if (const std::string closest = closestName(expr.callee.text, names); !closest.empty())
+      diagnostic.fix(expr.callee.range, closest);
+    diagnostic.label(base->definition->range, "`" + base->definition->name + "` is defined here");
+    return errorExpr(expr.range);
+  }
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::notABase, expr.base.range, expr.base.text,
+                         scope ? "`" + scope->definition->name + "`" : "a function at file level");
+  const SourceRange front{expr.base.range.file, expr.base.range.begin, expr.callee.range.begin};
+  if (scope && scope->definition->name == expr.base.text)
+    diagnostic.fix(front, "");
+  else if (scope && scope->root && scope->root->name == expr.base.text)
+    diagnostic.note("the rt_ classes define no functions");
+  else if (scope) {
+    std::vector<std::string> bases;
+    for (const ClassScope *at = scope->base; at; at = at->base)
+      bases.push_back(at->definition->name);
+    if (const std::string closest = closestName(expr.base.text, bases); !closest.empty())
+      diagnostic.fix(expr.base.range, closest);
+    else if (scope->base && expr.base.text == "super")
+      diagnostic.fix(expr.base.range, scope->base->definition->name);
+  }
+  return errorExpr(expr.range);
 }
 
 //===----------------------------------------------------------------------===//

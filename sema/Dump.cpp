@@ -405,7 +405,9 @@ void Dumper::expr(const Expr &e) {
   }
   case ExprKind::Call: {
     const auto &call = cast<CallExpr>(e);
-    node((call.onSelf ? "call self." : "call ") + call.function->name, e);
+    node((call.isOfBase ? "call " + call.function->owner->name + "::" : call.onSelf ? "call self." : "call ") +
+             call.function->name,
+         e);
     Indent indent(*this);
     exprs(call.args);
     break;

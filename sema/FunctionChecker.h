@@ -134,6 +134,8 @@ private:
   // CheckCall.cpp
   typed::ExprPtr checkCall(const ast::CallExpr &expr);
   typed::ExprPtr checkPlainCall(const ast::CallExpr &expr);
+  typed::ExprPtr checkBaseCall(const ast::CallExpr &expr);
+  bool requireSameMethod(const typed::Function &callee, SourceRange range);
   typed::ExprPtr checkReceiverCall(const ast::CallExpr &expr);
   typed::ExprPtr checkLength(const ast::CallExpr &expr, typed::ExprPtr receiver);
   typed::ExprPtr checkReferenceCall(const ast::CallExpr &expr, typed::ExprPtr receiver);

@@ -276,7 +276,7 @@ static const SpellingTable &spellings() {
       {"dPdu", {"rt_dPdu", "", true}},
       {"dPdv", {"rt_dPdv", "", true}},
       {"super",
-       {"", "what a derived class overrides cannot be called any more: give it another name"}},
+       {"", "the definition of a base class is called with its name: `Base::function()`"}},
       {"NULL", {"", "a reference has no null in RTSL"}},
       {"null", {"", "a reference has no null in RTSL"}},
       {"nullptr", {"", "a reference has no null in RTSL"}},

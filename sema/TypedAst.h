@@ -223,10 +223,12 @@ struct BuiltinExpr : ExprOf<ExprKind::Builtin> {
   Builtin builtin{};
   std::vector<ExprPtr> args;
 };
-/// A free function, or a method of the object itself (`onSelf`: the most derived definition runs).
+/// A free function, or a method of the object itself (`onSelf`): the most derived definition runs, or, of a call of a
+/// base class's (`Base::shade()`), `function` itself, which may be a method of the table or a constructor.
 struct CallExpr : ExprOf<ExprKind::Call> {
   const Function *function = nullptr;
   bool onSelf = false;
+  bool isOfBase = false;
   std::vector<ExprPtr> args; // of out and inout parameters: lvalues of exactly the parameter's type
 };
 /// `reference.method(args)`, dispatched on the object's class. `lookup()` gives TextureColor (a color) and

@@ -122,7 +122,8 @@ Code FunctionPrinter::call(const typed::CallExpr &expr) {
     first.push_back("rt");
   if (module.takesScratch(target))
     first.push_back("scratch");
-  return callWith(module.names.of(&target), std::move(first), target, expr.args, expr.type);
+  const std::string base = expr.isOfBase ? module.names.of(target.owner) + "::" : std::string();
+  return callWith(base + module.names.of(&target), std::move(first), target, expr.args, expr.type);
 }
 
 Code FunctionPrinter::methodCall(const typed::MethodCallExpr &expr) {

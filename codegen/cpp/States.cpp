@@ -350,8 +350,8 @@ bool ModulePrinter::differsIn(const typed::Class &derived, const typed::Function
       auto *call = dynCast<typed::CallExpr>(&expr);
       if (!call || !call->onSelf)
         return;
-      const typed::Function &here = lowering::resolve(*call->function, &derived);
-      const typed::Function &above = lowering::resolve(*call->function, method.owner);
+      const typed::Function &here = lowering::resolve(*call, &derived);
+      const typed::Function &above = lowering::resolve(*call, method.owner);
       differs |= &here != &above && (isPartOfStates(here) || isPartOfStates(above));
       if (here.body && seen.insert(&here).second)
         open.push_back(&here);

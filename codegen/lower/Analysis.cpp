@@ -213,6 +213,10 @@ const typed::Function &resolve(const typed::Function &callee, const typed::Class
   return callee;
 }
 
+const typed::Function &resolve(const typed::CallExpr &call, const typed::Class *concrete) {
+  return call.isOfBase ? *call.function : resolve(*call.function, concrete);
+}
+
 static bool takesPart(const typed::Function &function, const typed::Class *concrete,
                       std::set<const typed::Function *> &visited) {
   if (!function.body || !visited.insert(&function).second)
@@ -224,7 +228,7 @@ static bool takesPart(const typed::Function &function, const typed::Class *concr
     else if (auto *member = dynCast<typed::MemberExpr>(&expr))
       found = found || member->member->access == ast::Access::Scratch;
     else if (auto *call = dynCast<typed::CallExpr>(&expr))
-      found = found || takesPart(resolve(*call->function, concrete), concrete, visited);
+      found = found || takesPart(resolve(*call, concrete), concrete, visited);
   });
   return found;
 }
@@ -279,7 +283,7 @@ bool HitAnswers::isFoundIn(const typed::Function &function, const typed::Class *
       return;
     found = isHitAnswer(expr);
     if (auto *call = dynCast<typed::CallExpr>(&expr))
-      found = call->onSelf ? mayAnswer(resolve(*call->function, concrete), concrete)
+      found = call->onSelf ? mayAnswer(resolve(*call, concrete), concrete)
                            : mayAnswer(*call->function, nullptr);
     else if (auto *method = dynCast<typed::MethodCallExpr>(&expr))
       found = method->function && mayAnswerOf(*method->function);

@@ -65,6 +65,8 @@ private:
 /// The definition that a call on the object itself runs: that of the most derived class with the
 /// callee's parameters.
 const typed::Function &resolve(const typed::Function &callee, const typed::Class *concrete);
+/// The definition that a call runs on an object of this class.
+const typed::Function &resolve(const typed::CallExpr &call, const typed::Class *concrete);
 
 /// Do two functions have the same parameter types?
 bool sameParameters(const typed::Function &a, const typed::Function &b);

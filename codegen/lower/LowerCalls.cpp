@@ -98,11 +98,17 @@ void FunctionLowering::copyOut(const std::vector<CopyOut> &outputs) {
     store(loadFrom(output.from, output.target.type), output.target);
 }
 
+/// Does it call what objects of the class do not run otherwise, or what the engine calls in another way?
+bool FunctionLowering::isHidden(const typed::CallExpr &expr) const {
+  const typed::Function &callee = *expr.function;
+  return expr.isOfBase && (callee.isStateMethod || callee.isConstructor || &resolve(callee, key.concrete) != &callee);
+}
+
 Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
   const typed::Class *concrete = expr.onSelf ? key.concrete : nullptr;
-  const typed::Function &callee = resolve(*expr.function, concrete);
+  const typed::Function &callee = resolve(expr, concrete);
   bool forIntersect = accepted && takesPartInIntersection(callee, concrete);
-  mlir::func::FuncOp target = module.function({&callee, concrete, forIntersect});
+  mlir::func::FuncOp target = module.function({&callee, concrete, forIntersect, isHidden(expr)});
 
   llvm::SmallVector<Value, 8> values;
   std::vector<CopyOut> outputs;

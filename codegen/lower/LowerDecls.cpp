@@ -2,7 +2,7 @@
 //
 // Symbols: a free function keeps its name, `f`, or has its parameters' types behind it where the
 // name is overloaded, `f.vec3.float`. A method is `Class.method`, of the class whose objects run
-// it. What a call of `intersect` needs a second version of is `Class.helper.intersect`
+// it; `Class.Base.method` is the definition of a base class that `Base::method()` calls. What a call of `intersect` needs a second version of is `Class.helper.intersect`
 // (LowerFunction.cpp says why).
 //
 //===----------------------------------------------------------------------===//
@@ -45,13 +45,13 @@ std::string ModuleLowering::symbolOf(const FunctionKey &key) {
   const typed::Function &function = *key.function;
   std::string name;
   if (key.concrete) {
-    name = key.concrete->name + "." + slotName(function);
+    name = key.concrete->name + "." + (key.isHidden ? function.owner->name + "." : "") + slotName(function);
   } else {
     auto overloads = std::count_if(source.functions.begin(), source.functions.end(),
                                    [&](const auto &other) { return other->name == function.name; });
     name = overloads > 1 ? function.name + parameterWords(function) : function.name;
   }
-  if (key.inIntersect && function.name != "intersect")
+  if (key.isForIntersect())
     name += ".intersect";
   // Far-fetched, but possible: the name of a class and its method spelled by other means.
   std::string unique = name;
@@ -87,12 +87,12 @@ mlir::FunctionType ModuleLowering::functionType(const FunctionKey &key) {
   else if (!function.returnType->is(TypeKind::Void))
     results.push_back(type(function.returnType));
   for (const auto &parameter : function.parameters) {
-    if (takesPayload(function))
+    if (key.takesPayload())
       break;
     bool byAddress = livesInMemory(parameter->type) || parameter->direction != ast::Direction::In;
     inputs.push_back(byAddress ? pointer(parameter->type) : type(parameter->type));
   }
-  if (key.inIntersect && function.name != "intersect") {
+  if (key.isForIntersect()) {
     if (key.concrete)
       for (const typed::Member *member : scratchMembers(key.concrete))
         inputs.push_back(pointer(member->type));
@@ -112,11 +112,11 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
     function->setAttr("rtsl.class", emitter.getStringAttr(key.concrete->name));
     if (source.isConstructor)
       function->setAttr("rtsl.constructor", emitter.getUnitAttr());
-    else if (!key.inIntersect || source.name == "intersect")
+    else if (!key.isForIntersect() && !key.isHidden)
       function->setAttr("rtsl.method", emitter.getStringAttr(slotName(source)));
     if (options.source && options.source->becomesStates(source))
       function->setAttr("rtsl.states", emitter.getUnitAttr());
-    if (takesPayload(source))
+    if (key.takesPayload())
       function->setAttr("rtsl.payload", mlir::TypeAttr::get(type(source.parameters[0]->type)));
   }
   functions[key] = function;

@@ -36,9 +36,9 @@ Value FunctionLowering::self() {
 
 void FunctionLowering::run() {
   bindParameters();
-  mayEndAnyHit = (!key.function->isStateMethod || key.function->name == "anyHit") &&
+  mayEndAnyHit = (!key.isStateMethod() || key.function->name == "anyHit") &&
                  module.hitAnswers.mayAnswer(*key.function, key.concrete);
-  if (key.function->name == "intersect" && key.inIntersect)
+  if (key.inIntersect && !key.isForIntersect())
     enterIntersect();
   lower(*key.function->body);
   if (!emitter.isTerminated())
@@ -75,7 +75,7 @@ void FunctionLowering::bindParameters() {
 
   std::set<const typed::Variable *> assigned = assignedVariables(*source.body);
   for (const auto &parameter : source.parameters) {
-    if (takesPayload(source)) {
+    if (key.takesPayload()) {
       variables[parameter.get()].address =
           emitter.make<ir::PayloadOp>(module.pointer(parameter->type));
       continue;
@@ -91,7 +91,7 @@ void FunctionLowering::bindParameters() {
       binding.value = {value};
     }
   }
-  if (key.inIntersect && source.name != "intersect") {
+  if (key.isForIntersect()) {
     if (key.concrete)
       for (const typed::Member *member : module.scratchMembers(key.concrete))
         scratch[member] = argument(member->name);

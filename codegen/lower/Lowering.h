@@ -32,16 +32,24 @@ using Parts = llvm::SmallVector<Value, 4>;
 
 /// One function to be lowered. A method is lowered once for each class whose objects run it, so
 /// that what it calls on itself is known. `inIntersect`: on behalf of `intersect`, where scratch
-/// members are variables.
+/// members are variables. `isHidden`: a definition of a base class that only `Base::function()`
+/// runs on such objects; of what the engine calls this is an ordinary function.
 struct FunctionKey {
   const typed::Function *function = nullptr;
   const typed::Class *concrete = nullptr;
   bool inIntersect = false;
+  bool isHidden = false;
 
   bool operator<(const FunctionKey &other) const {
-    return std::tie(function, concrete, inIntersect) <
-           std::tie(other.function, other.concrete, other.inIntersect);
+    return std::tie(function, concrete, inIntersect, isHidden) <
+           std::tie(other.function, other.concrete, other.inIntersect, other.isHidden);
   }
+  /// Does the engine call it?
+  bool isStateMethod() const { return function && function->isStateMethod && !isHidden; }
+  /// Does its payload come with the ray?
+  bool takesPayload() const { return isStateMethod() && !function->parameters.empty(); }
+  /// Does it work on the scratch members of the `intersect` that calls it?
+  bool isForIntersect() const { return inIntersect && !isStateMethod(); }
 };
 
 class ModuleLowering {
@@ -226,6 +234,7 @@ private:
   void appendScalars(const Parts &parts, const Type *type, llvm::SmallVectorImpl<Value> &scalars);
 
   // LowerCalls.cpp
+  bool isHidden(const typed::CallExpr &expr) const;
   Parts lowerCall(const typed::CallExpr &expr, Value result = nullptr);
   Parts lowerMethodCall(const typed::MethodCallExpr &expr);
   Parts lowerLookup(const typed::MethodCallExpr &expr);
