@@ -170,6 +170,7 @@ struct VariableDecl {
   Access access = Access::None;
   SourceRange accessRange;
   bool isConst = false;
+  SourceRange optionalRange;           // of `optional`, of a member; not valid: it is not there
   Direction direction = Direction::In; // parameters only
   TypeName type;                       // dimensions behind the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
   Name name;                           // empty text: an unnamed parameter

@@ -17,7 +17,7 @@ struct Qualifiers {
   ast::Access access = ast::Access::None;
   bool isConst = false;
   ast::Direction direction = ast::Direction::In;
-  SourceRange accessRange, constRange, directionRange; // not valid: absent
+  SourceRange accessRange, constRange, optionalRange, directionRange; // not valid: absent
 };
 
 /// Turns the items of a parsed file into the syntax tree, one after the other, and reports what the

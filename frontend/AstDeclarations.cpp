@@ -126,6 +126,14 @@ Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContex
       else
         result.isConst = true;
       break;
+    case Parser::OPTIONAL:
+      if (isSecond(result.optionalRange))
+        break;
+      if (place != Place::Member)
+        refuseQualifier(where, "it is for members of classes");
+      else
+        result.optionalRange = where;
+      break;
     case Parser::IN:
     case Parser::OUT:
     case Parser::INOUT:
@@ -199,6 +207,7 @@ void AstBuilder::addVariables(const antlr4::ParserRuleContext *context,
     variable.access = qualifiers.access;
     variable.accessRange = qualifiers.accessRange;
     variable.isConst = qualifiers.isConst;
+    variable.optionalRange = qualifiers.optionalRange;
     variable.type = buildType(typeName, declarator->dimension());
     variable.name = name(declarator->IDENTIFIER());
     if (auto *initializer = declarator->initializer())

@@ -402,6 +402,7 @@ void Dumper::variable(const char *what, const VariableDecl &variable) {
           : variable.access == Access::Scratch ? " scratch"
                                                : "";
   text += variable.isConst ? " const" : "";
+  text += variable.optionalRange.isValid() ? " optional" : "";
   text += variable.direction == Direction::Out     ? " out"
           : variable.direction == Direction::InOut ? " inout"
                                                    : "";

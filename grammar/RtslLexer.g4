@@ -27,6 +27,7 @@ PUBLIC   : 'public' ;     // set by the scene
 PRIVATE  : 'private' ;    // set by the constructor
 SCRATCH  : 'scratch' ;    // of one ray
 CONST    : 'const' ;
+OPTIONAL : 'optional' ;   // a reference that may stay empty
 
 // Which way a parameter passes its value.
 IN       : 'in' ;

@@ -63,7 +63,7 @@ declaration
     ;
 
 qualifier
-    : PUBLIC | PRIVATE | SCRATCH | CONST | IN | OUT | INOUT
+    : PUBLIC | PRIVATE | SCRATCH | CONST | OPTIONAL | IN | OUT | INOUT
     ;
 
 // vec3, Sphere, float[3][2], and vec3[] for a buffer

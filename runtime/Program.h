@@ -39,7 +39,7 @@ struct MemberInfo {
   std::uint32_t offset =
       0; // bytes from the start of the record (members) or of the packed arguments (parameters)
   bool isPublic = false; // the scene may set it
-  bool hasDefault = false;
+  bool hasDefault = false; // of a reference: it may stay empty
 };
 
 struct ClassInfo {

@@ -111,26 +111,34 @@ private:
     runtime::ErrorCollector ofMembers;
     for (const auto &[key, value] : object.members)
       ofMembers.attempt([&, &key = key, &value = value] {
-        values.members.push_back(
-            {key.text,
-             convert(*value, classInfo ? typeOf(classInfo->members, key.text) : nullptr,
-                     fmt::format("member `{}` of `{}`", key.text, name)),
-             key.place});
+        const MemberInfo *member = classInfo ? find(classInfo->members, key.text) : nullptr;
+        const bool mayBeEmpty = member && member->hasDefault &&
+                                member->type.kind == ValueType::Kind::Reference;
+        values.members.push_back({key.text,
+                                  convert(*value, member ? &member->type : nullptr,
+                                          fmt::format("member `{}` of `{}`", key.text, name),
+                                          mayBeEmpty),
+                                  key.place});
       });
     ofMembers.throwIfAny();
     return scene.addObject(object.className.text, values, name);
   }
 
-  static const ValueType *typeOf(const std::vector<MemberInfo> &members, const std::string &name) {
+  static const MemberInfo *find(const std::vector<MemberInfo> &members, const std::string &name) {
     for (const MemberInfo &member : members)
       if (member.name == name)
-        return &member.type;
+        return &member;
     return nullptr;
+  }
+  static const ValueType *typeOf(const std::vector<MemberInfo> &members, const std::string &name) {
+    const MemberInfo *member = find(members, name);
+    return member ? &member->type : nullptr;
   }
 
   /// JSON as a value. Strings name objects where the type is a reference, and mean nothing
-  /// elsewhere.
-  Value convert(const JsonValue &json, const ValueType *type, const std::string &what) {
+  /// elsewhere; null is no object, of references that `mayBeEmpty`.
+  Value convert(const JsonValue &json, const ValueType *type, const std::string &what,
+                bool mayBeEmpty = false) {
     switch (json.kind) {
     case Kind::Number:
       return Value(json.number).at(json.place());
@@ -140,7 +148,7 @@ private:
       std::vector<Value> list;
       list.reserve(json.elements.size());
       for (const JsonValue &element : json.elements)
-        list.push_back(convert(element, type, what));
+        list.push_back(convert(element, type, what, mayBeEmpty));
       return Value(std::move(list)).at(json.place());
     }
     case Kind::String:
@@ -152,6 +160,8 @@ private:
       return Value::reference(add(object, object.className.text)).at(json.place());
     }
     case Kind::Null:
+      if (mayBeEmpty)
+        return Value::reference(0).at(json.place());
       break;
     }
     throw Error(ErrorCode::WrongType, fmt::format("{} cannot be null", what), json.place());

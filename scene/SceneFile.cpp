@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
 
@@ -303,25 +304,63 @@ private:
   runtime::ErrorCollector errors;
 };
 
-/// Objects written where a reference is asked for name classes too.
-void collect(const JsonValue &value, std::vector<LocatedName> &mentions) {
+/// An object of the scene, wherever it is written: its class, and its members.
+using ObjectVisitor =
+    std::function<void(const LocatedName &, const std::vector<std::pair<LocatedName, const JsonValue *>> &)>;
+
+/// Objects written where a reference is asked for are objects too.
+void forEachObject(const JsonValue &value, const ObjectVisitor &visit) {
   if (value.kind == Kind::Object) {
     if (const JsonValue *className = value.find("class");
-        className && className->kind == Kind::String)
-      mentions.push_back({className->string, className->place()});
+        className && className->kind == Kind::String) {
+      std::vector<std::pair<LocatedName, const JsonValue *>> members;
+      for (const auto &[key, member] : value.members)
+        members.push_back({{key.text, member.place()}, &member});
+      visit({className->string, className->place()}, members);
+    }
     for (const auto &member : value.members)
-      collect(member.second, mentions);
+      forEachObject(member.second, visit);
   }
   for (const JsonValue &element : value.elements)
-    collect(element, mentions);
+    forEachObject(element, visit);
 }
 
-void collect(const ObjectDescription &object, std::vector<LocatedName> &mentions) {
-  mentions.push_back(object.className);
+void forEachObject(const ObjectDescription &object, const ObjectVisitor &visit) {
+  visit(object.className, object.members);
   if (object.constructor)
-    collect(*object.constructor, mentions);
+    forEachObject(*object.constructor, visit);
   for (const auto &member : object.members)
-    collect(*member.second, mentions);
+    forEachObject(*member.second, visit);
+}
+
+/// In the order of the file's sections.
+void forEachObject(const SceneDescription &description, const ObjectVisitor &visit) {
+  // Of what begins a sample only one takes part.
+  const auto &start = description.render.engine == runtime::Engine::Classic
+                          ? description.camera
+                          : description.rayGeneration;
+  if (start)
+    forEachObject(*start, visit);
+  for (const auto *named : {&description.textures, &description.materials})
+    for (const auto &object : *named)
+      forEachObject(object.second, visit);
+  for (const GeometryDescription &geometry : description.objects) {
+    if (geometry.primitive)
+      forEachObject(*geometry.primitive, visit);
+    if (geometry.material.object)
+      forEachObject(*geometry.material.object, visit);
+  }
+  for (const ObjectDescription &light : description.lights)
+    forEachObject(light, visit);
+  for (const auto &object : {description.background, description.exception})
+    if (object)
+      forEachObject(*object, visit);
+}
+
+bool isNothing(const JsonValue &value) {
+  return value.kind == Kind::Null ||
+         (value.kind == Kind::Array &&
+          std::all_of(value.elements.begin(), value.elements.end(), isNothing));
 }
 
 } // namespace
@@ -344,28 +383,20 @@ SceneDescription readSceneFile(const std::string &path, const std::vector<std::s
 
 std::vector<LocatedName> classMentions(const SceneDescription &description) {
   std::vector<LocatedName> mentions;
-  // Of what begins a sample only one takes part.
-  const auto &start = description.render.engine == runtime::Engine::Classic
-                          ? description.camera
-                          : description.rayGeneration;
-  if (start)
-    collect(*start, mentions);
-  for (const auto &texture : description.textures)
-    collect(texture.second, mentions);
-  for (const auto &material : description.materials)
-    collect(material.second, mentions);
-  for (const GeometryDescription &geometry : description.objects) {
-    if (geometry.primitive)
-      collect(*geometry.primitive, mentions);
-    if (geometry.material.object)
-      collect(*geometry.material.object, mentions);
-  }
-  for (const ObjectDescription &light : description.lights)
-    collect(light, mentions);
-  for (const auto &object : {description.background, description.exception})
-    if (object)
-      collect(*object, mentions);
+  forEachObject(description,
+                [&](const LocatedName &name, const auto &) { mentions.push_back(name); });
   return mentions;
+}
+
+std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description) {
+  std::map<std::string, std::set<std::string>> given;
+  forEachObject(description, [&](const LocatedName &name, const auto &members) {
+    std::set<std::string> &ofClass = given[name.text];
+    for (const auto &[member, value] : members)
+      if (!isNothing(*value))
+        ofClass.insert(member.text);
+  });
+  return given;
 }
 
 std::vector<std::string> classesUsed(const SceneDescription &description) {

@@ -30,6 +30,11 @@ ExprPtr FunctionChecker::checkConstruct(const Type *type, SourceRange typeRange,
   }
   if (type->is(TypeKind::Color))
     return constructColor(std::move(values), range);
+  if (type->is(TypeKind::Bool) && values.size() == 1 && values[0]->type->is(TypeKind::Class)) {
+    ExprPtr tested = convertTo(std::move(values[0]), type, false);
+    tested->range = range;
+    return tested;
+  }
   for (const ExprPtr &value : values) {
     if (value->type->scalar())
       continue;

@@ -119,8 +119,13 @@ ExprPtr FunctionChecker::checkValue(const ast::Expr &expr, Access access) {
   return requireValue(checkExpr(expr, access));
 }
 
+ExprPtr FunctionChecker::testReference(ExprPtr expr) {
+  return expr->type->is(TypeKind::Class) ? convertTo(std::move(expr), types.boolType)
+                                         : std::move(expr);
+}
+
 ExprPtr FunctionChecker::checkCondition(const ast::Expr &expr) {
-  ExprPtr condition = checkValue(expr);
+  ExprPtr condition = testReference(checkValue(expr));
   if (condition->type->is(TypeKind::Bool) || condition->type->isError())
     return condition;
   Diagnostic &diagnostic =

@@ -51,6 +51,8 @@ ExprPtr FunctionChecker::checkUnary(const ast::UnaryExpr &expr) {
     operand = checkIntLiteral(*number, true);
   else
     operand = checkValue(*expr.operand);
+  if (expr.op == ast::UnaryOp::Not)
+    operand = testReference(std::move(operand));
   const Type *type = operand->type, *scalar = type->scalar();
   if (type->isError())
     return errorExpr(expr.range);
@@ -157,6 +159,12 @@ ExprPtr FunctionChecker::combine(const ast::BinaryExpr &expr, ExprPtr left, Expr
 const Type *FunctionChecker::operandTypes(BinaryOp op, ExprPtr &left, ExprPtr &right,
                                           bool leftFixed) {
   const Type *l = left->type, *r = right->type;
+  if (isLogical(op) && !l->isError() && !r->isError()) {
+    left = testReference(std::move(left));
+    right = testReference(std::move(right));
+    l = left->type;
+    r = right->type;
+  }
   if (isLogical(op))
     return l->is(TypeKind::Bool) && r->is(TypeKind::Bool) ? types.boolType : nullptr;
 

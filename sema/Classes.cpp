@@ -193,6 +193,7 @@ void Program::declareMember(ClassScope &scope, const ast::VariableDecl &declarat
     member->type = types.error;
   }
   checkMemberQualifiers(scope, declaration, member->type);
+  member->isOptional = declaration.optionalRange.isValid();
 
   if (declaration.isConst) {
     if (!declaration.init) {
@@ -237,6 +238,17 @@ void Program::declareMember(ClassScope &scope, const ast::VariableDecl &declarat
 void Program::checkMemberQualifiers(const ClassScope &scope, const ast::VariableDecl &declaration,
                                     const Type *type) {
   const std::string &name = declaration.name.text;
+  if (declaration.optionalRange.isValid() && !type->isError()) {
+    const Type *element = type;
+    while (element->is(TypeKind::Array) || element->is(TypeKind::Buffer))
+      element = element->element;
+    const char *reason = !element->is(TypeKind::Class) ? "only references are"
+                         : declaration.access != ast::Access::Public
+                             ? "only what the scene sets is; a `private` reference may be empty in any case"
+                             : nullptr;
+    if (reason)
+      diagnostics.report(Code::misplacedOptional, declaration.optionalRange, name, reason);
+  }
   if (declaration.isConst) {
     if (declaration.access == ast::Access::Public || declaration.access == ast::Access::Scratch)
       diagnostics.report(Code::constMemberAccess, declaration.accessRange,

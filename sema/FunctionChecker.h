@@ -59,6 +59,8 @@ private:
   /// An expression that may be void: a statement, or a side of a comma.
   typed::ExprPtr checkOperand(const ast::Expr &expr);
   typed::ExprPtr checkCondition(const ast::Expr &expr);
+  /// What a condition makes of a reference: whether there is an object. Others stay as they are.
+  typed::ExprPtr testReference(typed::ExprPtr expr);
   typed::ExprPtr errorExpr(SourceRange range);
   typed::ExprPtr checkIntLiteral(const ast::IntLiteral &literal, bool negated);
   typed::ExprPtr checkFloatLiteral(const ast::FloatLiteral &literal);

@@ -277,9 +277,9 @@ static const SpellingTable &spellings() {
       {"dPdv", {"rt_dPdv", "", true}},
       {"super",
        {"", "the definition of a base class is called with its name: `Base::function()`"}},
-      {"NULL", {"", "a reference has no null in RTSL"}},
-      {"null", {"", "a reference has no null in RTSL"}},
-      {"nullptr", {"", "a reference has no null in RTSL"}},
+      {"NULL", {"", "whether a reference is to an object is its value as a condition: `if (reference)`"}},
+      {"null", {"", "whether a reference is to an object is its value as a condition: `if (reference)`"}},
+      {"nullptr", {"", "whether a reference is to an object is its value as a condition: `if (reference)`"}},
       {"this", {"", "members are named directly, without `this`"}},
       {"self", {"", "members are named directly, without `self`"}},
   };

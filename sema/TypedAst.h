@@ -84,6 +84,7 @@ struct Member {
   std::string name;
   const Type *type = nullptr;
   bool isConst = false;
+  bool isOptional = false;            // a public reference, or references, that the scene may leave empty
   std::unique_ptr<Constant> constant; // const members
   ExprPtr init;                       // default of a public or private member; null: none (zero)
   const Class *owner = nullptr;
@@ -205,7 +206,8 @@ struct ConditionalExpr : ExprOf<ExprKind::Conditional> {
 struct CommaExpr : ExprOf<ExprKind::Comma> {
   ExprPtr left, right;
 };
-/// Change of scalar type, shape kept: int to float, bvec3 to vec3, ... ; or a reference to one of a base class.
+/// Change of scalar type, shape kept: int to float, bvec3 to vec3, ... ; or a reference to one of a base class, or to a
+/// bool: whether there is an object.
 struct ConvertExpr : ExprOf<ExprKind::Convert> {
   bool isImplicit = true;
   ExprPtr operand;

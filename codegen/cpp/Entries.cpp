@@ -357,7 +357,7 @@ std::string ModulePrinter::description() {
         continue;
       text += fmt::format(".member(\"{}\", &{}::{}, rtsl::Access::{}{})", member->name, name, names.of(member),
                           member->access == ast::Access::Public ? "Public" : "Private",
-                          member->init ? ", rtsl::Default::Given" : "");
+                          member->init || member->isOptional ? ", rtsl::Default::Given" : "");
     }
     if (const typed::Function *constructor = findConstructor(*definition)) {
       std::vector<std::string> parameters;

@@ -394,6 +394,8 @@ Code FunctionPrinter::convert(const typed::ConvertExpr &expr) {
       return this->expr(operand);
     return {target + "(" + bind(this->expr(operand), Binding::Primary) + ".object)"};
   }
+  if (from->is(TypeKind::Class)) // to a bool
+    return {bind(this->expr(operand), Binding::Primary) + ".object != 0", Binding::Equality};
   const Type *fromScalar = from->scalar(), *toScalar = to->scalar();
   if (!fromScalar || !toScalar || fromScalar == toScalar)
     return this->expr(operand);

@@ -132,6 +132,8 @@ private:
       if (const std::optional<typed::Constant> known = evaluate(*member.init))
         json[member.isConst ? "value" : "default"] = value(member.type, *known);
     json["hasDefault"] = member.init != nullptr;
+    if (member.isOptional)
+      json["isOptional"] = true;
     if (member.owner)
       json["declaredIn"] = member.owner->name;
     addComment(json, member.comment);

@@ -17,6 +17,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   Findings unasked;
   linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked};
   linking::dropUnusedClasses(context);
+  linking::emptyReferences(context);
   linking::findUsedObjects(context);
   linking::resolveSlots(context);
   linking::dropUnreached(context);

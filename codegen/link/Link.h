@@ -4,7 +4,8 @@
 // slot, an attribute has no place yet. Linking knows which classes a scene uses. In order, it
 //   1. drops the classes that the scene has no objects of (DropUnusedClasses.cpp), and finds those
 //   whose objects nothing refers to
-//      (UsedObjects.cpp): they are made and checked, and no code calls them,
+//      (UsedObjects.cpp): they are made and checked, and no code calls them; what is done only if a
+//      reference that the scene leaves empty were none is gone before (EmptyReferences.cpp),
 //   2. resolves each slot to a switch over the classes that are there, or a direct call if there is
 //   one
 //      (ResolveSlots.cpp),

@@ -92,7 +92,7 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
     runtime::MemberInfo described =
         reflectMember(member->name, member->type, *offset, record.findMember(member->name).getType());
     described.isPublic = member->access == ast::Access::Public;
-    described.hasDefault = member->init != nullptr;
+    described.hasDefault = member->init != nullptr || member->isOptional; // no object
     result.members.push_back(std::move(described));
   }
 

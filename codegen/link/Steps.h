@@ -67,6 +67,9 @@ bool asksForLights(const LinkContext &context);
 /// Notes which classes the program has, once it is known which methods run.
 void noteClasses(LinkContext &context);
 
+/// Takes optional members that no object of the scene sets for empty, with all that is done only if they are not.
+void emptyReferences(LinkContext &context);
+
 /// Erases the methods that nothing runs. Slots have been resolved.
 void dropUnreached(LinkContext &context);
 

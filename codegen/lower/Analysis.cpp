@@ -344,7 +344,8 @@ bool mayReferToNothing(const typed::Module &module) {
                        });
   };
   const auto inMember = [&](const auto &member) {
-    const bool isSet = member->access == ast::Access::Public && !member->type->is(TypeKind::Buffer);
+    const bool isSet = member->access == ast::Access::Public && !member->isOptional &&
+                       !member->type->is(TypeKind::Buffer);
     return !isSet && refers(member->type);
   };
   return std::any_of(module.functions.begin(), module.functions.end(), inFunction) ||

@@ -78,7 +78,8 @@ std::string parameterWords(const typed::Function &function);
 std::string slotName(const typed::Module &module, const typed::Function &method);
 
 /// May a reference of the module refer to no object? The scene sets all public members, so that it
-/// takes a variable or a private member that nobody has written, or a buffer without elements.
+/// takes a variable, a private or an optional member that nobody has written, or a buffer without
+/// elements.
 bool mayReferToNothing(const typed::Module &module);
 
 /// Does some texture look up another?

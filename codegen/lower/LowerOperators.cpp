@@ -201,6 +201,8 @@ Parts FunctionLowering::convert(const Parts &parts, const Type *from, const Type
       return parts;
     return {emitter.make<ir::CastRefOp>(type, parts.front())};
   }
+  if (from->is(TypeKind::Class)) // to a bool
+    return {!equality(parts, zeroOf(from), from)};
   const Type *fromScalar = from->scalar(), *toScalar = to->scalar();
   if (!fromScalar || !toScalar)
     return parts;

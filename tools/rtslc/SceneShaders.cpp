@@ -124,6 +124,7 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
                              std::move(part.classes),
                              std::move(part.refersTo),
                              {part.place.file, part.place.line, part.place.column}});
+  request.givenMembers = scene::givenMembers(description);
   request.engine = description.render.engine;
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;
