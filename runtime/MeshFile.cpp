@@ -13,7 +13,6 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <memory>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -104,17 +103,6 @@ void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool no
   join(whole.indices, mesh.indices);
 }
 
-/// An importer clears megabytes of tables for the first file that it reads, so each thread keeps one.
-Assimp::Importer &importerOfThread() {
-  static thread_local Assimp::Importer importer;
-  return importer;
-}
-
-/// What an importer has read is gone after this.
-struct FreeScene {
-  void operator()(Assimp::Importer *importer) const { importer->FreeScene(); }
-};
-
 Transform transformOf(const aiMatrix4x4 &m) {
   Transform transform;
   transform.columns = {
@@ -126,8 +114,7 @@ Transform transformOf(const aiMatrix4x4 &m) {
 
 Mesh loadMesh(const std::string &path) {
   checkReadable(path);
-  Assimp::Importer &importer = importerOfThread();
-  const std::unique_ptr<Assimp::Importer, FreeScene> reading(&importer);
+  Assimp::Importer importer;
   std::string extension = extensionOf(path);
   if (extension.empty() || !importer.IsExtensionSupported(extension))
     throw Error(
