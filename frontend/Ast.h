@@ -273,7 +273,7 @@ struct StructDecl {
 struct ClassDecl {
   std::string comment;
   Name name;
-  Name base;
+  Name base;             // empty text: a helper class
   bool fileForm = false; // `class Name : Base;`, members follow to the end of the file
   std::vector<VariableDecl> members;
   std::vector<FunctionDecl> functions;

@@ -75,12 +75,25 @@ void AstBuilder::addStruct(Parser::StructDeclarationContext *context) {
 void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
   checkFollowsFileClass(range(context->CLASS()), "a class");
   const auto names = context->IDENTIFIER();
-  if (names.size() < 2)
+  const bool isHelper = !context->COLON();
+  if (names.size() < (isHelper ? 1 : 2))
     return;
+  if (isHelper && !context->LEFT_BRACE()) {
+    hasBrokenItem = true; // its members may follow
+    if (!context->exception)
+      diagnostics
+          .report(Code::classWithoutBase, SourceRange(range(context->CLASS())).to(range(names[0])),
+                  text(range(names[0])))
+          .note(fmt::format("`class {0} : rt_Material;`, or `class {0} {{ ... }};` for a class that "
+                            "others refer to and the engine does not know",
+                            text(range(names[0]))));
+    return;
+  }
   ClassDecl declared;
   declared.comment = commentAbove(context);
   declared.name = name(names[0]);
-  declared.base = name(names[1]);
+  if (!isHelper)
+    declared.base = name(names[1]);
   declared.fileForm = !context->LEFT_BRACE();
   declared.range = range(context);
   for (auto *member : context->declaration())

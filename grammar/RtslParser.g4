@@ -44,8 +44,9 @@ structDeclaration
 
 // class Sphere : rt_Primitive;        its members are the declarations that follow, to the end of the file
 // class Sphere : rt_Primitive { };    any number of them in a file
+// class Noise { };                    a helper class, which derives from nothing; only in this form
 classDeclaration
-    : CLASS IDENTIFIER COLON IDENTIFIER ( LEFT_BRACE declaration* RIGHT_BRACE )? SEMICOLON
+    : CLASS IDENTIFIER ( COLON IDENTIFIER )? ( LEFT_BRACE declaration* RIGHT_BRACE )? SEMICOLON
     ;
 
 // --- Declarations ---------------------------------------------------------------------------------------------------

@@ -39,10 +39,9 @@ public:
     });
     // Named objects come into being in the order of their names, those that they refer to before
     // them.
-    for (const auto &texture : description.textures)
-      attempt([&] { named(texture.first, texture.second.className.place); });
-    for (const auto &material : description.materials)
-      attempt([&] { named(material.first, material.second.className.place); });
+    for (const auto *section : sections)
+      for (const auto &object : *section)
+        attempt([&, &object = object] { named(object.first, object.second.className.place); });
     for (std::size_t i = 0; i < description.objects.size(); ++i)
       attempt([&] { addGeometry(description.objects[i], i); });
     for (std::size_t i = 0; i < description.lights.size(); ++i)
@@ -198,7 +197,7 @@ private:
     return object;
   }
 
-  /// The texture or material of this name, made when it is first asked for.
+  /// The helper, texture or material of this name, made when it is first asked for.
   RtslRef named(const std::string &name, const Place &place) {
     auto found = made.find(name);
     if (found != made.end()) {
@@ -208,13 +207,13 @@ private:
       return found->second;
     }
     const ObjectDescription *object = nullptr;
-    if (auto texture = description.textures.find(name); texture != description.textures.end())
-      object = &texture->second;
-    else if (auto material = description.materials.find(name);
-             material != description.materials.end())
-      object = &material->second;
+    for (const auto *section : sections)
+      if (auto known = section->find(name); known != section->end())
+        object = &known->second;
     if (!object) {
-      Error error(ErrorCode::UnknownName, fmt::format("no texture or material is named `{}`", name),
+      Error error(ErrorCode::UnknownName,
+                  fmt::format("no {}texture or material is named `{}`",
+                              description.helpers.empty() ? "" : "helper, ", name),
                   place);
       if (auto near = runtime::nearestName(name, allNames()))
         error.fix(*near);
@@ -234,10 +233,9 @@ private:
 
   std::vector<std::string> allNames() const {
     std::vector<std::string> names;
-    for (const auto &texture : description.textures)
-      names.push_back(texture.first);
-    for (const auto &material : description.materials)
-      names.push_back(material.first);
+    for (const auto *section : sections)
+      for (const auto &object : *section)
+        names.push_back(object.first);
     return names;
   }
 
@@ -305,6 +303,8 @@ private:
   }
 
   const SceneDescription &description;
+  const std::array<const std::map<std::string, ObjectDescription> *, 3> sections = {
+      &description.helpers, &description.textures, &description.materials}; // of named objects
   const Program &program;
   Scene scene;
   std::map<std::string, RtslRef> made; // 0: on the way

@@ -33,13 +33,14 @@ public:
     errors.attempt([&] {
       refuseWhatComesLater();
       checkKeys(root,
-                {"$schema", "rtsl", "import", "camera", "rayGeneration", "textures", "materials",
-                 "objects", "lights", "background", "ambient", "exception", "render"},
+                {"$schema", "rtsl", "import", "camera", "rayGeneration", "helpers", "textures",
+                 "materials", "objects", "lights", "background", "ambient", "exception", "render"},
                 "a scene");
     });
     section("import", [&](const JsonValue &imports) { readImports(imports); });
     readSingle("camera", scene.camera);
     readSingle("rayGeneration", scene.rayGeneration);
+    readNamed("helpers", scene.helpers);
     readNamed("textures", scene.textures);
     readNamed("materials", scene.materials);
     readList("objects",
@@ -182,19 +183,22 @@ private:
       expect(value, Kind::Object, fmt::format("`{}`", section));
       for (const auto &[key, member] : value.members)
         errors.attempt([&, &key = key, &member = member] {
-          refuseNameOfTexture(key.text, value.place(key));
+          refuseTakenName(key.text, value.place(key));
           objects[key.text] = readObject(member, fmt::format("`{}`", key.text));
         });
     });
   }
 
-  /// Materials and textures share their names.
-  void refuseNameOfTexture(const std::string &name, const Place &place) const {
-    auto texture = scene.textures.find(name);
-    if (texture != scene.textures.end())
-      throw Error(ErrorCode::DuplicateKey, fmt::format("`{}` is the name of a texture already", name),
-                  place)
-          .related(texture->second.place, "the texture");
+  /// Helpers, textures and materials share their names.
+  void refuseTakenName(const std::string &name, const Place &place) const {
+    const auto refuse = [&](const auto &objects, const char *what) {
+      if (auto other = objects.find(name); other != objects.end())
+        throw Error(ErrorCode::DuplicateKey,
+                    fmt::format("`{}` is the name of a {} already", name, what), place)
+            .related(other->second.place, fmt::format("the {}", what));
+    };
+    refuse(scene.helpers, "helper");
+    refuse(scene.textures, "texture");
   }
 
   ReferenceDescription readReference(const JsonValue &value, const std::string &what) const {
@@ -341,7 +345,7 @@ void forEachObject(const SceneDescription &description, const ObjectVisitor &vis
                           : description.rayGeneration;
   if (start)
     forEachObject(*start, visit);
-  for (const auto *named : {&description.textures, &description.materials})
+  for (const auto *named : {&description.helpers, &description.textures, &description.materials})
     for (const auto &object : *named)
       forEachObject(object.second, visit);
   for (const GeometryDescription &geometry : description.objects) {

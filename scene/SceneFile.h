@@ -84,7 +84,7 @@ struct SceneDescription {
   std::vector<ImportDescription> imports;
   std::optional<ObjectDescription> camera;        // the classic engine needs it
   std::optional<ObjectDescription> rayGeneration; // the programs engine needs it
-  std::map<std::string, ObjectDescription> textures, materials;
+  std::map<std::string, ObjectDescription> helpers, textures, materials;
   std::vector<GeometryDescription> objects;
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class

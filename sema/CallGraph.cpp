@@ -429,7 +429,7 @@ void CallGraph::judgeHelpers() {
         called.insert(target);
   // What no method leads to yet may at least do what some method of its class may.
   for (const ClassScope *scope : baseFirst) {
-    if (!scope->root)
+    if (!scope->root || scope->root == &helperModel())
       continue;
     MethodModel most = unionOfMethods(*scope->root);
     for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)

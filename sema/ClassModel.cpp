@@ -153,6 +153,11 @@ const std::vector<RootModel> &rootModels() {
   return models;
 }
 
+const RootModel &helperModel() {
+  static const RootModel model = {typed::helperRoot, {}, {}, false};
+  return model;
+}
+
 const MethodModel &constructorModel() {
   static const MethodModel model = {"constructor", {}, {}, {A::WriteMembers}, Payload::None};
   return model;

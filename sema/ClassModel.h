@@ -105,6 +105,9 @@ const std::vector<RootModel> &rootModels();
 /// Null if there is no such base class.
 const RootModel *rootModel(const std::string &name);
 
+/// Of a class that derives from no rt_ class: its functions do what those that call them may.
+const RootModel &helperModel();
+
 /// The rules of `constructor`, the same for every class.
 const MethodModel &constructorModel();
 

@@ -52,6 +52,11 @@ std::vector<const typed::Function *> Program::findMethods(const ClassScope *scop
 
 void Program::linkBase(ClassScope &scope) {
   const ast::Name &base = scope.declaration->base;
+  if (base.text.empty()) {
+    scope.root = &helperModel();
+    scope.definition->root = scope.root->name;
+    return;
+  }
   if (const RootModel *root = rootModel(base.text)) {
     scope.root = root;
     scope.definition->root = root->name;
@@ -62,8 +67,6 @@ void Program::linkBase(ClassScope &scope) {
     scope.definition->base = found->second->definition;
     return;
   }
-  if (base.text.empty())
-    return; // reported by the parser
   if (const Symbol *symbol = findSymbol(base.text)) {
     diagnostics.report(Code::notAClass, base.range, base.text).label(symbol->range, "defined here");
     return;

@@ -83,14 +83,17 @@ void Program::declareMethods(ClassScope &scope) {
       checkTableMethod(scope, declaration, *function);
     } else if (const std::vector<std::string> owners = classesWithMethod(name);
                scope.root && !owners.empty()) {
+      Diagnostic &diagnostic = diagnostics.report(Code::foreignMethod, function->range, name,
+                                                  joinWords(owners), withArticle(scope.root->name));
       std::vector<std::string> methods;
       for (const MethodModel &method : scope.root->methods)
         if (std::find(methods.begin(), methods.end(), "`" + method.name + "`") == methods.end())
           methods.push_back("`" + method.name + "`");
-      diagnostics
-          .report(Code::foreignMethod, function->range, name, joinWords(owners),
-                  withArticle(scope.root->name))
-          .note(withArticle(scope.root->name) + " has " + joinWords(methods));
+      const SourceRange named = scope.declaration->name.range;
+      if (!methods.empty())
+        diagnostic.note(withArticle(scope.root->name) + " has " + joinWords(methods));
+      else if (owners.size() == 1 && !scope.base)
+        diagnostic.fix({named.file, named.end, named.end}, " : " + owners.front());
     }
     if (const typed::Member *member = findMember(&scope, name))
       diagnostics.report(Code::redefinition, function->range, name)

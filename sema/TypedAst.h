@@ -107,10 +107,13 @@ struct Function {
   std::string comment;
 };
 
+/// The root of a class that derives from no rt_ class.
+inline constexpr const char *helperRoot = "helper class";
+
 struct Class {
   std::string name;
   const Class *base = nullptr; // another class of the user's; null: derives from `root` directly
-  std::string root;            // "rt_Primitive"
+  std::string root;            // "rt_Primitive", or helperRoot
   std::vector<std::unique_ptr<Member>> members;     // its own
   std::vector<std::unique_ptr<Function>> functions; // its own: methods, constructor, helpers
   SourceRange range;

@@ -419,8 +419,9 @@ std::string ModulePrinter::member(const typed::Member &member) {
 
 std::string ModulePrinter::classDefinition(const typed::Class &definition) {
   std::string text = commentText(definition.comment) + lineDirective(definition.range);
-  const std::string base =
-      definition.base ? names.of(definition.base) : "rtsl::" + definition.root.substr(3);
+  const std::string base = definition.base                           ? names.of(definition.base)
+                           : definition.root == typed::helperRoot ? "rtsl::Helper"
+                                                                  : "rtsl::" + definition.root.substr(3);
   text += "struct " + names.of(&definition) + " : " + base + " {\n";
   const std::size_t begin = text.size();
   bool isFirst = true;

@@ -116,7 +116,7 @@ void ClassOp::build(mlir::OpBuilder &builder, mlir::OperationState &state, llvm:
 }
 
 LogicalResult ClassOp::verify() {
-  if (!getRoot().starts_with("rt_"))
+  if (!getRoot().starts_with("rt_") && getRoot() != helperRoot)
     return emitOpError() << "has root \"" << getRoot() << "\", which is no `rt_` class";
   return mlir::success();
 }

@@ -32,6 +32,9 @@ struct FrameResource : mlir::SideEffects::Resource::Base<FrameResource> {
 
 namespace rtsl::ir {
 
+/// The root of a class that derives from no rt_ class (typed::helperRoot).
+constexpr llvm::StringLiteral helperRoot = "helper class";
+
 /// Zero of a value type: `arith.constant` or `rtsl.null_ref`.
 mlir::Value createZero(mlir::OpBuilder &builder, mlir::Location location, mlir::Type type);
 

@@ -140,6 +140,7 @@ struct RayGeneration {};
 struct Miss {};
 struct Selector {};
 struct Exception {};
+struct Helper {}; // of no rt_ class
 
 template <typename T, int N>
 inline void loadAttribute(const State<N> &rt, int word, T &value) {
