@@ -82,6 +82,8 @@ struct SceneFacts {
   std::vector<Object> objects;
   std::uint32_t lightCount = 0;
   std::vector<float> ambient; // a number for each component of a color
+  /// The longest chain of references from object to object; the largest number: not known.
+  std::uint32_t referenceChain = ~0u;
 };
 
 /// Where a sample begins: with the camera's ray, or with `generate`. Either: with `generate` if the scene has a ray generation.

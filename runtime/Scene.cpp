@@ -521,6 +521,7 @@ SceneFacts Scene::facts() const {
       facts.objects.push_back({object.classInfo->name, self->records.data() + object.object});
   facts.lightCount = std::uint32_t(self->lights.size());
   facts.ambient.assign(self->ambient, self->ambient + self->program->colorComponents);
+  facts.referenceChain = self->referenceChain;
   return facts;
 }
 const std::string &Scene::nameOf(RtslRef object) const {

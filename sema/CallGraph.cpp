@@ -1,8 +1,7 @@
 //===- CallGraph.cpp - what follows from who calls whom -------------------===//
 //
-// Functions must not call themselves, but for methods that trace, on objects that members refer to:
-// objects do not refer to each other in a circle, so that ends, and the machine keeps frames for
-// it. A function may trace if something that it calls does, and a helper may use what the methods
+// Functions must not call themselves, but on objects that members refer to: objects do not refer to
+// each other in a circle, so that ends, and the scene says how deep it goes. A function may trace if something that it calls does, and a helper may use what the methods
 // that lead to it may use. All walks are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
@@ -179,6 +178,7 @@ private:
   using IsFollowed = bool (*)(const CallEdge &);
   void walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles);
   void spreadTracing();
+  std::unordered_map<const typed::Function *, unsigned> findCycles() const;
   void reportCycle(const Cycle &cycle);
   void judgeFrom(const typed::Function &method, const ClassScope &scope, const MethodModel &rules);
   void warnOfMistypedMethod(const typed::Function &function, const RootModel &root);
@@ -244,7 +244,8 @@ void CallGraph::reportCycle(const Cycle &cycle) {
   for (std::size_t i = first + 1; i < path.size() && i - first <= 8; ++i)
     diagnostic.label(calls[i], "`" + path[i - 1]->name + "` calls `" + path[i]->name + "` here");
   diagnostic.note(chain);
-  diagnostic.note("only `trace` recurses, and methods that trace, on objects that members refer to");
+  diagnostic.note("only `trace` recurses, and functions on objects that members refer to: "
+                  "`member.function()`");
 }
 
 /// Depth first over all functions and the calls that are asked for. Callees are finished before
@@ -327,23 +328,96 @@ void CallGraph::spreadTracing() {
   }
 }
 
+/// Functions that may call one another round about have the same number.
+std::unordered_map<const typed::Function *, unsigned> CallGraph::findCycles() const {
+  // Tarjan (1972), with a stack of its own.
+  struct Node {
+    unsigned order = 0, lowest = 0, cycle = 0; // order: from 1; cycle: from 1, when it is complete
+  };
+  struct Frame {
+    const typed::Function *function;
+    Functions next;
+    std::size_t position = 0;
+  };
+  std::unordered_map<const typed::Function *, Node> nodes;
+  std::vector<Frame> stack;
+  Functions open;
+  unsigned order = 0, cycles = 0;
+  const auto enter = [&](const typed::Function *function) {
+    nodes[function] = {++order, order, 0};
+    open.push_back(function);
+    Frame frame{function, {}, 0};
+    for (const CallEdge &edge : factsOf(function).calls)
+      for (const typed::Function *target : targets(edge))
+        frame.next.push_back(target);
+    stack.push_back(std::move(frame));
+  };
+  for (const auto &entry : program.facts) {
+    if (nodes.count(entry.first))
+      continue;
+    enter(entry.first);
+    while (!stack.empty()) {
+      Frame &frame = stack.back();
+      Node &node = nodes[frame.function];
+      if (frame.position != frame.next.size()) {
+        const typed::Function *target = frame.next[frame.position++];
+        const auto known = nodes.find(target);
+        if (known == nodes.end())
+          enter(target);
+        else if (known->second.cycle == 0)
+          node.lowest = std::min(node.lowest, known->second.order);
+        continue;
+      }
+      if (node.lowest == node.order) {
+        ++cycles;
+        for (const typed::Function *member = nullptr; member != frame.function;) {
+          member = open.back();
+          open.pop_back();
+          nodes[member].cycle = cycles;
+        }
+      }
+      const unsigned lowest = node.lowest;
+      stack.pop_back();
+      if (!stack.empty())
+        nodes[stack.back().function].lowest = std::min(nodes[stack.back().function].lowest, lowest);
+    }
+  }
+  std::unordered_map<const typed::Function *, unsigned> numbers;
+  for (const auto &[function, node] : nodes)
+    numbers[function] = node.cycle;
+  return numbers;
+}
+
 void CallGraph::refuseRecursion() {
   // Without what members refer to, no cycle is allowed.
   std::vector<Cycle> endless, cycles;
   walkCalls([](const CallEdge &edge) { return !edge.throughMember; }, endless);
   walkCalls([](const CallEdge &) { return true; }, cycles);
-  if (!cycles.empty())
-    spreadTracing();
   for (const Cycle &cycle : endless)
     reportCycle(cycle);
-  const auto isReported = [&](const Cycle &cycle) {
-    return std::any_of(endless.begin(), endless.end(), [&](const Cycle &other) {
-      return other.closing.begin == cycle.closing.begin && other.again == cycle.again;
-    });
+  if (cycles.empty())
+    return;
+  spreadTracing();
+  if (!endless.empty())
+    return;
+  // Nor may another reference than a member be a part of one: it may lead back up.
+  const auto numbers = findCycles();
+  const auto judge = [&](const typed::Function *function) {
+    for (const CallEdge &edge : factsOf(function).calls)
+      if (edge.throughReference && !edge.throughMember)
+        for (const typed::Function *target : targets(edge))
+          if (numbers.at(target) == numbers.at(function)) {
+            program.diagnostics.report(Code::recursion, edge.range, target->name)
+                .note("through others, and the object may be one on which it is running: only a "
+                      "member leads on to others, `member.function()`");
+            break;
+          }
   };
-  for (const Cycle &cycle : cycles)
-    if (!cycle.again->mayTrace && !isReported(cycle))
-      reportCycle(cycle);
+  for (const std::unique_ptr<typed::Function> &function : program.module.functions)
+    judge(function.get());
+  for (const ClassScope *scope : baseFirst)
+    for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
+      judge(function.get());
 }
 
 //===----------------------------------------------------------------------===//

@@ -23,6 +23,13 @@ void Effects::add(const Effects &other) {
   hasOutput |= other.hasOutput;
 }
 
+bool Effects::operator==(const Effects &other) const {
+  return reads == other.reads && writes == other.writes && random == other.random &&
+         reportsHit == other.reportsHit && traces == other.traces && usesRay == other.usesRay &&
+         usesScratch == other.usesScratch && writesScratch == other.writesScratch &&
+         writesMembers == other.writesMembers && hasOutput == other.hasOutput;
+}
+
 static bool intersect(const std::set<const void *> &a, const std::set<const void *> &b) {
   return std::any_of(a.begin(), a.end(), [&](const void *place) { return b.count(place) != 0; });
 }
@@ -69,11 +76,7 @@ const typed::Function &overridden(const typed::Function &function) {
 }
 
 // All methods of the name are alike, whichever class has them: they have one signature, and a call may run any of them.
-const Effects &EffectsOf::function(const typed::Function &named) {
-  const typed::Function &function = overridden(named);
-  if (auto found = known.find(&function); found != known.end())
-    return found->second;
-  known[&function]; // a method through a reference may lead back here
+Effects EffectsOf::ofBodies(const typed::Function &function) {
   Effects effects;
   std::set<const void *> locals;
   auto addBody = [&](const typed::Function &definition) {
@@ -96,7 +99,30 @@ const Effects &EffectsOf::function(const typed::Function &named) {
     effects.reads.erase(local);
     effects.writes.erase(local);
   }
-  return known[&function] = effects;
+  return effects;
+}
+
+const Effects &EffectsOf::function(const typed::Function &named) {
+  const typed::Function &function = overridden(named);
+  if (auto found = known.find(&function); found != known.end()) {
+    comesRound |= open.count(&function) != 0;
+    return found->second;
+  }
+  known[&function]; // a method through a reference may lead back here
+  open.insert(&function);
+  Effects effects = ofBodies(function);
+  open.erase(&function);
+  known[&function] = std::move(effects);
+  // Where functions call one another round about, each does what all of them do.
+  while (comesRound && open.empty()) {
+    comesRound = false;
+    for (auto &[other, effectsSoFar] : known)
+      if (Effects now = ofBodies(*other); !(now == effectsSoFar)) {
+        effectsSoFar = std::move(now);
+        comesRound = true;
+      }
+  }
+  return known[&function];
 }
 
 template <typename Tree>

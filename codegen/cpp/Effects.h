@@ -29,6 +29,7 @@ struct Effects {
   bool hasOutput = false; // does something that cannot be named, such as printing
 
   void add(const Effects &other);
+  bool operator==(const Effects &other) const;
   bool isPure() const { return writes.empty() && !random && !reportsHit && !traces && !hasOutput; }
 };
 
@@ -61,7 +62,7 @@ public:
 
   /// What a call does beside reading its arguments and writing its results: on members, the state
   /// and random numbers. Of a method that others override, what any of them does.
-  const Effects &function(const typed::Function &function);
+  const Effects &function(const typed::Function &named);
   Effects expression(const typed::Expr &expr);
   /// All that the statement does, without the variables that it declares.
   Effects statement(const typed::Stmt &stmt);
@@ -74,11 +75,14 @@ private:
   void collectAll(const Tree &tree, Effects &effects);
   void collect(const typed::Expr &expr, Effects &effects);
   void collectWrite(const typed::Expr &place, Effects &effects);
+  Effects ofBodies(const typed::Function &function);
   void collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args, Effects &effects);
 
   const typed::Module &module;
   bool prints, raises;
   std::map<const typed::Function *, Effects> known;
+  std::set<const typed::Function *> open; // of which the effects are being found
+  bool comesRound = false;                // one of these was looked at meanwhile
   bool texturesDraw = false; // some texture's `lookup` draws random numbers
 };
 

@@ -11,6 +11,7 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/BindScene.h"
 #include "codegen/link/Link.h"
+#include "codegen/link/UnrollRecursion.h"
 #include "codegen/lower/KnownConditions.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
@@ -107,6 +108,28 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
   }
 }
 
+/// Where `word` stands, which begins at a place in the IR.
+SourceRange rangeAt(const ir::SourcePlace &place, std::string_view word, const Diagnostics &diagnostics) {
+  const FileId file = diagnostics.sources().find(place.file);
+  if (!file)
+    return {};
+  const std::uint32_t begin = diagnostics.sources().offset(file, {place.line, place.column});
+  return {file, begin, begin + static_cast<std::uint32_t>(word.size())};
+}
+
+/// A GPU has no stack for recursion, which a bound program has only if it is deep. False, with a message, if there is some.
+bool requireNoRecursion(mlir::ModuleOp ir, Diagnostics &diagnostics) {
+  const mlir::func::FuncOp function = recursiveFunction(ir);
+  if (!function)
+    return true;
+  const std::string method = function.getSymName().rsplit('.').second.str();
+  diagnostics
+      .report(Code::recursionTooDeep, rangeAt(ir::placeOf(function->getLoc()), method, diagnostics), method,
+              mostRecursionLevels)
+      .note("on the CPU, `--target=host` renders it");
+  return false;
+}
+
 /// Warns of a trace over which much is alive: values that are saved, and variables that lie in the frame all the time.
 void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &frame, std::uint32_t largeLiveState,
                      Diagnostics &diagnostics) {
@@ -127,12 +150,7 @@ void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &
     return;
   std::stable_sort(parts.begin(), parts.end(), [](const Part &a, const Part &b) { return a.bytes > b.bytes; });
 
-  SourceRange range;
-  if (const FileId file = diagnostics.sources().find(trace.place.file)) {
-    const std::uint32_t begin = diagnostics.sources().offset(file, {trace.place.line, trace.place.column});
-    range = {file, begin, begin + static_cast<std::uint32_t>(std::string_view("trace").size())};
-  }
-  Diagnostic &diagnostic = diagnostics.report(Code::liveState, range, bytes, largeLiveState, parts.front().name,
+  Diagnostic &diagnostic = diagnostics.report(Code::liveState, rangeAt(trace.place, "trace", diagnostics), bytes, largeLiveState, parts.front().name,
                                               parts.front().bytes);
   std::string others;
   for (std::size_t i = 1; i < parts.size(); ++i)
@@ -347,6 +365,8 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
     return std::nullopt;
   if (makeObjects)
     bindToScene(*ir, request, options, makeObjects, program);
+  if (makeObjects && stage == Stage::Ptx && !requireNoRecursion(*ir, diagnostics))
+    return std::nullopt;
   if (stage == Stage::Ir)
     return print(*ir);
   runToSsa(*ir, options, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/!isLookedAtSplit(stage));
@@ -586,6 +606,8 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
   if (!ir)
     return false;
   bindToScene(*ir, request, options, makeObjects, program);
+  if (!requireNoRecursion(*ir, diagnostics))
+    return false;
   const SplitReport report = runToStates(*ir, splitOptions(options));
   package.frameBytes = report.frameSize();
   package.stateCount = 0;

@@ -10,6 +10,7 @@
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/link/UnrollRecursion.h"
 #include "codegen/passes/BindMembers.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 
@@ -163,6 +164,8 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
     if (isForBuilding(function))
       function.erase(); // nobody calls them but the runtime
 
+  if (scene.referenceChain != ~0u)
+    unrollRecursion(ir, scene.referenceChain);
   mlir::Builder builder(ir.getContext());
   const mlir::SymbolTable symbols(ir);
   const ir::ClassTable classes(ir);

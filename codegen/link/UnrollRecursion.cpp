@@ -1,0 +1,147 @@
+//===- UnrollRecursion.cpp - functions that call themselves, level by level ===//
+//
+//   func @dispatch.Layer.at(%o, %p)  { call @Mixed.at }      func @dispatch.Layer.at    { call @Mixed.at }
+//   func @Mixed.at(%self, %p)                                func @Mixed.at             { call @dispatch.Layer.at.2 }
+//     { call @dispatch.Layer.at(%inner, ...) }         ==>   func @dispatch.Layer.at.2  { call @Mixed.at.2 }
+//                                                            func @Mixed.at.2           { 0 }
+//
+// A GPU has no room for recursion whose depth only the scene says; and what calls itself is inlined nowhere. Each time round
+// such a cycle a call goes through a reference, to an object that is further down a chain of references
+// (docs/language.md, func.recursion), and how long these chains are is known when the objects are made. What traces has
+// frames of its own (codegen/passes/continuation/CallFrames.cpp).
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/link/UnrollRecursion.h"
+
+#include "codegen/ir/Rtsl.h"
+#include "codegen/link/Steps.h"
+
+#include "mlir/Analysis/CallGraph.h"
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/IR/SymbolTable.h"
+#include "llvm/ADT/SCCIterator.h"
+#include "llvm/ADT/SetVector.h"
+
+#include <map>
+
+namespace rtsl {
+
+namespace {
+
+using mlir::func::CallOp;
+using mlir::func::FuncOp;
+
+using Cycle = llvm::SmallSetVector<mlir::Operation *, 8>;
+
+/// The functions that may call one another round about, group by group.
+std::vector<Cycle> findCycles(mlir::ModuleOp ir) {
+  std::vector<Cycle> cycles;
+  const mlir::CallGraph graph(ir);
+  for (auto group = llvm::scc_begin(&graph); !group.isAtEnd(); ++group) {
+    if (!group.hasCycle())
+      continue;
+    Cycle cycle;
+    for (const mlir::CallGraphNode *node : *group)
+      if (!node->isExternal())
+        cycle.insert(node->getCallableRegion()->getParentOp());
+    cycles.push_back(std::move(cycle));
+  }
+  return cycles;
+}
+
+bool traces(mlir::Operation *function) {
+  return function
+      ->walk([](mlir::Operation *op) {
+        return llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp>(op) ? mlir::WalkResult::interrupt()
+                                                                               : mlir::WalkResult::advance();
+      })
+      .wasInterrupted();
+}
+
+bool isDispatch(mlir::Operation *function) {
+  return llvm::cast<FuncOp>(function).getSymName().starts_with(linking::dispatchPrefix);
+}
+
+class Unroller {
+public:
+  Unroller(mlir::ModuleOp ir, const Cycle &cycle, std::uint32_t levels)
+      : ir(ir), symbols(ir), cycle(cycle), levels(levels) {}
+
+  void run() {
+    for (mlir::Operation *function : cycle) // before any calls another one
+      originals[function] = function->clone();
+    for (mlir::Operation *function : cycle)
+      copies[{function, 1}] = llvm::cast<FuncOp>(function);
+    for (mlir::Operation *function : cycle)
+      redirect(llvm::cast<FuncOp>(function), 1);
+    for (auto &[function, original] : originals)
+      original->destroy();
+  }
+
+private:
+  /// Calls of the cycle's functions lead to the copies of the same level, and through references to those below.
+  void redirect(FuncOp function, std::uint32_t level) {
+    function.walk([&](CallOp call) {
+      mlir::Operation *callee = symbols.lookup(call.getCallee());
+      if (!callee || !cycle.contains(callee))
+        return;
+      const std::uint32_t below = isDispatch(callee) ? level + 1 : level;
+      if (below == level && level == 1)
+        return;
+      if (below <= levels) {
+        call.setCallee(copy(callee, below).getSymName());
+        return;
+      }
+      mlir::OpBuilder builder(call); // no chain of references is as long
+      for (mlir::Value result : call.getResults())
+        result.replaceAllUsesWith(ir::createZero(builder, call.getLoc(), result.getType()));
+      call.erase();
+    });
+  }
+
+  FuncOp copy(mlir::Operation *function, std::uint32_t level) {
+    if (FuncOp known = copies[{function, level}])
+      return known;
+    auto made = llvm::cast<FuncOp>(originals.at(function)->clone());
+    made.setSymName(llvm::cast<FuncOp>(function).getSymName().str() + "." + std::to_string(level));
+    made.setPrivate();
+    made->removeAttr("rtsl.export");
+    made->removeAttr("rtsl.method");
+    symbols.insert(made, mlir::Block::iterator(function->getNextNode()));
+    copies[{function, level}] = made;
+    redirect(made, level);
+    return made;
+  }
+
+  mlir::ModuleOp ir;
+  mlir::SymbolTable symbols;
+  const Cycle &cycle;
+  const std::uint32_t levels;
+  std::map<mlir::Operation *, mlir::Operation *> originals;
+  std::map<std::pair<mlir::Operation *, std::uint32_t>, FuncOp> copies;
+};
+
+} // namespace
+
+void unrollRecursion(mlir::ModuleOp ir, std::uint32_t referenceChain) {
+  for (const Cycle &cycle : findCycles(ir)) {
+    if (llvm::any_of(cycle, traces))
+      continue;
+    // Between two calls through the same references a member has led on; other references may have been used meanwhile.
+    const auto dispatches = static_cast<std::uint32_t>(llvm::count_if(cycle, isDispatch));
+    const std::uint64_t levels = std::uint64_t(std::max(1u, referenceChain)) * std::max(1u, dispatches);
+    if (levels <= mostRecursionLevels)
+      Unroller(ir, cycle, static_cast<std::uint32_t>(levels)).run();
+  }
+}
+
+FuncOp recursiveFunction(mlir::ModuleOp ir) {
+  for (const Cycle &cycle : findCycles(ir)) {
+    const auto method = llvm::find_if_not(cycle, isDispatch);
+    if (llvm::none_of(cycle, traces))
+      return llvm::cast<FuncOp>(method == cycle.end() ? cycle.front() : *method);
+  }
+  return nullptr;
+}
+
+} // namespace rtsl
