@@ -201,6 +201,9 @@ static const Row rows[] = {
      "c 3 3"}, // the form with a payload is checked by hand: its type is the author's
     {Builtin::Hit, "b f"},
     {Builtin::Ambient, "c"},
+    {Builtin::LightCount, "i"},
+    {Builtin::Illuminate, "b i 3"},
+    {Builtin::Illuminate, "b i 3 b"},
     {Builtin::IgnoreIntersection, "n"},
     {Builtin::TerminateRay, "n"},
     {Builtin::VisitChild, "n i"},

@@ -35,8 +35,8 @@ bool FunctionChecker::recordState(Use::Kind kind, typed::StateVariable variable,
   const bool ofALight = variable == typed::StateVariable::LightDirection ||
                         variable == typed::StateVariable::LightDistance ||
                         variable == typed::StateVariable::LightColor;
-  if (kind == Use::Kind::ReadState && ofALight && rules && rules->name == "shade" &&
-      illuminances == 0)
+  if (kind == Use::Kind::ReadState && ofALight && rules &&
+      rules->abilities.has(Ability::Illuminance) && illuminances == 0 && !isLit)
     diagnostics.report(Code::lightOutsideIlluminance, range,
                        std::string("rt_") + typed::name(variable));
   use.what = std::string("rt_") + typed::name(variable);
@@ -52,7 +52,8 @@ bool FunctionChecker::recordSpecial(Ability ability, const std::string &what, So
   use.range = range;
   use.member = member;
   if (facts &&
-      (ability == Ability::Trace || (ability == Ability::Illuminance && what == "illuminance")))
+      (ability == Ability::Trace ||
+       (ability == Ability::Illuminance && (what == "illuminance" || what == "illuminate"))))
     facts->traces = true;
   return record(std::move(use));
 }

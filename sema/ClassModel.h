@@ -39,7 +39,7 @@ private:
 /// What may stand in some methods only, beside reading and writing state.
 enum class Ability : std::uint8_t {
   Trace,       // trace(...)
-  Illuminance, // the illuminance statement and ambient()
+  Illuminance, // the illuminance statement, illuminate(...), lightCount() and ambient()
   Hit,         // hit(t)
   AnyHit,      // ignoreIntersection() and terminateRay()
   VisitChild,  // visitChild(i)

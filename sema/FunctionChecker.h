@@ -193,6 +193,7 @@ private:
   std::unordered_set<std::string> unknownNames; // that were reported
   unsigned recursion = 0, treeDepth = 0;
   unsigned loops = 0, switches = 0, illuminances = 0;
+  bool isLit = false; // some light was chosen before, by its number
 };
 
 /// `+`, `<<`, ...

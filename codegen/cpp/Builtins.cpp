@@ -124,6 +124,8 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::Trace:
   case Builtin::Rand:
   case Builtin::Ambient:
+  case Builtin::LightCount:
+  case Builtin::Illuminate:
     return withState();
   case Builtin::Hit:
     return withState(function && module.takesScratch(*function) ? "scratch" : "");

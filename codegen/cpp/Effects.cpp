@@ -142,6 +142,15 @@ Effects EffectsOf::expression(const typed::Expr &expr) {
   return effects;
 }
 
+/// What lights do with a point.
+void EffectsOf::collectLights(Effects &effects) {
+  effects.usesRay = effects.traces = effects.random = true;
+  for (typed::StateVariable variable :
+       {typed::StateVariable::LightDirection, typed::StateVariable::LightDistance,
+        typed::StateVariable::LightColor})
+    effects.writes.insert(place(variable));
+}
+
 Effects EffectsOf::statement(const typed::Stmt &stmt) {
   Effects effects;
   collectAll(stmt, effects);
@@ -169,11 +178,7 @@ Effects EffectsOf::statement(const typed::Stmt &stmt) {
         for (const auto &inner : arm.body)
           push(inner);
     else if (auto *illuminance = dynCast<typed::IlluminanceStmt>(at)) {
-      effects.usesRay = effects.traces = effects.random = true;
-      for (typed::StateVariable variable : {typed::StateVariable::LightDirection,
-                                            typed::StateVariable::LightDistance,
-                                            typed::StateVariable::LightColor})
-        effects.writes.insert(place(variable));
+      collectLights(effects);
       push(illuminance->body);
     }
   }
@@ -266,7 +271,11 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
       effects.writes.insert(place(typed::StateVariable::HitDistance));
       break;
     case Builtin::Ambient:
+    case Builtin::LightCount:
       effects.usesRay = true;
+      break;
+    case Builtin::Illuminate:
+      collectLights(effects);
       break;
     case Builtin::IgnoreIntersection:
     case Builtin::TerminateRay:

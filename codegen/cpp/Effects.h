@@ -75,6 +75,7 @@ private:
   void collectAll(const Tree &tree, Effects &effects);
   void collect(const typed::Expr &expr, Effects &effects);
   void collectWrite(const typed::Expr &place, Effects &effects);
+  void collectLights(Effects &effects);
   Effects ofBodies(const typed::Function &function);
   void collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args, Effects &effects);
 

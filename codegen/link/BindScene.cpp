@@ -134,7 +134,7 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
   Finding loops = {Item::Lights, "illuminance", false, "no shader asks for lights", {}};
   Finding ambient = {Item::Lights, "ambient light", false, "no shader asks for it", {}};
   ir.walk([&](mlir::Operation *op) {
-    if (llvm::isa<ir::IlluminanceOp>(op) && !loops.place.isKnown()) {
+    if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op) && !loops.place.isKnown()) {
       loops.isNeeded = scene.lightCount != 0;
       loops.reason = scene.lightCount == 0 ? "the scene has no lights: the loop is gone"
                                            : fmt::format("{} light{}, a number in the code", scene.lightCount,

@@ -117,8 +117,9 @@ private:
         addMethods("rt_Material", "closestHit." + type, by("for rays of"));
         addMethods("rt_Material", "anyHit." + type, by("for rays of"));
         addMethods("rt_Miss", "miss." + type, by("for rays of"));
-      } else if (llvm::isa<ir::IlluminanceOp>(op)) {
-        addMethods("rt_Light", "illumination", by("for `illuminance` in"));
+      } else if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op)) {
+        const bool isOne = llvm::isa<ir::IlluminateOp>(op);
+        addMethods("rt_Light", "illumination", by(isOne ? "for `illuminate` in" : "for `illuminance` in"));
       }
       if (const std::uint32_t needs = needsOf(reader, op))
         addComputations(needs, by(llvm::isa<ir::StateOp>(op) ? "read by" : "for rays of"));
@@ -150,7 +151,7 @@ bool isStartedByRays(llvm::StringRef method) {
 bool traces(FuncOp function) {
   return function
       .walk([](mlir::Operation *op) {
-        const bool isTrace = llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp>(op);
+        const bool isTrace = llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
         return isTrace ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
       })
       .wasInterrupted();

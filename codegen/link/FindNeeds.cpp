@@ -34,7 +34,7 @@ std::uint32_t needsOf(llvm::StringRef state) {
 /// hit has to be there for each candidate.
 bool mayRunForCandidates(const Reader &reader) {
   const auto method = reader.function->getAttrOfType<mlir::StringAttr>("rtsl.method");
-  return (reader.root.empty() || reader.root == "rt_Primitive") &&
+  return (reader.root.empty() || reader.root == "rt_Primitive" || reader.root == ir::helperRoot) &&
          !(method && llvm::StringSwitch<bool>(method.getValue())
                          .Cases({"computeNormal", "computeTextureCoordinates", "computeDerivatives"}, true)
                          .Cases({"generateSample", "samplePDF"}, true)
@@ -67,14 +67,18 @@ std::uint32_t needsOf(const LinkContext &context, mlir::func::FuncOp function) {
   return needs;
 }
 
-/// What functions and all that they call read. With `onItself`, calls through references are left out.
-std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const LinkContext &context, bool onItself) {
+/// What functions and all that they call read. With `onItself`, calls through references are left out. `isLit`, if not null,
+/// becomes true if they ask for lights.
+std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const LinkContext &context, bool onItself,
+                               bool *isLit = nullptr) {
   std::uint32_t needs = 0;
   std::set<mlir::Operation *> seen(pending.begin(), pending.end());
   while (!pending.empty()) {
     mlir::func::FuncOp function = pending.back();
     pending.pop_back();
     needs |= needsOf(context, function);
+    if (isLit)
+      function.walk([&](mlir::Operation *op) { *isLit |= llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op); });
     function.walk([&](mlir::func::CallOp call) {
       if (onItself && call.getCallee().starts_with(dispatchPrefix))
         return;
@@ -104,7 +108,8 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   }
   if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op); trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? RTSL_NEEDS_NORMALS : 0);
-  const bool sendsRay = llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp>(op);
+  const bool sendsRay =
+      llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
   return sendsRay && mayStartAtHits(reader) ? RTSL_NEEDS_NORMALS : 0;
 }
 
@@ -136,7 +141,7 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
     if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
       methods[owner.getValue()].push_back(function);
-  // `illuminance` runs the lights on the material's own state.
+  // Lights run on the state of whoever asks for them.
   const std::uint32_t ofLights = needsOfMethods(context, "rt_Light", "illumination");
   // Whoever computes one of these may read another.
   const std::uint32_t ofDerivatives = needsOfMethods(context, "rt_Primitive", "computeDerivatives");
@@ -145,8 +150,9 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
 
   std::vector<std::uint32_t> all;
   for (const LinkedClass &linked : context.classes) {
-    std::uint32_t needs = needsReachedFrom(methods.lookup(linked.info->name), context, /*onItself=*/true);
-    if (linked.info->root == "rt_Material" && findMethod(context, linked, "shade"))
+    bool isLit = false;
+    std::uint32_t needs = needsReachedFrom(methods.lookup(linked.info->name), context, /*onItself=*/true, &isLit);
+    if (isLit)
       needs |= ofLights;
     if (needs & RTSL_NEEDS_DERIVATIVES)
       needs |= ofDerivatives;

@@ -52,8 +52,8 @@ std::vector<Cycle> findCycles(mlir::ModuleOp ir) {
 bool traces(mlir::Operation *function) {
   return function
       ->walk([](mlir::Operation *op) {
-        return llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp>(op) ? mlir::WalkResult::interrupt()
-                                                                               : mlir::WalkResult::advance();
+        return llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op) ? mlir::WalkResult::interrupt()
+                                                              : mlir::WalkResult::advance();
       })
       .wasInterrupted();
 }

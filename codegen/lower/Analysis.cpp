@@ -27,6 +27,7 @@ bool isPureBuiltin(typed::Builtin builtin) {
   case typed::Builtin::Trace:
   case typed::Builtin::TracePayload:
   case typed::Builtin::Hit:
+  case typed::Builtin::Illuminate:
   case typed::Builtin::IgnoreIntersection:
   case typed::Builtin::TerminateRay:
   case typed::Builtin::VisitChild:

@@ -2,6 +2,7 @@
 #include "codegen/lower/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
+#include "runtime/device/Abi.h"
 #include "sema/Casting.h"
 
 namespace rtsl::lowering {
@@ -31,6 +32,11 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
   case Builtin::Ambient:
     emitter.setLoc(location);
     return Parts{emitter.make<ir::AmbientOp>(module.type(expr.type))};
+  case Builtin::LightCount:
+    emitter.setLoc(location);
+    return Parts{emitter.make<ir::LightCountOp>(emitter.getI32Type())};
+  case Builtin::Illuminate:
+    return lowerIlluminate(expr);
   case Builtin::TracePayload:
     lowerTracePayload(expr);
     return Parts();
@@ -47,6 +53,21 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
   default:
     return std::nullopt;
   }
+}
+
+// Whether there are to be shadows is mostly written out. The ray state has no word for it: no cosine says it (Abi.h).
+Parts FunctionLowering::lowerIlluminate(const typed::BuiltinExpr &expr) {
+  Value light = value(*expr.args[0]), point = value(*expr.args[1]);
+  Value shadows = expr.args.size() > 2 ? value(*expr.args[2]) : emitter.boolConstant(true);
+  emitter.setLoc(module.location(expr.range));
+  Value lit = emitter.variable("lit", emitter.getI1Type());
+  auto ask = [&](bool withShadows) {
+    Value normal = withShadows ? Value() : point;
+    Value cosine = withShadows ? Value() : emitter.constant(emitter.getF32Type(), RTSL_NO_SHADOWS);
+    emitter.store(emitter.make<ir::IlluminateOp>(emitter.getI1Type(), light, point, normal, cosine), lit);
+  };
+  emitter.ifThen(shadows, [&] { ask(true); }, [&] { ask(false); });
+  return {emitter.load(lit)};
 }
 
 // The payload is an `inout` argument: a temporary goes with the ray, and is copied back.

@@ -257,6 +257,7 @@ private:
   std::optional<Parts> lowerPackingBuiltin(const typed::BuiltinExpr &expr);
   std::optional<Parts> lowerRayBuiltin(const typed::BuiltinExpr &expr);
   void lowerTracePayload(const typed::BuiltinExpr &expr);
+  Parts lowerIlluminate(const typed::BuiltinExpr &expr);
   void lowerPrint(const typed::BuiltinExpr &expr);
   void answerHit(typed::Builtin builtin);
   void returnIfHitAnswered();

@@ -260,9 +260,12 @@ void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float d
                         float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
                         uint32_t how);
 
+#define RTSL_NO_SHADOWS (-3.0f)
+
 /// One step of `illuminance (P [, N, angle])`: light number `index`. Writes LightDirection, LightDistance and LightColor
 /// of `state`; returns 1 if light arrives (in the cone, not black, not in shadow) so that the body is to run.
-/// Without a cone pass cosAngle = -2.
+/// Without a cone pass cosAngle = -2; RTSL_NO_SHADOWS: without a cone, and whatever is in between. False of a light that
+/// there is not.
 uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx, float ny, float nz,
                           float cosAngle);
 

@@ -237,9 +237,11 @@ inline bool isInCone(Vec3 direction, Vec3 axis, float cosAngle) {
                        : cosine >= 0 || cosine * cosine <= bound;
 }
 
-/// One light of `illuminance (P [, N, angle])`. Returns whether the body runs.
+/// One light of `illuminance (P [, N, angle])`, or `illuminate(index, P [, shadows])`. Returns whether light arrives.
 inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, float cosAngle) {
   const RtslLaunch &launch = *state.launch;
+  if (index >= launch.lightCount) // that a shader has chosen
+    return false;
   uint32_t components = rtsl_color_components(&launch);
   setVector(state.LightDirection, 0, 0, 0);
   state.LightDistance = infinity;
@@ -256,7 +258,7 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   Vec3 direction = load(state.LightDirection);
   if (cosAngle > -1.0f && !isInCone(direction, axis, cosAngle))
     return false;
-  return !inShadow(state, point);
+  return cosAngle == RTSL_NO_SHADOWS || !inShadow(state, point);
 }
 
 /// What a sample of a pixel starts from. Row 0 is the top of the picture, where ScreenCoord.y is

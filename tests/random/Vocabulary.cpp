@@ -12,6 +12,8 @@ static bool standsAnywhere(typed::Builtin builtin) {
   case Builtin::TracePayload:
   case Builtin::Hit:
   case Builtin::Ambient:
+  case Builtin::LightCount:
+  case Builtin::Illuminate:
   case Builtin::IgnoreIntersection:
   case Builtin::TerminateRay:
   case Builtin::VisitChild:

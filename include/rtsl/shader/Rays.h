@@ -101,6 +101,12 @@ inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point,
                           normal.x, normal.y, normal.z, cosAngle) != 0;
 }
 
+/// The same, or without asking whether anything is in between.
+template <int N>
+inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point, bool shadows) {
+  return illuminate(rt, index, point, point, shadows ? -2.0f : static_cast<float>(RTSL_NO_SHADOWS));
+}
+
 /// The lights that reach a point, one after the other:
 ///
 ///     for (rtsl::Lights lights(rt, point, normal, angle); lights.next();)
