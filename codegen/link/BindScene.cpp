@@ -109,7 +109,8 @@ Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t object
   Finding finding = {Item::Parameters, className + "." + member.getSymName().str(), false, {}, {}};
   const auto reader = readers.find({className, member.getSymName().str()});
   if (reader == readers.end()) {
-    finding.reason = "no code that renders reads it";
+    const bool isEmpty = llvm::isa<ir::RefType>(member.getType()) && !words.empty() && words.front() == 0;
+    finding.reason = isEmpty ? "no object has anything there" : "no code that renders reads it";
     return finding;
   }
   finding.place = reader->second.second;

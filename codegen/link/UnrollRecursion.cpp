@@ -49,13 +49,18 @@ std::vector<Cycle> findCycles(mlir::ModuleOp ir) {
   return cycles;
 }
 
-bool traces(mlir::Operation *function) {
-  return function
-      ->walk([](mlir::Operation *op) {
-        return llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op) ? mlir::WalkResult::interrupt()
-                                                              : mlir::WalkResult::advance();
-      })
-      .wasInterrupted();
+/// Do the functions, or what they call, send rays?
+bool traces(const Cycle &cycle, mlir::ModuleOp ir) {
+  Cycle reached = cycle;
+  bool found = false;
+  for (std::size_t next = 0; next != reached.size() && !found; ++next)
+    reached[next]->walk([&](mlir::Operation *op) {
+      found |= llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op);
+      if (auto call = llvm::dyn_cast<CallOp>(op))
+        if (mlir::Operation *callee = ir.lookupSymbol(call.getCallee()))
+          reached.insert(callee);
+    });
+  return found;
 }
 
 bool isDispatch(mlir::Operation *function) {
@@ -107,7 +112,7 @@ private:
     made.setPrivate();
     made->removeAttr("rtsl.export");
     made->removeAttr("rtsl.method");
-    symbols.insert(made, mlir::Block::iterator(function->getNextNode()));
+    symbols.insert(made, std::next(mlir::Block::iterator(function)));
     copies[{function, level}] = made;
     redirect(made, level);
     return made;
@@ -125,7 +130,7 @@ private:
 
 void unrollRecursion(mlir::ModuleOp ir, std::uint32_t referenceChain) {
   for (const Cycle &cycle : findCycles(ir)) {
-    if (llvm::any_of(cycle, traces))
+    if (traces(cycle, ir))
       continue;
     // Between two calls through the same references a member has led on; other references may have been used meanwhile.
     const auto dispatches = static_cast<std::uint32_t>(llvm::count_if(cycle, isDispatch));
@@ -138,7 +143,7 @@ void unrollRecursion(mlir::ModuleOp ir, std::uint32_t referenceChain) {
 FuncOp recursiveFunction(mlir::ModuleOp ir) {
   for (const Cycle &cycle : findCycles(ir)) {
     const auto method = llvm::find_if_not(cycle, isDispatch);
-    if (llvm::none_of(cycle, traces))
+    if (!traces(cycle, ir))
       return llvm::cast<FuncOp>(method == cycle.end() ? cycle.front() : *method);
   }
   return nullptr;

@@ -8,6 +8,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+from objects import objects_scene
 from programs import built_with, run, same_picture
 
 rtslc, source, library, render = sys.argv[1:]
@@ -109,6 +110,11 @@ def names():
     }
 
 
+def objects(layers):
+    """Helpers, references that may be empty, definitions of bases, recursion through members (Objects.rtsl)."""
+    return objects_scene(here / "Objects.rtsl", glass / "Sphere.rtsl", layers)
+
+
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
@@ -119,6 +125,8 @@ CASES = [
     ("g++", ["-O1"], ["--unchecked"], [answers("programs")]),
     ("g++", ["-O1"], ["--undefined=nan"], [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)]),
     ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [chains(3, 2)]),
+    ("g++", ["-O1"], ["--undefined=nan"], [objects(3), objects(9)]),
+    ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [objects(4)]),
     ("g++", ["-O1"], [], [nothing()]),
     ("clang++-22", ["-O1"], ["--trace=recurse"], [nothing()]),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),

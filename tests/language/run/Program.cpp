@@ -84,7 +84,7 @@ private:
   std::vector<ProgramFile> texts;
   std::vector<Test> functions, materials;
   std::vector<std::string> objects; // of the materials, with $X
-  std::string textures, lights;
+  std::string helpers, textures, lights;
 };
 
 void Builder::read(const ProgramFile &file) {
@@ -108,7 +108,9 @@ void Builder::read(const ProgramFile &file) {
       isLeftOut |= configuration.compile.floatingPoint == FloatingPoint::Double;
     } else if (std::regex_match(line, match, directive)) {
       const std::string kind = match[1], name = match[2], json = match[3];
-      if (kind == "texture")
+      if (kind == "helper")
+        helpers += fmt::format("{}\"{}\": {}", helpers.empty() ? "" : ", ", name, json);
+      else if (kind == "texture")
         textures += fmt::format("{}\"{}\": {}", textures.empty() ? "" : ", ", name, json);
       else if (kind == "light")
         lights += (lights.empty() ? "" : ", ") + json;
@@ -143,15 +145,16 @@ std::string Builder::sceneText() const {
     all += (all.empty() ? "" : ",\n") +
            std::regex_replace(objects[i], std::regex("\\$X"), std::to_string(functions.size() + i));
   return fmt::format("{{\"rtsl\": 1, \"import\": [], \"camera\": {{\"class\": \"RunCamera\", \"count\": {}}},\n"
-                     "\"textures\": {{{}}}, \"lights\": [{}], \"ambient\": [0.5, 0.5, 0.5], \"background\": [0, 0, 0],\n"
+                     "\"helpers\": {{{}}}, \"textures\": {{{}}}, \"lights\": [{}], \"ambient\": [0.5, 0.5, 0.5], \"background\": [0, 0, 0],\n"
                      "\"objects\": [{}]}}\n",
-                     count(), textures, lights, all);
+                     count(), helpers, textures, lights, all);
 }
 
 /// Which material meets which primitive.
 LinkRequest linkRequest(const scene::SceneDescription &description) {
   LinkRequest request;
   request.classes = scene::classesUsed(description);
+  request.givenMembers = scene::givenMembers(description);
   for (const scene::GeometryDescription &geometry : description.objects)
     request.surfaces.push_back({geometry.primitive->className.text, geometry.material.object->className.text});
   return request;
