@@ -68,10 +68,9 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon,
 inline void inherit(RtslState &state, const RtslState &parent) {
   state.launch = parent.launch;
   uint32_t needs = rtsl_needs(parent.launch);
-  if (needs & RTSL_NEEDS_TIME) {
+  if (needs & RTSL_NEEDS_TIME)
     state.TimeSeed = parent.TimeSeed;
-    state.Time = parent.Time;
-  }
+  state.Time = parent.Time; // rays with a payload hand it on, whether anybody reads it or not
   if (needs & RTSL_NEEDS_LAUNCH) {
     state.LaunchIndex[0] = parent.LaunchIndex[0];
     state.LaunchIndex[1] = parent.LaunchIndex[1];
@@ -289,10 +288,9 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
     state.LensCoord[0] = unitFloat(key.z);
     state.LensCoord[1] = unitFloat(key.w);
   }
-  if (needs & RTSL_NEEDS_TIME) {
+  if (needs & RTSL_NEEDS_TIME)
     state.TimeSeed = unitFloat(key.x * 0x9e3779b9u ^ key.y);
-    state.Time = 0;
-  }
+  state.Time = 0;
   state.rayType = 0;
   state.rayMask = 0xffffffffu;
   state.rayRoot = 0;
