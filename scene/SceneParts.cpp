@@ -14,12 +14,14 @@ public:
 
   std::vector<Part> run() {
     // Names first, so that they have indices when somebody refers to them.
+    for (const auto &[name, helper] : scene.helpers)
+      named(name, "helper ", helper);
     for (const auto &[name, texture] : scene.textures)
       named(name, "texture ", texture);
     for (const auto &[name, material] : scene.materials)
       named(name, "material ", material);
     std::size_t next = 0;
-    for (const auto *objects : {&scene.textures, &scene.materials})
+    for (const auto *objects : {&scene.helpers, &scene.textures, &scene.materials})
       for (const auto &[name, object] : *objects)
         add(object, parts[next++]);
     if (scene.render.engine == runtime::Engine::Classic)

@@ -35,8 +35,8 @@ bool FunctionChecker::recordState(Use::Kind kind, typed::StateVariable variable,
   const bool ofALight = variable == typed::StateVariable::LightDirection ||
                         variable == typed::StateVariable::LightDistance ||
                         variable == typed::StateVariable::LightColor;
-  if (kind == Use::Kind::ReadState && ofALight && rules &&
-      rules->abilities.has(Ability::Illuminance) && illuminances == 0 && !isLit)
+  if (kind == Use::Kind::ReadState && ofALight && rules && rules->name == "shade" &&
+      illuminances == 0 && !isLit)
     diagnostics.report(Code::lightOutsideIlluminance, range,
                        std::string("rt_") + typed::name(variable));
   use.what = std::string("rt_") + typed::name(variable);

@@ -172,7 +172,10 @@ bool asksForLights(const LinkContext &context) {
   Reach reach(context);
   reach.run();
   return llvm::any_of(mlir::ModuleOp(context.ir).getOps<FuncOp>(), [&](FuncOp function) {
-    const auto asks = [](ir::IlluminanceOp) { return mlir::WalkResult::interrupt(); };
+    const auto asks = [](mlir::Operation *op) {
+      return llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op) ? mlir::WalkResult::interrupt()
+                                                                : mlir::WalkResult::advance();
+    };
     return reach.isReachedByRendering(function) && function.walk(asks).wasInterrupted();
   });
 }

@@ -295,11 +295,26 @@ bool HitAnswers::isFoundIn(const typed::Function &function, const typed::Class *
 bool HitAnswers::mayAnswer(const typed::Function &function, const typed::Class *concrete) {
   if (!hasAnswers || !function.body)
     return false;
-  // What closes a cycle traces, and adds nothing: `anyHit` leads to no trace.
-  const auto [entry, isNew] = known.try_emplace({&function, concrete}, false);
-  if (isNew)
-    entry->second = isFoundIn(function, concrete);
-  return entry->second;
+  const Key key = {&function, concrete};
+  const auto [entry, isNew] = known.try_emplace(key, false);
+  if (!isNew) {
+    comesRound |= open.count(key) != 0;
+    return entry->second;
+  }
+  open.insert(key);
+  const bool found = isFoundIn(function, concrete);
+  open.erase(key);
+  known[key] = found;
+  if (!found && !open.empty())
+    uncertain.push_back(key);
+  if (open.empty()) { // within a cycle, nothing was known yet of what closes it
+    if (comesRound)
+      for (const Key &other : uncertain)
+        known.erase(other);
+    uncertain.clear();
+    comesRound = false;
+  }
+  return found;
 }
 
 bool HitAnswers::mayAnswerOf(const typed::Function &function) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace rtsl::lowering {
 
@@ -59,7 +60,11 @@ private:
 
   const typed::Module &module;
   const bool hasAnswers; // in some function of the module
-  std::map<std::pair<const typed::Function *, const typed::Class *>, bool> known;
+  using Key = std::pair<const typed::Function *, const typed::Class *>;
+  std::map<Key, bool> known;
+  std::set<Key> open;         // that are being looked at
+  std::vector<Key> uncertain; // found while others were open
+  bool comesRound = false;    // to one of these
 };
 
 /// The definition that a call on the object itself runs: that of the most derived class with the
