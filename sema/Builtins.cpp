@@ -200,6 +200,7 @@ static const Row rows[] = {
     {Builtin::Trace,
      "c 3 3"}, // the form with a payload is checked by hand: its type is the author's
     {Builtin::Hit, "b f"},
+    {Builtin::Hit, "b f f"},
     {Builtin::Ambient, "c"},
     {Builtin::LightCount, "i"},
     {Builtin::Illuminate, "b i 3"},

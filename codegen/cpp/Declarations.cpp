@@ -478,6 +478,7 @@ std::string ModulePrinter::run() {
   std::string classes;
   for (const auto &definition : module.classes)
     classes += "\n" + classDefinition(*definition);
+  const std::string hitErrors = this->hitErrors();
   std::string entries = module.classes.empty() ? std::string() : slots() + description();
   std::string structs;
   for (const auto &structure : module.structs)
@@ -524,6 +525,7 @@ std::string ModulePrinter::run() {
   if (!module.classes.empty())
     add("} // namespace\n");
   add(methods);
+  add(hitErrors);
   add(entries);
   text += "\n} // namespace " + options.name + "\n";
   if (!module.classes.empty())

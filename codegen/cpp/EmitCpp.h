@@ -15,6 +15,8 @@
 
 namespace rtsl::cpp {
 
+struct HitErrorFunctions;
+
 struct Options {
   std::string name = "shaders";      // of the namespace, and of the exported `<name>_shaders`
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
@@ -25,6 +27,7 @@ struct Options {
   bool checkIndices = true;
   std::string whyCalls;              // what states cannot show, so that traces are calls though nobody asked; empty: nothing
   bool fast = false;                 // RTSL_FAST: the C++ compiler may change last digits (docs/fast.md)
+  const HitErrorFunctions *hitErrors = nullptr; // HitErrors.h; null: there are none
 };
 
 struct StateProgram;

@@ -3,6 +3,7 @@
 
 #include "codegen/lower/Analysis.h"
 #include "codegen/link/Members.h"
+#include "codegen/passes/errors/DeriveHitErrors.h"
 #include "runtime/device/Abi.h"
 #include "sema/Casting.h"
 
@@ -198,6 +199,10 @@ std::string ModulePrinter::slots() {
       continue;
     const std::vector<const typed::Class *> classes = classesBelow(slot.base);
     const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
+      if (slot.method == hitErrorMethod)
+        return withHitErrors.count(&definition)
+                   ? "boundHitError(rt, rtsl::object<" + names.of(&definition) + ">(rt, object))"
+                   : "";
       const typed::Function *method = slotMethod(definition, slot.method);
       if (!method)
         return {};
@@ -388,7 +393,8 @@ std::string ModulePrinter::description() {
     text += needs + ";\n";
   for (const Slot &slot : allSlots)
     for (const typed::Class *definition : classesBelow(slot.base))
-      if (!isRunBySteps(slot.method) && slotMethod(*definition, slot.method)) {
+      if (slot.method == hitErrorMethod ? withHitErrors.count(definition) != 0
+                                        : !isRunBySteps(slot.method) && slotMethod(*definition, slot.method) != nullptr) {
         text += fmt::format("program.slots().{}_{} = &slots::{};\n", slot.base, slot.method, slot.method);
         break;
       }

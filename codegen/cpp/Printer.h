@@ -136,6 +136,9 @@ private:
   bool isOverridden(const typed::Function &function) const;
   bool overrides(const typed::Function &function) const;
 
+  // HitErrors.cpp
+  std::string hitErrors();
+
   // Attributes.cpp
   void placeAttributes();
   const typed::Class &top(const typed::Class &definition) const;
@@ -221,6 +224,7 @@ private:
   std::map<std::string, std::vector<ThroughReference>> referenced; // by class
   std::map<std::pair<std::string, const Type *>, unsigned> attributeWords;
   std::map<const typed::Class *, std::optional<bool>> scratchOfFamily;
+  std::set<const typed::Class *> withHitErrors; // that hitErrors() has printed
 };
 
 class FunctionPrinter {

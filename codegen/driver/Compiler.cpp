@@ -2,6 +2,7 @@
 #include "codegen/driver/Compiler.h"
 
 #include "codegen/cpp/EmitCpp.h"
+#include "codegen/cpp/HitErrors.h"
 #include "codegen/cpp/States.h"
 #include "codegen/driver/Stages.h"
 #include "codegen/emit/DoublePrecision.h"
@@ -16,6 +17,7 @@
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/StateGraph.h"
+#include "codegen/passes/errors/DeriveHitErrors.h"
 #include "codegen/passes/restructure/Restructure.h"
 #include "frontend/Expansion.h"
 #include "runtime/DeviceBitcode.h"
@@ -213,6 +215,34 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
   return cpp::print(module, printing, diagnostics, &states);
 }
 
+/// Bounds of t for the primitives of a program in C++, whose scene is not known: any of its materials may be on any of them.
+mlir::OwningOpRef<mlir::ModuleOp> deriveHitErrors(const typed::Module &module, const CompileOptions &options,
+                                                  mlir::MLIRContext &context, Diagnostics &diagnostics) {
+  std::vector<std::string> primitives;
+  for (const auto &definition : module.classes)
+    if (definition->root == "rt_Primitive")
+      primitives.push_back(definition->name);
+  if (primitives.empty())
+    return {};
+  LowerOptions lowering;
+  lowering.diagnostics = &diagnostics;
+  lowering.colorComponents = options.colorComponents;
+  lowering.checkIndices = options.checkIndices;
+  mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, context);
+  if (!ir)
+    return {};
+  mlir::SymbolTable symbols(*ir);
+  if (functionsThatSendRays(*ir, symbols).empty())
+    return {};
+  warnOfUnboundHits(rtsl::deriveHitErrors(*ir, symbols, primitives, roundingUnitOf(options.floatingPoint)), module, diagnostics);
+  for (auto function : llvm::make_early_inc_range(ir->getOps<mlir::func::FuncOp>()))
+    if (!function->hasAttr(hitErrorAttribute))
+      function.erase();
+    else
+      expectSuccess(*ir, [&] { return mlir::succeeded(restructure(function)); });
+  return ir;
+}
+
 bool mayTrace(const typed::Module &module) {
   for (const auto &definition : module.classes)
     for (const auto &function : definition->functions)
@@ -235,6 +265,11 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   printing.name = name;
   printing.colorComponents = options.colorComponents;
   printing.lineDirectives = lineDirectives;
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  const mlir::OwningOpRef<mlir::ModuleOp> bounds = deriveHitErrors(module, options, *context, diagnostics);
+  const cpp::HitErrorFunctions hitErrors = {bounds ? *bounds : mlir::ModuleOp()};
+  if (bounds)
+    printing.hitErrors = &hitErrors;
   if (trace == TraceMode::Recurse || !mayTrace(module))
     return cpp::print(module, printing, diagnostics);
   if (trace == TraceMode::Split)
@@ -290,7 +325,8 @@ mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const L
   mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, request, diagnostics, context);
   LinkRequest asked = request;
   asked.features |= options.undefined;
-  if (!ir || !link(*ir, module, asked, options.colorComponents, diagnostics, program, findings))
+  if (!ir || !link(*ir, module, asked, options.colorComponents, diagnostics, program, findings,
+                   options.floatingPoint))
     return nullptr;
   return ir;
 }

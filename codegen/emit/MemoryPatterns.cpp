@@ -185,6 +185,8 @@ uint32_t stateOffset(llvm::StringRef name) {
   if (name == #variable)                                                                           \
     return offsetof(RtslState, variable);
 #include "runtime/device/StateVariables.def"
+  if (name == "hitError")
+    return offsetof(RtslState, hitError);
   llvm_unreachable("the verifier knows the names");
 }
 

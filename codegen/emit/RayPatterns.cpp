@@ -37,8 +37,10 @@ struct ConvertHit : ConvertOpToLLVMPattern<ir::HitOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::HitOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    Value answer = callRuntime(rewriter, op.getLoc(), runtimeFunction(op),
-                               {rayState(rewriter), adaptor.getT()});
+    llvm::SmallVector<Value, 3> arguments = {rayState(rewriter), adaptor.getT()};
+    if (adaptor.getError())
+      arguments.push_back(adaptor.getError());
+    Value answer = callRuntime(rewriter, op.getLoc(), runtimeFunction(op), arguments);
     rewriter.replaceOpWithNewOp<LLVM::ICmpOp>(
         op, LLVM::ICmpPredicate::ne, answer,
         constantLike(rewriter, op.getLoc(), answer.getType(), 0));

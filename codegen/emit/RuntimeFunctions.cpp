@@ -21,7 +21,7 @@ std::string runtimeFunction(mlir::Operation *op) {
       })
       .Case([](ir::RaiseOp) { return "rtsl_raise"; })
       .Case([](ir::PrintOp) { return "rtsl_print"; })
-      .Case([](ir::HitOp) { return "rtsl_hit"; })
+      .Case([](ir::HitOp hit) { return hit.getError() ? "rtsl_hit_within" : "rtsl_hit"; })
       .Case([](ir::RandOp) { return "rtsl_rand"; })
       .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
       .Case([](ir::SpawnOp spawn) { return spawn.getLast() ? "rtsl_spawn_last" : "rtsl_spawn"; })
@@ -57,8 +57,8 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
       .Case([&](ir::PrintOp) {
         return function(nothing, {pointer, i32, pointer, i32});
       })
-      .Case([&](ir::HitOp) {
-        return function(i32, {pointer, f32});
+      .Case([&](ir::HitOp hit) {
+        return hit.getError() ? function(i32, {pointer, f32, f32}) : function(i32, {pointer, f32});
       })
       .Case([&](ir::RandOp) { return function(f32, {pointer}); })
       .Case([&](ir::IlluminateOp) {

@@ -251,11 +251,12 @@ void StateOp::getAsmResultNames(NameSetter setName) {
 }
 
 /// How a state variable's type is called in StateVariables.def; empty if there is none of that
-/// name.
+/// name. `hitError` is RtslState's, and no variable of the author's.
 static llvm::StringRef stateVariableType(llvm::StringRef name) {
   return llvm::StringSwitch<llvm::StringRef>(name)
 #define RTSL_STATE_VARIABLE(name, type) .Case(#name, #type)
 #include "runtime/device/StateVariables.def"
+      .Case("hitError", "float")
       .Default("");
 }
 

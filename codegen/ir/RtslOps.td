@@ -185,7 +185,8 @@ def Rtsl_MemberOp : Rtsl_Op<"member", [Pure, Rtsl_Named, Rtsl_SymbolUser]> {
 def Rtsl_StateOp : Rtsl_Op<"state", [Pure, Rtsl_Named]> {
   let summary = "address of a state variable of the ray";
   let description = [{
-    The names are those of runtime/device/StateVariables.def: `RayOrigin` is the source's `rt_RayOrigin`.
+    The names are those of runtime/device/StateVariables.def: `RayOrigin` is the source's `rt_RayOrigin`. And `hitError` is
+    that of RtslState, for which the source has no name.
 
     Example: `%o = rtsl.state "RayOrigin" : !rtsl.ptr<vector<3xf32>>`
   }];
@@ -422,11 +423,13 @@ def Rtsl_PrintOp : Rtsl_Op<"print"> {
 def Rtsl_HitOp : Rtsl_Op<"hit"> {
   let summary = "reports an intersection at parameter t; true if it is the nearest so far";
   let description = [{
-    Example: `%nearest = rtsl.hit %t`
+    With `error` the author states a bound of the error of t.
+
+    Example: `%nearest = rtsl.hit %t within %error`
   }];
-  let arguments = (ins F32:$t);
+  let arguments = (ins F32:$t, Optional<F32>:$error);
   let results = (outs I1:$nearest);
-  let assemblyFormat = "$t attr-dict";
+  let assemblyFormat = "$t (`within` $error^)? attr-dict";
 }
 
 def Rtsl_AmbientOp : Rtsl_Op<"ambient", [Pure]> {

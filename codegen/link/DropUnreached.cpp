@@ -6,6 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
+#include "codegen/passes/errors/DeriveHitErrors.h"
 
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/StringSet.h"
@@ -73,6 +74,9 @@ private:
   }
 
   void addRoots() {
+    for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
+      if (function->hasAttr(hitErrorAttribute)) // there are those alone that are needed
+        add(function, {"says how exact a hit is", {}});
     if (context.request.engine == runtime::Engine::Classic) {
       addMethods("rt_Camera", "generateRay", {"begins every sample", {}});
       addClassicRays({"for the camera's rays", {}});

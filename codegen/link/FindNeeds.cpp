@@ -54,10 +54,12 @@ bool isOfCandidate(llvm::StringRef state, const Reader &reader) {
 }
 
 /// Whether rays that the function sends may begin where something was hit. How far from there they begin to see rests
-/// on the normal (runtime/device/Spawn.h).
+/// on the normal and on how exact the hit is (runtime/device/Spawn.h).
 bool mayStartAtHits(const Reader &reader) {
   return reader.root.empty() || reader.root == "rt_Material" || reader.root == ir::helperRoot;
 }
+
+constexpr std::uint32_t ofRaysFromHits = RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS;
 
 /// What one function reads itself.
 std::uint32_t needsOf(const LinkContext &context, mlir::func::FuncOp function) {
@@ -107,10 +109,10 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
     return needsOf(state.getName()) | (isOfCandidate(state.getName(), reader) ? RTSL_NEEDS_CANDIDATE : 0);
   }
   if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op); trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
-    return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? RTSL_NEEDS_NORMALS : 0);
+    return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);
   const bool sendsRay =
       llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
-  return sendsRay && mayStartAtHits(reader) ? RTSL_NEEDS_NORMALS : 0;
+  return sendsRay && mayStartAtHits(reader) ? ofRaysFromHits : 0;
 }
 
 std::uint32_t findNeeds(const LinkContext &context) {

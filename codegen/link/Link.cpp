@@ -3,6 +3,7 @@
 
 #include "codegen/link/Reflect.h"
 #include "codegen/link/Steps.h"
+#include "codegen/passes/errors/BoundHitError.h"
 
 #include "mlir/IR/Verifier.h"
 
@@ -12,13 +13,19 @@ std::string initializeSymbol(const std::string &className) { return className + 
 std::string constructSymbol(const std::string &className) { return className + ".construct"; }
 std::string intersectSymbol(const std::string &className) { return className + ".intersect"; }
 
+double roundingUnitOf(FloatingPoint floatingPoint) {
+  return floatingPoint == FloatingPoint::Fast ? fastUnit : strictUnit;
+}
+
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, runtime::Program &program, Findings *findings) {
+          Diagnostics &diagnostics, runtime::Program &program, Findings *findings, FloatingPoint floatingPoint) {
   Findings unasked;
-  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked};
+  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked,
+                               roundingUnitOf(floatingPoint)};
   linking::dropUnusedClasses(context);
   linking::emptyReferences(context);
   linking::findUsedObjects(context);
+  linking::deriveHitErrors(context);
   linking::resolveSlots(context);
   linking::dropUnreached(context);
   linking::noteClasses(context);

@@ -6,18 +6,19 @@
 //   whose objects nothing refers to
 //      (UsedObjects.cpp): they are made and checked, and no code calls them; what is done only if a
 //      reference that the scene leaves empty were none is gone before (EmptyReferences.cpp),
-//   2. resolves each slot to a switch over the classes that are there, or a direct call if there is
+//   2. derives how exact the hits of primitives are that rays leave (HitErrors.cpp),
+//   3. resolves each slot to a switch over the classes that are there, or a direct call if there is
 //   one
 //      (ResolveSlots.cpp),
-//   3. drops the methods that nothing runs (DropUnreached.cpp) and the results that nobody reads
+//   4. drops the methods that nothing runs (DropUnreached.cpp) and the results that nobody reads
 //   (Outputs.cpp),
-//   4. gives each attribute its place, matched by name and type between primitives and materials
+//   5. gives each attribute its place, matched by name and type between primitives and materials
 //   (PlaceAttributes.cpp),
-//   5. numbers the types of rays that carry a payload, and finds out how their hits are searched
+//   6. numbers the types of rays that carry a payload, and finds out how their hits are searched
 //   for (RayTypes.cpp),
-//   6. makes an entry for each way in from the runtime, and hides everything else
+//   7. makes an entry for each way in from the runtime, and hides everything else
 //   (MakeEntries.cpp),
-//   7. finds out what of a hit anybody reads (FindNeeds.cpp).
+//   8. finds out what of a hit anybody reads (FindNeeds.cpp).
 // What LinkRequest::keep names stays although the scene does not need it. Each step notes what it
 // left out, and why.
 //
@@ -33,9 +34,18 @@
 namespace rtsl {
 
 /// Links level 1 IR in place. Reports through `diagnostics` and returns false on errors. Fills `classes` and `needs` of
-/// `program` (without code addresses). `colorComponents` is what the module was lowered with. Adds to `findings`, if given.
+/// `program` (without code addresses). `colorComponents` is what the module was lowered with, `floatingPoint` what becomes
+/// of its arithmetic. Adds to `findings`, if given.
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, runtime::Program &program, Findings *findings = nullptr);
+          Diagnostics &diagnostics, runtime::Program &program, Findings *findings = nullptr,
+          FloatingPoint floatingPoint = FloatingPoint::Strict);
+
+struct DerivedHitError;
+/// Tells the author which hits of primitives that rays leave have no bound of their error.
+void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module, Diagnostics &diagnostics);
+/// What one operation of a program is off by at most, relatively. Not less for double: what both have in memory is single, and
+/// they are to trace the same rays.
+double roundingUnitOf(FloatingPoint floatingPoint);
 
 /// The functions of a linked program that nothing runs and that were to be kept.
 std::vector<std::string> keptFunctions(mlir::ModuleOp ir);

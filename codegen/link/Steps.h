@@ -40,6 +40,7 @@ struct LinkContext {
   const LinkRequest &request;
   Diagnostics &diagnostics;
   Findings &findings; // what the steps leave out, and what not
+  double roundingUnit; // of an elementary function of the program
   std::vector<LinkedClass> classes = {};
   std::map<std::string, Finding>
       dispatches = {}; // of the functions of this name, to be noted if something runs them
@@ -69,6 +70,9 @@ void noteClasses(LinkContext &context);
 
 /// Takes optional members that no object of the scene sets for empty, with all that is done only if they are not.
 void emptyReferences(LinkContext &context);
+
+/// HitErrors.cpp: bounds of the error of t for the primitives that rays leave.
+void deriveHitErrors(LinkContext &context);
 
 /// Erases the methods that nothing runs. Slots have been resolved.
 void dropUnreached(LinkContext &context);

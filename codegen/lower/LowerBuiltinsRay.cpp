@@ -20,8 +20,9 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
   }
   case Builtin::Hit: {
     Value t = value(*expr.args[0]);
+    Value error = expr.args.size() > 1 ? value(*expr.args[1]) : Value();
     emitter.setLoc(location);
-    Value nearest = emitter.make<ir::HitOp>(emitter.getI1Type(), t);
+    Value nearest = emitter.make<ir::HitOp>(emitter.getI1Type(), t, error);
     if (accepted)
       emitter.store(num(emitter.load(accepted)) | num(nearest), accepted);
     return Parts{nearest};

@@ -42,6 +42,7 @@ bool traces(mlir::func::FuncOp function) {
 
 struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<mlir::ModuleOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(InlineFunctions)
+  explicit InlineFunctions(bool inlinesAll) : inlinesAll(inlinesAll) {}
   llvm::StringRef getArgument() const override { return "rtsl-inline"; }
   llvm::StringRef getDescription() const override { return "calls are replaced by what they call"; }
 
@@ -53,6 +54,8 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
       return false;
     if (callee->hasAttr("rtsl.constructor") && !caller->hasAttr("rtsl.constructor"))
       return false;
+    if (inlinesAll)
+      return true;
     unsigned limit = traces(callee) ? smallTracingFunction : smallFunction;
     if (operationCount(callee, limit) <= limit)
       return true;
@@ -82,6 +85,7 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
   }
 
 private:
+  bool inlinesAll;
   llvm::DenseMap<mlir::StringAttr, unsigned> useCount; // before anything was inlined
 };
 
@@ -91,8 +95,8 @@ bool isLargeToInline(mlir::func::FuncOp function) {
   return operationCount(function, smallTracingFunction) > smallTracingFunction;
 }
 
-std::unique_ptr<mlir::Pass> createInlineFunctionsPass() {
-  return std::make_unique<InlineFunctions>();
+std::unique_ptr<mlir::Pass> createInlineFunctionsPass(bool inlinesAll) {
+  return std::make_unique<InlineFunctions>(inlinesAll);
 }
 
 } // namespace rtsl::codegen

@@ -21,7 +21,7 @@ namespace rtsl::codegen {
 /// Of a function that traces: is a frame of its own cheaper than a copy for each of its callers?
 bool isLargeToInline(mlir::func::FuncOp function);
 
-/// `rtsl-inline`, on a module of level 2.
-std::unique_ptr<mlir::Pass> createInlineFunctionsPass();
+/// `rtsl-inline`, on a module of level 2. With `inlinesAll`: whatever the size of a function.
+std::unique_ptr<mlir::Pass> createInlineFunctionsPass(bool inlinesAll = false);
 
 } // namespace rtsl::codegen

@@ -48,6 +48,18 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   module.addPass(mlir::createSymbolDCEPass());
 }
 
+void buildPlainPipeline(mlir::OpPassManager &module) {
+  auto &functions = module.nest<mlir::func::FuncOp>();
+  functions.addPass(createToControlFlowPass());
+  addPromotion(functions);
+  module.addPass(createInlineFunctionsPass(/*inlinesAll=*/true));
+  auto &inlined = module.nest<mlir::func::FuncOp>();
+  addPromotion(inlined);
+  inlined.addPass(createPropagateConstantsPass());
+  inlined.addPass(createExpandCopiesPass());
+  addPromotion(inlined);
+}
+
 void registerPassDependencies(mlir::DialectRegistry &registry) {
   registry.insert<ir::RtslDialect>();
   mlir::func::registerInlinerExtension(registry);
@@ -58,7 +70,7 @@ void registerPasses() {
   mlir::registerPass(createToControlFlowPass);
   mlir::registerPass(createHoistVariablesPass);
   mlir::registerPass(createExpandCopiesPass);
-  mlir::registerPass(createInlineFunctionsPass);
+  mlir::registerPass([] { return createInlineFunctionsPass(); });
   mlir::registerPass(createPropagateConstantsPass);
   mlir::registerPass(createSimplifyPass);
   mlir::PassPipelineRegistration<>("rtsl-ssa", "level 1 to level 2, optimised", buildSsaPipeline);

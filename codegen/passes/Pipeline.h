@@ -12,6 +12,10 @@ namespace rtsl::codegen {
 /// calls are dropped.
 void buildSsaPipeline(mlir::OpPassManager &module);
 
+/// The same without constants of a scene, and with every call inlined that can be: for analyses of
+/// functions that are to be the same with a scene and without.
+void buildPlainPipeline(mlir::OpPassManager &module);
+
 /// What a context needs for the passes beside the dialects themselves; call before the context is
 /// made or `appendDialectRegistry` it.
 void registerPassDependencies(mlir::DialectRegistry &registry);

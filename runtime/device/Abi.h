@@ -138,6 +138,8 @@ typedef struct RtslState {
   uint32_t candidateInstance, candidatePrimitive;
   float u, v;                             // barycentrics of vertices 1 and 2 of a triangle hit
   float hitPointError;                    // bound of the distance of HitPoint from the surface that was hit
+  float hitError;                         // bound of the error of HitDistance on a primitive; below 0: none is known
+  uint32_t leaves;                        // the instance whose surface the ray starts on; RTSL_NO_HIT: none
   uint32_t isEasy;                        // 1: who made the ray knows that every traversal can take it (Spawn.h)
 
   // What the ray carries (docs/language.md, "Tracing and light").
@@ -199,7 +201,8 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType 
 #define RTSL_NEEDS_NORMALS 256u           // GeometricNormal ShadingNormal; whoever sends rays from hits needs them too
 #define RTSL_NEEDS_ANY_HIT 512u           // not read, but asked: some ray's hits may be refused
 #define RTSL_NEEDS_CANDIDATE 1024u        // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
-#define RTSL_NEEDS_ALL 2047u
+#define RTSL_NEEDS_HIT_ERRORS 2048u       // not read, but used: rays leave hits, so how exact t is counts
+#define RTSL_NEEDS_ALL 4095u
 
 // What rtsl_traverse answers.
 #define RTSL_MISS 0u
@@ -251,6 +254,8 @@ uint32_t rtsl_traverse(RtslState *state, uint32_t how);
 /// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 if t is the candidate's nearest hit, and commits
 /// it if the candidate wins.
 uint32_t rtsl_hit(RtslState *state, float t);
+/// `hit(t, error)`: t is within `error` of the surface.
+uint32_t rtsl_hit_within(RtslState *state, float t, float error);
 
 /// `trace(origin, direction)`: the color that arrives at `origin` against `direction`. Writes colorComponents floats.
 void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float *color);

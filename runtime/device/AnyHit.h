@@ -186,19 +186,20 @@ uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
 
 /// The hit that state has, to come back to.
 struct CommittedHit {
-  float found, nearest, u, v;
+  float found, nearest, error, u, v;
   uint32_t instance, primitive;
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
 
   explicit CommittedHit(const RtslState &state)
-      : found(state.foundDistance), nearest(state.nearest), u(state.u), v(state.v),
-        instance(state.instance), primitive(state.primitive) {
+      : found(state.foundDistance), nearest(state.nearest), error(state.hitError),
+        u(state.u), v(state.v), instance(state.instance), primitive(state.primitive) {
     for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
       attributes[i] = state.attributes[i];
   }
   void restore(RtslState &state) const {
     state.foundDistance = found;
     state.nearest = nearest;
+    state.hitError = error;
     state.u = u;
     state.v = v;
     state.instance = instance;

@@ -46,20 +46,21 @@ inline bool isBlack(const float *color, uint32_t components) {
   return true;
 }
 
-/// Makes state's ray start: nothing hit yet, seen from `epsilon` to `distance` in units of the
-/// direction. `isEasy` as in RtslState.
-inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, float epsilon, float distance,
-                   uint32_t isEasy) {
+/// Makes state's ray start: nothing hit yet, seen up to `distance` in units of the direction.
+inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart &start,
+                   float distance) {
   store(state.RayOrigin, origin);
   store(state.RayDirection, direction);
   if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
     setVector(state.InverseRayDirection, 1.0f / direction.x, 1.0f / direction.y,
               1.0f / direction.z);
-  state.Epsilon = epsilon;
+  state.Epsilon = start.epsilon;
   state.HitDistance = distance;
-  state.isEasy = isEasy;
+  state.isEasy = start.isEasy;
   if (rtsl_needs(state.launch) & RTSL_NEEDS_ANY_HIT)
     state.hitAnswer = RTSL_ACCEPT;
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS)
+    state.leaves = start.leaves;
   state.instance = RTSL_NO_HIT;
   state.primitive = RTSL_NO_HIT;
 }
@@ -172,9 +173,7 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
   beginChild(child, parent, [&](const RtslState &from) {
     descend(child, from, dimension);
     child.rayType = 0;
-    uint32_t isEasy;
-    float epsilon = spawnEpsilon(from, origin, direction, &isEasy);
-    setRay(child, origin, direction, epsilon, infinity, isEasy);
+    setRay(child, origin, direction, startOf(from, origin, direction), infinity);
   });
 }
 
@@ -199,19 +198,18 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   beginState(state, shading.launch);
   inherit(state, shading);
   state.Depth = shading.Depth + 1;
-  uint32_t isEasy;
-  float epsilon = spawnEpsilon(shading, point, direction, &isEasy);
+  const RayStart start = startOf(shading, point, direction);
   // The light's own surface, if it has one, lies at the end: keep as clear of it as of where the
   // ray starts.
   float distance = shading.LightDistance;
   if (distance < infinity)
-    distance -= minimum(epsilon, distance * 0x1p-10f);
+    distance -= minimum(start.epsilon, distance * 0x1p-10f);
   // Draws are hashed; a key that no other ray has is enough.
   state.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
   state.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
   state.dimension = 0;
-  setRay(state, point, direction, epsilon, distance, isEasy);
-  if (!(epsilon < distance))
+  setRay(state, point, direction, start, distance);
+  if (!(start.epsilon < distance))
     return false;
   uint32_t found = rtsl_traverse(&state, RTSL_FIRST_HIT);
   if (found == RTSL_BAD_RAY)
@@ -306,7 +304,7 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   state.Epsilon = 0; // its ray sees everything in front of it
   state.HitDistance = infinity;
   rtsl_rt_Camera_generateRay(&state, launch.camera);
-  setRay(state, load(state.RayOrigin), load(state.RayDirection), 0, infinity, 0);
+  setRay(state, load(state.RayOrigin), load(state.RayDirection), {0, 0, RTSL_NO_HIT}, infinity);
 }
 
 /// One sample of one pixel: the color that comes along its ray.

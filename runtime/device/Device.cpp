@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #include "runtime/device/Abi.h"
 #include "runtime/device/Classic.h"
-#include "runtime/device/Hit.h"
+#include "runtime/device/HitError.h"
 
 using namespace rtsl;
 
@@ -21,7 +21,11 @@ __attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
 }
 
 uint32_t rtsl_hit(RtslState *state, float t) {
-  return device::reportHit(*state, t);
+  return device::reportHitWithin(*state, t, device::errorNotStated);
+}
+
+uint32_t rtsl_hit_within(RtslState *state, float t, float error) {
+  return device::reportHitWithin(*state, t, error);
 }
 
 void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz,

@@ -36,11 +36,12 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
     child.rayType = ray.rayType;
     child.rayMask = ray.mask;
     child.rayRoot = ray.root;
-    uint32_t isEasy;
-    float error = spawnEpsilon(from, ray.origin, ray.direction, &isEasy);
+    RayStart start = startOf(from, ray.origin, ray.direction);
     if (!(ray.tmin == ray.tmin && ray.tmax == ray.tmax)) // one of them is no number
-      isEasy = 0;
-    setRay(child, ray.origin, ray.direction, ray.tmin < error ? error : ray.tmin, ray.tmax, isEasy);
+      start.isEasy = 0;
+    if (!(ray.tmin < start.epsilon))
+      start.epsilon = ray.tmin;
+    setRay(child, ray.origin, ray.direction, start, ray.tmax);
   });
 }
 

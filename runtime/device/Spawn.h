@@ -21,14 +21,30 @@ constexpr float trianglePointUnits = 2;
 // (depthNearOrigin in runtime/device/Triangle.h).
 // A point that an author made by arithmetic of his own, near coordinates of this size.
 constexpr float foreignPointUnits = 20;
-// A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t. A
-// quadric solved without cancellation (differences from its centre, r^2 - |f - (f.d) d|^2) is right
-// to about 8 units of the distances in it; the same again for the next test.
+// A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t. Where
+// nothing is known of that, this is assumed: a quadric solved without cancellation (differences
+// from its centre, r^2 - |f - (f.d) d|^2) is right to about 8 units of the distances in it; the same
+// again for the next test.
 constexpr float primitiveErrorUnits = 24;
+// Where the ray only grazes the surface, t is off by more than the point is from the surface, but
+// not by any factor: the surface curves.
+constexpr float smallestHitCosine = 0x1p-4f;
 
-/// Bound of |p - surface| for p = o + t d on an RTSL primitive.
+/// Bound of |p - surface| for p = o + t d on an RTSL primitive of whose t nothing is known.
 inline float primitivePointError(Vec3 origin, Vec3 direction, float t) {
   return primitiveErrorUnits * roundingUnit * (largest(origin) + absolute(t) * largest(direction));
+}
+
+/// The same where t is off by at most `error`, which moves the point along the ray: by that times
+/// the cosine to the normal off the surface. Twice that, for the next test is off as well.
+inline float primitivePointError(Vec3 point, Vec3 direction, float error, Vec3 normal) {
+  const float rounding = trianglePointUnits * roundingUnit * largest(point);
+  const float squares = dot(direction, direction), across = dot(normal, normal);
+  const float length = squareRoot(squares);
+  if (!(squares > 0x1p-60f && squares < 0x1p60f && across > 0x1p-60f && across < 0x1p60f))
+    return 4 * error * largest(direction) + rounding; // a vector is at most sqrt(3) of its largest
+  const float along = absolute(dot(direction, normal)) / squareRoot(across);
+  return 2 * error * maximum(along, smallestHitCosine * length) + rounding;
 }
 
 /// Bound of |p - surface| for a triangle's point.
@@ -79,39 +95,50 @@ inline float epsilonAtSurface(float error, Vec3 normal, Vec3 direction) {
   return error / (smallestCosine * squareRoot(square));
 }
 
-/// spawnEpsilon for origins that are not the hit point.
-__attribute__((cold, noinline)) inline float spawnEpsilonElsewhere(const RtslState &parent, Vec3 origin,
-                                                         Vec3 direction) {
+/// Where a ray that a shader sends begins to see.
+struct RayStart {
+  float epsilon;   // in units of its direction
+  uint32_t isEasy; // what isEasySpawn says
+  uint32_t leaves; // RtslState::leaves
+};
+
+/// startOf for origins that are not the hit point.
+__attribute__((cold, noinline)) inline RayStart startElsewhere(const RtslState &parent, Vec3 origin,
+                                                               Vec3 direction) {
+  RayStart start = {0, 0, RTSL_NO_HIT};
   float foreign = foreignPointUnits * roundingUnit * largest(origin);
   float length = largest(direction);
   if (!(length > 0 && length < infinity))
-    return 0;
+    return start;
+  start.epsilon = foreign / length;
   if (parent.instance == RTSL_NO_HIT)
-    return foreign / length;
+    return start;
   // Only near the hit point are the surface and the angle to it known.
   float error = parent.hitPointError, away = largest(origin - load(parent.HitPoint));
-  if (!(away <= 64 * maximum(foreign, error)))
-    return maximum(foreign, error) / length;
+  if (!(away <= 64 * maximum(foreign, error))) {
+    start.epsilon = maximum(foreign, error) / length;
+    return start;
+  }
   if (away != 0) // it was moved, which rounded it again
     error += trianglePointUnits * roundingUnit * largest(origin);
-  return epsilonAtSurface(error, load(parent.GeometricNormal), direction);
+  start.epsilon = epsilonAtSurface(error, load(parent.GeometricNormal), direction);
+  start.leaves = parent.instance;
+  return start;
 }
 
-/// Epsilon for a ray that a shader sends from `origin`, in units of `direction`. Leaving a surface
-/// at an angle with cosine c to the normal, a ray that starts d below it comes through at d / c;
-/// what is skipped meanwhile lies within d of the tangent plane. So epsilon is d |n| / |direction .
-/// n|. `isEasy` is what isEasySpawn says.
-__attribute__((always_inline)) inline float spawnEpsilon(const RtslState &parent, Vec3 origin,
-                                                         Vec3 direction, uint32_t *isEasy) {
-  *isEasy = isEasySpawn(parent, origin, direction);
-  if (*isEasy)
-    return epsilonAtSurface(parent.hitPointError, load(parent.GeometricNormal), direction);
-  return spawnEpsilonElsewhere(parent, origin, direction);
+/// How a ray begins that a shader sends from `origin`. Leaving a surface at an angle with cosine c
+/// to the normal, a ray that starts d below it comes through at d / c; what is skipped meanwhile
+/// lies within d of the tangent plane. So epsilon is d |n| / |direction . n|.
+__attribute__((always_inline)) inline RayStart startOf(const RtslState &parent, Vec3 origin,
+                                                       Vec3 direction) {
+  if (isEasySpawn(parent, origin, direction))
+    return {epsilonAtSurface(parent.hitPointError, load(parent.GeometricNormal), direction), 1,
+            parent.instance};
+  return startElsewhere(parent, origin, direction);
 }
 
 inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {
-  uint32_t isEasy;
-  return spawnEpsilon(parent, origin, direction, &isEasy);
+  return startOf(parent, origin, direction).epsilon;
 }
 
 } // namespace rtsl::device

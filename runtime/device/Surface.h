@@ -3,6 +3,7 @@
 
 #include "runtime/device/Abi.h"
 #include "runtime/device/Candidate.h"
+#include "runtime/device/HitError.h"
 #include "runtime/device/Spawn.h"
 #include "runtime/device/Traverse.h"
 #include "runtime/device/Vector.h"
@@ -111,6 +112,21 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
       store(state.ShadingNormal, load(state.GeometricNormal));
     else if (isZero(load(state.GeometricNormal)))
       store(state.GeometricNormal, load(state.ShadingNormal));
+  }
+  if (needs & RTSL_NEEDS_HIT_ERRORS) {
+    const Vec3 point = load(state.HitPoint), normal = load(state.GeometricNormal);
+    const auto bound = [&](float error) { return primitivePointError(point, direction, error, normal); };
+    if (isBound(state.hitError)) {
+      state.hitPointError = bound(state.hitError);
+    } else if (state.hitError == errorNotStated) {
+      // What is derived is the error of this one test. The next one may be no better than is assumed.
+      const float error =
+          derivedHitError(state, primitive, t, [&](RtslState *ray, RtslRef object) {
+            slots.rt_Primitive_rt_boundHitError(ray, object);
+          });
+      if (isBound(error))
+        state.hitPointError = maximum(state.hitPointError, bound(error));
+    }
   }
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
     slots.rt_Primitive_computeTextureCoordinates(&state, primitive);

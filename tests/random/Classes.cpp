@@ -315,8 +315,12 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
       if (time == 0) {
         for (NodePtr &child : list->children)
           body.children.push_back(std::move(child));
+        // The error of t is stated, or derived from arithmetic, or neither.
+        const char *t = chance(40) ? "abs(dot(rt_RayOrigin - vec3(0.5), rt_RayDirection)) / (0.25 + dot(rt_RayDirection, rt_RayDirection))"
+                                   : "0.125 + 4.0 * toUnit(h)";
+        const char *error = chance(40) ? ", 0.5 * toUnit(h * 11u)" : "";
         body.children.push_back(makeNode(
-            Role::Statement, "bool won = (h & 3u) != 0u && hit(0.125 + 4.0 * toUnit(h));"));
+            Role::Statement, std::string("bool won = (h & 3u) != 0u && hit(") + t + error + ");"));
       } else {
         list->children.push_back(
             makeNode(Role::Statement, "hit(0.5 + toUnit(h * 2654435761u));"));

@@ -7,6 +7,7 @@
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Passes.h"
+#include "codegen/passes/errors/BoundHitError.h"
 #include "codegen/passes/restructure/Restructure.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -25,6 +26,7 @@ int main(int argc, char **argv) {
   rtsl::codegen::registerPasses();
   rtsl::registerContinuationPasses();
   rtsl::registerRestructurePass();
+  rtsl::registerBoundHitErrorPass();
   rtsl::codegen::registerLlvmPasses();
   mlir::registerTransformsPasses();
   return mlir::asMainReturnCode(

@@ -44,6 +44,9 @@ struct StructDescription {
 
 namespace detail {
 
+/// What the runtime has to know of a hit that rays leave.
+inline constexpr std::uint32_t ofRaysFromHits = RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS;
+
 /// Bytes from the start of an object to a member.
 template <typename Class, typename Owner, typename T>
 inline std::uint32_t offsetOf(T Owner::*member) {
@@ -272,7 +275,7 @@ public:
   }
   /// RTSL_NEEDS_*: what of a hit the class's methods read.
   ClassDescription &needs(std::uint32_t what) {
-    info.needs = what | RTSL_NEEDS_NORMALS; // who sends rays from where was not asked
+    info.needs = what | detail::ofRaysFromHits; // who sends rays from where was not asked
     return *this;
   }
   /// Has `anyHit` for rays with these payloads.
@@ -315,7 +318,7 @@ public:
     selfTest<N>();
     result->colorComponents = N;
     result->sample = &rtsl_sample_slots;
-    result->needs = RTSL_NEEDS_NORMALS;
+    result->needs = detail::ofRaysFromHits;
   }
 
   /// A class of shaders; numbers count from 1. The description holds until the next class.
@@ -326,7 +329,7 @@ public:
     info.name = name;
     info.base = base;
     info.root = root;
-    info.needs = RTSL_NEEDS_NORMALS;
+    info.needs = detail::ofRaysFromHits;
     return ClassDescription<Class>(info);
   }
 
@@ -347,7 +350,7 @@ public:
     result->slots.states.calledMethods = methods;
     result->slots.states.calledFrameSize = static_cast<std::uint32_t>(RTSL_CALL_HEADER + (size + 7) / 8 * 8);
   }
-  void needs(std::uint32_t what) { result->needs = what | RTSL_NEEDS_NORMALS; }
+  void needs(std::uint32_t what) { result->needs = what | detail::ofRaysFromHits; }
   /// RTSL_FEATURE_*: what samples do beside colors.
   void features(std::uint32_t what) { result->slots.features = what; }
   void engine(runtime::Engine engine) { result->engine = engine; }

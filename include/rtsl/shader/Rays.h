@@ -60,10 +60,15 @@ template <int N>
 inline bool hit(State<N> &rt, float t) {
   return rtsl_hit(rawState(rt), t) != 0;
 }
-/// The same in a primitive with scratch members.
+/// The same where `error` bounds the error of t.
 template <int N>
-inline bool hit(State<N> &rt, Scratch &scratch, float t) {
-  const bool isNearest = rtsl::hit(rt, t);
+inline bool hit(State<N> &rt, float t, float error) {
+  return rtsl_hit_within(rawState(rt), t, error) != 0;
+}
+/// Both in a primitive with scratch members.
+template <int N, typename... Error>
+inline bool hit(State<N> &rt, Scratch &scratch, float t, Error... error) {
+  const bool isNearest = rtsl::hit(rt, t, error...);
   scratch.accepted = scratch.accepted || isNearest;
   return isNearest;
 }

@@ -25,6 +25,12 @@ func.func @A.hit(%t: f32) -> i1 {
   %h = rtsl.hit %t
   return %h : i1
 }
+// CHECK-LABEL: llvm.func @A.hit_within(
+// CHECK: llvm.call @rtsl_hit_within(%{{.*}}, %{{.*}}, %{{.*}}) : (!llvm.ptr, f32, f32) -> i32
+func.func @A.hit_within(%t: f32, %e: f32) -> i1 {
+  %h = rtsl.hit %t within %e
+  return %h : i1
+}
 // CHECK-LABEL: llvm.func @A.rand(
 // CHECK-SAME: %[[STATE:.*]]: !llvm.ptr {
 // CHECK: llvm.call @rtsl_rand(%[[STATE]])

@@ -52,6 +52,7 @@ std::vector<Row> primitiveBoxRows(Path path);
 std::vector<Row> pixelRows(Path path);
 std::vector<Row> sphereRows(Path path);
 std::vector<Row> quadricRows(Path path);
+std::vector<Row> torusRows(Path path);
 std::vector<Row> scatteringRows(Path path);
 std::vector<Row> metalRows(Path path);
 std::vector<Row> matrixRows(Path path);

@@ -1,0 +1,109 @@
+//===- HitErrors.cpp - how exact the hits of primitives are ---------------===//
+//
+// Where a ray leaves a primitive of the author's, the runtime has to know how far off t may be
+// (runtime/device/HitError.h). For the primitives with a material that sends rays it is derived here,
+// and where that cannot be done, the author is told to state it.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/link/Steps.h"
+
+#include "codegen/passes/errors/DeriveHitErrors.h"
+#include "frontend/Expansion.h"
+#include "sema/Casting.h"
+#include "sema/Walk.h"
+
+namespace rtsl {
+
+/// The `hit(t)` that begins there; no place if there is none.
+static SourceRange findHit(const typed::Module &module, const SourceManager &sources, const ir::SourcePlace &place) {
+  SourceRange range;
+  const auto look = [&](const typed::Function &function) {
+    if (!function.body)
+      return;
+    forEachExpr(*function.body, [&](const typed::Expr &expr) {
+      const auto *call = dynCast<typed::BuiltinExpr>(&expr);
+      if (!call || call->builtin != typed::Builtin::Hit || range.isValid())
+        return;
+      const ShownPlace shown = shownBegin(sources, call->range);
+      if (shown.file == place.file && shown.at.line == place.line && shown.at.column == place.column)
+        range = call->range;
+    });
+  };
+  for (const auto &definition : module.classes)
+    for (const auto &function : definition->functions)
+      look(*function);
+  for (const auto &function : module.functions)
+    look(*function);
+  return range;
+}
+
+void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module, Diagnostics &diagnostics) {
+  for (const DerivedHitError &one : derived)
+    for (const UnboundHit &hit : one.unbound)
+      diagnostics
+          .report(Code::hitErrorUnknown, findHit(module, diagnostics.sources(), ir::placeOf(hit.place)), hit.reason)
+          .note("state how far off t may be at most: `hit(t, error)`");
+}
+
+namespace linking {
+
+namespace {
+
+/// The materials whose methods send rays.
+std::set<std::string> findSenders(const LinkContext &context) {
+  std::set<std::string> senders;
+  for (mlir::Operation *function : functionsThatSendRays(context.ir, context.symbols))
+    if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+      senders.insert(owner.str());
+  std::set<std::string> materials;
+  for (const LinkedClass &linked : context.classes)
+    if (linked.info->root == "rt_Material" && senders.count(linked.info->name))
+      materials.insert(linked.info->name);
+  return materials;
+}
+
+/// By primitive: a material on it that sends rays.
+std::map<std::string, std::string> findSendersOn(const LinkContext &context, const std::set<std::string> &senders) {
+  std::map<std::string, std::string> found;
+  for (const auto &[primitive, material] : context.request.surfaces)
+    if (senders.count(material))
+      found.try_emplace(primitive, material);
+  if (context.request.surfaces.empty() && !senders.empty())
+    for (const LinkedClass &linked : context.classes)
+      found.try_emplace(linked.info->name, *senders.begin());
+  return found;
+}
+
+} // namespace
+
+void deriveHitErrors(LinkContext &context) {
+  const std::set<std::string> senders = findSenders(context);
+  const std::map<std::string, std::string> sendersOn = findSendersOn(context, senders);
+  std::map<std::string, Finding> findings;
+  std::vector<std::string> left;
+  for (const LinkedClass &linked : context.classes) {
+    if (linked.info->root != "rt_Primitive" || !findMethod(context, linked, "intersect"))
+      continue;
+    const std::string &name = linked.info->name;
+    const auto sender = sendersOn.find(name);
+    const bool isLeft = sender != sendersOn.end();
+    const std::string subject = "bound of the error of t in " + name + ".intersect";
+    findings[name] = {Item::Outputs, subject, isLeft, isLeft ? "rays of `" + sender->second + "` leave it" : "no ray leaves it", {}};
+    if ((isLeft && !context.isWithout(Item::Outputs, subject)) || context.request.keep.has(Item::Outputs))
+      left.push_back(name);
+  }
+  const std::vector<DerivedHitError> derived = rtsl::deriveHitErrors(context.ir, context.symbols, left, context.roundingUnit);
+  for (const DerivedHitError &one : derived)
+    if (!one.hasFunction && findings[one.className].isNeeded) {
+      findings[one.className].isNeeded = false;
+      findings[one.className].reason = one.unbound.empty() ? "the author states it" : "none is known";
+    }
+  for (auto &[name, finding] : findings)
+    context.findings.push_back(std::move(finding));
+  if (!senders.empty())
+    warnOfUnboundHits(derived, context.module, context.diagnostics);
+}
+
+} // namespace linking
+
+} // namespace rtsl

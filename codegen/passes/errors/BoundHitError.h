@@ -1,0 +1,48 @@
+//===- BoundHitError.h - from `intersect` to the error of its t -----------===//
+//
+//   func.func @Sphere.intersect(%self)          func.func @Sphere.rt_boundHitError(%self)
+//     ...                                         %T = HitDistance
+//     %h = rtsl.hit %t                   ==>      ... with t in double beside it, %t64 (RunningError.h)
+//     ...                                         %h = T < t
+//                                                 bound = t is T ? max(bound, |T - t64|) : bound
+//                                                 ...
+//                                                 hitError = bound
+//
+// The new function computes again what `intersect` has computed when it reported the hit at T, and
+// how far that is from exact arithmetic; -1 if that is not known. So nothing is lost where no ray
+// leaves the hit. It writes no scratch members, prints nothing, and draws no random numbers.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/passes/errors/RunningError.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+
+#include <memory>
+#include <vector>
+
+namespace mlir {
+class Pass;
+} // namespace mlir
+
+namespace rtsl {
+
+/// Hits of an `intersect` whose error has no bound, and why.
+struct UnboundHit {
+  mlir::Location place;
+  std::string reason;
+};
+
+/// Turns an `intersect` of level 2 into the function above, in place; false if none of its hits has a
+/// bound that is to be derived, and then the function is not to be used. Hits for which the author
+/// states an error are left to him.
+bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<UnboundHit> &unbound);
+
+/// The largest relative error of an elementary function: correctly rounded, or by --fp=fast.
+constexpr double strictUnit = 0x1p-24, fastUnit = 0x1p-21;
+
+/// `rtsl-bound-hit-error`, on a function.
+void registerBoundHitErrorPass();
+
+} // namespace rtsl

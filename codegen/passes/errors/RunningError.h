@@ -1,0 +1,70 @@
+//===- RunningError.h - what rounding has made of a value, at run time ----===//
+//
+// Running error analysis (Wilkinson, "Error analysis revisited", 1986; Higham, "Accuracy and
+// Stability of Numerical Algorithms", 2nd edition, 2002, 3.3) in double precision. Beside each
+// operation that a value depends on stands the same in double: what single precision has lost is then
+// known, not bounded, and does not grow along the way as sums of worst cases do. Elementary functions
+// have no double form on a GPU. Theirs is the single result, moved along the tangent by the error of
+// the argument, and a bound of what that leaves out travels on: |a| eb + |b| ea + ea eb for a
+// product, and so on. Members of objects and the ray are exact, for they are what they are. All of
+// this holds for the branches that were taken.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/lower/Emitter.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/DenseSet.h"
+
+#include <optional>
+#include <string>
+
+namespace rtsl {
+
+/// Why the error of a value is not known: it depends on something for which no error can be given.
+struct ErrorUnknown {
+  mlir::Location place;
+  std::string reason; // "a loop computes it from what it was before"
+};
+
+/// A float, or a vector of floats, as it is without the roundings of single precision.
+struct Unrounded {
+  mlir::Value value; // in double
+  mlir::Value error; // that this may be off by at most, in double; null: none but that of double
+  bool isExact = false; // the single value is the same: nothing was computed
+};
+
+class RunningError {
+public:
+  /// Of values in a function of level 2. `unit` bounds the relative error of an elementary function.
+  RunningError(mlir::func::FuncOp function, double unit);
+
+  /// Where the value is defined. Nothing if it is not known: then `whyUnknown` says why.
+  std::optional<Unrounded> of(mlir::Value value);
+  const ErrorUnknown &whyUnknown() const { return *obstacle; }
+
+private:
+  Unrounded unrounded(mlir::Value value);
+  Unrounded ofArgument(mlir::BlockArgument argument);
+  Unrounded ofResult(mlir::Operation &op);
+  Unrounded ofParts(mlir::Operation &op);
+  Unrounded ofChoice(mlir::Operation &op);
+  Unrounded ofFunction(mlir::Operation &op);
+  Unrounded ofLoad(mlir::Operation &op);
+  Unrounded exact(mlir::Value value);
+  Unrounded fail(mlir::Location place, std::string reason);
+
+  bool isIterated(mlir::Value value);
+  bool isExactWhole(mlir::Value value, llvm::DenseMap<mlir::Value, bool> &seen);
+
+  mlir::func::FuncOp function;
+  double unit;
+  lowering::Emitter emitter;
+  llvm::DenseMap<mlir::Value, Unrounded> known;
+  bool hasFunctions = false; // what is asked for depends on elementary functions, so that errors travel
+  std::optional<ErrorUnknown> obstacle;
+};
+
+} // namespace rtsl

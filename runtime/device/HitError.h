@@ -1,0 +1,69 @@
+//===- HitError.h - how exact a hit is, and rays that leave a primitive ---===//
+//
+// A ray that starts on a primitive of the author's must not meet the surface there again. What an
+// `intersect` computes for t is off by rounding twice: when the surface was hit, which put the new
+// ray's origin off it (Spawn.h), and when the new ray is tested against the same primitive. The
+// author states a bound of the error with `hit(t, error)`, or the compiler derives one from the
+// arithmetic of `intersect` (codegen/passes/BoundHitError.h). The second error is dealt with here.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Hit.h"
+#include "runtime/device/Vector.h"
+
+namespace rtsl::device {
+
+/// RtslState::hitError where the author states none.
+constexpr float errorNotStated = -1;
+
+/// Is it a bound that means something?
+inline bool isBound(float error) {
+  return error >= 0 && error < infinity;
+}
+
+/// The error of t at a hit of `primitive`, by its derived function, which `derive` is; below 0: it
+/// is not known.
+template <typename Derive>
+float derivedHitError(RtslState &state, RtslRef primitive, float t, Derive derive) {
+  const float distance = state.HitDistance, error = state.hitError;
+  state.HitDistance = t;
+  state.hitError = errorNotStated;
+  derive(&state, primitive);
+  const float bound = state.hitError;
+  state.HitDistance = distance;
+  state.hitError = error;
+  return bound;
+}
+
+/// The same of the candidate.
+__attribute__((cold, noinline)) inline float derivedErrorOfCandidate(RtslState &state, float t) {
+  const RtslRef primitive = state.launch->instances[state.candidateInstance].primitive;
+  return derivedHitError(state, primitive, t, rtsl_rt_Primitive_rt_boundHitError);
+}
+
+/// Does the ray leave the candidate, and is t so near that it may be where the ray starts? Then the
+/// hit is not ahead for certain (Pharr, Jakob and Humphreys, "Physically Based Rendering", 3rd
+/// edition, 2016, 3.9.6).
+inline bool mayBeWhereItStarts(RtslState &state, float t, float error) {
+  if (!(rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS) ||
+      state.candidateInstance != state.leaves)
+    return false;
+  if (error == errorNotStated)
+    error = derivedErrorOfCandidate(state, t);
+  return isBound(error) && t - error <= state.Epsilon;
+}
+
+/// `hit(t, error)`: the rule of Hit.h, but for what may be where the ray starts. `error` may be
+/// errorNotStated.
+inline bool reportHitWithin(RtslState &state, float t, float error) {
+  if (t > state.Epsilon && t < state.HitDistance && mayBeWhereItStarts(state, t, error))
+    return false;
+  if (!reportHit(state, t))
+    return false;
+  if (state.instance == state.candidateInstance && state.foundDistance == t) // it has won
+    state.hitError = error;
+  return true;
+}
+
+} // namespace rtsl::device

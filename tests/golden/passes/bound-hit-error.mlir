@@ -1,0 +1,54 @@
+// Beside each operation that t depends on stands the same in double; what is read is exact. At the end `hitError` has how far the hit
+// at HitDistance is off, or -1.
+// RUN: rtsl-opt %s --rtsl-bound-hit-error --mem2reg --rtsl-simplify | FileCheck %s
+
+// CHECK-LABEL: func.func @Plane.intersect(
+// CHECK-DAG: %[[NONE:.*]] = arith.constant -1.000000e+00 : f32
+// CHECK-DAG: arith.extf %{{.*}} : f32 to f64
+// CHECK: arith.subf %{{.*}}, %{{.*}} : f64
+// CHECK: arith.divf %{{.*}}, %{{.*}} : f64
+// CHECK-NOT: rtsl.hit
+// CHECK: math.absf %{{.*}} : f64
+// CHECK: arith.truncf %{{.*}} : f64 to f32
+// CHECK: arith.select %{{.*}}, %{{.*}}, %[[NONE]] : f32
+// CHECK: rtsl.state "hitError"
+// CHECK: rtsl.store
+func.func @Plane.intersect(%height: f32, %y: f32, %slope: f32) {
+  %away = arith.subf %height, %y : f32
+  %t = arith.divf %away, %slope : f32
+  %h = rtsl.hit %t
+  return
+}
+
+// What an author states is left to him.
+// CHECK-LABEL: func.func @Stated.intersect(
+// CHECK-NOT: f64
+// CHECK: return
+func.func @Stated.intersect(%x: f32, %e: f32) {
+  %h = rtsl.hit %x within %e
+  return
+}
+
+// The least of several: what flows in brings its double along.
+// CHECK-LABEL: func.func @Least.intersect(
+// CHECK: cf.br ^[[LOOP:.*]](%{{.*}} : i32, f32, f64)
+// CHECK: ^[[LOOP]](%{{.*}}: i32, %{{.*}}: f32, %{{.*}}: f64)
+func.func @Least.intersect(%x: f32, %n: i32) {
+  %zero = arith.constant 0 : i32
+  %one = arith.constant 1 : i32
+  %far = arith.constant 1.0e30 : f32
+  cf.br ^loop(%zero, %far : i32, f32)
+^loop(%i: i32, %least: f32):
+  %more = arith.cmpi slt, %i, %n : i32
+  cf.cond_br %more, ^body, ^end
+^body:
+  %f = arith.sitofp %i : i32 to f32
+  %t = arith.addf %x, %f : f32
+  %below = arith.cmpf olt, %t, %least : f32
+  %newer = arith.select %below, %t, %least : f32
+  %next = arith.addi %i, %one : i32
+  cf.br ^loop(%next, %newer : i32, f32)
+^end:
+  %h = rtsl.hit %least
+  return
+}
