@@ -153,7 +153,9 @@ struct StackUse::Implementation {
       else
         shaders[node] = true;
     return runtime + longestPath(known, shaders, [&](const std::vector<Index> &part) {
-             return sumOf(known, part) * (isCycle(known, part) ? referenceChain + 1 : 1);
+             // Between two calls through the same reference a member has led on; other functions of
+             // the circle may have called meanwhile.
+             return sumOf(known, part) * (isCycle(known, part) ? (referenceChain + 1) * part.size() : 1);
            });
   }
 };
