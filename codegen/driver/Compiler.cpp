@@ -121,7 +121,7 @@ SourceRange rangeAt(const ir::SourcePlace &place, std::string_view word, const D
 
 /// A GPU has no stack for recursion, which a bound program has only if it is deep. False, with a message, if there is some.
 bool requireNoRecursion(mlir::ModuleOp ir, Diagnostics &diagnostics) {
-  const mlir::func::FuncOp function = recursiveFunction(ir);
+  mlir::func::FuncOp function = recursiveFunction(ir);
   if (!function)
     return true;
   const std::string method = function.getSymName().rsplit('.').second.str();
