@@ -4,10 +4,14 @@
 #include "mlir/Analysis/DataFlow/ConstantPropagationAnalysis.h"
 #include "mlir/Analysis/DataFlow/DeadCodeAnalysis.h"
 #include "mlir/Analysis/DataFlowFramework.h"
+#include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 #include "mlir/Pass/Pass.h"
 #include "mlir/Transforms/FoldUtils.h"
+#include "llvm/ADT/SetVector.h"
+
+#include <algorithm>
 
 namespace rtsl::codegen {
 
@@ -37,6 +41,39 @@ public:
   }
 };
 
+/// More edges than these do not lead to one block while constants are propagated.
+constexpr std::size_t mostEdges = 32;
+
+/// The analysis looks at all edges to a block whenever one of them comes to be executed. Where thousands do, as from the
+/// cases of a switch, they come together in steps; simplification takes these back.
+void joinInSteps(mlir::Block &join) {
+  llvm::SmallVector<std::pair<mlir::Operation *, unsigned>> edges;
+  while (true) {
+    edges.clear();
+    for (mlir::Block *from : llvm::SetVector<mlir::Block *>(join.pred_begin(), join.pred_end())) {
+      mlir::Operation *branch = from->getTerminator();
+      if (!llvm::isa<mlir::cf::BranchOp, mlir::cf::CondBranchOp, mlir::cf::SwitchOp>(branch))
+        return;
+      for (unsigned way = 0; way < branch->getNumSuccessors(); ++way)
+        if (branch->getSuccessor(way) == &join)
+          edges.push_back({branch, way});
+    }
+    if (edges.size() <= mostEdges)
+      return;
+    const mlir::Location location = join.front().getLoc();
+    for (auto rest = llvm::ArrayRef(edges); !rest.empty(); rest = rest.drop_front(std::min(rest.size(), mostEdges))) {
+      auto *step = new mlir::Block;
+      join.getParent()->getBlocks().insert(join.getIterator(), step);
+      for (mlir::BlockArgument argument : join.getArguments())
+        step->addArgument(argument.getType(), argument.getLoc());
+      mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(step);
+      mlir::cf::BranchOp::create(builder, location, &join, step->getArguments());
+      for (auto [branch, way] : rest.take_front(std::min(rest.size(), mostEdges)))
+        branch->setSuccessor(step, way);
+    }
+  }
+}
+
 struct PropagateConstants : mlir::PassWrapper<PropagateConstants, mlir::OperationPass<mlir::func::FuncOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(PropagateConstants)
   llvm::StringRef getArgument() const override { return "rtsl-propagate-constants"; }
@@ -46,6 +83,12 @@ struct PropagateConstants : mlir::PassWrapper<PropagateConstants, mlir::Operatio
     mlir::func::FuncOp function = getOperation();
     if (function.isExternal())
       return;
+    llvm::SmallVector<mlir::Block *> joins;
+    for (mlir::Block &block : function.getBody())
+      if (llvm::range_size(block.getPredecessors()) > mostEdges)
+        joins.push_back(&block);
+    for (mlir::Block *join : joins)
+      joinInSteps(*join);
     mlir::DataFlowSolver solver;
     solver.load<dataflow::DeadCodeAnalysis>();
     solver.load<ConstantPropagation>();
