@@ -33,6 +33,8 @@ static const Row rows[] = {
     {Builtin::Sin, "F F"},
     {Builtin::Cos, "F F"},
     {Builtin::Tan, "F F"},
+    {Builtin::SinPi, "F F"},
+    {Builtin::CosPi, "F F"},
     {Builtin::Asin, "F F"},
     {Builtin::Acos, "F F"},
     {Builtin::Atan, "F F"},
@@ -51,14 +53,18 @@ static const Row rows[] = {
     {Builtin::Exp, "F F"},
     {Builtin::Exp, "c c"},
     {Builtin::Log, "F F"},
+    {Builtin::Log, "c c"},
     {Builtin::Exp2, "F F"},
     {Builtin::Log2, "F F"},
+    {Builtin::Expm1, "F F"},
+    {Builtin::Log1p, "F F"},
     {Builtin::Sqrt, "F F"},
     {Builtin::Sqrt, "c c"},
     {Builtin::InverseSqrt, "F F"},
 
     {Builtin::Abs, "F F"},
     {Builtin::Abs, "I I"},
+    {Builtin::Abs, "c c"},
     {Builtin::Sign, "F F"},
     {Builtin::Sign, "I I"},
     {Builtin::Floor, "F F"},
@@ -81,6 +87,7 @@ static const Row rows[] = {
     {Builtin::MinComponent, "f v"},
     {Builtin::MinComponent, "i w"},
     {Builtin::MinComponent, "u x"},
+    {Builtin::MinComponent, "f c"},
     {Builtin::Max, "F F F"},
     {Builtin::Max, "F F f"},
     {Builtin::Max, "I I I"},
@@ -92,12 +99,15 @@ static const Row rows[] = {
     {Builtin::MaxComponent, "f v"},
     {Builtin::MaxComponent, "i w"},
     {Builtin::MaxComponent, "u x"},
+    {Builtin::MaxComponent, "f c"},
     {Builtin::Clamp, "F F F F"},
     {Builtin::Clamp, "F F f f"},
     {Builtin::Clamp, "I I I I"},
     {Builtin::Clamp, "I I i i"},
     {Builtin::Clamp, "U U U U"},
     {Builtin::Clamp, "U U u u"},
+    {Builtin::Clamp, "c c c c"},
+    {Builtin::Clamp, "c c f f"},
     {Builtin::Mix, "F F F F"},
     {Builtin::Mix, "F F F f"},
     {Builtin::Mix, "c c c f"},
@@ -196,6 +206,7 @@ static const Row rows[] = {
     {Builtin::Inside, "b U U U"},
     {Builtin::Inside, "b U u u"},
     {Builtin::Rand, "f"},
+    {Builtin::RandOpen, "f"},
     {Builtin::Luminance, "f c"},
     {Builtin::Trace,
      "c 3 3"}, // the form with a payload is checked by hand: its type is the author's
@@ -347,6 +358,16 @@ const std::vector<std::string> &builtinNames() {
         all.emplace_back(typed::name(row.builtin));
     return all;
   }();
+  return names;
+}
+
+std::vector<std::string> colorFunctionNames() {
+  std::vector<std::string> names;
+  for (const Row &row : rows)
+    if (const std::string name = typed::name(row.builtin);
+        std::string(row.signature).find(" c") != std::string::npos &&
+        std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
   return names;
 }
 

@@ -32,4 +32,7 @@ private:
 /// All names, for suggestions.
 const std::vector<std::string> &builtinNames();
 
+/// Those that take a color.
+std::vector<std::string> colorFunctionNames();
+
 } // namespace rtsl

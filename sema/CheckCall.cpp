@@ -2,6 +2,9 @@
 #include "sema/FunctionChecker.h"
 #include "sema/Suggest.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 namespace rtsl {
@@ -219,8 +222,7 @@ int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature
   if (std::any_of(argTypes.begin(), argTypes.end(),
                   [](const Type *type) { return type->is(TypeKind::Color); }) &&
       places.empty())
-    diagnostic.note("of the built-in functions, a color has `pow`, `exp`, `sqrt`, `mix`, `min`, "
-                    "`max` and `luminance`");
+    diagnostic.note(fmt::format("of the built-in functions, a color has `{}`", fmt::join(colorFunctionNames(), "`, `")));
   return -1;
 }
 

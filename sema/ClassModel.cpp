@@ -189,6 +189,7 @@ std::optional<Ability> abilityNeeded(const std::string &builtin) {
       {"terminateRay", Ability::AnyHit},
       {"visitChild", Ability::VisitChild},
       {"rand", Ability::Random},
+      {"randOpen", Ability::Random},
   };
   const auto found = needed.find(builtin);
   return found == needed.end() ? std::nullopt : std::optional(found->second);

@@ -33,6 +33,10 @@ static std::optional<float> foldElementary1(Builtin builtin, float x) {
     return device::cos(x);
   case Builtin::Tan:
     return device::tan(x);
+  case Builtin::SinPi:
+    return device::sinpi(x);
+  case Builtin::CosPi:
+    return device::cospi(x);
   case Builtin::Asin:
     return device::asin(x);
   case Builtin::Acos:
@@ -59,6 +63,10 @@ static std::optional<float> foldElementary1(Builtin builtin, float x) {
     return device::log(x);
   case Builtin::Log2:
     return device::log2(x);
+  case Builtin::Expm1:
+    return device::expm1(x);
+  case Builtin::Log1p:
+    return device::log1p(x);
   case Builtin::InverseSqrt:
     return device::inversesqrt(x);
   default:

@@ -27,6 +27,8 @@ enum class Builtin : std::uint8_t {
 #include "sema/Builtins.def"
 };
 const char *name(Builtin builtin);
+/// Whether it takes the next random number of the ray.
+inline bool drawsRandom(Builtin builtin) { return builtin == Builtin::Rand || builtin == Builtin::RandOpen; }
 
 /// The rt_ variables; `RayOrigin` is rt_RayOrigin.
 enum class StateVariable : std::uint8_t {

@@ -123,6 +123,7 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   switch (expr.builtin) {
   case Builtin::Trace:
   case Builtin::Rand:
+  case Builtin::RandOpen:
   case Builtin::Ambient:
   case Builtin::LightCount:
   case Builtin::Illuminate:

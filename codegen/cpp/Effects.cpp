@@ -59,7 +59,7 @@ EffectsOf::EffectsOf(const typed::Module &module, bool prints, bool raises)
         if (method->body)
           forEachExpr(*method->body, [&](const typed::Expr &expr) {
             if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-              texturesDraw |= builtin->builtin == Builtin::Rand;
+              texturesDraw |= typed::drawsRandom(builtin->builtin);
             if (auto *call = dynCast<typed::CallExpr>(&expr))
               texturesDraw |= !call->function->owner && function(*call->function).random;
           });
@@ -257,6 +257,7 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     const auto &builtin = cast<typed::BuiltinExpr>(expr);
     switch (builtin.builtin) {
     case Builtin::Rand:
+    case Builtin::RandOpen:
       effects.usesRay = effects.random = true;
       break;
     case Builtin::TracePayload:

@@ -105,10 +105,10 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
           emit(out, to + " = " + from + ";");
       })
       .Case([&](ir::SpawnPayloadOp spawn) { spawnPayload(spawn); })
-      .Case([&](ir::RandOp) {
+      .Case([&](ir::RandOp rand) {
         Touches touches = touchesOf(&op);
         flush(touches, out);
-        define(op, {"rtsl::rand(rt)"}, touches, false, out);
+        define(op, {rand.getOpen() ? "rtsl::randOpen(rt)" : "rtsl::rand(rt)"}, touches, false, out);
       })
       .Case([&](ir::CallArgumentOp argument) {
         if (!llvm::isa<ir::PtrType>(argument.getType()))

@@ -18,6 +18,17 @@ namespace {
 
 double inverseSquareRoot(double x) { return 1.0 / std::sqrt(x); }
 
+/// Sine and cosine of pi x. All but the product with pi and what follows it is exact.
+double sineOfPi(double x) {
+  double turn = std::remainder(x, 2.0);
+  if (std::fabs(turn) > 0.5)
+    turn = std::copysign(1.0, turn) - turn;
+  if (turn == 0.0)
+    return std::copysign(0.0, x);
+  return std::fabs(turn) > 0.25 ? std::copysign(std::cos(M_PI * (0.5 - std::fabs(turn))), turn) : std::sin(M_PI * turn);
+}
+double cosineOfPi(double x) { return sineOfPi(0.5 - std::fabs(std::remainder(x, 2.0))); }
+
 using Unary = double (*)(double);
 using Binary = double (*)(double, double);
 
@@ -38,6 +49,8 @@ const DoubleFunction functions[] = {
     UNARY(log),    UNARY(log2),  UNARY(log1p), BINARY(pow),  BINARY(atan2),
     {"rtsl_double_inversesqrt", reinterpret_cast<void *>(&inverseSquareRoot)},
     {"rtsl_double_check_number", reinterpret_cast<void *>(&rtsl_double_check_number)},
+    {"rtsl_double_sinpi", reinterpret_cast<void *>(&sineOfPi)},
+    {"rtsl_double_cospi", reinterpret_cast<void *>(&cosineOfPi)},
 };
 
 /// The name of the double function for an elementary one of the device code; empty for others.

@@ -22,7 +22,7 @@ std::string runtimeFunction(mlir::Operation *op) {
       .Case([](ir::RaiseOp) { return "rtsl_raise"; })
       .Case([](ir::PrintOp) { return "rtsl_print"; })
       .Case([](ir::HitOp hit) { return hit.getError() ? "rtsl_hit_within" : "rtsl_hit"; })
-      .Case([](ir::RandOp) { return "rtsl_rand"; })
+      .Case([](ir::RandOp rand) { return rand.getOpen() ? "rtsl_rand_open" : "rtsl_rand"; })
       .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
       .Case([](ir::SpawnOp spawn) { return spawn.getLast() ? "rtsl_spawn_last" : "rtsl_spawn"; })
       .Case([](ir::TraceResultOp) { return "rtsl_trace_result"; })

@@ -31,6 +31,10 @@ static float evaluate(Elementary function, float x) {
     return device::cos(x);
   case Elementary::Tan:
     return device::tan(x);
+  case Elementary::SinPi:
+    return device::sinpi(x);
+  case Elementary::CosPi:
+    return device::cospi(x);
   case Elementary::Asin:
     return device::asin(x);
   case Elementary::Acos:

@@ -444,10 +444,13 @@ def Rtsl_AmbientOp : Rtsl_Op<"ambient", [Pure]> {
 def Rtsl_RandOp : Rtsl_Op<"rand"> {
   let summary = "the next random number of the ray, uniform in [0, 1)";
   let description = [{
-    Example: `%r = rtsl.rand`
+    With `open` it is never 0.
+
+    Example: `%r = rtsl.rand` or `%r = rtsl.rand open`
   }];
+  let arguments = (ins UnitAttr:$open);
   let results = (outs F32:$result);
-  let assemblyFormat = "attr-dict";
+  let assemblyFormat = "(`open` $open^)? attr-dict";
 }
 
 def Rtsl_LightCountOp : Rtsl_Op<"light_count", [Pure]> {
@@ -487,7 +490,8 @@ def Rtsl_Elementary : I32Enum<"Elementary", "elementary function", [
     Rtsl_Function<"Exp", 12, "exp">, Rtsl_Function<"Exp2", 13, "exp2">, Rtsl_Function<"Log", 14, "log">,
     Rtsl_Function<"Log2", 15, "log2">, Rtsl_Function<"InverseSqrt", 16, "inversesqrt">,
     Rtsl_Function<"Pow", 17, "pow">, Rtsl_Function<"Atan2", 18, "atan2">,
-    Rtsl_Function<"Expm1", 19, "expm1">, Rtsl_Function<"Log1p", 20, "log1p">]> {
+    Rtsl_Function<"Expm1", 19, "expm1">, Rtsl_Function<"Log1p", 20, "log1p">,
+    Rtsl_Function<"SinPi", 21, "sinpi">, Rtsl_Function<"CosPi", 22, "cospi">]> {
   let cppNamespace = "::rtsl::ir";
 }
 

@@ -24,6 +24,7 @@ bool isPureBuiltin(typed::Builtin builtin) {
   case typed::Builtin::UmulExtended:
   case typed::Builtin::ImulExtended:
   case typed::Builtin::Rand:
+  case typed::Builtin::RandOpen:
   case typed::Builtin::Trace:
   case typed::Builtin::TracePayload:
   case typed::Builtin::Hit:

@@ -44,6 +44,10 @@ static std::optional<ir::Elementary> elementaryOf(Builtin builtin) {
     return ir::Elementary::Cos;
   case Builtin::Tan:
     return ir::Elementary::Tan;
+  case Builtin::SinPi:
+    return ir::Elementary::SinPi;
+  case Builtin::CosPi:
+    return ir::Elementary::CosPi;
   case Builtin::Asin:
     return ir::Elementary::Asin;
   case Builtin::Acos:
@@ -74,6 +78,10 @@ static std::optional<ir::Elementary> elementaryOf(Builtin builtin) {
     return ir::Elementary::Exp2;
   case Builtin::Log2:
     return ir::Elementary::Log2;
+  case Builtin::Expm1:
+    return ir::Elementary::Expm1;
+  case Builtin::Log1p:
+    return ir::Elementary::Log1p;
   case Builtin::InverseSqrt:
     return ir::Elementary::InverseSqrt;
   default:

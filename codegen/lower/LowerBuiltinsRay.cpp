@@ -28,8 +28,9 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
     return Parts{nearest};
   }
   case Builtin::Rand:
+  case Builtin::RandOpen:
     emitter.setLoc(location);
-    return Parts{emitter.make<ir::RandOp>(emitter.getF32Type())};
+    return Parts{emitter.make<ir::RandOp>(emitter.getF32Type(), expr.builtin == Builtin::RandOpen)};
   case Builtin::Ambient:
     emitter.setLoc(location);
     return Parts{emitter.make<ir::AmbientOp>(module.type(expr.type))};

@@ -258,7 +258,7 @@ static bool isBetweenRays(const typed::Expr &expr, const SourceTable &table) {
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
       found = found && (isPureBuiltin(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
-                        builtin->builtin == typed::Builtin::Print || builtin->builtin == typed::Builtin::Rand);
+                        builtin->builtin == typed::Builtin::Print || typed::drawsRandom(builtin->builtin));
     else if (auto *call = dynCast<typed::CallExpr>(&inner))
       found = found && !table.mayTrace(*call->function);
     else if (auto *method = dynCast<typed::MethodCallExpr>(&inner))

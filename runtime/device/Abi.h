@@ -276,6 +276,8 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
 
 /// `rand()`: uniform in [0, 1).
 float rtsl_rand(RtslState *state);
+/// `randOpen()`: uniform in (0, 1).
+float rtsl_rand_open(RtslState *state);
 
 /// Notes that the sample has met an exception.
 void rtsl_raise(RtslState *state, uint32_t exception);

@@ -53,6 +53,10 @@ float rtsl_rand(RtslState *state) {
   return device::randomNumber(state->randomKey, state->dimension++);
 }
 
+float rtsl_rand_open(RtslState *state) {
+  return device::openRandomNumber(state->randomKey, state->dimension++);
+}
+
 void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color) {
   device::sample(*launch, x, y, sample, color);
 }

@@ -58,14 +58,54 @@ inline Words4 hash4(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
 }
 
 /// Uniform in [0, 1): the upper 24 bits, so that every value is exact and 1 cannot come out by
-/// rounding.
+/// rounding. For positions, which are not the better for digits near 0.
 inline float unitFloat(uint32_t bits) {
   return float(bits >> 8) * 0x1p-24f;
 }
 
-/// The draw number `dimension` of the ray with this key.
+/// The float below the binary fraction 0.words[0] words[1] ... of 149 bits. Each float in [0, 1) comes
+/// out as often as a real number from there to the next float does.
+inline float floatOfFraction(const uint32_t words[5]) {
+  uint32_t first = 0;
+  while (first < 3 && words[first] == 0)
+    ++first;
+  uint32_t next = words[first + 1];
+  if (first == 3)
+    next &= ~0x7ffu; // what lies below the smallest float
+  const uint64_t window = (uint64_t(words[first]) << 32) | next;
+  if (window == 0)
+    return 0;
+  const int zeros = __builtin_clzll(window);
+  const auto leading = uint32_t((window << zeros) >> 40); // 24 bits
+  // In double, where 2^-183 is normal; the product is a float.
+  const uint64_t scaleBits = uint64_t(1023 - 24 - zeros - 32 * int(first)) << 52;
+  double scale;
+  __builtin_memcpy(&scale, &scaleBits, sizeof scale);
+  return float(double(leading) * scale);
+}
+
+/// randomNumber() where the first word does not hold 24 significant bits, as happens once in 512 draws.
+__attribute__((cold, noinline)) inline float smallRandomNumber(const uint32_t key[2], uint32_t dimension,
+                                                               uint32_t first) {
+  const Words4 more = hash4(key[0], key[1], dimension, 0x5bd1e995u);
+  const uint32_t words[5] = {first, more.x, more.y, more.z, more.w};
+  return floatOfFraction(words);
+}
+
+/// The draw number `dimension` of the ray with this key: uniform in [0, 1), with 24 significant bits however near to 0 it
+/// is. (Of the leading bits of one word alone, as in unitFloat(), nothing lies between 0 and 2^-24; see Downey,
+/// "Generating Pseudo-random Floating-Point Values", 2007.)
 inline float randomNumber(const uint32_t key[2], uint32_t dimension) {
-  return unitFloat(hash3(key[0], key[1], dimension).x);
+  const uint32_t first = hash3(key[0], key[1], dimension).x;
+  if (first < 1u << 23)
+    return smallRandomNumber(key, dimension, first);
+  return float(first & ~(0xffu >> __builtin_clz(first))) * 0x1p-32f; // exact, so that it does not become 1
+}
+
+/// The same draw, but for 0, which becomes the smallest float: uniform in (0, 1).
+inline float openRandomNumber(const uint32_t key[2], uint32_t dimension) {
+  const float drawn = randomNumber(key, dimension);
+  return drawn == 0 ? 0x1p-149f : drawn;
 }
 
 /// The key of a ray that is spawned when its parent's counter stands at `dimension`. It takes the

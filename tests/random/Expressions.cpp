@@ -267,7 +267,7 @@ NodePtr Generator::ofObject(const Type *type, unsigned depth) {
   if (context.constantOnly)
     return nullptr;
   if (type == types.floatType && context.rand && chance(30))
-    return make(type, "rand()");
+    return make(type, chance(70) ? "rand()" : "randOpen()");
   if (type == types.color && context.traces >= context.weight && chance(60)) {
     context.traces -= context.weight;
     const Type *vec3 = types.vector(types.floatType, 3);

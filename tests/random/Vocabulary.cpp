@@ -8,6 +8,7 @@ static bool standsAnywhere(typed::Builtin builtin) {
   using typed::Builtin;
   switch (builtin) {
   case Builtin::Rand:
+  case Builtin::RandOpen:
   case Builtin::Trace:
   case Builtin::TracePayload:
   case Builtin::Hit:

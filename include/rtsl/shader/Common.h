@@ -140,25 +140,27 @@ constexpr auto sign(const T &value) {
       value);
 }
 
+namespace detail {
+/// choose(choose(first, second), third)...
+template <typename T, typename Choose, int... I>
+constexpr auto chooseComponent(const T &v, Choose choose, std::integer_sequence<int, I...>) {
+  auto result = part<0>(v);
+  ((result = choose(result, part<I + 1>(v))), ...);
+  return result;
+}
+} // namespace detail
+
 /// The least component.
 template <typename T>
 constexpr auto minComponent(const T &v) {
-  auto result = rtsl::min(part<0>(v), part<1>(v));
-  if constexpr (width<T> > 2)
-    result = rtsl::min(result, part<2>(v));
-  if constexpr (width<T> > 3)
-    result = rtsl::min(result, part<3>(v));
-  return result;
+  return detail::chooseComponent(v, [](auto a, auto b) { return rtsl::min(a, b); },
+                                 std::make_integer_sequence<int, width<T> - 1>());
 }
 /// The greatest component.
 template <typename T>
 constexpr auto maxComponent(const T &v) {
-  auto result = rtsl::max(part<0>(v), part<1>(v));
-  if constexpr (width<T> > 2)
-    result = rtsl::max(result, part<2>(v));
-  if constexpr (width<T> > 3)
-    result = rtsl::max(result, part<3>(v));
-  return result;
+  return detail::chooseComponent(v, [](auto a, auto b) { return rtsl::max(a, b); },
+                                 std::make_integer_sequence<int, width<T> - 1>());
 }
 
 //===----------------------------------------------------------------------===//

@@ -11,12 +11,14 @@
 /// X(name) for each function of one number that C has, too.
 #define RTSL_ELEMENTARY_FUNCTIONS(X)                                                               \
   X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(asinh)                    \
-  X(acosh) X(atanh) X(exp) X(exp2) X(log) X(log2)
+  X(acosh) X(atanh) X(exp) X(exp2) X(expm1) X(log) X(log2) X(log1p)
 
 extern "C" {
 #define RTSL_DECLARE(name) float rtsl_##name(float x);
 RTSL_ELEMENTARY_FUNCTIONS(RTSL_DECLARE)
 #undef RTSL_DECLARE
+float rtsl_sinpi(float x);
+float rtsl_cospi(float x);
 float rtsl_inversesqrt(float x);
 float rtsl_atan2(float y, float x);
 float rtsl_pow(float x, float y);
@@ -41,6 +43,16 @@ inline namespace RTSL_VARIANT {
 RTSL_ELEMENTARY_FUNCTIONS(RTSL_DEFINE)
 #undef RTSL_DEFINE
 #undef RTSL_ELEMENTARY_FUNCTIONS
+
+// sin(pi x) and cos(pi x), which the C library has not got yet.
+template <typename T>
+inline auto sinpi(const T &value) {
+  return each([](float x) { return rtsl_sinpi(x); }, value);
+}
+template <typename T>
+inline auto cospi(const T &value) {
+  return each([](float x) { return rtsl_cospi(x); }, value);
+}
 
 template <typename T>
 inline auto inversesqrt(const T &value) {

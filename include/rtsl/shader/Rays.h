@@ -78,6 +78,11 @@ template <int N>
 inline float rand(State<N> &rt) {
   return rtsl_rand(rawState(rt));
 }
+/// Uniform in (0, 1).
+template <int N>
+inline float randOpen(State<N> &rt) {
+  return rtsl_rand_open(rawState(rt));
+}
 
 template <int N>
 inline Color<N> ambient(const State<N> &rt) {

@@ -19,6 +19,9 @@
 [[gnu::const, gnu::noinline]] static rtsl::device::SineAndCosine sineAndCosine(float x) {
   return rtsl::device::sineAndCosine(x);
 }
+[[gnu::const, gnu::noinline]] static rtsl::device::SineAndCosine sineAndCosineOfPi(float x) {
+  return rtsl::device::sineAndCosineOfPi(x);
+}
 
 extern "C" {
 
@@ -27,6 +30,12 @@ float rtsl_sin(float x) {
 }
 float rtsl_cos(float x) {
   return sineAndCosine(x).cosine;
+}
+float rtsl_sinpi(float x) {
+  return sineAndCosineOfPi(x).sine;
+}
+float rtsl_cospi(float x) {
+  return sineAndCosineOfPi(x).cosine;
 }
 RTSL_EXPORT_UNARY(tan)
 RTSL_EXPORT_UNARY(asin)

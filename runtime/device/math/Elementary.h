@@ -10,6 +10,7 @@
 // zero.
 //
 //     Trigonometric.h         sin cos tan            ArgumentReduction.h
+//     TrigonometricOfPi.h     sinpi cospi            Trigonometric.h
 //     InverseTrigonometric.h  asin acos atan         ArcTangentKernel.h
 //     ArcTangent2.h           atan2                  ArcTangentKernel.h, DoubleDoubleFunctions.h
 //     Exponential.h           exp exp2 expm1         ExponentialKernel.h
@@ -32,3 +33,4 @@
 #include "runtime/device/math/Logarithm.h"
 #include "runtime/device/math/Power.h"
 #include "runtime/device/math/Trigonometric.h"
+#include "runtime/device/math/TrigonometricOfPi.h"

@@ -30,6 +30,8 @@ unsigned threadNumber() {
 UNARY(sin)
 UNARY(cos)
 UNARY(tan)
+UNARY(sinpi)
+UNARY(cospi)
 UNARY(asin)
 UNARY(acos)
 UNARY(atan)

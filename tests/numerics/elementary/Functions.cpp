@@ -19,6 +19,28 @@ double systemInverseSquareRootDouble(double x) {
   return 1.0 / std::sqrt(x);
 }
 
+// The C library has none of pi x yet. All steps but the product with pi and the last are exact.
+constexpr double pi = 3.14159265358979323846;
+
+double systemSineOfPiDouble(double x) {
+  double turn = std::remainder(x, 2.0);
+  if (std::fabs(turn) > 0.5)
+    turn = std::copysign(1.0, turn) - turn;
+  return turn == 0.0 ? std::copysign(0.0, x) : std::sin(pi * turn);
+}
+double systemCosineOfPiDouble(double x) {
+  const double turn = std::fabs(std::remainder(x, 2.0));
+  if (turn > 0.75)
+    return -std::cos(pi * (1.0 - turn));
+  return turn < 0.25 ? std::cos(pi * turn) : std::sin(pi * (0.5 - turn));
+}
+float systemSineOfPi(float x) {
+  return std::sin(static_cast<float>(pi) * x);
+}
+float systemCosineOfPi(float x) {
+  return std::cos(static_cast<float>(pi) * x);
+}
+
 float powerInLane(float x, float y) {
   std::uint32_t hash = (device::detail::bitsOf(x) ^ device::detail::bitsOf(y)) * 0x9e3779b9u;
   alignas(16) float bases[4] = {0.3f, 0.97f, 7.0f, 1.0f}, exponents[4] = {2.5f, 11.0f, -0.5f, 1.0f};
@@ -52,6 +74,8 @@ const std::vector<Unary> &unaryFunctions() {
       UNARY(sin, -6.0f, 6.0f),
       UNARY(cos, -6.0f, 6.0f),
       UNARY(tan, -6.0f, 6.0f),
+      {"sinpi", device::sinpi, systemSineOfPi, systemSineOfPiDouble, mpfr_sinpi, -2.0f, 2.0f},
+      {"cospi", device::cospi, systemCosineOfPi, systemCosineOfPiDouble, mpfr_cospi, -2.0f, 2.0f},
       UNARY(asin, -1.0f, 1.0f),
       UNARY(acos, -1.0f, 1.0f),
       UNARY(atan, -8.0f, 8.0f),

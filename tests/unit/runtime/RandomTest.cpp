@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 using namespace rtsl::device;
@@ -74,6 +76,118 @@ TEST(Random, NeighboursAreUncorrelated) {
 TEST(Random, NeverReachesOne) {
   EXPECT_EQ(unitFloat(0xffffffffu), 1 - 0x1p-24f);
   EXPECT_EQ(unitFloat(0), 0);
+  const std::uint32_t ones[5] = {~0u, ~0u, ~0u, ~0u, ~0u}, zeros[5] = {};
+  EXPECT_EQ(floatOfFraction(ones), 1 - 0x1p-24f);
+  EXPECT_EQ(floatOfFraction(zeros), 0);
+}
+
+namespace {
+
+using Fraction = std::array<std::uint32_t, 5>;
+
+bool bitAt(const Fraction &fraction, int index) { return fraction[std::size_t(index / 32)] >> (31 - index % 32) & 1; }
+
+/// The float below a fraction, bit by bit: 24 of them from the first that is set, none behind the 149th.
+float floatBelow(const Fraction &fraction) {
+  double value = 0;
+  int first = -1;
+  for (int i = 0; i < 149 && (first < 0 || i < first + 24); ++i)
+    if (bitAt(fraction, i)) {
+      first = first < 0 ? i : first;
+      value += std::ldexp(1.0, -i - 1);
+    }
+  return float(value);
+}
+
+/// The bits of a float below 1 as a fraction.
+Fraction fractionOf(float value) {
+  Fraction fraction = {};
+  double rest = double(value);
+  for (int i = 0; i < 149; ++i)
+    if (const double bit = std::ldexp(1.0, -i - 1); rest >= bit) {
+      fraction[std::size_t(i / 32)] |= 0x80000000u >> (i % 32);
+      rest -= bit;
+    }
+  return fraction;
+}
+
+} // namespace
+
+// Each float is what becomes of the numbers from it up to the next one, so that it has the probability of that interval.
+TEST(Random, EveryFloatHasItsProbability) {
+  for (int zeros = 0; zeros < 160; ++zeros)
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+      const Words4 a = hash4(std::uint32_t(zeros), i, 1, 2), b = hash4(a.x, a.y, 3, 4);
+      Fraction fraction = {b.x, b.y, b.z, b.w, a.z};
+      for (int bit = 0; bit < zeros; ++bit)
+        fraction[std::size_t(bit / 32)] &= ~(0x80000000u >> (bit % 32));
+      ASSERT_EQ(floatOfFraction(fraction.data()), floatBelow(fraction)) << zeros << " " << i;
+    }
+  for (int exponent = -149; exponent < 0; ++exponent)
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      const float value = std::ldexp(1.0f + float(hash4(i, 5, 6, 7).x >> 9) * 0x1p-23f, exponent);
+      if (!(value < 1))
+        continue;
+      const float next = std::nextafter(value, 2.0f);
+      ASSERT_EQ(floatOfFraction(fractionOf(value).data()), value);
+      Fraction last = fractionOf(next); // less the smallest bit
+      for (std::size_t word = 5; word-- != 0;)
+        if (last[word]-- != 0)
+          break;
+      if (next < 1) {
+        ASSERT_EQ(floatOfFraction(last.data()), value);
+      }
+    }
+}
+
+TEST(Random, IsAsUniformNearZeroAsElsewhere) {
+  // How many draws lie between 2^-k-1 and 2^-k, and the last digits of those that are small.
+  constexpr std::uint32_t draws = 1u << 24;
+  constexpr int octaves = 14;
+  std::vector<double> counts(octaves + 1, 0.0), lastDigits;
+  const std::uint32_t key[2] = {0x12345u, 0x6789au};
+  for (std::uint32_t i = 0; i < draws; ++i) {
+    const float drawn = randomNumber(key, i);
+    int exponent;
+    const double significand = double(std::frexp(drawn, &exponent)) * 0x1p24;
+    ++counts[std::size_t(std::min(-exponent, octaves))];
+    if (drawn < 0x1p-9f)
+      lastDigits.push_back(std::fmod(significand, 256) / 256);
+  }
+  double sum = 0;
+  for (int k = 0; k <= octaves; ++k) {
+    const double expected = std::ldexp(double(draws), -std::min(k + 1, octaves));
+    sum += (counts[std::size_t(k)] - expected) * (counts[std::size_t(k)] - expected) / expected;
+  }
+  EXPECT_LT((sum - octaves) / std::sqrt(2.0 * octaves), 5);
+  EXPECT_LT(std::fabs(chiSquaredDeviations(lastDigits, 256)), 5);
+
+  // What follows when the first word is 0: uniform again, below 2^-32.
+  std::vector<double> tail;
+  for (std::uint32_t i = 0; i < 200000; ++i)
+    tail.push_back(std::ldexp(double(smallRandomNumber(key, i, 0)), 32));
+  EXPECT_LT(std::fabs(chiSquaredDeviations(tail, 1000)), 5);
+}
+
+TEST(Random, FreePathsHaveTheirDistribution) {
+  // -log(u) is exponential: its moments are factorials, and however long a path is, one of them is longer.
+  double first = 0, second = 0;
+  constexpr std::uint32_t draws = 1u << 22;
+  const std::uint32_t key[2] = {99, 1};
+  for (std::uint32_t i = 0; i < draws; ++i) {
+    const double path = -std::log(double(openRandomNumber(key, i)));
+    first += path;
+    second += path * path;
+  }
+  EXPECT_NEAR(first / draws, 1, 5 / std::sqrt(double(draws)));
+  EXPECT_NEAR(second / draws, 2, 5 * std::sqrt(20 / double(draws)));
+
+  // Beyond 22 mean free paths, where 32 bits hold nothing: draws whose first word is 0 alone, exp(-32 ln 2) of all.
+  double sum = 0;
+  constexpr std::uint32_t rare = 1u << 18;
+  for (std::uint32_t i = 0; i < rare; ++i)
+    sum += -std::log(double(smallRandomNumber(key, i, 0))) - 32 * std::log(2.0);
+  EXPECT_NEAR(sum / rare, 1, 5 / std::sqrt(double(rare)));
 }
 
 TEST(Random, SamplesOfAPixelAreStratified) {
