@@ -193,8 +193,11 @@ ExprPtr FunctionChecker::memberAccess(const typed::Member *member, SourceRange r
   if (member->type->isError())
     return errorExpr(range);
   if (member->isConst) {
-    if (member->constant && access == Access::Read && !isAggregate(member->type))
-      return literal(member->type, range, *member->constant);
+    if (member->constant && access == Access::Read && !isAggregate(member->type)) {
+      ExprPtr value = literal(member->type, range, *member->constant);
+      static_cast<typed::LiteralExpr &>(*value).member = member;
+      return value;
+    }
   } else if (!facts) {
     diagnostics.report(Code::useOutsideFunction, range, member->name);
     return errorExpr(range);
@@ -217,8 +220,11 @@ ExprPtr FunctionChecker::variableAccess(const typed::Variable *variable, SourceR
   mentioned.insert(variable);
   if (variable->type->isError())
     return errorExpr(range);
-  if (variable->constant && access == Access::Read && !isAggregate(variable->type))
-    return literal(variable->type, range, *variable->constant);
+  if (variable->constant && access == Access::Read && !isAggregate(variable->type)) {
+    ExprPtr value = literal(variable->type, range, *variable->constant);
+    static_cast<typed::LiteralExpr &>(*value).variable = variable;
+    return value;
+  }
   auto node = makeExpr<typed::VariableExpr>(variable->type, range);
   node->variable = variable;
   return node;

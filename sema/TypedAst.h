@@ -154,6 +154,9 @@ struct ExprOf : Expr {
 struct LiteralExpr : ExprOf<ExprKind::Literal> {
   Constant value;
   std::string spelling;
+  // The constant that the author names here, if it is one.
+  const Variable *variable = nullptr;
+  const Member *member = nullptr;
 };
 struct VariableExpr : ExprOf<ExprKind::Variable> {
   const Variable *variable = nullptr;

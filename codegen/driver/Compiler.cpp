@@ -375,6 +375,16 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runti
   load(std::move(code), {}, options, program);
 }
 
+/// With arithmetic in double what a scene sets stays a variable, for a bound index would change what lies in memory, and so where
+/// a number is rounded.
+LinkRequest whenBound(LinkRequest request, const CompileOptions &options) {
+  if (options.floatingPoint == FloatingPoint::Double) {
+    request.keep.add(Item::Parameters);
+    request.keep.add(Item::Lights);
+  }
+  return request;
+}
+
 /// Makes the objects of a scene, and leaves in `ir` what renders that scene.
 void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOptions &options, const MakeObjects &makeObjects,
                  const runtime::Program &program, Findings *findings = nullptr) {
@@ -385,7 +395,7 @@ void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOpt
   // Constructors and bounds may have large local variables.
   runtime::SceneFacts facts;
   runtime::runOnThreads(1, constructors->stackBytes(0, 0), [&](unsigned) { facts = makeObjects(constructors); });
-  bindScene(ir, facts, request, findings);
+  bindScene(ir, facts, whenBound(request, options), findings);
 }
 
 } // namespace
@@ -500,7 +510,7 @@ bool hasIndexChecks(const typed::Module &module, const LinkRequest &request,
     const std::unique_ptr<mlir::MLIRContext> context = makeContext();
     runtime::Program program;
     const auto ir = linkScene(module, request, checking, unheard, *context, program);
-    bindScene(*ir, facts, request);
+    bindScene(*ir, facts, whenBound(request, checking));
     return fingerprint(*ir, checking, program);
   };
   return compiled(true) != compiled(false);
@@ -565,7 +575,7 @@ std::optional<SceneExplanation> explainScene(const typed::Module &module, const 
     const auto ir = linkScene(module, keeping, keepingOptions, unheard, *context, program);
     if (!ir)
       continue; // the item cannot be kept: a class that the scene does not use may be incomplete
-    bindScene(*ir, facts, keeping);
+    bindScene(*ir, facts, whenBound(keeping, keepingOptions));
     explanation.sizeKeeping[item] = measure(*ir, keepingOptions, program);
   }
   return explanation;

@@ -44,6 +44,7 @@ mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const
   lowering.checkIndices = options.checkIndices;
   lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
   lowering.prints = request.features & RTSL_FEATURE_PRINT;
+  lowering.isWidenedLater = options.floatingPoint == FloatingPoint::Double;
   if (!request.keep.has(Item::Classes))
     lowering.classes = {request.classes.begin(), request.classes.end()};
   return lower(module, lowering, context);

@@ -2,6 +2,7 @@
 #include "codegen/emit/DoublePrecision.h"
 
 #include "runtime/NumberCheck.h"
+#include "runtime/device/math/Refraction.h"
 
 #include "llvm/Analysis/ConstantFolding.h"
 #include "llvm/IR/IRBuilder.h"
@@ -9,6 +10,7 @@
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
 #include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/SmallVectorExtras.h"
 
 #include <cmath>
 
@@ -31,11 +33,15 @@ double cosineOfPi(double x) { return sineOfPi(0.5 - std::fabs(std::remainder(x, 
 
 using Unary = double (*)(double);
 using Binary = double (*)(double, double);
+using Refract = void (*)(const double *, const double *, double, double *);
 
 #define UNARY(name)                                                                                \
   { "rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Unary>(&std::name)) }
 #define BINARY(name)                                                                               \
   { "rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Binary>(&std::name)) }
+
+#define REFRACT(count)                                                                             \
+  { "rtsl_double_refract" #count, reinterpret_cast<void *>(static_cast<Refract>(&device::refract<count, double>)) }
 
 struct DoubleFunction {
   const char *name;
@@ -51,6 +57,7 @@ const DoubleFunction functions[] = {
     {"rtsl_double_check_number", reinterpret_cast<void *>(&rtsl_double_check_number)},
     {"rtsl_double_sinpi", reinterpret_cast<void *>(&sineOfPi)},
     {"rtsl_double_cospi", reinterpret_cast<void *>(&cosineOfPi)},
+    REFRACT(1), REFRACT(2), REFRACT(3), REFRACT(4),
 };
 
 /// The name of the double function for an elementary one of the device code; empty for others.
@@ -97,6 +104,41 @@ bool isArithmetic(llvm::Intrinsic::ID intrinsic) {
   }
 }
 
+/// The function that is called, whatever type the call takes it for.
+llvm::Function *calleeOf(const llvm::CallInst &call) {
+  return llvm::dyn_cast<llvm::Function>(call.getCalledOperand());
+}
+
+/// Whether a call is of a shader's function, whose numbers are passed on as double.
+bool isWidenedCall(const llvm::CallInst &call) {
+  const llvm::Function *callee = calleeOf(call);
+  return callee && callee->getFunctionType() != call.getFunctionType();
+}
+
+/// A function whose parameters and results of single precision, if it has any, are double. What runtime and shaders call of
+/// one another passes no numbers in this direction.
+llvm::Function *withDoubleSignature(llvm::Function &function) {
+  llvm::FunctionType *type = function.getFunctionType();
+  auto widened = [](llvm::Type *part) { return isSingle(part) ? doubled(part) : part; };
+  const auto parameters = llvm::map_to_vector(type->params(), widened);
+  llvm::FunctionType *wide = llvm::FunctionType::get(widened(type->getReturnType()), parameters, type->isVarArg());
+  if (wide == type)
+    return &function;
+  llvm::Function *result = llvm::Function::Create(wide, function.getLinkage(), function.getAddressSpace());
+  function.getParent()->getFunctionList().insert(function.getIterator(), result);
+  result->copyAttributesFrom(&function);
+  result->takeName(&function);
+  result->splice(result->begin(), &function);
+  for (auto [before, after] : llvm::zip_equal(function.args(), result->args())) {
+    after.takeName(&before);
+    before.mutateType(after.getType());
+    before.replaceAllUsesWith(&after);
+  }
+  function.replaceAllUsesWith(result);
+  function.eraseFromParent();
+  return result;
+}
+
 /// One function: its values that become double, and the same values single for whom else uses them.
 class Widening {
 public:
@@ -114,6 +156,11 @@ public:
       instruction->mutateType(doubled(instruction->getType()));
     for (llvm::Instruction *user : users)
       adapt(*user);
+    for (llvm::Instruction *user : users)
+      if (isIdentity(*user)) {
+        user->replaceAllUsesWith(user->getOperand(0));
+        user->eraseFromParent();
+      }
   }
 
 private:
@@ -122,17 +169,28 @@ private:
     if (!isSingle(instruction.getType()))
       return false;
     if (const auto *call = llvm::dyn_cast<llvm::CallInst>(&instruction))
-      return isArithmetic(call->getIntrinsicID()) || !doubleNameOf(*call).empty();
+      return isArithmetic(call->getIntrinsicID()) || !doubleNameOf(*call).empty() || isWidenedCall(*call);
     return llvm::isa<llvm::BinaryOperator, llvm::UnaryOperator, llvm::SelectInst, llvm::PHINode, llvm::FreezeInst,
                      llvm::ExtractElementInst, llvm::InsertElementInst, llvm::ShuffleVectorInst, llvm::SIToFPInst,
-                     llvm::UIToFPInst>(instruction);
+                     llvm::UIToFPInst,
+                     llvm::FPTruncInst>(instruction);
+  }
+
+  /// What hid a value, and conversions between what is double on both sides by now.
+  static bool isIdentity(const llvm::Instruction &instruction) {
+    return llvm::isa<llvm::FreezeInst>(instruction) ||
+           (llvm::isa<llvm::FPExtInst, llvm::FPTruncInst>(instruction) &&
+            instruction.getType() == instruction.getOperand(0)->getType());
   }
 
   /// Whether a user takes double operands though its own result is none.
   static bool takesDouble(const llvm::Instruction &user) {
     if (const auto *call = llvm::dyn_cast<llvm::CallInst>(&user))
-      return call->getIntrinsicID() == llvm::Intrinsic::fptosi_sat || call->getIntrinsicID() == llvm::Intrinsic::fptoui_sat;
-    return llvm::isa<llvm::FCmpInst, llvm::FPToSIInst, llvm::FPToUIInst>(user);
+      return call->getIntrinsicID() == llvm::Intrinsic::fptosi_sat || call->getIntrinsicID() == llvm::Intrinsic::fptoui_sat ||
+             isWidenedCall(*call);
+    if (llvm::isa<llvm::ReturnInst>(user))
+      return user.getFunction()->getReturnType()->isFPOrFPVectorTy();
+    return llvm::isa<llvm::FCmpInst, llvm::FPToSIInst, llvm::FPToUIInst, llvm::FPExtInst>(user);
   }
 
   void adapt(llvm::Instruction &user) {
@@ -141,11 +199,15 @@ private:
     for (llvm::Use &use : user.operands())
       if (isDouble && isSingle(use->getType()))
         use.set(wide(use.get()));
-      else if (auto *operand = llvm::dyn_cast<llvm::Instruction>(use.get()); !isDouble && operand && computed.contains(operand))
-        use.set(narrow(*operand));
+      else if (!isDouble && isWide(*use.get()))
+        use.set(narrow(*use.get()));
     auto *call = llvm::dyn_cast<llvm::CallInst>(&user);
     if (!call || !isDouble)
       return;
+    if (isWidenedCall(*call)) {
+      call->mutateFunctionType(calleeOf(*call)->getFunctionType());
+      return;
+    }
     llvm::Module &module = *function.getParent();
     llvm::Type *type = call->getArgOperand(0)->getType();
     if (const std::string name = doubleNameOf(*call); !name.empty()) {
@@ -163,6 +225,13 @@ private:
     }
   }
 
+  /// Whether a value was single before: a result that is computed, or a parameter.
+  bool isWide(llvm::Value &value) const {
+    if (auto *instruction = llvm::dyn_cast<llvm::Instruction>(&value))
+      return computed.contains(instruction);
+    return llvm::isa<llvm::Argument>(value) && value.getType()->getScalarType()->isDoubleTy();
+  }
+
   /// A single value as double.
   llvm::Value *wide(llvm::Value *value) {
     if (auto *constant = llvm::dyn_cast<llvm::Constant>(value))
@@ -170,26 +239,32 @@ private:
                                            function.getParent()->getDataLayout());
     llvm::Value *&result = widened[value];
     if (!result) {
-      auto *instruction = llvm::dyn_cast<llvm::Instruction>(value);
-      llvm::IRBuilder<> builder(instruction ? instruction->getParent() : &function.getEntryBlock(),
-                                instruction ? *instruction->getInsertionPointAfterDef()
-                                            : function.getEntryBlock().getFirstInsertionPt());
+      llvm::IRBuilder<> builder(function.getContext());
+      moveBehind(builder, *value);
       result = builder.CreateFPExt(value, doubled(value->getType()));
     }
     return result;
   }
 
   /// A double value rounded to single.
-  llvm::Value *narrow(llvm::Instruction &value) {
+  llvm::Value *narrow(llvm::Value &value) {
     llvm::Value *&result = narrowed[&value];
     if (!result) {
       llvm::Type *type = llvm::Type::getFloatTy(function.getContext());
       if (auto *vector = llvm::dyn_cast<llvm::VectorType>(value.getType()))
         type = llvm::VectorType::get(type, vector->getElementCount());
-      llvm::IRBuilder<> builder(value.getParent(), *value.getInsertionPointAfterDef());
+      llvm::IRBuilder<> builder(function.getContext());
+      moveBehind(builder, value);
       result = builder.CreateFPTrunc(&value, type);
     }
     return result;
+  }
+
+  void moveBehind(llvm::IRBuilder<> &builder, llvm::Value &value) {
+    if (auto *instruction = llvm::dyn_cast<llvm::Instruction>(&value))
+      builder.SetInsertPoint(instruction->getParent(), *instruction->getInsertionPointAfterDef());
+    else
+      builder.SetInsertPoint(&function.getEntryBlock(), function.getEntryBlock().getFirstInsertionPt());
   }
 
   llvm::Function &function;
@@ -200,9 +275,12 @@ private:
 } // namespace
 
 void widenArithmetic(llvm::Module &module) {
-  for (llvm::Function &function : module)
+  llvm::SmallVector<llvm::Function *> functions;
+  for (llvm::Function &function : llvm::make_early_inc_range(module))
     if (!function.isDeclaration())
-      Widening(function).run();
+      functions.push_back(withDoubleSignature(function));
+  for (llvm::Function *function : functions)
+    Widening(*function).run();
 }
 
 std::vector<HostSymbol> doubleFunctions() {

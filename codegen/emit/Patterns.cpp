@@ -56,14 +56,14 @@ Value constantLike(OpBuilder &builder, Location location, mlir::Type type, int64
   return LLVM::ConstantOp::create(builder, location, type, attribute);
 }
 
-Value stackSlot(OpBuilder &builder, Location location, uint32_t size) {
+Value stackSlot(OpBuilder &builder, Location location, uint32_t size, uint32_t alignment) {
   mlir::Block &entry = functionAround(builder).getFunctionBody().front();
   OpBuilder::InsertionGuard guard(builder);
   builder.setInsertionPointToStart(&entry);
   mlir::Type pointer = LLVM::LLVMPointerType::get(builder.getContext());
   mlir::Type bytes = LLVM::LLVMArrayType::get(builder.getI8Type(), size);
   Value one = LLVM::ConstantOp::create(builder, location, builder.getI32IntegerAttr(1));
-  return LLVM::AllocaOp::create(builder, location, pointer, bytes, one, ir::memoryAlignment);
+  return LLVM::AllocaOp::create(builder, location, pointer, bytes, one, std::max(alignment, ir::memoryAlignment));
 }
 
 llvm::SmallVector<Value> componentsOf(OpBuilder &builder, Location location, Value vector) {

@@ -14,6 +14,11 @@ std::string runtimeFunction(mlir::Operation *op) {
       .Case([](ir::ElementaryOp elementary) {
         return "rtsl_" + ir::stringifyElementary(elementary.getFunction()).str();
       })
+      .Case([](ir::RefractOp refract) {
+        const auto vector = llvm::dyn_cast<mlir::VectorType>(refract.getType());
+        const bool isDouble = refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
+        return (isDouble ? "rtsl_double_refract" : "rtsl_refract") + std::to_string(vector ? vector.getNumElements() : 1);
+      })
       .Case([](ir::TraceOp) { return "rtsl_trace"; })
       .Case([](ir::TracePayloadOp) { return "rtsl_trace_payload"; })
       .Case([](ir::SpawnPayloadOp spawn) {
@@ -43,6 +48,10 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
   return llvm::TypeSwitch<mlir::Operation *, LLVM::LLVMFunctionType>(op)
       .Case([&](ir::ElementaryOp elementary) {
         return function(f32, llvm::SmallVector<mlir::Type>(elementary.getOperands().size(), f32));
+      })
+      .Case([&](ir::RefractOp refract) {
+        const bool isDouble = refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
+        return function(nothing, {pointer, pointer, isDouble ? mlir::Type(mlir::Float64Type::get(context)) : f32, pointer});
       })
       .Case([&](ir::TraceOp) {
         return function(nothing, {pointer, f32, f32, f32, f32, f32, f32, pointer});
@@ -81,11 +90,13 @@ void declareRuntimeFunctions(mlir::ModuleOp module) {
       return;
     auto function = LLVM::LLVMFuncOp::create(builder, module.getLoc(), name, signature(op));
     function.setNoUnwind(true);
-    if (llvm::isa<ir::ElementaryOp>(op)) {
-      // A function of its arguments and nothing else.
-      llvm::SmallVector<LLVM::ModRefInfo> nowhere(6, LLVM::ModRefInfo::NoModRef);
+    if (llvm::isa<ir::ElementaryOp, ir::RefractOp>(op)) {
+      // A function of its arguments, or of what they point to, and nothing else.
+      llvm::SmallVector<LLVM::ModRefInfo> effects(6, LLVM::ModRefInfo::NoModRef);
+      if (llvm::isa<ir::RefractOp>(op))
+        effects[1] = LLVM::ModRefInfo::ModRef; // the arguments' memory
       function.setMemoryEffectsAttr(
-          LLVM::MemoryEffectsAttr::get(module.getContext(), llvm::ArrayRef(nowhere)));
+          LLVM::MemoryEffectsAttr::get(module.getContext(), llvm::ArrayRef(effects)));
       function.setWillReturn(true);
     }
   });

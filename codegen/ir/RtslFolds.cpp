@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/RtslOps.h"
 #include "runtime/device/math/Elementary.h"
+#include "runtime/device/math/Refraction.h"
 
 #include "mlir/Dialect/CommonFolders.h"
 #include "mlir/IR/Matchers.h"
@@ -85,6 +86,42 @@ OpFoldResult ElementaryOp::fold(FoldAdaptor adaptor) {
         float a = x.convertToFloat(), b = y.convertToFloat();
         return APFloat(function == Elementary::Pow ? device::pow(a, b) : device::atan2(a, b));
       });
+}
+
+/// The numbers of a constant, and how many there are; 0 if it is none.
+static unsigned floatsOf(mlir::Attribute constant, float (&numbers)[4]) {
+  if (auto scalar = llvm::dyn_cast_or_null<FloatAttr>(constant)) {
+    numbers[0] = scalar.getValue().convertToFloat();
+    return 1;
+  }
+  auto vector = llvm::dyn_cast_or_null<mlir::DenseFPElementsAttr>(constant);
+  if (!vector || vector.getNumElements() > 4)
+    return 0;
+  unsigned count = 0;
+  for (const APFloat &number : vector.getValues<APFloat>())
+    numbers[count++] = number.convertToFloat();
+  return count;
+}
+
+OpFoldResult RefractOp::fold(FoldAdaptor adaptor) {
+  float incident[4], normal[4], eta[4], refracted[4];
+  const unsigned count = floatsOf(adaptor.getIncident(), incident);
+  if (count == 0 || floatsOf(adaptor.getNormal(), normal) != count || floatsOf(adaptor.getEta(), eta) != 1)
+    return {};
+  switch (count) {
+  case 1:
+    device::refract<1>(incident, normal, eta[0], refracted);
+    return FloatAttr::get(getType(), APFloat(refracted[0]));
+  case 2:
+    device::refract<2>(incident, normal, eta[0], refracted);
+    break;
+  case 3:
+    device::refract<3>(incident, normal, eta[0], refracted);
+    break;
+  default:
+    device::refract<4>(incident, normal, eta[0], refracted);
+  }
+  return mlir::DenseElementsAttr::get(llvm::cast<mlir::ShapedType>(getType()), llvm::ArrayRef<float>(refracted, count));
 }
 
 //===----------------------------------------------------------------------===//

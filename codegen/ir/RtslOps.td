@@ -514,6 +514,28 @@ def Rtsl_ElementaryOp : Rtsl_Op<"elementary", [Pure, SameOperandsAndResultType]>
   let hasFolder = 1;
 }
 
+def Rtsl_RefractOp : Rtsl_Op<"refract", [Pure, AllTypesMatch<["incident", "normal", "result"]>]> {
+  let summary = "refract(i, n, eta), with total reflection decided exactly (runtime/device/math/Refraction.h)";
+  let description = "Example: `%r = rtsl.refract %i, %n, %eta : vector<3xf32>`";
+  let arguments = (ins Rtsl_FloatLike:$incident, Rtsl_FloatLike:$normal, F32:$eta);
+  let results = (outs Rtsl_FloatLike:$result);
+  let assemblyFormat = "$incident `,` $normal `,` $eta attr-dict `:` type($result)";
+  let hasFolder = 1;
+}
+
+def Rtsl_HideOp : Rtsl_Op<"hide", [Pure, SameOperandsAndResultType]> {
+  let summary = "its operand, of which no pass knows anything";
+  let description = [{
+    With arithmetic in double nothing of single precision folds: constants, and integers that become floats, are hidden until
+    LLVM IR has been widened (codegen/lower/HideConstants.h).
+
+    Example: `%h = rtsl.hide %c : f32`
+  }];
+  let arguments = (ins AnyType:$value);
+  let results = (outs AnyType:$result);
+  let assemblyFormat = "$value attr-dict `:` type($value)";
+}
+
 class Rtsl_ToIntOp<string opMnemonic, string range> : Rtsl_Op<opMnemonic, [Pure,
     TypesMatchWith<"the result has the operand's shape", "input", "result", "::rtsl::ir::intLike($_self)">]> {
   let summary = "float to integer in " # range # ": truncates, saturates, NaN gives 0";

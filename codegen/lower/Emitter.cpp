@@ -144,6 +144,12 @@ Value Emitter::element(Value address, unsigned index) {
 // Control
 //===----------------------------------------------------------------------===//
 
+bool Emitter::isWidenedLater() const {
+  mlir::Operation *at = getInsertionBlock()->getParentOp();
+  auto module = llvm::dyn_cast<mlir::ModuleOp>(at);
+  return (module ? module : at->getParentOfType<mlir::ModuleOp>())->hasAttr(ir::computesInDouble);
+}
+
 bool Emitter::isTerminated() const {
   mlir::Block *block = getInsertionBlock();
   return !block->empty() && block->back().hasTrait<mlir::OpTrait::IsTerminator>();

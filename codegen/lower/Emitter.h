@@ -7,7 +7,10 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/ir/RtslOps.h"
+
 #include "mlir/Dialect/Arith/IR/Arith.h"
+#include "mlir/Dialect/Math/IR/Math.h"
 #include "mlir/IR/ImplicitLocOpBuilder.h"
 
 #include <cstdint>
@@ -74,10 +77,22 @@ public:
   }
   template <typename Op, typename... Args>
   Value fold(Args &&...args) {
+    if constexpr (roundsToSingle<Op>)
+      if (isWidenedLater())
+        return make<Op>(std::forward<Args>(args)...);
     return createOrFold<Op>(std::forward<Args>(args)...);
   }
 
+  /// Whether arithmetic will be done in double, so that none may be done in single now (HideConstants.h).
+  bool isWidenedLater() const;
+
 private:
+  /// Operations whose result on constants depends on the precision.
+  template <typename Op>
+  static constexpr bool roundsToSingle =
+      llvm::is_one_of<Op, mlir::arith::AddFOp, mlir::arith::SubFOp, mlir::arith::MulFOp, mlir::arith::DivFOp, mlir::arith::SIToFPOp,
+                      mlir::arith::UIToFPOp, mlir::math::FmaOp, mlir::math::SqrtOp, ir::RefractOp>::value;
+
   void fill(mlir::Region &region, Block body);
 };
 

@@ -33,7 +33,6 @@ public:
   Num length(Num v);
   Num normalize(Num v);
   Num perpendicularTo(Num v);
-  Num refract(Num incident, Num normal, Num eta);
 
   // LibraryCommon.cpp
   Num powInt(Num x, Num exponent); // exponent: a scalar

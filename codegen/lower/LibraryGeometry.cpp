@@ -1,4 +1,4 @@
-//===- LibraryGeometry.cpp - dot, length, normalize, refract, ... ---------===//
+//===- LibraryGeometry.cpp - dot, length, normalize, ... -------------------===//
 #include "codegen/lower/Library.h"
 
 #include <cfloat>
@@ -99,21 +99,6 @@ Num Library::perpendicularTo(Num v) {
     Num xAxis(emitter, emitter.vector({x.like(1), zero, zero}));
     return select(all(equal(across, 0.0)), xAxis, across);
   });
-}
-
-// As GLSL defines it; 1 - d^2 is rounded once, so that it keeps its digits at normal incidence and
-// at grazing.
-Num Library::refract(Num incident, Num normal, Num eta) {
-  return callOne("refract", {incident, normal, eta}, incident.type(),
-                 [](llvm::ArrayRef<Num> arguments) {
-                   Num i = arguments[0], n = arguments[1], eta = arguments[2];
-                   Num d = dot(n, i);
-                   Num sinSquared = fma(-d, d, d.like(1));
-                   Num k = fma(-(eta * eta), sinSquared, d.like(1));
-                   // The root of a negative k is NaN and not chosen.
-                   Num refracted = eta * i - (eta * d + sqrt(k)) * n;
-                   return select(less(k, 0.0), 0.0, refracted);
-                 });
 }
 
 } // namespace rtsl::lowering

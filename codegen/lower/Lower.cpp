@@ -1,6 +1,7 @@
 //===- Lower.cpp - from the typed tree to level 1 -------------------------===//
 #include "codegen/lower/Lower.h"
 
+#include "codegen/lower/HideConstants.h"
 #include "codegen/lower/Lowering.h"
 #include "runtime/device/Abi.h"
 
@@ -16,9 +17,13 @@ mlir::OwningOpRef<mlir::ModuleOp> lower(const typed::Module &module, const Lower
       mlir::ModuleOp::create(mlir::UnknownLoc::get(&context));
   if (options.source) // passes leave variables whole then
     (*target)->setAttr("rtsl.source", mlir::UnitAttr::get(&context));
+  if (options.isWidenedLater)
+    (*target)->setAttr(ir::computesInDouble, mlir::UnitAttr::get(&context));
   lowering::ModuleLowering(module, options, *target).run();
   if (options.diagnostics->errorCount() != errorsBefore)
     return nullptr;
+  if (options.isWidenedLater)
+    lowering::hideConstants(*target);
   return target;
 }
 

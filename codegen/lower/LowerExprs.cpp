@@ -10,6 +10,8 @@
 
 #include "sema/Casting.h"
 #include "sema/ConstantFold.h"
+#include "sema/TypeProperties.h"
+#include "sema/Walk.h"
 
 #include "mlir/IR/Matchers.h"
 
@@ -44,22 +46,19 @@ Parts FunctionLowering::lower(const typed::Expr &expr) {
       return *whole;
   emitter.setLoc(module.location(expr.range));
   switch (expr.kind) {
-  case ExprKind::Literal:
-    return lowerLiteral(expr.type, cast<typed::LiteralExpr>(expr).value);
+  case ExprKind::Literal: {
+    const auto &literal = cast<typed::LiteralExpr>(expr);
+    if (isComputedWhenRun(expr))
+      return literal.variable ? lowerVariable(*literal.variable) : lowerConstant(*literal.member);
+    return lowerLiteral(expr.type, literal.value);
+  }
   case ExprKind::Variable:
-    return lowerVariable(cast<typed::VariableExpr>(expr));
+    return lowerVariable(*cast<typed::VariableExpr>(expr).variable);
   case ExprKind::State:
     return load(place(expr));
   case ExprKind::Member: {
     const typed::Member &member = *cast<typed::MemberExpr>(expr).member;
-    if (member.isConst && member.constant)
-      return lowerLiteral(member.type, *member.constant, member.name);
-    if (member.isConst) {
-      if (Value constant = tableOf(*member.init, member.name))
-        return {constant};
-      return lower(*member.init);
-    }
-    return load(place(expr));
+    return member.isConst ? lowerConstant(member) : load(place(expr));
   }
   case ExprKind::Field:
     return load(place(expr));
@@ -265,12 +264,45 @@ bool FunctionLowering::appendWords(const typed::Expr &expr, llvm::SmallVectorImp
     return llvm::all_of(lower(expr), [&](Value part) { return wordsOf(part, words); });
   if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && !isPrinted)
     return llvm::all_of(construct->args, [&](const typed::ExprPtr &arg) { return appendWords(*arg, words); });
+  if (isComputedWhenRun(expr))
+    return false;
   const std::optional<typed::Constant> constant = evaluate(expr);
   if (!constant)
     return false;
   const typed::Constant::Scalar *next = constant->scalars.data();
   wordsOf(expr.type, next, words);
   return true;
+}
+
+bool FunctionLowering::isComputedWhenRun(const typed::Expr &constant) {
+  if (!module.options.isWidenedLater)
+    return false;
+  if (auto *literal = dynCast<typed::LiteralExpr>(&constant)) {
+    const typed::Expr *init = literal->variable ? literal->variable->init.get() : literal->member ? literal->member->init.get() : nullptr;
+    return init && isComputedWhenRun(*init);
+  }
+  auto [known, isNew] = computedWhenRun.try_emplace(&constant, false);
+  if (!isNew)
+    return known->second;
+  bool isComputed = false;
+  forEachExpr(constant, [&](const typed::Expr &expr) {
+    if (expr.kind == ExprKind::Literal)
+      isComputed = isComputed || isComputedWhenRun(expr);
+    else
+      isComputed = isComputed || contains(expr.type, TypeKind::Float) || contains(expr.type, TypeKind::Color);
+  });
+  return computedWhenRun[&constant] = isComputed;
+}
+
+Parts FunctionLowering::computedOnce(const void *constant, const typed::Expr &value) {
+  if (auto known = computedConstants.find(constant); known != computedConstants.end())
+    return known->second;
+  Parts parts;
+  atStart([&] {
+    parts = lower(value);
+    return parts.front();
+  });
+  return computedConstants[constant] = parts;
 }
 
 Value FunctionLowering::tableOf(const typed::Expr &expr, llvm::StringRef name) {
@@ -285,14 +317,27 @@ Value FunctionLowering::tableOf(const typed::Expr &expr, llvm::StringRef name) {
 // Reading
 //===----------------------------------------------------------------------===//
 
-Parts FunctionLowering::lowerVariable(const typed::VariableExpr &expr) {
-  const typed::Variable &variable = *expr.variable;
+Parts FunctionLowering::lowerConstant(const typed::Member &member) {
+  const bool isComputed = isComputedWhenRun(*member.init);
+  if (member.constant && !isComputed)
+    return lowerLiteral(member.type, *member.constant, member.name);
+  if (!isAggregate(member.type) && isComputed)
+    return computedOnce(&member, *member.init);
+  if (Value constant = tableOf(*member.init, member.name))
+    return {constant};
+  return lower(*member.init);
+}
+
+Parts FunctionLowering::lowerVariable(const typed::Variable &variable) {
   auto known = variables.find(&variable);
   if (known != variables.end())
     return known->second.address ? loadFrom(known->second.address, variable.type)
                                  : known->second.value;
-  if (variable.constant)
+  const bool isComputed = isComputedWhenRun(*variable.init);
+  if (variable.constant && !isComputed)
     return lowerLiteral(variable.type, *variable.constant, variable.name);
+  if (!isAggregate(variable.type) && isComputed)
+    return computedOnce(&variable, *variable.init);
   // A constant of the file whose value depends on the target, such as one with colors.
   if (!isAggregate(variable.type))
     return lower(*variable.init);

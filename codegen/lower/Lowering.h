@@ -151,7 +151,12 @@ private:
   bool appendWords(const typed::Expr &expr, llvm::SmallVectorImpl<std::int32_t> &words);
   /// Calls `make` at the start of the function, and returns what it returns.
   Value atStart(llvm::function_ref<Value()> make);
-  Parts lowerVariable(const typed::VariableExpr &expr);
+  /// Whether a constant expression is arithmetic that is widened later, so that what the checker has made of it does not count.
+  bool isComputedWhenRun(const typed::Expr &constant);
+  /// The value of such a constant, made at the start of the function.
+  Parts computedOnce(const void *constant, const typed::Expr &value);
+  Parts lowerVariable(const typed::Variable &variable);
+  Parts lowerConstant(const typed::Member &member);
   Parts lowerIndex(const typed::IndexExpr &expr);
   Parts lowerLength(const typed::LengthExpr &expr);
   Parts lowerIncDec(const typed::IncDecExpr &expr);
@@ -295,6 +300,8 @@ private:
   // Constant structs and arrays, made once at the start of the function.
   llvm::DenseMap<std::pair<mlir::Type, mlir::Attribute>, Value> tables;
   std::map<const typed::Variable *, Value> globalAggregates; // constants of the file that are no literals
+  std::map<const void *, Parts> computedConstants; // by variable or member
+  std::map<const typed::Expr *, bool> computedWhenRun;
   mlir::Operation *lastAtStart = nullptr; // of what makes them
 };
 

@@ -16,6 +16,8 @@ namespace {
 
 /// Functions of at most this many operations are inlined wherever they are called.
 constexpr unsigned smallFunction = 60;
+/// With arithmetic in double, what crosses a call in memory is rounded: only what would make programs grow without end is called.
+constexpr unsigned smallFunctionInDouble = 20000;
 /// Functions that trace, at most this many: a frame of their own costs more than copies of the
 /// code, up to here.
 constexpr unsigned smallTracingFunction = 1000;
@@ -56,7 +58,8 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
       return false;
     if (inlinesAll)
       return true;
-    unsigned limit = traces(callee) ? smallTracingFunction : smallFunction;
+    const bool isDouble = getOperation()->hasAttr(ir::computesInDouble);
+    unsigned limit = isDouble ? smallFunctionInDouble : traces(callee) ? smallTracingFunction : smallFunction;
     if (operationCount(callee, limit) <= limit)
       return true;
     return callee.isPrivate() && useCount.lookup(callee.getSymNameAttr()) == 1;

@@ -58,6 +58,8 @@ std::int64_t recomputeCost(mlir::Operation *op) {
                     function.getFunction() == ir::Elementary::Atan2;
         return (dear ? 100 : 40) * width;
       })
+      .Case([](ir::HideOp) { return 0; })
+      .Case([](ir::RefractOp) { return 60; })
       .Case<ir::ToSintOp, ir::ToUintOp>([&](auto) { return 4 * width; })
       .Case<ir::SDivOp, ir::UDivOp, ir::SRemOp, ir::URemOp>([&](auto) { return 12 * width; })
       .Case<arith::DivFOp, math::SqrtOp>([&](auto) { return 8 * width; })

@@ -11,6 +11,16 @@
 #include "rtsl/shader/Common.h"
 #include "rtsl/shader/Integers.h"
 
+extern "C" {
+#define RTSL_DECLARE_REFRACT(count)                                                                \
+  void rtsl_refract##count(const float *incident, const float *normal, float eta, float *refracted);
+RTSL_DECLARE_REFRACT(1)
+RTSL_DECLARE_REFRACT(2)
+RTSL_DECLARE_REFRACT(3)
+RTSL_DECLARE_REFRACT(4)
+#undef RTSL_DECLARE_REFRACT
+}
+
 namespace rtsl {
 inline namespace RTSL_VARIANT {
 
@@ -121,16 +131,19 @@ template <typename T>
 inline T reflect(const T &i, const T &n) {
   return i - (2.0f * rtsl::dot(n, i)) * n;
 }
-/// As GLSL defines it; 1 - d^2 is rounded once, so that it keeps its digits at normal incidence
-/// and at grazing.
+/// Rounded once, with total reflection decided exactly (runtime/device/math/Refraction.h).
 template <typename T>
 inline T refract(const T &i, const T &n, float eta) {
-  const float d = rtsl::dot(n, i);
-  const float sinSquared = std::fma(-d, d, 1.0f);
-  const float k = std::fma(-(eta * eta), sinSquared, 1.0f);
-  if (k < 0.0f)
-    return T(0.0f);
-  return eta * i - (eta * d + rtsl::squareRoot(k)) * n;
+  T refracted;
+  if constexpr (width<T> == 0)
+    rtsl_refract1(&i, &n, eta, &refracted);
+  else if constexpr (width<T> == 2)
+    rtsl_refract2(&i.x, &n.x, eta, &refracted.x);
+  else if constexpr (width<T> == 3)
+    rtsl_refract3(&i.x, &n.x, eta, &refracted.x);
+  else
+    rtsl_refract4(&i.x, &n.x, eta, &refracted.x);
+  return refracted;
 }
 
 /// Of the component of largest magnitude; the lowest on a tie.

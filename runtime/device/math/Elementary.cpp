@@ -1,5 +1,6 @@
-// The elementary functions under C names, for compiled shaders to call.
+// The elementary functions and `refract` under C names, for compiled shaders to call.
 #include "runtime/device/math/Elementary.h"
+#include "runtime/device/math/Refraction.h"
 
 #if defined(__AVX2__) && defined(__FMA__)
 #include "runtime/device/math/PowerLanes.h"
@@ -8,6 +9,11 @@
 #define RTSL_EXPORT_UNARY(name)                                                                    \
   float rtsl_##name(float x) {                                                                     \
     return rtsl::device::name(x);                                                                  \
+  }
+/// Of vectors of that many components.
+#define RTSL_EXPORT_REFRACT(count)                                                                 \
+  void rtsl_refract##count(const float *incident, const float *normal, float eta, float *refracted) { \
+    rtsl::device::refract<count>(incident, normal, eta, refracted);                                \
   }
 #define RTSL_EXPORT_BINARY(name)                                                                   \
   float rtsl_##name(float x, float y) {                                                            \
@@ -57,6 +63,10 @@ RTSL_EXPORT_UNARY(sqrt)
 RTSL_EXPORT_UNARY(inversesqrt)
 RTSL_EXPORT_BINARY(pow)
 RTSL_EXPORT_BINARY(atan2) // (y, x)
+RTSL_EXPORT_REFRACT(1)
+RTSL_EXPORT_REFRACT(2)
+RTSL_EXPORT_REFRACT(3)
+RTSL_EXPORT_REFRACT(4)
 
 #if defined(__AVX2__) && defined(__FMA__)
 __m128 rtsl_pow4(__m128 x, __m128 y) {

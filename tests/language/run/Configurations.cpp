@@ -58,7 +58,14 @@ const std::vector<Configuration> &fastConfigurations() {
   static const std::vector<Configuration> table = {
       {"fast_recurse_O2", fast(options(TraceMode::Recurse, 2))},
       {"fast_host_megakernel_O2", fast(megakernel(2))},
-      {"double_recurse_O0", undefined(inDouble(options(TraceMode::Recurse, 0)), asNan)},
+  };
+  return table;
+}
+
+const std::vector<Configuration> &doubleConfigurations() {
+  static const std::vector<Configuration> table = {
+      {"double_recurse_O0_nan", undefined(inDouble(options(TraceMode::Recurse, 0)), asNan)},
+      {"double_recurse_O2_bound", inDouble(options(TraceMode::Recurse, 2)), runtime::Traversal::Embree, true},
       {"double_split_O2", inDouble(options(TraceMode::Split, 2))},
   };
   return table;

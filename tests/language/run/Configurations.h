@@ -20,8 +20,9 @@ struct Configuration {
 
 /// The strict ones: all compute the same.
 const std::vector<Configuration> &configurations();
-/// What is left of the language with --fp=fast and --fp=double.
+/// What is left of the language with --fp=fast, and with --fp=double.
 const std::vector<Configuration> &fastConfigurations();
+const std::vector<Configuration> &doubleConfigurations();
 
 /// What GoogleTest shows of one.
 inline void PrintTo(const Configuration &configuration, std::ostream *stream) { *stream << configuration.name; }

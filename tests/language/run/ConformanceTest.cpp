@@ -36,6 +36,9 @@ INSTANTIATE_TEST_SUITE_P(Paths, Conformance, testing::ValuesIn(configurations())
 INSTANTIATE_TEST_SUITE_P(FastPaths, Conformance, testing::ValuesIn(fastConfigurations()),
                          [](const testing::TestParamInfo<Configuration> &param) { return param.param.name; });
 
+INSTANTIATE_TEST_SUITE_P(DoublePaths, Conformance, testing::ValuesIn(doubleConfigurations()),
+                         [](const testing::TestParamInfo<Configuration> &param) { return param.param.name; });
+
 TEST(Conformance, FailuresAreSeen) {
   std::size_t count = 0;
   const std::string wrong = runProgram({{"a", "int good(int zero) { return zero; }\nint bad(int zero) { return zero + 7; }\n"

@@ -91,13 +91,14 @@ private:
         "-({})", "abs({})", "sign({})", "floor({})", "ceil({})", "trunc({})", "round({})", "fract({})", "sqrt({})",
         "inversesqrt({})", "sin({})", "cos({})", "tan({})", "asin({})", "acos({})", "atan({})", "exp({})", "log({})",
         "exp2({})", "log2({})", "sinh({})", "cosh({})", "tanh({})", "asinh({})", "acosh({})", "atanh({})", "radians({})",
-        "degrees({})"};
+        "degrees({})", "sinpi({})", "cospi({})", "expm1({})", "log1p({})", "refract({}, 1.0, 0.75)"};
     static const std::vector<std::string> two = {
         "({} + {})", "({} - {})", "({} * {})", "({} / {})", "min({}, {})", "max({}, {})", "mod({}, {})", "step({}, {})",
         "pow({}, {})", "atan({}, {})", "dot(vec2({}), vec2(0.5, {}))", "length(vec2({}, {}))", "distance({}, {})"};
     static const std::vector<std::string> three = {"clamp({}, {}, {})", "mix({}, {}, {})", "fma({}, {}, {})",
                                                    "smoothstep({}, {}, {})", "vec3({}, {}, {}).y",
-                                                   "normalize(vec3({}, {}, {})).z"};
+                                                   "normalize(vec3({}, {}, {})).z",
+                                                   "refract(vec2({}, {}), vec2(0.6, -0.8), {}).x"};
     const Kind f = Kind::Float;
     switch (pick(8)) {
     case 0: return fill("float({})", {Kind::Int}, depth);
@@ -178,6 +179,10 @@ TEST_P(Constants, FoldToWhatTheyAreWhenRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, Constants, testing::ValuesIn(configurations()),
+                         [](const testing::TestParamInfo<Configuration> &param) { return param.param.name; });
+
+// What is folded with arithmetic in double is computed in double.
+INSTANTIATE_TEST_SUITE_P(DoublePaths, Constants, testing::ValuesIn(doubleConfigurations()),
                          [](const testing::TestParamInfo<Configuration> &param) { return param.param.name; });
 
 } // namespace

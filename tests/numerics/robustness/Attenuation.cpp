@@ -147,6 +147,65 @@ Outcome runOrder(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
+/// Of thin media: what a row sets, and constants.
+class ThinMedia {
+public:
+  ThinMedia(Path path, const char *className)
+      : shaders({"tests/numerics/robustness/shaders/Thin.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Thin", "ThinConstants", "Probe"}, {}, path),
+        object(shaders.scene().addObject(className)) {
+    shaders.scene().setCamera(shaders.scene().addObject("Probe"));
+    shaders.scene().setBackground(object);
+    shaders.finish();
+  }
+  std::array<float, 3> with(const char *first, float a, const char *second, float b) const {
+    shaders.set(object, first, {a});
+    shaders.set(object, second, {b});
+    return shaders.look();
+  }
+
+private:
+  CompiledShaders shaders;
+  RtslRef object;
+};
+
+const ThinMedia &thinMedia(Path path) {
+  static const ThinMedia only(path, "Thin");
+  return only;
+}
+const ThinMedia &thinConstants(Path path) {
+  static const ThinMedia only(path, "ThinConstants");
+  return only;
+}
+
+Precise meanTransmittance(const Precise &depth) { return -expm1(-depth) / depth; }
+
+/// The mean transmittance up to a depth of 1e-8 to 1e2: by expm1 and, in double, as it is often written.
+Outcome runThin(Path path, std::uint64_t cases, std::uint32_t seed) {
+  Random random(seed);
+  Worst worst;
+  for (std::uint64_t i = 0; i < cases; ++i) {
+    const Layer layer = {powerOfTen(random, -4, 1), powerOfTen(random, -4, 1)};
+    const std::array<float, 3> seen = thinMedia(path).with("sigma", layer.sigma, "length", layer.length);
+    const Precise exact = meanTransmittance(layer.depth());
+    const double error = roundingUnits(seen[0], exact), naive = path == Path::Double ? roundingUnits(seen[1], exact) : 0;
+    worst.add(std::max(error, naive), [&] { return fmt::format("{:a} over {:a}", layer.sigma, layer.length); });
+  }
+  return worst.outcome();
+}
+
+/// What the compiler has computed of constants, against what the same arithmetic gives when it runs; in double also against the exact value.
+/// Constants are strict in fast mode too, so that there only depths count at which nothing cancels.
+Outcome runThinConstants(Path path, std::uint64_t cases, std::uint32_t) {
+  Worst worst;
+  for (std::uint64_t i = path == Path::Fast ? 5 : 0; i < std::min<std::uint64_t>(cases, 8); ++i) {
+    const std::array<float, 3> seen = thinConstants(path).with("which", float(i), "hidden", 0);
+    const double error = roundingUnits(seen[0], Precise(seen[1]));
+    const double exact = path == Path::Double ? roundingUnits(seen[0], meanTransmittance(Precise(seen[2]))) : 0;
+    worst.add(std::max(error, exact), [&] { return fmt::format("depth {:a}", seen[2]); });
+  }
+  return worst.outcome();
+}
+
 double nanosecondsAStack(Path path) {
   constexpr int count = 100'000;
   Random random(1);
@@ -169,6 +228,8 @@ std::vector<Row> attenuationRows(Path path) {
       row("attenuation.single", "exp(-sigma t), sigma from 1e-8 to 1e8, t from 1e-6 to 1e6", unit, 500'000, runSingle),
       row("attenuation.layers", "up to 16 such layers, one after the other", unit, 500'000, runProduct),
       row("attenuation.atOnce", "the same by the sum of their depths", unit, 500'000, runAtOnce),
+      row("attenuation.thin", "(1 - exp(-depth)) / depth by expm1, depths of 1e-8 to 100; in double also as it stands", "rounding units", 500'000, runThin),
+      row("attenuation.constants", "the same of constants, which the compiler computes: the difference from what it is when it runs", "rounding units", 8, runThinConstants),
       row("attenuation.order", "the same layers in another order: the difference", "rounding units", 500'000, runOrder),
   };
 }

@@ -54,6 +54,7 @@ std::vector<Row> sphereRows(Path path);
 std::vector<Row> quadricRows(Path path);
 std::vector<Row> torusRows(Path path);
 std::vector<Row> scatteringRows(Path path);
+std::vector<Row> refractionRows(Path path);
 std::vector<Row> metalRows(Path path);
 std::vector<Row> matrixRows(Path path);
 std::vector<Row> attenuationRows(Path path);
