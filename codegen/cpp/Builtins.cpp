@@ -27,54 +27,43 @@ static std::string nameInCpp(Builtin builtin) {
   }
 }
 
-// Results of `out` parameters, behind the operands.
+// Results of `out` parameters follow the operands.
 Code FunctionPrinter::withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
                                   std::size_t firstOutput) {
   std::vector<const typed::Expr *> inputs;
   for (std::size_t i = 0; i < firstOutput; ++i)
     inputs.push_back(expr.args[i].get());
-  std::vector<std::string> texts = operands(inputs, Binding::Assignment);
-  std::vector<std::string> after;
+  std::vector<Code> codes = operands(inputs, Binding::Assignment);
+  Statements after;
   for (std::size_t i = firstOutput; i < expr.args.size(); ++i) {
     const bool isBindable = canBind(*expr.args[i]);
     if (isBindable && after.empty()) { // later ones are written last
-      texts.push_back(place(*expr.args[i], !indexEffects(*expr.args[i]).isPure()).text);
+      codes.push_back(place(*expr.args[i], !indexEffects(*expr.args[i]).isPure()));
       continue;
     }
-    const std::string name = temporaryName("result");
-    before->push_back(fmt::format("{} {}{{}};", module.type(expr.args[i]->type), name));
-    texts.push_back(name);
+    const std::string result = temporaryName("result");
+    before->push_back(cpp::declaration(module.type(expr.args[i]->type), result, list("", {})));
+    codes.push_back(name(result));
     if (isBindable) {
-      after.push_back(place(*expr.args[i], true).text + " = " + name + ";");
+      after.push_back(statement(cpp::assign(place(*expr.args[i], true), name(result))));
       continue;
     }
     const typed::Expr *vector = nullptr;
     const std::vector<std::uint8_t> parts = components(*expr.args[i], vector);
-    const std::string where = place(*vector, true).text;
-    for (std::size_t part = 0; part < parts.size(); ++part)
-      after.push_back(fmt::format("{}.{} = {}.{};", where, "xyzw"[parts[part]], name, "xyzw"[part]));
+    assignComponents(place(*vector, true), parts, name(result), after);
   }
-  const std::string call = callee + "(" + join(texts, ", ") + ")";
-  if (after.empty())
-    return {call};
-  std::string value;
-  if (expr.type->is(TypeKind::Void))
-    before->push_back(call + ";");
-  else
-    value = hoist(expr.type, typed::name(expr.builtin), call);
-  before->insert(before->end(), after.begin(), after.end());
-  return {value};
+  const Code call = cpp::call(callee, std::move(codes));
+  return after.empty() ? call : valueThen(expr.type, typed::name(expr.builtin), call, after);
 }
 
 Code FunctionPrinter::print(const typed::BuiltinExpr &expr) {
-  std::vector<const typed::Expr *> values;
-  for (const typed::ExprPtr &arg : expr.args)
-    values.push_back(arg.get());
-  return {"rtsl::print(rt, " + join(operands(values, Binding::Assignment), ", ") + ")"};
+  std::vector<Code> values = arguments(expr.args);
+  values.insert(values.begin(), name("rt"));
+  return cpp::call("rtsl::print", std::move(values));
 }
 
 // The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax, payload, root...)`. The
-// ray may write it in its place, for nobody looks at it meanwhile, unless what stands behind it changes it first.
+// ray may write it in its place, for nothing else reads it meanwhile, unless what stands behind it changes it first.
 Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
   constexpr std::size_t at = 4;
   const typed::Expr &payload = *expr.args[at];
@@ -88,37 +77,39 @@ Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
     const Effects effects = module.effects.expression(*expr.args[i]);
     isChanged |= conflicts(effects, indices) || (i > at && conflicts(effects, module.effects.expression(payload)));
   }
+  auto trace = [](std::vector<Code> codes) {
+    codes.insert(codes.begin(), name("rt"));
+    return cpp::call("rtsl::trace", std::move(codes));
+  };
   if (!isChanged) {
-    std::vector<std::string> texts = operands(inputs, Binding::Assignment);
-    texts.insert(texts.begin() + at, place(payload, !indices.isPure()).text);
-    return {"rtsl::trace(rt, " + join(texts, ", ") + ")"};
+    std::vector<Code> codes = operands(inputs, Binding::Assignment);
+    codes.insert(codes.begin() + at, place(payload, !indices.isPure()));
+    return trace(std::move(codes));
   }
   // One after the other, each in a variable.
-  std::vector<std::string> texts;
-  std::string where;
+  std::vector<Code> codes;
+  Code where;
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
     if (i != at) {
-      texts.push_back(hoist(expr.args[i]->type, "argument", argument(*expr.args[i])));
+      codes.push_back(hoist(expr.args[i]->type, "argument", argument(*expr.args[i])));
       continue;
     }
-    where = place(payload, true).text;
-    texts.push_back(temporaryName("payload"));
-    before->push_back(fmt::format("{} {} = {};", module.type(payload.type), texts.back(), where));
+    where = place(payload, true);
+    const std::string copy = temporaryName("payload");
+    before->push_back(cpp::declaration(module.type(payload.type), copy, where));
+    codes.push_back(name(copy));
   }
-  before->push_back("rtsl::trace(rt, " + join(texts, ", ") + ");");
-  before->push_back(where + " = " + texts[at] + ";");
+  before->push_back(statement(trace(codes)));
+  before->push_back(statement(cpp::assign(where, codes[at])));
   return {};
 }
 
 Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   const std::string callee = "rtsl::" + nameInCpp(expr.builtin);
-  auto withState = [&](const std::string &more = "") {
-    std::vector<std::string> texts = {"rt"};
-    if (!more.empty())
-      texts.push_back(more);
-    for (std::string &text : arguments(expr.args))
-      texts.push_back(std::move(text));
-    return Code{callee + "(" + join(texts, ", ") + ")"};
+  auto with = [&](std::vector<Code> codes) {
+    const std::vector<Code> own = arguments(expr.args);
+    codes.insert(codes.end(), own.begin(), own.end());
+    return cpp::call(callee, std::move(codes));
   };
   switch (expr.builtin) {
   case Builtin::Trace:
@@ -127,9 +118,9 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::Ambient:
   case Builtin::LightCount:
   case Builtin::Illuminate:
-    return withState();
+    return with({name("rt")});
   case Builtin::Hit:
-    return withState(function && module.takesScratch(*function) ? "scratch" : "");
+    return function && module.takesScratch(*function) ? with({name("rt"), name("scratch")}) : with({name("rt")});
   case Builtin::TracePayload:
     return tracePayload(expr);
   case Builtin::IgnoreIntersection:
@@ -139,7 +130,7 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
     return module.options.prints ? print(expr) : Code{};
   case Builtin::VisitChild:
     module.unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "` in C++");
-    return {"0"};
+    return integer(0);
   case Builtin::Modf:
   case Builtin::Frexp:
     return withOutputs(callee, expr, 1);
@@ -149,7 +140,7 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::ImulExtended:
     return withOutputs(callee, expr, 2);
   default:
-    return {callee + "(" + join(arguments(expr.args), ", ") + ")"};
+    return with({});
   }
 }
 

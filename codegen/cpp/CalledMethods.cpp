@@ -128,42 +128,44 @@ std::string ModulePrinter::callStructures(const std::string &className) {
 }
 
 /// The method of an object's class begins, or runs at once if that does not trace.
-std::string ModulePrinter::runCalledMethod(const CalledMethod &called) {
-  bool isPlain = false;
-  const std::string body = dispatch(
+Statements ModulePrinter::runCalledMethod(const CalledMethod &called) {
+  const Code given = cpp::name("call");
+  Statements body = dispatch(
       classesBelow(called.definition->name),
-      [&](const typed::Class &definition) -> std::string {
+      [&](const typed::Class &definition) -> Statements {
         const typed::Function *method = findMethod(definition, *called.function);
         if (!method)
           return {};
-        const std::string object = "rtsl::object<" + names.of(&definition) + ">(rt, object).";
-        for (const typed::Class *at = &definition; at != method->owner->base;
-             at = at->base) // a base of that has others
+        for (const typed::Class *at = &definition; at != method->owner->base; at = at->base) // a base of that has others
           if (auto first = firstCalls.find({at, called.slot}); first != firstCalls.end())
-            return "return " + object + first->second;
-        isPlain = true;
-        std::vector<std::string> arguments;
+            return {returning(first->second.on(objectOf(definition)))};
+        std::vector<Code> arguments;
         if (takesState(*method))
-          arguments.emplace_back("rt");
+          arguments.push_back(cpp::name("rt"));
         if (takesScratch(*method))
-          arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+          arguments.push_back(storedScratch(definition));
+        auto field = [&](std::size_t i) {
+          const Code own = cpp::member(given, called.fields[i]);
+          return isAddress(called.given[i]) ? unary(UnaryOperator::Dereference, own) : own;
+        };
         for (std::size_t i = 0; i < called.given.size(); ++i)
           if (called.given[i])
-            arguments.push_back((isAddress(called.given[i]) ? "*call." : "call.") +
-                                called.fields[i]);
-        std::string result;
+            arguments.push_back(field(i));
+        const Code run = callMember(objectOf(definition), names.of(method), std::move(arguments));
         if (!called.returned.empty())
-          result = "call." + called.returned + " = ";
-        else if (!called.given.empty() && !called.given.front())
-          result = "*call." + called.fields.front() + " = ";
-        return result + object + names.of(method) + "(" + join(arguments, ", ") + ")";
+          return {statement(assign(cpp::member(given, called.returned), run))};
+        if (!called.given.empty() && !called.given.front())
+          return {statement(assign(field(0), run))};
+        return {statement(run)};
       },
       mayReferToNothing);
-  const std::string call =
-      isPlain ? fmt::format("auto &call = rtsl::calledFrameAt<{}>(frame);\n", structureOf(called)) : std::string();
-  const bool isOver = body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
-  return fmt::format("case Step::{}:{}\n{}{}{}{}", called.step, isPlain ? " {" : "", call, body,
-                     isOver ? "" : "return rtsl::returnToCaller(rt);\n", isPlain ? "}\n" : "");
+  if (mentions(body, given->name)) {
+    const Code frame = call(withParameters("rtsl::calledFrameAt", {structureOf(called)}), {cpp::name("frame")});
+    body.insert(body.begin(), declaration("auto &", given->name, frame));
+  }
+  if (!endsInReturn(body))
+    body.push_back(returning(cpp::call("rtsl::returnToCaller", {cpp::name("rt")})));
+  return body;
 }
 
 } // namespace rtsl::cpp

@@ -39,7 +39,7 @@ static bool meet(const std::set<const void *> &a, const std::set<const void *> &
   return std::any_of(a.begin(), a.end(), [&](const void *at) { return b.count(at) != 0; });
 }
 
-Code FunctionPrinter::callWith(const std::string &callee, std::vector<std::string> first,
+Code FunctionPrinter::callWith(const Code &callee, std::vector<Code> first,
                                const typed::Function &target, const std::vector<typed::ExprPtr> &args,
                                const Type *result) {
   EffectsOf &effects = module.effects;
@@ -54,22 +54,24 @@ Code FunctionPrinter::callWith(const std::string &callee, std::vector<std::strin
       roots[i] = writesOf(effects, *args[i]);
   }
 
-  std::vector<std::string> texts = std::move(first);
-  std::vector<std::string> after;
+  std::vector<Code> codes = std::move(first);
+  Statements after;
   for (std::size_t i = 0; i < args.size(); ++i) {
     const typed::Variable &parameter = *target.parameters[i];
     bool shows = false; // to a later argument, or the other way round
     for (std::size_t j = i + 1; j < args.size(); ++j)
       shows |= conflicts(facts[i], facts[j]);
     if (!isOutput(i)) {
-      std::string text = shows ? hoist(args[i]->type, "argument", argument(*args[i])) : argument(*args[i]);
+      Code code = argument(*args[i]);
+      if (shows)
+        code = hoist(args[i]->type, "argument", code);
       // By reference, beside something that the call changes.
       bool changes = meet(facts[i].reads, inside.writes);
       for (std::size_t j = 0; j < args.size(); ++j)
         changes |= isOutput(j) && meet(facts[i].reads, roots[j]);
       if (!shows && changes && module.isByReference(parameter, target))
-        text = module.type(parameter.type) + "(" + text + ")";
-      texts.push_back(text);
+        code = cpp::construct(module.type(parameter.type), {code});
+      codes.push_back(code);
       continue;
     }
     bool isShared = meet(roots[i], inside.reads) || meet(roots[i], inside.writes);
@@ -80,60 +82,65 @@ Code FunctionPrinter::callWith(const std::string &callee, std::vector<std::strin
         isShared |= meet(facts[j].writes, roots[i]);
     }
     if (canBind(*args[i]) && !isShared) {
-      texts.push_back(place(*args[i], shows).text);
+      codes.push_back(place(*args[i], shows));
       continue;
     }
     // Through a variable of its own.
-    const std::string name = temporaryName(parameter.name.empty() ? "result" : parameter.name);
+    const std::string variable = temporaryName(parameter.name.empty() ? "result" : parameter.name);
     const bool readsOld = parameter.direction == ast::Direction::InOut;
     const typed::Expr *vector = nullptr;
     const std::vector<std::uint8_t> parts = components(*args[i], vector);
     const bool isPart = parts.size() > 1;
-    const std::string where = place(isPart ? *vector : *args[i], !indexEffects(*args[i]).isPure()).text;
-    before->push_back(readsOld ? fmt::format("{} {} = {};", module.type(parameter.type), name,
-                                             isPart ? argument(*args[i]) : where)
-                               : fmt::format("{} {}{{}};", module.type(parameter.type), name));
-    texts.push_back(name);
-    if (!isPart)
-      after.push_back(where + " = " + name + ";");
-    for (std::size_t part = 0; isPart && part < parts.size(); ++part)
-      after.push_back(fmt::format("{}.{} = {}.{};", where, "xyzw"[parts[part]], name, "xyzw"[part]));
+    const Code where = place(isPart ? *vector : *args[i], !indexEffects(*args[i]).isPure());
+    const Code old = !readsOld ? list("", {}) : isPart ? argument(*args[i]) : where;
+    before->push_back(cpp::declaration(module.type(parameter.type), variable, old));
+    codes.push_back(name(variable));
+    if (isPart)
+      assignComponents(where, parts, codes.back(), after);
+    else
+      after.push_back(statement(cpp::assign(where, codes.back())));
   }
 
-  const std::string call = callee + "(" + join(texts, ", ") + ")";
+  const Code call = cpp::call(callee, std::move(codes));
   const bool mayEnd = mayEndAnyHit() && module.mayAnswerHit(target);
   if (after.empty() && !mayEnd)
-    return {call};
-  std::string value;
-  if (result->is(TypeKind::Void))
-    before->push_back(call + ";");
-  else
-    value = hoist(result, target.name, call);
-  before->insert(before->end(), after.begin(), after.end());
+    return call;
+  const Code value = valueThen(result, target.name, call, after);
   if (mayEnd)
     leaveIfAnswered();
-  return {value};
+  return value;
+}
+
+/// A call, what follows it, and the variable that holds its result; nothing if it has none.
+Code FunctionPrinter::valueThen(const Type *type, const std::string &hint, const Code &call, const Statements &after) {
+  Code value;
+  if (type->is(TypeKind::Void))
+    before->push_back(statement(call));
+  else
+    value = hoist(type, hint, call);
+  before->insert(before->end(), after.begin(), after.end());
+  return value;
 }
 
 Code FunctionPrinter::call(const typed::CallExpr &expr) {
   const typed::Function &target = *expr.function;
-  std::vector<std::string> first;
+  std::vector<Code> first;
   if (module.takesState(target))
-    first.push_back("rt");
+    first.push_back(name("rt"));
   if (module.takesScratch(target))
-    first.push_back("scratch");
+    first.push_back(name("scratch"));
   const std::string base = expr.isOfBase ? module.names.of(target.owner) + "::" : std::string();
-  return callWith(base + module.names.of(&target), std::move(first), target, expr.args, expr.type);
+  return callWith(name(base + module.names.of(&target)), std::move(first), target, expr.args, expr.type);
 }
 
 Code FunctionPrinter::methodCall(const typed::MethodCallExpr &expr) {
   const Type *type = expr.receiver->type;
   const std::string className = type->classType ? type->classType->name : type->builtinClass;
   module.useThroughReference(className, expr.method, expr.function);
-  const std::string receiver = operand(*expr.receiver, Binding::Primary);
+  const Code receiver = operand(*expr.receiver, Binding::Primary);
   if (!expr.function)
-    return {receiver + "." + expr.method + "(rt)"};
-  return callWith(receiver + "." + module.names.of(expr.function), {"rt"}, *expr.function, expr.args, expr.type);
+    return callMember(receiver, expr.method, {name("rt")});
+  return callWith(member(receiver, module.names.of(expr.function)), {name("rt")}, *expr.function, expr.args, expr.type);
 }
 
 } // namespace rtsl::cpp

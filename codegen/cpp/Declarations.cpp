@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 namespace rtsl::cpp {
@@ -34,21 +33,17 @@ std::string ModulePrinter::commentText(const std::string &comment) const {
   return comment.empty() ? comment : comment + "\n";
 }
 
-std::string ModulePrinter::lineDirective(SourceRange range) const {
+std::optional<SourcePlace> ModulePrinter::lineDirective(SourceRange range) const {
   return lineDirective(range, range.isValid() ? notes.line(range) : 0);
 }
 
-std::string ModulePrinter::lineDirective(SourceRange range, unsigned line) const {
+std::optional<SourcePlace> ModulePrinter::lineDirective(SourceRange range, unsigned line) const {
   if (!options.lineDirectives || !range.isValid())
-    return {};
-  std::string file;
-  for (char c : notes.file(range)) {
-    if (c == '\\' || c == '"')
-      file += '\\';
-    file += c;
-  }
-  return fmt::format("#line {} \"{}\"\n", line, file);
+    return std::nullopt;
+  return SourcePlace{notes.file(range), line};
 }
+
+static std::string text(const std::optional<SourcePlace> &place) { return place ? print(*place) : std::string(); }
 
 //===----------------------------------------------------------------------===//
 // Types
@@ -101,35 +96,30 @@ std::string ModulePrinter::type(const Type *type, bool inMemory) {
   return "void";
 }
 
-std::string ModulePrinter::zero(const Type *type) {
+Code ModulePrinter::zero(const Type *type) {
   switch (type->kind) {
   case TypeKind::Bool:
-    return "false";
+    return boolean(false);
   case TypeKind::Int:
-    return "0";
+    return literal("0", true);
   case TypeKind::UInt:
-    return "0u";
+    return literal("0u", true);
   case TypeKind::Float:
-    return "0.0f";
+    return literal("0.0f", true);
   default:
-    return "{}";
+    return list("", {});
   }
 }
 
-std::string declarator(const std::string &type, const std::string &name, const std::string &value) {
-  if (value == "{}")
-    return name + "{}";
-  // All of the value, or only the first operand of something?
-  auto isWhole = [&] {
-    int depth = 0;
-    std::size_t end = type.size();
-    do
-      depth += (value[end] == '{') - (value[end] == '}');
-    while (depth > 0 && ++end < value.size());
-    return end + 1 == value.size();
-  };
-  const bool namesType = value.compare(0, type.size() + 1, type + "{") == 0 && isWhole();
-  return namesType ? name + value.substr(type.size()) : name + " = " + value;
+Code ModulePrinter::colorOf(std::vector<Code> components) {
+  if (components.size() == 3 && options.colorComponents != 3)
+    return call(withParameters("rtsl::rgb", {std::to_string(options.colorComponents)}), std::move(components));
+  return construct("Color", std::move(components));
+}
+
+/// A variable of this type, as it is declared: `name = value`.
+static std::string declarator(const std::string &type, const std::string &name, const Code &value) {
+  return print(Declarator{name, value}, type);
 }
 
 //===----------------------------------------------------------------------===//
@@ -295,12 +285,12 @@ bool ModulePrinter::isOverridden(const typed::Function &function) const {
 }
 
 std::string ModulePrinter::function(const typed::Function &function, bool isMethod) {
-  std::string text = commentText(function.comment) + lineDirective(function.range);
+  std::string text = commentText(function.comment) + cpp::text(lineDirective(function.range));
   if (!isMethod)
     text += "inline ";
   text += signature(function, isMethod) + " ";
   FunctionPrinter printer(*this, &function);
-  return text + printer.body() + "\n";
+  return text + "{\n" + print(printer.body()) + "}\n";
 }
 
 //===----------------------------------------------------------------------===//
@@ -313,8 +303,8 @@ std::string ModulePrinter::structure(const typed::Struct &structure) {
     const typed::Field &field = structure.fields[i];
     if (i > 0 && notes.followsEmptyLine(field.range, structure.fields[i - 1].range))
       text += "\n";
-    const std::string zeroText = field.type->is(TypeKind::Bool) ? "{}" : zero(field.type);
-    text += commentText(field.comment) + memoryType(field.type) + " " + declarator(memoryType(field.type), names.of(&field), zeroText) + ";";
+    const Code initial = field.type->is(TypeKind::Bool) ? list("", {}) : zero(field.type);
+    text += commentText(field.comment) + memoryType(field.type) + " " + declarator(memoryType(field.type), names.of(&field), initial) + ";";
     const std::string trailing = notes.trailingComment(field.range);
     text += trailing.empty() ? "\n" : " " + trailing + "\n";
   }
@@ -333,32 +323,39 @@ std::string ModulePrinter::structure(const typed::Struct &structure) {
   return text + "};\n";
 }
 
-/// Whether C++ takes the text for a constant expression: numbers, constants that it takes for such, and what is not
+/// Whether C++ takes the initialiser for a constant expression: numbers, constants that it takes for such, and what is not
 /// division. The header's functions are none, and no infinity may come out.
 bool ModulePrinter::isConstexpr(const Type *type, const typed::Constant *value, const std::string &name,
-                                const std::string &initialiser) {
+                                const Code &initialiser) {
   if (!type->isScalar() || !value || (type->is(TypeKind::Float) && !std::isfinite(value->scalars.front().f)))
     return false;
-  const auto isWordPart = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
-  for (std::size_t at = 0; at < initialiser.size();) {
-    std::size_t end = at;
-    while (end < initialiser.size() && isWordPart(initialiser[end]))
-      ++end;
-    const std::string word = initialiser.substr(at, end - at);
-    const bool isNumber = !word.empty() && (std::isdigit(static_cast<unsigned char>(word[0])) || word[0] == '.');
-    if (word.empty() ? initialiser[at] == '/' || initialiser[at] == '%'
-                     : !isNumber && word != "true" && word != "false" && constexprNames.count(word) == 0)
-      return false;
-    at = std::max(end, at + 1);
-  }
-  constexprNames.insert(name);
-  return true;
+  bool isPlain = true;
+  forEachPart(initialiser, [&](const ExpressionNode &part) {
+    switch (part.kind) {
+    case ExpressionKind::Literal:
+    case ExpressionKind::Parentheses:
+    case ExpressionKind::Unary:
+    case ExpressionKind::Conditional:
+      break;
+    case ExpressionKind::Name:
+      isPlain &= constexprNames.count(part.name) != 0;
+      break;
+    case ExpressionKind::Binary:
+      isPlain &= part.op != Operator::Divide && part.op != Operator::Remainder;
+      break;
+    default:
+      isPlain = false;
+    }
+  });
+  if (isPlain)
+    constexprNames.insert(name);
+  return isPlain;
 }
 
 std::string ModulePrinter::constant(const typed::Variable &constant) {
   FunctionPrinter printer(*this, nullptr);
   const std::string &name = names.of(&constant);
-  const std::string initialiser = printer.initialiser(*constant.init);
+  const Code initialiser = printer.initialiser(*constant.init);
   const bool isPlain = isConstexpr(constant.type, constant.constant.get(), name, initialiser) ||
                        printer.isTable(*constant.init);
   std::string text = commentText(constant.comment) + "inline " + (isPlain ? "constexpr " : "const ") +
@@ -401,44 +398,40 @@ std::string ModulePrinter::member(const typed::Member &member) {
   std::string text = commentText(member.comment);
   const std::string &name = names.of(&member);
   if (member.isConst) {
-    const std::string initialiser = member.init ? printer.initialiser(*member.init) : zero(member.type);
+    const Code initialiser = member.init ? printer.initialiser(*member.init) : zero(member.type);
     const bool isPlain = isConstexpr(member.type, member.constant.get(), name, initialiser) ||
                          (member.init && printer.isTable(*member.init));
     text += std::string(isPlain ? "static constexpr " : "inline static const ") + type(member.type) + " " +
             declarator(type(member.type), name, initialiser) + ";";
   } else {
-    std::string value = member.init ? printer.initialiser(*member.init) : zero(member.type);
-    if (member.type->is(TypeKind::Bool))
-      text += memoryType(member.type) + " " + name + "{" + (member.init ? value : "") + "};";
-    else
-      text += memoryType(member.type) + " " + declarator(memoryType(member.type), name, value) + ";";
+    Code value = member.init ? printer.initialiser(*member.init) : zero(member.type);
+    if (member.type->is(TypeKind::Bool)) // converts in braces
+      value = member.init ? list("", {value}) : list("", {});
+    text += memoryType(member.type) + " " + declarator(memoryType(member.type), name, value) + ";";
   }
   const std::string trailing = notes.trailingComment(member.init ? member.init->range : member.range);
   return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
 }
 
 std::string ModulePrinter::classDefinition(const typed::Class &definition) {
-  std::string text = commentText(definition.comment) + lineDirective(definition.range);
-  const std::string base = definition.base                           ? names.of(definition.base)
-                           : definition.root == typed::helperRoot ? "rtsl::Helper"
-                                                                  : "rtsl::" + definition.root.substr(3);
-  text += "struct " + names.of(&definition) + " : " + base + " {\n";
-  const std::size_t begin = text.size();
-  bool isFirst = true;
+  std::string text = commentText(definition.comment) + cpp::text(lineDirective(definition.range));
+  const std::string base =
+      definition.base ? names.of(definition.base) : "rtsl::" + nameOfRoot(definition.root);
+  std::vector<std::string> parts; // with an empty line between them
+  std::string members;
   SourceRange previous;
   for (const auto &member : definition.members) {
     if (member->access == ast::Access::Scratch)
       continue;
-    if (!isFirst && notes.followsEmptyLine(member->range, previous))
-      text += "\n";
+    if (!members.empty() && notes.followsEmptyLine(member->range, previous))
+      members += "\n";
     previous = member->range;
-    text += this->member(*member);
-    isFirst = false;
+    members += this->member(*member);
   }
-  if (const std::string scratch = scratchStructure(definition); !scratch.empty()) {
-    text += (isFirst ? "" : "\n") + scratch;
-    isFirst = false;
-  }
+  if (!members.empty())
+    parts.push_back(members);
+  if (const std::string scratch = scratchStructure(definition); !scratch.empty())
+    parts.push_back(scratch);
 
   // Overloads of a base's functions do not hide the others. States may have other names.
   std::set<std::string> shown;
@@ -448,19 +441,15 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
         if (method->name == function->name && !method->isConstructor && !isPartOfStates(*method) && !isPartOfStates(*function) &&
             (!isSplit(*at, *method) || nameOfMachine(*at, *method) == names.of(method.get())) &&
             !lowering::sameParameters(*method, *function) && shown.insert(method->name).second)
-          text += "\nusing " + names.of(at) + "::" + names.of(method.get()) + ";\n";
+          parts.push_back("using " + names.of(at) + "::" + names.of(method.get()) + ";\n");
   for (const auto &function : definition.functions) {
     const bool isMachine = function->body && isSplit(definition, *function);
-    if (!function->body || (isPartOfStates(*function) && !isMachine))
-      continue;
-    text += (isFirst ? "" : "\n") +
-            (isMachine ? stateMachine(definition, *function) : this->function(*function, true));
-    isFirst = false;
+    if (function->body && (isMachine || !isPartOfStates(*function)))
+      parts.push_back(isMachine ? stateMachine(definition, *function) : this->function(*function, true));
   }
-  text += inheritedStateMachines(definition);
-  if (begin < text.size() && text[begin] == '\n')
-    text.erase(begin, 1);
-  return text + "};\n";
+  for (std::string &machine : inheritedStateMachines(definition))
+    parts.push_back(std::move(machine));
+  return text + "struct " + names.of(&definition) + " : " + base + " {\n" + join(parts, "\n") + "};\n";
 }
 
 //===----------------------------------------------------------------------===//
@@ -491,17 +480,17 @@ std::string ModulePrinter::run() {
                      "// and its options.\n#define RTSL_FAST\n"
                    : "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math it computes what rtslc's own\n"
                      "// machine code computes, to the last bit.\n";
-  if (!options.whyCalls.empty()) // without the advice in parentheses
-    text += "//\n// Rays are calls, not the ends of states: " + options.whyCalls.substr(0, options.whyCalls.find(" (")) + ".\n";
+  if (!options.whyCalls.empty())
+    text += "//\n// Rays are calls, not the ends of states: " + options.whyCalls + ".\n";
   if (!options.checkIndices)
     text += "#define RTSL_UNCHECKED // indices are trusted (--unchecked)\n";
   text += "#include <rtsl/shader.h>\n\n";
   text += "namespace " + options.name + " {\n\n";
   text += fmt::format("using State = rtsl::State<{0}>;\nusing Color = rtsl::Color<{0}>;\n",
                       options.colorComponents);
-  auto add = [&](const std::string &part) {
+  auto add = [&](const std::string &part) { // with an empty line above; of two the formatter makes one
     if (!part.empty())
-      text += (part.front() == '\n' ? "" : "\n") + part;
+      text += "\n" + part;
   };
   if (!calledMethods.empty()) // what they are given says where they begin
     add(stepNumbers());
@@ -544,17 +533,6 @@ std::optional<std::string> print(const typed::Module &module, const Options &opt
   if (printer.failed || diagnostics.hasErrors())
     return std::nullopt;
   return text;
-}
-
-std::string identifierOf(const std::string &path) {
-  std::string stem = path.substr(path.find_last_of('/') + 1);
-  stem = stem.substr(0, stem.find('.'));
-  std::string name;
-  for (char c : stem)
-    name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())))
-    name = "shaders" + name;
-  return isReserved(name) ? name + "_shaders" : name;
 }
 
 } // namespace rtsl::cpp

@@ -7,6 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/cpp/Names.h"
 #include "frontend/Diagnostics.h"
 #include "sema/TypedAst.h"
 
@@ -36,8 +37,5 @@ struct StateProgram;
 /// be printed as their states (States.h); null: traces are calls.
 std::optional<std::string> print(const typed::Module &module, const Options &options,
                                  Diagnostics &diagnostics, const StateProgram *states = nullptr);
-
-/// An identifier made of a file's name: "my-glass.cpp" gives "my_glass".
-std::string identifierOf(const std::string &path);
 
 } // namespace rtsl::cpp

@@ -39,27 +39,40 @@ const typed::Function *ModulePrinter::findMethod(const typed::Class &definition,
   return nullptr;
 }
 
-// A switch over the classes, or a plain call if there is one. `call` gives "" for a class that has
-// no such method. `mayBeNone`: nothing happens if there is no object.
-std::string ModulePrinter::dispatch(const std::vector<const typed::Class *> &classes,
-                                    const std::function<std::string(const typed::Class &)> &call,
-                                    bool mayBeNone) {
-  std::string arms;
-  std::string only;
+bool endsInReturn(const Statements &statements) {
+  return !statements.empty() && statements.back().is(StatementKind::Return);
+}
+
+// A switch over the classes, or the statements alone if there is one. `run` gives nothing for a class that has no such
+// method. `mayBeNone`: nothing happens if there is no object.
+Statements ModulePrinter::dispatch(const std::vector<const typed::Class *> &classes,
+                                   const std::function<Statements(const typed::Class &)> &run, bool mayBeNone) {
+  Statement choice = simple(StatementKind::Switch);
+  choice.value = staticCast("Id", call("rtsl::classOf", {cpp::name("rt"), cpp::name("object")}));
   for (const typed::Class *definition : classes) {
-    const std::string text = call(*definition);
-    if (text.empty())
+    Statements body = run(*definition);
+    if (body.empty())
       continue;
-    only = text;
-    arms += "case Id::" + names.of(definition) + ":\n" + text + ";\n";
-    if (text.compare(0, 6, "return") != 0)
-      arms += "break;\n";
+    if (classes.size() == 1 && !mayBeNone)
+      return body;
+    if (classes.size() == 1)
+      return {branch(binary(Operator::NotEqual, cpp::name("object"), integer(0)), std::move(body))};
+    if (!endsInReturn(body))
+      body.push_back(simple(StatementKind::Break));
+    choice.arms.push_back({{cpp::name("Id::" + names.of(definition))}, false, false, std::move(body)});
   }
-  if (arms.empty())
+  if (choice.arms.empty())
     return {};
-  if (classes.size() == 1)
-    return (mayBeNone ? "if (object != 0)\n" : "") + only + ";\n";
-  return "switch (static_cast<Id>(rtsl::classOf(rt, object))) {\n" + arms + "default:\nbreak;\n}\n";
+  choice.arms.push_back({{}, true, false, {simple(StatementKind::Break)}});
+  return {choice};
+}
+
+Code ModulePrinter::objectOf(const typed::Class &definition) const {
+  return call(withParameters("rtsl::object", {names.of(&definition)}), {cpp::name("rt"), cpp::name("object")});
+}
+
+Code ModulePrinter::storedScratch(const typed::Class &definition) const {
+  return call(withParameters("rtsl::loadScratch", {names.of(&definition) + "::Scratch"}), {cpp::name("rt")});
 }
 
 //===----------------------------------------------------------------------===//
@@ -104,6 +117,13 @@ std::string ModulePrinter::references() {
   return text;
 }
 
+/// `const rtsl::NestedLookup nested(rt);`: what a texture wrote is there again afterwards.
+static Statement nestedLookup() {
+  Statement made = declaration("const", "rtsl::NestedLookup", "nested", construct("rtsl::NestedLookup", {name("rt")}));
+  made.declarators.front().isDirect = true;
+  return made;
+}
+
 std::string ModulePrinter::referenceMethods() {
   std::string text;
   for (const auto &[className, methods] : referenced) {
@@ -111,54 +131,51 @@ std::string ModulePrinter::referenceMethods() {
     for (const ThroughReference &through : methods) {
       if (!through.function) {
         const bool isColor = through.method == "lookup";
-        const std::string state = isColor ? "rt.TextureColor" : "rt.FloatTextureValue";
-        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n", isColor ? "Color" : "float",
-                            names.reference(className), through.method);
-        text += lookupsNest ? "const rtsl::NestedLookup nested(rt);\n" : "rtsl::clearTexture(rt);\n";
-        text += dispatch(
-            classes,
-            [&](const typed::Class &definition) -> std::string {
-              const typed::Function *lookup = definition.findMethod("lookup");
-              if (!lookup)
-                return {};
-              return "rtsl::object<" + names.of(&definition) + ">(rt, object)." + names.of(lookup) +
-                     "(rt)";
-            },
-            mayReferToNothing);
-        text += "return " + state + ";\n}\n";
+        const Code state = cpp::member(cpp::name("rt"), isColor ? "TextureColor" : "FloatTextureValue");
+        Statements body = {lookupsNest ? nestedLookup() : statement(call("rtsl::clearTexture", {cpp::name("rt")}))};
+        append(body, dispatch(
+                         classes,
+                         [&](const typed::Class &definition) -> Statements {
+                           const typed::Function *lookup = definition.findMethod("lookup");
+                           if (!lookup)
+                             return {};
+                           return {statement(callMember(objectOf(definition), names.of(lookup), {cpp::name("rt")}))};
+                         },
+                         mayReferToNothing));
+        body.push_back(returning(state));
+        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n{}}}\n", isColor ? "Color" : "float",
+                            names.reference(className), through.method, print(body));
         continue;
       }
       const typed::Function &function = *through.function;
       const bool isVoid = function.returnType->is(TypeKind::Void);
-      text += fmt::format("\ninline {} {}::{}({}) const {{\n", type(function.returnType), names.reference(className),
-                          names.of(&function), parameterList(*this, function));
-      const std::string body = dispatch(
+      Statements body = dispatch(
           classes,
-          [&](const typed::Class &definition) -> std::string {
+          [&](const typed::Class &definition) -> Statements {
             const typed::Function *method = findMethod(definition, function);
             if (!method)
               return {};
-            std::vector<std::string> args;
+            std::vector<Code> args;
             if (takesState(*method))
-              args.push_back("rt");
+              args.push_back(cpp::name("rt"));
             if (takesScratch(*method)) // what the hit so far has stored
-              args.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
+              args.push_back(storedScratch(definition));
             for (std::size_t i = 0; i != function.parameters.size(); ++i)
-              args.push_back(parameterName(function, i));
-            return std::string(isVoid ? "" : "return ") + "rtsl::object<" + names.of(&definition) +
-                   ">(rt, object)." + names.of(method) + "(" + join(args, ", ") + ")";
+              args.push_back(cpp::name(parameterName(function, i)));
+            const Code made = callMember(objectOf(definition), names.of(method), std::move(args));
+            return {isVoid ? statement(made) : returning(made)};
           },
           mayReferToNothing);
       const bool isDirect = classes.size() == 1 && !body.empty() && !mayReferToNothing;
-      std::string zeros; // what the method of no object gives
+      Statements zeros; // what the method of no object gives
       for (std::size_t i = 0; i != function.parameters.size() && !isDirect; ++i)
         if (const typed::Variable &parameter = *function.parameters[i]; parameter.direction == ast::Direction::Out)
-          zeros += parameterName(function, i) + " = " + zero(parameter.type) + ";\n";
-      if (isVoid)
-        text += zeros + body;
-      else
-        text += body + (isDirect ? "" : zeros + "return {};\n");
-      text += "}\n";
+          zeros.push_back(statement(assign(cpp::name(parameterName(function, i)), zero(parameter.type))));
+      if (!isVoid && !isDirect)
+        zeros.push_back(returning(list("", {})));
+      body.insert(isVoid ? body.begin() : body.end(), zeros.begin(), zeros.end());
+      text += fmt::format("\ninline {} {}::{}({}) const {{\n{}}}\n", type(function.returnType), names.reference(className),
+                          names.of(&function), parameterList(*this, function), print(body));
     }
   }
   return text;
@@ -189,6 +206,13 @@ static const typed::Function *slotMethod(const typed::Class &definition, const c
   return nullptr;
 }
 
+Statements ModulePrinter::withState(const Statements &body) const {
+  const Code state = call(withParameters("rtsl::stateOf", {std::to_string(options.colorComponents)}), {cpp::name("ray")});
+  Statements all = {declaration("State &", "rt", state)};
+  append(all, body);
+  return all;
+}
+
 std::string ModulePrinter::slots() {
   std::string text = "\n//===----------------------------------------------------------------------===//\n"
                      "// What the runtime asks for\n"
@@ -198,25 +222,24 @@ std::string ModulePrinter::slots() {
     if (isRunBySteps(slot.method))
       continue;
     const std::vector<const typed::Class *> classes = classesBelow(slot.base);
-    const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
-      if (slot.method == hitErrorMethod)
-        return withHitErrors.count(&definition)
-                   ? "boundHitError(rt, rtsl::object<" + names.of(&definition) + ">(rt, object))"
-                   : "";
+    const Statements body = dispatch(classes, [&](const typed::Class &definition) -> Statements {
+      if (slot.method == hitErrorMethod) {
+        if (withHitErrors.count(&definition) == 0)
+          return {};
+        return {statement(call("boundHitError", {cpp::name("rt"), objectOf(definition)}))};
+      }
       const typed::Function *method = slotMethod(definition, slot.method);
       if (!method)
         return {};
-      const std::string object = "rtsl::object<" + names.of(&definition) + ">(rt, object)";
-      if (!takesScratch(*method))
-        return object + "." + names.of(method) + "(rt)";
-      if (method->name == "intersect")
-        return "rtsl::intersect(rt, " + object + ")";
-      return object + "." + names.of(method) + "(rt, rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt))";
+      const Code object = objectOf(definition), rt = cpp::name("rt");
+      if (takesScratch(*method) && method->name == "intersect")
+        return {statement(call("rtsl::intersect", {rt, object}))};
+      const std::vector<Code> arguments = takesScratch(*method) ? std::vector<Code>{rt, storedScratch(definition)} : std::vector<Code>{rt};
+      return {statement(callMember(object, names.of(method), arguments))};
     });
     if (!body.empty())
-      text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n"
-                          "State &rt = rtsl::stateOf<{}>(ray);\n{}}}\n",
-                          slot.method, options.colorComponents, body);
+      text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n{}}}\n", slot.method,
+                          print(withState(body)));
   }
   return text + payloadSlots() + runState() + "\n} // namespace slots\n";
 }
@@ -258,7 +281,7 @@ std::vector<std::string> needsOf(const Effects &facts) {
   return words;
 }
 
-std::string call(const char *function, const std::vector<std::string> &words) {
+std::string callWithWords(const char *function, const std::vector<std::string> &words) {
   return words.empty() ? "" : std::string(function) + "(" + join(words, " | ") + ")";
 }
 
@@ -381,7 +404,7 @@ std::string ModulePrinter::description() {
                            : "\"" + function->name + "\"");
     if (!methods.empty())
       text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
-    text += call(".needs", needsAtHits(*definition));
+    text += callWithWords(".needs", needsAtHits(*definition));
     std::vector<std::string> asked;
     for (const typed::Function *anyHit : payloadMethods(*definition, "anyHit"))
       asked.push_back(names.of(anyHit->parameters.front()->type->structure));
@@ -389,7 +412,7 @@ std::string ModulePrinter::description() {
       text += fmt::format(".asks<{}>()", fmt::join(asked, ", "));
     text += ";\n";
   }
-  if (const std::string needs = call("program.needs", needsOfProgram()); !needs.empty())
+  if (const std::string needs = callWithWords("program.needs", needsOfProgram()); !needs.empty())
     text += needs + ";\n";
   for (const Slot &slot : allSlots)
     for (const typed::Class *definition : classesBelow(slot.base))

@@ -71,18 +71,11 @@ private:
     return name;
   }
 
-  static std::string doubleText(double value) {
-    if (!std::isfinite(value))
-      return std::isnan(value) ? "std::numeric_limits<double>::quiet_NaN()"
-                               : std::string(value < 0 ? "-" : "") + "std::numeric_limits<double>::infinity()";
-    const std::string text = fmt::format("{}", value);
-    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-  }
   static std::string number(mlir::Attribute attribute) {
     if (auto real = llvm::dyn_cast<mlir::FloatAttr>(attribute); real && real.getType().isF64())
-      return doubleText(real.getValue().convertToDouble());
+      return print(doubleLiteral(real.getValue().convertToDouble()));
     else if (real)
-      return floatText(real.getValue().convertToFloat());
+      return print(floatLiteral(real.getValue().convertToFloat()));
     const llvm::APInt value = llvm::cast<mlir::IntegerAttr>(attribute).getValue();
     if (value.getBitWidth() == 1)
       return value.isZero() ? "false" : "true";

@@ -214,4 +214,19 @@ void Names::nameLocals(const typed::Function &function) {
 
 const std::string &Names::of(const void *entity) const { return names.at(entity); }
 
+std::string nameOfRoot(const std::string &root) {
+  return root == typed::helperRoot ? "Helper" : root.substr(3);
+}
+
+std::string identifierOf(const std::string &path) {
+  std::string stem = path.substr(path.find_last_of('/') + 1);
+  stem = stem.substr(0, stem.find('.'));
+  std::string name;
+  for (char c : stem)
+    name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())))
+    name = "shaders" + name;
+  return isReserved(name) ? name + "_shaders" : name;
+}
+
 } // namespace rtsl::cpp

@@ -47,6 +47,12 @@ private:
 /// C++ keeps for itself.
 std::string unique(std::string name, std::set<std::string> &taken);
 
+/// The class of include/rtsl/shader that an `rt_` base is, or that of none: `rt_Texture` is rtsl::Texture.
+std::string nameOfRoot(const std::string &root);
+
+/// An identifier made of a file's name: "my-glass.cpp" gives "my_glass".
+std::string identifierOf(const std::string &path);
+
 /// Is the word C++'s own, a macro's, or one that generated code uses?
 bool isReserved(const std::string &word);
 

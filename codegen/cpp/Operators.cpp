@@ -124,45 +124,14 @@ std::optional<Interval> FunctionPrinter::range(const typed::Expr &expr) {
 // Operators
 //===----------------------------------------------------------------------===//
 
-static const char *spelling(BinaryOp op) {
-  static const char *const spellings[] = {"*",  "/",  "%",  "+", "-", "<<", ">>", "<",  ">", "<=",
-                                          ">=", "==", "!=", "&", "^", "|",  "&&", "!=", "||"};
-  return spellings[static_cast<int>(op)];
-}
-
-static Binding bindingOf(BinaryOp op) {
-  switch (op) {
-  case BinaryOp::Mul:
-  case BinaryOp::Div:
-  case BinaryOp::Mod:
-    return Binding::Product;
-  case BinaryOp::Add:
-  case BinaryOp::Sub:
-    return Binding::Sum;
-  case BinaryOp::Shl:
-  case BinaryOp::Shr:
-    return Binding::Shift;
-  case BinaryOp::Less:
-  case BinaryOp::Greater:
-  case BinaryOp::LessEqual:
-  case BinaryOp::GreaterEqual:
-    return Binding::Relation;
-  case BinaryOp::Equal:
-  case BinaryOp::NotEqual:
-  case BinaryOp::LogicalXor:
-    return Binding::Equality;
-  case BinaryOp::BitAnd:
-    return Binding::BitAnd;
-  case BinaryOp::BitXor:
-    return Binding::BitXor;
-  case BinaryOp::BitOr:
-    return Binding::BitOr;
-  case BinaryOp::LogicalAnd:
-    return Binding::And;
-  case BinaryOp::LogicalOr:
-    return Binding::Or;
-  }
-  return Binding::Comma;
+/// The operator of C++ that is spelled alike.
+static Operator operatorFor(BinaryOp op) {
+  static constexpr Operator all[] = {
+      Operator::Multiply,     Operator::Divide,   Operator::Remainder, Operator::Add,       Operator::Subtract,
+      Operator::ShiftLeft,    Operator::ShiftRight, Operator::Less,    Operator::Greater,   Operator::LessEqual,
+      Operator::GreaterEqual, Operator::Equal,    Operator::NotEqual,  Operator::BitAnd,    Operator::BitXor,
+      Operator::BitOr,        Operator::And,      Operator::NotEqual,  Operator::Or};
+  return all[static_cast<int>(op)];
 }
 
 static bool isZero(const typed::Expr &expr) {
@@ -180,7 +149,7 @@ static bool isSafeDivisor(const typed::Expr &expr) {
   return literal && literal->type->isScalar() && literal->value.scalars.front().i > 0;
 }
 
-const char *FunctionPrinter::plainOperator(BinaryOp op, const typed::Expr &left, const typed::Expr &right) {
+std::optional<Operator> FunctionPrinter::plainOperator(BinaryOp op, const typed::Expr &left, const typed::Expr &right) {
   const Type *l = left.type, *r = right.type;
   const bool hasMatrix = l->isMatrix() || r->isMatrix();
   const Type *scalar = l->scalar();
@@ -189,37 +158,37 @@ const char *FunctionPrinter::plainOperator(BinaryOp op, const typed::Expr &left,
   switch (op) {
   case BinaryOp::Mul:
     if (hasMatrix && !l->isScalar() && !r->isScalar())
-      return nullptr;
+      return std::nullopt;
     [[fallthrough]];
   case BinaryOp::Add:
   case BinaryOp::Sub:
     if (hasMatrix && (op != BinaryOp::Mul) && l != r)
-      return nullptr;
+      return std::nullopt;
     if (isInt && !range(op, left, right))
-      return nullptr;
-    return spelling(op);
+      return std::nullopt;
+    return operatorFor(op);
   case BinaryOp::Div:
     if (hasMatrix && !r->isScalar())
-      return nullptr;
+      return std::nullopt;
     [[fallthrough]];
   case BinaryOp::Mod:
     if ((isInt || isUint) && !isSafeDivisor(right))
-      return nullptr;
-    return spelling(op);
+      return std::nullopt;
+    return operatorFor(op);
   case BinaryOp::Shl:
   case BinaryOp::Shr: {
     auto *count = dynCast<typed::LiteralExpr>(&right);
     const bool isKnown = l->isScalar() && count && count->value.scalars.front().u < 32;
-    return isKnown && (isUint || op == BinaryOp::Shr) ? spelling(op) : nullptr;
+    return isKnown && (isUint || op == BinaryOp::Shr) ? std::optional(operatorFor(op)) : std::nullopt;
   }
   case BinaryOp::Less:
   case BinaryOp::GreaterEqual: // of a uint and zero: compilers find that too plain
-    return isUint && isZero(right) ? nullptr : spelling(op);
+    return isUint && isZero(right) ? std::nullopt : std::optional(operatorFor(op));
   case BinaryOp::Greater:
   case BinaryOp::LessEqual:
-    return isUint && isZero(left) ? nullptr : spelling(op);
+    return isUint && isZero(left) ? std::nullopt : std::optional(operatorFor(op));
   default:
-    return spelling(op);
+    return operatorFor(op);
   }
 }
 
@@ -281,129 +250,106 @@ void FunctionPrinter::appendOperands(BinaryOp op, const typed::Expr &expr, std::
 }
 
 Code FunctionPrinter::binary(BinaryOp op, const typed::Expr &left, const typed::Expr &right) {
-  const Binding binding = bindingOf(op);
+  const Operator own = operatorFor(op);
   if (op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr) {
-    // Compilers ask for parentheses round && beside ||.
-    const Binding inner = op == BinaryOp::LogicalOr ? Binding::BitOr : Binding::And;
-    auto side = [&](const typed::Expr &expr, bool isRight) {
-      auto *nested = dynCast<typed::BinaryExpr>(&expr);
-      const bool isSame = nested && nested->op == op && !isRight;
-      const Binding atLeast = isSame ? binding : std::max(inner, Binding::BitOr);
-      return isRight ? apart(expr, atLeast) : operand(expr, atLeast);
-    };
-    const std::string first = side(left, false), second = side(right, true);
-    if (first == "!" + second || second == "!" + first) // compilers find it odd
-      return {std::string(op == BinaryOp::LogicalAnd ? "rtsl::all" : "rtsl::any") + "(glm::bvec2(" + first + ", " +
-              second + "))"};
-    return {first + " " + spelling(op) + " " + second, binding};
+    const Code first = operand(left, Binding::BitOr), second = apart(right, Binding::BitOr);
+    if (same(first, negated(second)) || same(second, negated(first))) // compilers find it odd
+      return cpp::call(op == BinaryOp::LogicalAnd ? "rtsl::all" : "rtsl::any",
+                       {cpp::construct("glm::bvec2", {first, second})});
+    return cpp::binary(own, first, second);
   }
   if (op == BinaryOp::Equal || op == BinaryOp::NotEqual)
     compareStructs(left.type);
 
-  const char *plain = plainOperator(op, left, right);
-  if (!plain) {
+  if (!plainOperator(op, left, right)) {
     std::vector<const typed::Expr *> all;
     appendOperands(op, left, all);
     all.push_back(&right);
-    return {functionFor(op, left, right) + "(" + join(operands(all, Binding::Assignment), ", ") + ")"};
+    return cpp::call(functionFor(op, left, right), operands(all, Binding::Assignment));
   }
 
-  // Operators whose order of binding is not common knowledge get parentheses.
-  const bool isUncommon = binding >= Binding::BitOr && binding <= Binding::Shift;
-  auto needed = [&](const typed::Expr &expr, bool isRight) {
-    auto *nested = dynCast<typed::BinaryExpr>(&expr);
-    const bool isSame = nested && nested->op == op && !isRight &&
-                        (binding == Binding::BitOr || binding == Binding::BitXor || binding == Binding::BitAnd);
-    if (isUncommon && !isSame)
-      return Binding::Unary;
-    return isRight ? static_cast<Binding>(static_cast<int>(binding) + 1) : binding;
-  };
-  const Binding forLeft = needed(left, false), forRight = needed(right, true);
-  std::vector<std::string> both;
+  std::vector<Code> both;
   if (conflicts(module.effects.expression(left), module.effects.expression(right)))
-    both = operands({&left, &right}, forRight);
+    both = operands({&left, &right}, bindingOf(own));
   else
-    both = {operand(left, forLeft), operand(right, forRight)};
+    both = {operand(left, bindingOf(own)), operand(right, bindingOf(own))};
   // Bools that lie in memory compare with those that do not as values do.
   if (op == BinaryOp::Equal || op == BinaryOp::NotEqual || op == BinaryOp::LogicalXor) {
+    Code &stored = both[isInMemory(left) ? 0 : 1];
     if (left.type->isVector() && left.type->element->is(TypeKind::Bool) && isInMemory(left) != isInMemory(right))
-      both[isInMemory(left) ? 0 : 1] = module.type(left.type) + "(" + both[isInMemory(left) ? 0 : 1] + ")";
+      stored = cpp::construct(module.type(left.type), {stored});
   }
-  if (both[0] == both[1] && binding >= Binding::Equality && binding <= Binding::Relation &&
-      left.type->scalar()) {
-    // Compilers find `x == x` odd.
-    const std::string call = functionFor(op, left, right) + "(" + both[0] + ", " + both[1] + ")";
+  const bool compares = bindingOf(own) == Binding::Equality || bindingOf(own) == Binding::Relation;
+  if (compares && left.type->scalar() && same(both[0], both[1])) { // compilers find `x == x` odd
+    const Code compared = cpp::call(functionFor(op, left, right), both);
     if (left.type->isScalar())
-      return {call};
+      return compared;
     if (left.type->isVector() && op == BinaryOp::Equal)
-      return {"rtsl::all(" + call + ")"};
+      return cpp::call("rtsl::all", {compared});
     if (left.type->isVector() && op == BinaryOp::NotEqual)
-      return {"rtsl::any(" + call + ")"};
+      return cpp::call("rtsl::any", {compared});
   }
-  if (both[1].front() == '-' && (op == BinaryOp::Sub || op == BinaryOp::Add))
-    both[1] = "(" + both[1] + ")"; // a - -b
-  return {both[0] + " " + plain + " " + both[1], binding};
+  return cpp::binary(own, both[0], both[1]);
 }
 
 Code FunctionPrinter::unary(const typed::UnaryExpr &expr) {
   if (expr.op == typed::UnaryOp::Not)
-    return {"!" + operand(*expr.operand, Binding::Unary), Binding::Unary};
+    return cpp::unary(UnaryOperator::Not, operand(*expr.operand, Binding::Unary));
   if (expr.op == typed::UnaryOp::BitNot)
-    return {"~" + operand(*expr.operand, Binding::Unary), Binding::Unary};
-  const Type *scalar = expr.operand->type->scalar();
+    return cpp::unary(UnaryOperator::BitNot, operand(*expr.operand, Binding::Unary));
+  const Type *type = expr.operand->type, *scalar = type->scalar();
   if (scalar && scalar->is(TypeKind::Int)) {
-    if (auto *literal = dynCast<typed::LiteralExpr>(expr.operand); literal && literal->type->isScalar() &&
-                                                                   literal->value.scalars.front().i == intMin)
-      return {"std::numeric_limits<int>::min()"};
+    if (auto *literal = dynCast<typed::LiteralExpr>(expr.operand);
+        literal && literal->type->isScalar() && literal->value.scalars.front().i == intMin)
+      return integer(intMin);
     if (!range(expr))
-      return {"rtsl::negate(" + argument(*expr.operand) + ")"};
+      return cpp::call("rtsl::negate", {argument(*expr.operand)});
   }
   // GLM subtracts four components from 0, and a zero keeps its sign then.
-  const Type *type = expr.operand->type;
   if ((type->isVector() && type->count == 4) || (type->isMatrix() && type->rows() == 4))
-    return {"rtsl::negate(" + argument(*expr.operand) + ")"};
-  std::string text = operand(*expr.operand, Binding::Unary);
-  if (text.front() == '-')
-    text = "(" + text + ")";
-  return {"-" + text, Binding::Unary};
+    return cpp::call("rtsl::negate", {argument(*expr.operand)});
+  return cpp::unary(UnaryOperator::Minus, operand(*expr.operand, Binding::Unary));
 }
 
 //===----------------------------------------------------------------------===//
 // Assignments
 //===----------------------------------------------------------------------===//
 
+void FunctionPrinter::assignComponents(const Code &target, const std::vector<std::uint8_t> &parts, const Code &from,
+                                       Statements &out) {
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    out.push_back(statement(cpp::assign(component(target, parts[i]), component(from, i))));
+}
+
 Code FunctionPrinter::incDec(const typed::IncDecExpr &expr, bool resultIsUsed) {
   const typed::Expr *vector = nullptr;
-  if (components(*expr.target, vector).size() > 1) { // `v.xy++`
-    const std::string value = argument(*expr.target);
-    const std::string old = hoist(expr.target->type, "value", value);
-    const std::string one = expr.target->type->scalar()->is(TypeKind::Float)  ? "1.0f"
-                            : expr.target->type->scalar()->is(TypeKind::UInt) ? "1u"
-                                                                              : "1";
-    const bool isInt = expr.target->type->scalar()->is(TypeKind::Int);
-    const std::string sum = isInt ? fmt::format("rtsl::{}({}, 1)", expr.increment ? "add" : "subtract", old)
-                                  : fmt::format("{} {} {}", old, expr.increment ? "+" : "-", one);
-    const std::string changed = hoist(expr.target->type, "value", sum);
-    const std::vector<std::uint8_t> parts = components(*expr.target, vector);
-    const std::string target = place(*vector).text;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      before->push_back(fmt::format("{}.{} = {}.{};", target, "xyzw"[parts[i]], changed, "xyzw"[i]));
-    return {expr.prefix ? changed : old};
-  }
-  const std::string target = place(*expr.target).text;
   const Type *scalar = expr.target->type->scalar();
+  if (const std::vector<std::uint8_t> parts = components(*expr.target, vector); parts.size() > 1) { // `v.xy++`
+    const Code old = hoist(expr.target->type, "value", argument(*expr.target));
+    const Code changed = hoist(expr.target->type, "value", stepped(old, scalar, expr.increment));
+    assignComponents(place(*vector), parts, changed, *before);
+    return expr.prefix ? changed : old;
+  }
+  const Code target = place(*expr.target);
   // Where the value is used a function is plainer to compilers, which warn of `x = x++ + 1`.
   bool isSafe = !scalar->is(TypeKind::Int) && !resultIsUsed;
   if (auto *variable = dynCast<typed::VariableExpr>(expr.target))
     isSafe |= counters.count(variable->variable) != 0;
   if (!isSafe) {
-    const char *name = expr.increment ? "increment" : "decrement";
+    const char *name = expr.increment ? "rtsl::increment" : "rtsl::decrement";
     if (!expr.prefix && resultIsUsed)
-      name = expr.increment ? "postIncrement" : "postDecrement";
-    return {fmt::format("rtsl::{}({})", name, target)};
+      name = expr.increment ? "rtsl::postIncrement" : "rtsl::postDecrement";
+    return cpp::call(name, {target});
   }
-  const char *op = expr.increment ? "++" : "--";
-  return {expr.prefix ? op + target : target + op, Binding::Unary};
+  const UnaryOperator op = expr.increment ? UnaryOperator::Increment : UnaryOperator::Decrement;
+  return expr.prefix ? cpp::unary(op, target) : postfix(op, target);
+}
+
+Code FunctionPrinter::stepped(const Code &value, const Type *scalar, bool increment) {
+  if (scalar->is(TypeKind::Int)) // may overflow
+    return cpp::call(increment ? "rtsl::add" : "rtsl::subtract", {value, integer(1)});
+  return cpp::binary(increment ? Operator::Add : Operator::Subtract, value,
+                     cpp::literal(scalar->is(TypeKind::Float) ? "1.0f" : "1u"));
 }
 
 Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
@@ -414,57 +360,54 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   const bool storeIndices = conflicts(indices, value) || (parts.size() > 1 && !indices.isPure());
 
   // Indices that do something are evaluated once; the old value is kept if evaluating the new one changes it.
-  std::string stored, old;
+  Code stored, old;
   const bool changesOld = expr.compound && conflicts(module.effects.expression(*expr.target), value);
   if (expr.compound && (changesOld || !indices.isPure())) {
-    stored = place(parts.size() > 1 ? *vector : *expr.target, true).text;
-    std::vector<std::string> texts;
+    stored = place(parts.size() > 1 ? *vector : *expr.target, true);
+    std::vector<Code> codes;
     for (std::uint8_t part : parts)
-      texts.push_back(stored + "." + "xyzw"[part]);
+      codes.push_back(component(stored, part));
     old = hoist(expr.target->type, "value",
-                parts.size() > 1 ? module.type(expr.target->type) + "(" + join(texts, ", ") + ")" : stored);
+                parts.size() > 1 ? cpp::construct(module.type(expr.target->type), codes) : stored);
   }
 
-  auto combined = [&]() -> std::string {
+  const std::optional<Operator> plain =
+      expr.compound ? plainOperator(expr.op, *expr.target, *expr.value) : std::nullopt;
+  auto combined = [&]() -> Code {
     if (!expr.compound) {
       // `a = b = c` stays as it is; an assignment anywhere else becomes a statement of its own.
       auto *inner = dynCast<typed::AssignExpr>(expr.value);
       if (inner && !replaced.count(inner) && !conflicts(module.effects.expression(*expr.target), module.effects.expression(*inner)))
-        return assign(*inner, true).text;
+        return assign(*inner, true);
       return argument(*expr.value);
     }
-    const char *plain = plainOperator(expr.op, *expr.target, *expr.value);
-    const Binding binding = bindingOf(expr.op);
-    const std::string left = !old.empty() ? old : argument(*expr.target);
+    const Code left = old ? old : argument(*expr.target);
     if (plain)
-      return left + " " + plain + " " +
-             operand(*expr.value, static_cast<Binding>(static_cast<int>(binding) + 1));
-    return functionFor(expr.op, *expr.target, *expr.value) + "(" + left + ", " + argument(*expr.value) + ")";
+      return cpp::binary(*plain, left, operand(*expr.value, bindingOf(*plain)));
+    return cpp::call(functionFor(expr.op, *expr.target, *expr.value), {left, argument(*expr.value)});
   };
 
   if (parts.size() > 1) { // `v.zx = ...`: component by component
-    const std::string target = !stored.empty() ? stored : place(*vector, storeIndices).text;
+    const Code target = stored ? stored : place(*vector, storeIndices);
     const bool isFree = !expr.compound && isSimple(*expr.value) &&
                         !conflicts(module.effects.expression(*vector), value);
-    std::string from = combined();
+    Code from = combined();
     // A simple value that is no part of the target can be named again and again.
     std::set<const void *> written = module.effects.expression(expr).writes;
     const bool overlaps = std::any_of(written.begin(), written.end(),
                                       [&](const void *at) { return value.reads.count(at) != 0; });
     if (!isFree || overlaps)
       from = hoist(expr.target->type, "value", from);
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      before->push_back(fmt::format("{}.{} = {}.{};", target, "xyzw"[parts[i]], from, "xyzw"[i]));
-    return {resultIsUsed ? from : ""};
+    assignComponents(target, parts, from, *before);
+    return resultIsUsed ? from : Code();
   }
 
-  const char *plain = expr.compound ? plainOperator(expr.op, *expr.target, *expr.value) : nullptr;
-  if (expr.compound && plain && old.empty()) {
-    const std::string target = place(*expr.target, storeIndices).text;
-    return {target + " " + plain + "= " + argument(*expr.value), Binding::Assignment};
+  if (expr.compound && plain && !old) {
+    const Code target = place(*expr.target, storeIndices);
+    return cpp::assign(*plain, target, argument(*expr.value));
   }
-  const std::string target = !stored.empty() ? stored : place(*expr.target, storeIndices).text;
-  return {target + " = " + combined(), Binding::Assignment};
+  const Code target = stored ? stored : place(*expr.target, storeIndices);
+  return cpp::assign(target, combined());
 }
 
 } // namespace rtsl::cpp

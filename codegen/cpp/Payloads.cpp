@@ -142,34 +142,43 @@ std::string ModulePrinter::payloadSlots() {
   for (const PayloadSlot &slot : payloadSlotTable) {
     if (!firstCalls.empty() && std::string(slot.method) != "anyHit")
       continue; // runState has them
-    std::string arms;
+    Statements tests; // from the last type to the first
     const std::vector<const typed::Class *> classes = classesBelow(slot.base);
-    for (const RayType &type : rayTypes) {
-      const std::string body = dispatch(classes, [&](const typed::Class &definition) -> std::string {
+    for (auto type = rayTypes.rbegin(); type != rayTypes.rend(); ++type) {
+      Statements body = dispatch(classes, [&](const typed::Class &definition) -> Statements {
         for (const typed::Function *method : payloadMethods(definition, slot.method))
-          if (payloadOf(*method) == type.payload) {
-            std::vector<std::string> arguments = {"rt"};
+          if (payloadOf(*method) == type->payload) {
+            std::vector<Code> arguments = {cpp::name("rt")};
             if (takesScratch(*method))
-              arguments.push_back("rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)");
-            arguments.push_back("payload");
-            return fmt::format("rtsl::object<{}>(rt, object).{}({})", names.of(&definition), names.of(method),
-                               join(arguments, ", "));
+              arguments.push_back(storedScratch(definition));
+            arguments.push_back(cpp::name("payload"));
+            return {statement(callMember(objectOf(definition), names.of(method), std::move(arguments)))};
           }
         return {};
       });
-      if (!body.empty())
-        arms += fmt::format("{0}if (rtsl::carries<{1}>(ray)) {{\nauto &payload = rtsl::payloadOf<{1}>(ray);\n{2}}}\n",
-                            arms.empty() ? "" : "else ", names.of(type.payload), body);
+      if (body.empty())
+        continue;
+      body.insert(body.begin(), declaration("auto &", "payload", payloadAt(*type->payload)));
+      Statement test = branch(carries(*type->payload), std::move(body), /*hasBraces=*/true);
+      test.otherwise = std::move(tests);
+      tests = {std::move(test)};
     }
-    if (arms.empty())
+    if (tests.empty())
       continue;
     const bool isCaught = throwsFromAnyHit && std::string(slot.method) == "anyHit";
-    text += fmt::format("\ninline void {}WithPayload(RtslState *ray, RtslRef object) {}{{\nState &rt = "
-                        "rtsl::stateOf<{}>(ray);\n{}}}{}\n",
-                        slot.method, isCaught ? "try " : "", options.colorComponents, arms,
+    text += fmt::format("\ninline void {}WithPayload(RtslState *ray, RtslRef object) {}{{\n{}}}{}\n", slot.method,
+                        isCaught ? "try " : "", print(withState(tests)),
                         isCaught ? " catch (const rtsl::EndOfAnyHit &) {\n}" : "");
   }
   return text;
+}
+
+Code ModulePrinter::payloadAt(const typed::Struct &payload) const {
+  return call(withParameters("rtsl::payloadOf", {names.of(&payload)}), {cpp::name("ray")});
+}
+
+Code ModulePrinter::carries(const typed::Struct &payload) const {
+  return call(withParameters("rtsl::carries", {names.of(&payload)}), {cpp::name("ray")});
 }
 
 std::string ModulePrinter::describePayloads() {
@@ -196,15 +205,20 @@ bool FunctionPrinter::mayEndAnyHit() const {
   return function && (!function->isStateMethod || function->name == "anyHit") && module.mayAnswerHit(*function);
 }
 
-std::string FunctionPrinter::hitAnswer(const typed::Expr &expr) {
+static Code answerIn(const typed::Expr &expr) {
+  return call(std::string("rtsl::") + typed::name(cast<typed::BuiltinExpr>(expr).builtin), {name("rt")});
+}
+
+Statements FunctionPrinter::hitAnswer(const typed::Expr &expr) {
   if (!lowering::isHitAnswer(expr))
     return {};
-  const std::string answer = fmt::format("rtsl::{}(rt)", typed::name(cast<typed::BuiltinExpr>(expr).builtin));
-  return function->returnType->is(TypeKind::Void) ? "return " + answer + ";\n" : answer + ";\nreturn {};\n";
+  if (function->returnType->is(TypeKind::Void))
+    return {returning(answerIn(expr))};
+  return {statement(answerIn(expr)), returning(list("", {}))};
 }
 
 Code FunctionPrinter::endOfAnyHit(const typed::BuiltinExpr &expr) {
-  before->push_back(fmt::format("rtsl::{}(rt);", typed::name(expr.builtin)));
+  before->push_back(statement(answerIn(expr)));
   leaveIfAnswered();
   return {};
 }
@@ -212,11 +226,11 @@ Code FunctionPrinter::endOfAnyHit(const typed::BuiltinExpr &expr) {
 void FunctionPrinter::leaveIfAnswered() {
   if (isInLambda) {
     module.throwsFromAnyHit = true;
-    before->emplace_back("rtsl::endIfAnswered(rt);");
-  } else {
-    before->push_back(std::string("if (rtsl::isAnswered(rt))\nreturn") +
-                      (function->returnType->is(TypeKind::Void) ? ";" : " {};"));
+    before->push_back(statement(cpp::call("rtsl::endIfAnswered", {name("rt")})));
+    return;
   }
+  const Statement leave = returning(function->returnType->is(TypeKind::Void) ? Code() : list("", {}));
+  before->push_back(branch(cpp::call("rtsl::isAnswered", {name("rt")}), {leave}));
 }
 
 } // namespace rtsl::cpp

@@ -13,8 +13,6 @@ namespace rtsl::cpp {
 
 using typed::ExprKind;
 
-static const char letters[] = "xyzw";
-
 /// A constant index that is in range.
 static std::optional<std::uint32_t> constantIndex(const typed::Expr &index, std::uint32_t count) {
   auto *literal = dynCast<typed::LiteralExpr>(&index);
@@ -82,25 +80,25 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
     return found->second;
   switch (expr.kind) {
   case ExprKind::Variable:
-    return {module.names.of(cast<typed::VariableExpr>(expr).variable)};
+    return name(module.names.of(cast<typed::VariableExpr>(expr).variable));
   case ExprKind::State:
-    return {std::string("rt.") + typed::name(cast<typed::StateExpr>(expr).variable)};
+    return member(name("rt"), typed::name(cast<typed::StateExpr>(expr).variable));
   case ExprKind::Member: {
-    const typed::Member &member = *cast<typed::MemberExpr>(expr).member;
-    const std::string &name = module.names.of(&member);
-    return {member.access == ast::Access::Scratch ? "scratch." + name : name};
+    const typed::Member &found = *cast<typed::MemberExpr>(expr).member;
+    const std::string &own = module.names.of(&found);
+    return found.access == ast::Access::Scratch ? member(name("scratch"), own) : name(own);
   }
   case ExprKind::Field: {
     const auto &field = cast<typed::FieldExpr>(expr);
-    const std::string base =
-        lowering::isPlace(*field.base) ? place(*field.base, storeIndices).text : operand(*field.base, Binding::Primary);
-    return {base + "." + module.names.of(&field.base->type->structure->fields[field.field])};
+    const Code base =
+        lowering::isPlace(*field.base) ? place(*field.base, storeIndices) : operand(*field.base, Binding::Primary);
+    return member(base, module.names.of(&field.base->type->structure->fields[field.field]));
   }
   case ExprKind::Swizzle: {
     const typed::Expr *vector = nullptr;
     const std::vector<std::uint8_t> parts = components(expr, vector);
     if (parts.size() == 1)
-      return {bind(place(*vector, storeIndices), Binding::Primary) + "." + letters[parts[0]]};
+      return component(place(*vector, storeIndices), parts[0]);
     if (auto *swizzle = dynCast<typed::SwizzleExpr>(&expr); swizzle->base->type->isScalar())
       return place(*swizzle->base, storeIndices);
     break;
@@ -113,20 +111,19 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
     if (const std::vector<std::uint8_t> parts = components(*index.base, vector); !parts.empty()) {
       // `v.zx[i]`: the component that the swizzle names.
       if (auto constant = constantIndex(*index.index, index.base->type->count))
-        return {bind(place(*vector, storeIndices), Binding::Primary) + "." + letters[parts[*constant]]};
-      std::vector<std::string> numbers;
+        return component(place(*vector, storeIndices), parts[*constant]);
+      std::vector<Code> numbers;
       for (std::uint8_t part : parts)
-        numbers.push_back(std::to_string(part));
-      const std::string table =
-          fmt::format("rtsl::array<int, {}>{{{{{}}}}}[{}]", numbers.size(), join(numbers, ", "),
-                      this->index(index, storeIndices));
-      return {fmt::format("rtsl::at({}, {})", place(*vector, storeIndices).text, table)};
+        numbers.push_back(integer(part));
+      const std::string type = withParameters("rtsl::array", {"int", std::to_string(parts.size())});
+      const Code number = subscript(array(type, std::move(numbers)), this->index(index, storeIndices));
+      return cpp::call("rtsl::at", {place(*vector, storeIndices), number});
     }
     // An outer index comes first.
     const bool changes = isNested && conflicts(module.effects.expression(*index.base), module.effects.expression(*index.index));
-    const std::string base = lowering::isPlace(*index.base) ? place(*index.base, storeIndices || changes).text
-                             : changes                      ? hoist(index.base->type, "value", argument(*index.base))
-                                                            : operand(*index.base, Binding::Primary);
+    const Code base = lowering::isPlace(*index.base) ? place(*index.base, storeIndices || changes)
+                      : changes                      ? hoist(index.base->type, "value", argument(*index.base))
+                                                     : operand(*index.base, Binding::Primary);
     return element(index, base, storeIndices);
   }
   default:
@@ -135,27 +132,27 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
   return this->expr(expr);
 }
 
-std::string FunctionPrinter::index(const typed::IndexExpr &expr, bool storeIndices) {
-  std::string text = argument(*expr.index);
+Code FunctionPrinter::index(const typed::IndexExpr &expr, bool storeIndices) {
+  Code code = argument(*expr.index);
   if (storeIndices && expr.index->kind != ExprKind::Literal)
-    text = hoist(expr.index->type, "index", text);
-  return checked(text, std::to_string(expr.base->type->count));
+    code = hoist(expr.index->type, "index", code);
+  return checked(code, integer(expr.base->type->count));
 }
 
 // Outside of functions there is no sample that could end.
-std::string FunctionPrinter::checked(const std::string &index, const std::string &count) const {
+Code FunctionPrinter::checked(Code index, Code count) const {
   const bool raises = function && module.options.exceptions && module.options.checkIndices;
-  return raises ? fmt::format("rtsl::checked(rt, {}, {})", index, count) : index;
+  return raises ? cpp::call("rtsl::checked", {name("rt"), std::move(index), std::move(count)}) : index;
 }
 
-Code FunctionPrinter::element(const typed::IndexExpr &expr, const std::string &base, bool storeIndices) {
+Code FunctionPrinter::element(const typed::IndexExpr &expr, const Code &base, bool storeIndices) {
   const Type *type = expr.base->type;
   if (auto constant = constantIndex(*expr.index, type->count))
-    return {fmt::format("{}[{}]", base, *constant)};
-  const std::string text = index(expr, storeIndices);
+    return subscript(base, integer(*constant));
+  const Code number = index(expr, storeIndices);
   if (type->is(TypeKind::Array)) // clamps
-    return {base + "[" + text + "]"};
-  return {"rtsl::at(" + base + ", " + text + ")"};
+    return subscript(base, number);
+  return cpp::call("rtsl::at", {base, number});
 }
 
 // All indices of `buffer[i][j]`.
@@ -169,31 +166,37 @@ Code FunctionPrinter::bufferElement(const typed::IndexExpr &expr) {
     base = index->base.get();
   }
   assert(indices.size() == base->type->count && "a part of a buffer is no value");
-  std::vector<std::string> texts = operands(indices, Binding::Assignment);
-  const std::string buffer = place(*base).text;
-  for (std::size_t i = 0; i < texts.size(); ++i)
-    texts[i] = checked(texts[i], texts.size() == 1 ? buffer + ".length()" : fmt::format("{}.length({})", buffer, i));
-  if (texts.size() == 1)
-    return {buffer + "[" + texts.front() + "]"};
-  return {buffer + ".at(" + join(texts, ", ") + ")"};
+  std::vector<Code> codes = operands(indices, Binding::Assignment);
+  const Code buffer = place(*base);
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    codes[i] = checked(codes[i], lengthOf(buffer, codes.size() == 1 ? std::nullopt : std::optional(i)));
+  return codes.size() == 1 ? subscript(buffer, codes.front()) : callMember(buffer, "at", std::move(codes));
 }
 
-// `buffer[i].length()` asks for the second dimension; which i does not matter, but what it does is
+/// Of a buffer, or of one of its dimensions.
+Code FunctionPrinter::lengthOf(const Code &buffer, std::optional<std::size_t> dimension) {
+  std::vector<Code> arguments;
+  if (dimension)
+    arguments.push_back(integer(static_cast<std::int64_t>(*dimension)));
+  return callMember(buffer, "length", std::move(arguments));
+}
+
+// `buffer[i].length()` is that of the second dimension; which i does not matter, but what it does is
 // done.
 Code FunctionPrinter::length(const typed::LengthExpr &expr) {
-  unsigned dimension = 0;
+  std::size_t dimension = 0;
   const typed::Expr *base = expr.base.get();
   while (auto *index = dynCast<typed::IndexExpr>(base)) {
     if (!index->base->type->is(TypeKind::Buffer))
       break;
     if (!module.effects.expression(*index->index).isPure())
-      before->push_back(argument(*index->index) + ";");
+      before->push_back(statement(argument(*index->index)));
     base = index->base.get();
     ++dimension;
   }
   if (!base->type->is(TypeKind::Buffer))
-    return {std::to_string(base->type->count)};
-  return {place(*base).text + (dimension ? fmt::format(".length({})", dimension) : ".length()")};
+    return integer(base->type->count);
+  return lengthOf(place(*base), dimension ? std::optional(dimension) : std::nullopt);
 }
 
 } // namespace rtsl::cpp

@@ -13,6 +13,7 @@
 #include "codegen/cpp/SourceNotes.h"
 #include "codegen/cpp/Tracing.h"
 #include "codegen/lower/Analysis.h"
+#include "codegen/cpp/tree/Print.h"
 
 #include <functional>
 #include <map>
@@ -23,30 +24,6 @@
 #include <vector>
 
 namespace rtsl::cpp {
-
-/// How tightly an expression's outermost operator binds, in the order of C++.
-enum class Binding : std::uint8_t {
-  Comma,
-  Assignment, // and ?:
-  Or,
-  And,
-  BitOr,
-  BitXor,
-  BitAnd,
-  Equality,
-  Relation,
-  Shift,
-  Sum,
-  Product,
-  Unary,
-  Primary, // names, calls, members, indices
-};
-
-/// An expression in C++.
-struct Code {
-  std::string text;
-  Binding binding = Binding::Primary;
-};
 
 /// Values that an int can have, ends included.
 struct Interval {
@@ -82,7 +59,9 @@ public:
   std::string type(const Type *type, bool inMemory = false);
   std::string memoryType(const Type *type) { return this->type(type, true); }
   /// `{}`, or the zero of a number: what a variable without an initialiser holds.
-  std::string zero(const Type *type);
+  Code zero(const Type *type);
+  /// A color of so many components, or of one that all have; of three it is RGB, whatever a color has here.
+  Code colorOf(std::vector<Code> components);
 
   /// Does the function ask for the ray's state, or for its class's scratch members?
   bool takesState(const typed::Function &function);
@@ -107,8 +86,9 @@ public:
   std::set<std::string> namesInScope(const typed::Class &definition) const;
 
   std::string commentText(const std::string &comment) const;
-  std::string lineDirective(SourceRange range) const;
-  std::string lineDirective(SourceRange ofFile, unsigned line) const;
+  /// Where the text stands, if that is to be printed.
+  std::optional<SourcePlace> lineDirective(SourceRange range) const;
+  std::optional<SourcePlace> lineDirective(SourceRange ofFile, unsigned line) const;
 
   const typed::Module &module;
   const Options &options;
@@ -126,7 +106,7 @@ private:
   // Declarations.cpp
   std::string structure(const typed::Struct &structure);
   std::string constant(const typed::Variable &constant);
-  bool isConstexpr(const Type *type, const typed::Constant *value, const std::string &name, const std::string &initialiser);
+  bool isConstexpr(const Type *type, const typed::Constant *value, const std::string &name, const Code &initialiser);
   std::string freeFunctions();
   std::string signature(const typed::Function &function, bool isMethod);
   std::string function(const typed::Function &function, bool isMethod);
@@ -153,8 +133,8 @@ private:
   std::string nameOfMachine(const typed::Class &definition, const typed::Function &method) const;
   std::string stateMachine(const typed::Class &definition, const typed::Function &method);
   bool differsIn(const typed::Class &derived, const typed::Function &method) const;
-  std::string inheritedStateMachines(const typed::Class &definition);
-  std::string meaningOf(const typed::Function &method, const FrameField &field) const;
+  std::vector<std::string> inheritedStateMachines(const typed::Class &definition);
+  std::string meaningOf(const typed::Function &method, const FrameField &field);
 
   // RunState.cpp
   std::string stepNumbers() const;
@@ -168,7 +148,7 @@ private:
   std::string stepName(const typed::Class &definition, const std::string &function);
   const CalledMethod *calledMethod(const typed::Class &definition, const typed::Function &method) const;
   std::string callStructures(const std::string &className);
-  std::string runCalledMethod(const CalledMethod &called);
+  Statements runCalledMethod(const CalledMethod &called);
 
   // Payloads.cpp
   void numberRayTypes();
@@ -187,21 +167,34 @@ private:
   std::vector<std::string> needsAtHits(const typed::Class &definition);
   std::vector<std::string> needsOfProgram();
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
-  std::string dispatch(const std::vector<const typed::Class *> &classes,
-                       const std::function<std::string(const typed::Class &)> &call,
-                       bool mayBeNone = false);
+  Statements dispatch(const std::vector<const typed::Class *> &classes,
+                      const std::function<Statements(const typed::Class &)> &run, bool mayBeNone = false);
+  /// The object that the runtime names, as one of this class; what the hit so far has stored for it.
+  Code objectOf(const typed::Class &definition) const;
+  Code storedScratch(const typed::Class &definition) const;
+  /// The ray's payload; whether it is of that type.
+  Code payloadAt(const typed::Struct &payload) const;
+  Code carries(const typed::Struct &payload) const;
+  /// With a variable for the ray's state in front.
+  Statements withState(const Statements &body) const;
   const typed::Function *findMethod(const typed::Class &definition, const typed::Function &like) const;
 
+  /// `shadeAfterTrace1(rt, frame)`, on an object.
+  struct MethodCall {
+    std::string method;
+    std::vector<Code> arguments;
+    Code on(const Code &object) const { return callMember(object, method, arguments); }
+  };
   /// A state that runs when a ray is back.
   struct Step {
     std::string name;                        // its number in C++
     const typed::Class *definition = nullptr;
     const typed::Function *method = nullptr;
-    std::string call; // `shadeAfterTrace1(rt, frame)`
+    MethodCall call;
   };
   std::vector<Step> steps;
   std::set<std::string> stepNames;
-  std::map<std::pair<const typed::Class *, std::string>, std::string> firstCalls; // by class and method
+  std::map<std::pair<const typed::Class *, std::string>, MethodCall> firstCalls; // by class and method
   std::vector<std::string> frames, calledFrames;                                   // the structs
   TracingFunctions tracing;
   const bool mayReferToNothing; // some reference
@@ -232,37 +225,44 @@ public:
   /// `function` is null for an initialiser outside of functions, of a member of `owner` or at file level.
   FunctionPrinter(ModulePrinter &module, const typed::Function *function, const typed::Class *owner = nullptr);
 
-  /// The body with its braces.
-  std::string body();
+  /// The statements of the body.
+  Statements body();
   /// An initialiser outside of functions.
-  std::string initialiser(const typed::Expr &expr);
+  Code initialiser(const typed::Expr &expr);
   /// Is it an array of numbers that are written out? C++ can make it while it compiles.
   bool isTable(const typed::Expr &expr) const;
 
 private:
   // Statements.cpp
-  std::string statement(const typed::Stmt &stmt);
-  std::string block(const std::vector<typed::StmtPtr> &statements);
-  /// The statement under an `if` or a loop, with braces where it needs some.
-  std::string nested(const typed::StmtPtr &stmt, bool needsBraces = false);
-  std::string declaration(const typed::DeclarationStmt &stmt, bool inHeader);
-  std::string expressionStatement(const typed::Expr &expr);
-  std::string ifStatement(const typed::IfStmt &stmt);
-  std::string forStatement(const typed::ForStmt &stmt);
-  std::string switchStatement(const typed::SwitchStmt &stmt);
-  std::string illuminance(const typed::IlluminanceStmt &stmt);
+  void print(const typed::Stmt &stmt, Statements &out);
+  void print(const std::vector<typed::StmtPtr> &statements, Statements &out);
+  Statements block(const std::vector<typed::StmtPtr> &statements);
+  /// The statement without its comment; what goes before it is put there.
+  Statements construct(const typed::Stmt &stmt);
+  /// What stands under an `if` or a loop.
+  Statements nested(const typed::StmtPtr &stmt, bool &hasBraces);
+  void nest(const typed::StmtPtr &stmt, Statement &under);
+  /// `inHeader`: of a `for`, whose own declaration comes last.
+  Statements declaration(const typed::DeclarationStmt &stmt, bool inHeader);
+  Statements expressionStatement(const typed::Expr &expr);
+  Statement ifStatement(const typed::IfStmt &stmt);
+  Statement forStatement(const typed::ForStmt &stmt);
+  Code stepOf(const typed::Expr &expr);
+  Statement switchStatement(const typed::SwitchStmt &stmt);
+  Statement illuminance(const typed::IlluminanceStmt &stmt);
   void noteCounter(const typed::ForStmt &stmt);
 
   // Expressions.cpp
   Code expr(const typed::Expr &expr);
   Code lowered(const typed::Expr &expr);
-  std::string operand(const typed::Expr &expr, Binding atLeast);
-  std::string argument(const typed::Expr &expr) { return operand(expr, Binding::Assignment); }
+  /// In the place of an operand of an operator that binds so tightly, where the author's own parentheses stay.
+  Code operand(const typed::Expr &expr, Binding atLeast);
+  Code argument(const typed::Expr &expr) { return operand(expr, Binding::Assignment); }
   /// Operands in an order that C++ does not promise: what could be noticed goes into variables.
-  std::vector<std::string> operands(const std::vector<const typed::Expr *> &exprs, Binding atLeast);
-  std::vector<std::string> arguments(const std::vector<typed::ExprPtr> &exprs);
+  std::vector<Code> operands(const std::vector<const typed::Expr *> &exprs, Binding atLeast);
+  std::vector<Code> arguments(const std::vector<typed::ExprPtr> &exprs);
   /// In a place where control may not come, or comes more than once: nothing can be put before it.
-  std::string apart(const typed::Expr &expr, Binding atLeast);
+  Code apart(const typed::Expr &expr, Binding atLeast);
   Code literal(const Type *type, const typed::Constant &constant, const std::string &spelling);
   /// The constant (Variable or Member) that the author named where the tree has its value; null: none.
   const void *namedConstant(const typed::LiteralExpr &expr) const;
@@ -271,31 +271,36 @@ private:
   Code construct(const typed::ConstructExpr &expr);
   Code swizzle(const typed::SwizzleExpr &expr);
   Code conditional(const typed::ConditionalExpr &expr);
-  std::string hoist(const Type *type, const std::string &hint, const std::string &value);
+  Code hoist(const Type *type, const std::string &hint, Code value);
   std::string temporaryName(const std::string &hint);
-  std::string braced(const Type *type, const std::string &text);
+  Code inMemory(const Type *type, Code value);
 
   // Operators.cpp
   Code unary(const typed::UnaryExpr &expr);
   Code binary(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
-  /// The operator between texts; null: there is none in C++ that means the same.
-  const char *plainOperator(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
+  /// The operator of C++; nothing: there is none that means the same.
+  std::optional<Operator> plainOperator(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
   /// Operands of an operation that takes any number of them.
   void appendOperands(ast::BinaryOp op, const typed::Expr &expr, std::vector<const typed::Expr *> &into);
   std::string functionFor(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
   Code assign(const typed::AssignExpr &expr, bool resultIsUsed);
+  /// `target.z = from.x; target.x = from.y;`
+  void assignComponents(const Code &target, const std::vector<std::uint8_t> &parts, const Code &from, Statements &out);
   Code incDec(const typed::IncDecExpr &expr, bool resultIsUsed);
+  /// `value + 1` or `value - 1`
+  Code stepped(const Code &value, const Type *scalar, bool increment);
   std::optional<Interval> range(const typed::Expr &expr);
   std::optional<Interval> range(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
   void compareStructs(const Type *type);
 
   // Places.cpp
   Code place(const typed::Expr &expr, bool storeIndices = false);
-  std::string index(const typed::IndexExpr &expr, bool storeIndices);
-  /// With --exceptions: the index, after the state was asked to note that it is out of range.
-  std::string checked(const std::string &index, const std::string &count) const;
-  Code element(const typed::IndexExpr &expr, const std::string &base, bool storeIndices);
+  Code index(const typed::IndexExpr &expr, bool storeIndices);
+  /// With --exceptions: the index, after the state was told if it is out of range.
+  Code checked(Code index, Code count) const;
+  Code element(const typed::IndexExpr &expr, const Code &base, bool storeIndices);
   Code bufferElement(const typed::IndexExpr &expr);
+  Code lengthOf(const Code &buffer, std::optional<std::size_t> dimension);
   Code length(const typed::LengthExpr &expr);
   /// Can the expression stand in the text more than once, at no cost?
   bool isSimple(const typed::Expr &expr) const;
@@ -306,8 +311,9 @@ private:
   // Calls.cpp
   Code call(const typed::CallExpr &expr);
   Code methodCall(const typed::MethodCallExpr &expr);
-  Code callWith(const std::string &callee, std::vector<std::string> first, const typed::Function &function,
+  Code callWith(const Code &callee, std::vector<Code> first, const typed::Function &function,
                 const std::vector<typed::ExprPtr> &args, const Type *result);
+  Code valueThen(const Type *type, const std::string &hint, const Code &call, const Statements &after);
   bool canBind(const typed::Expr &place) const;
 
   // Builtins.cpp
@@ -317,17 +323,17 @@ private:
   Code tracePayload(const typed::BuiltinExpr &expr);
 
   // Payloads.cpp
-  /// `ignoreIntersection();` or `terminateRay();` as a statement; empty if the expression is neither.
-  std::string hitAnswer(const typed::Expr &expr);
+  /// `ignoreIntersection();` or `terminateRay();` as statements; empty if the expression is neither.
+  Statements hitAnswer(const typed::Expr &expr);
   Code endOfAnyHit(const typed::BuiltinExpr &expr);
-  /// Behind a call of what may end `anyHit`: nothing more happens.
+  /// After a call of what may end `anyHit`: nothing more happens.
   void leaveIfAnswered();
   bool mayEndAnyHit() const;
 
   ModulePrinter &module;
   const typed::Function *function;
   const typed::Class *owner;
-  std::vector<std::string> *before = nullptr; // statements that go before the one being printed
+  Statements *before = nullptr; // statements that go before the one being made
   bool isInLambda = false;                    // these are not the function's own
   std::set<std::string> usedNames, temporaries; // the latter are of variables of its own
   std::set<const typed::Variable *> readVariables, mentionedVariables, hoistedDeclarations;
@@ -342,12 +348,12 @@ private:
 
 /// Does it lie in a record, a struct or an array, where bools have 32 bits?
 bool isInMemory(const typed::Expr &expr);
-/// `text` in parentheses if it binds less tightly than `atLeast`.
-std::string bind(const Code &code, Binding atLeast);
 std::string join(const std::vector<std::string> &parts, const char *between);
-/// `name = value`; `name{...}` where the value begins with the type that stands before the name.
-std::string declarator(const std::string &type, const std::string &name, const std::string &value);
-/// The shortest text of a float that reads back as it, with the suffix of C++.
-std::string floatText(float value);
+/// The shortest literal of a number that reads back as it.
+Code floatLiteral(float value);
+Code doubleLiteral(double value);
+bool endsInReturn(const Statements &statements);
+/// `for (rtsl::Lights lights(rt, arguments); lights.next();)`, without what it runs.
+Statement lightLoop(const std::string &lights, std::vector<Code> arguments);
 
 } // namespace rtsl::cpp

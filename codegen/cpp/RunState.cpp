@@ -61,12 +61,10 @@ std::string ModulePrinter::stepNumbers() const {
 std::string ModulePrinter::runState() {
   if (firstCalls.empty())
     return {};
-  auto object = [&](const typed::Class &definition) {
-    return "rtsl::object<" + names.of(&definition) + ">(rt, object).";
-  };
+  const Statement done = returning(cpp::name("rtsl::done"));
   // The first state of a method, or all of it if it does not trace.
   auto begin = [&](const Beginning &one, const typed::Struct *payload) {
-    return dispatch(classesBelow(one.base), [&](const typed::Class &definition) -> std::string {
+    return dispatch(classesBelow(one.base), [&](const typed::Class &definition) -> Statements {
       const typed::Function *method = nullptr;
       for (const typed::Class *at = &definition; at && !method; at = at->base)
         for (const auto &function : at->functions)
@@ -79,43 +77,41 @@ std::string ModulePrinter::runState() {
       // States of its own class, or of one between it and the method's: a base has others.
       for (const typed::Class *at = &definition; at != method->owner->base; at = at->base)
         if (auto first = firstCalls.find({at, lowering::slotName(module, *method)}); first != firstCalls.end())
-          return "return " + object(definition) + first->second;
-      std::string arguments = "rt";
+          return {returning(first->second.on(objectOf(definition)))};
+      std::vector<Code> arguments = {cpp::name("rt")};
       if (takesScratch(*method))
-        arguments += ", rtsl::loadScratch<" + names.of(&definition) + "::Scratch>(rt)";
+        arguments.push_back(storedScratch(definition));
       if (payload)
-        arguments += ", rtsl::payloadOf<" + names.of(payload) + ">(ray)";
-      return object(definition) + names.of(method) + "(" + arguments + ");\nreturn rtsl::done";
+        arguments.push_back(payloadAt(*payload));
+      return {statement(callMember(objectOf(definition), names.of(method), std::move(arguments))), done};
     });
   };
-  std::string text;
-  auto returns = [](const std::string &body) {
-    return body.rfind("return ", 0) == 0 && body.find('\n') + 1 == body.size();
+  Statement choice = simple(StatementKind::Switch);
+  choice.value = staticCast("Step", cpp::name("step"));
+  auto add = [&](const std::string &step, Statements body) {
+    const bool declares = !body.empty() && body.front().is(StatementKind::Declaration);
+    choice.arms.push_back({{cpp::name("Step::" + step)}, false, declares, std::move(body)});
   };
   for (const Beginning &one : beginnings) {
     if (!isThere(classesBelow(one.base), one))
       continue;
-    text += fmt::format("case Step::{}:\n", one.step);
-    if (!one.hasPayload) {
-      const std::string body = begin(one, nullptr);
-      text += body + (returns(body) ? "" : "return rtsl::done;\n");
-      continue;
-    }
+    Statements body;
+    if (!one.hasPayload)
+      body = begin(one, nullptr);
     for (const RayType &type : rayTypes)
-      if (const std::string body = begin(one, type.payload); !body.empty())
-        text += fmt::format("if (rtsl::carries<{}>(ray)) {{\n{}}}\n", names.of(type.payload), body);
-    text += "return rtsl::done;\n";
+      if (Statements run = one.hasPayload ? begin(one, type.payload) : Statements(); !run.empty())
+        body.push_back(branch(carries(*type.payload), std::move(run), /*hasBraces=*/true));
+    if (!endsInReturn(body))
+      body.push_back(done);
+    add(one.step, std::move(body));
   }
   for (const CalledMethod &called : calledMethods)
-    text += runCalledMethod(called);
+    add(called.step, runCalledMethod(called));
   for (const Step &step : steps)
-    text += "case Step::" + step.name + ":\nreturn " + object(*step.definition) + step.call + ";\n";
-  const bool hasFrames = text.find("(frame)") != std::string::npos;
-  return fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef "
-                     "object, void *{}) {{\n"
-                     "State &rt = rtsl::stateOf<{}>(ray);\nswitch (static_cast<Step>(step)) {{\n",
-                     hasFrames ? "frame" : "/*frame*/", options.colorComponents) +
-         text + "}\nreturn rtsl::done;\n}\n";
+    add(step.name, {returning(step.call.on(objectOf(*step.definition)))});
+  Statements body = withState({choice, done});
+  return fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object, void *{}) {{\n{}}}\n",
+                     mentions(body, "frame") ? "frame" : "/*frame*/", print(body));
 }
 
 std::string ModulePrinter::describeStates() const {

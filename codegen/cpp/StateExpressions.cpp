@@ -13,212 +13,156 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 namespace rtsl::cpp {
 
 using typed::ExprKind;
 
-Code StateWriter::use(mlir::Value value, const std::string &type) {
+Code StateWriter::use(mlir::Value value, const Type *type) {
   if (auto found = declared.find(value); found != declared.end())
-    return {found->second};
+    return name(found->second);
   auto found = pending.find(value);
   if (found == pending.end())
     return constant(value, type);
   Code code = found->second.code;
   consumed.add(found->second.touches);
-  mentioned.insert(found->second.mentions.begin(), found->second.mentions.end());
   if (--found->second.usesLeft == 0)
     pending.erase(value);
   return code;
 }
 
-// C++ asks both values to be of one type, and a vector of bools has another where it lies in memory.
-std::string choose(const std::string &condition, const std::string &first, const std::string &second,
-                   const std::string &type) {
-  const auto side = [&](const std::string &value) {
-    const bool isBools = type.compare(0, 9, "glm::bvec") == 0;
-    return isBools && value.compare(0, type.size() + 1, type + "(") != 0 ? type + "(" + value + ")" : value;
+// C++ requires both values to be of one type, and a vector of bools has another where it lies in memory.
+Code choose(ModulePrinter &module, Code condition, Code first, Code second, const Type *type) {
+  const bool isBools = type && type->isVector() && type->element->is(TypeKind::Bool);
+  const auto side = [&](const Code &value) {
+    const bool isMade = !isBools || (value->is(ExpressionKind::Construct) && value->name == module.type(type));
+    return isMade ? value : construct(module.type(type), {value});
   };
-  return condition + " ? " + side(first) + " : " + side(second);
+  return conditional(std::move(condition), side(first), side(second));
 }
 
-static Code numberCode(mlir::Attribute number, bool isUnsigned) {
-  std::string text;
-  if (auto integer = llvm::dyn_cast<mlir::IntegerAttr>(number)) {
-    const llvm::APInt &value = integer.getValue();
-    text = integer.getType().isInteger(1)    ? (value.isZero() ? "false" : "true")
-           : isUnsigned                      ? fmt::format("{}u", value.getZExtValue())
-           : value.isMinSignedValue()        ? "std::numeric_limits<int>::min()"
-                                             : std::to_string(value.getSExtValue());
-  } else {
-    text = floatText(llvm::cast<mlir::FloatAttr>(number).getValue().convertToFloat());
-  }
-  return {text, text.front() == '-' ? Binding::Unary : Binding::Primary};
+static Code number(mlir::Attribute attribute, bool isUnsigned) {
+  auto integerAttr = llvm::dyn_cast<mlir::IntegerAttr>(attribute);
+  if (!integerAttr)
+    return floatLiteral(llvm::cast<mlir::FloatAttr>(attribute).getValue().convertToFloat());
+  const llvm::APInt &value = integerAttr.getValue();
+  if (integerAttr.getType().isInteger(1))
+    return boolean(!value.isZero());
+  return isUnsigned ? literal(fmt::format("{}u", value.getZExtValue()), value.isZero()) : integer(value.getSExtValue());
 }
 
-Code StateWriter::constant(mlir::Value value, const std::string &type) {
+Code StateWriter::constant(mlir::Value value, const Type *type) {
   mlir::Attribute attribute;
   if (!mlir::matchPattern(value, mlir::m_Constant(&attribute))) {
     if (value.getDefiningOp<ir::NullRefOp>())
-      return {type.empty() ? "{}" : type + "{}"};
+      return list(type ? module.type(type) : "", {});
     if (value.getDefiningOp())
       unsupported(*value.getDefiningOp());
-    return {"0"};
+    return integer(0);
   }
+  const bool isUnsigned = type && type->scalar() && type->scalar()->is(TypeKind::UInt);
   auto dense = llvm::dyn_cast<mlir::DenseElementsAttr>(attribute);
   if (!dense)
-    return numberCode(attribute, type == "unsigned");
+    return number(attribute, isUnsigned);
   mlir::Type element = dense.getElementType();
-  std::string vector = type;
-  if (vector.empty())
-    vector = fmt::format("glm::{}vec{}", element.isF32() ? "" : element.isInteger(1) ? "b" : "i", dense.getNumElements());
-  const bool isUnsigned = vector.compare(0, 9, "glm::uvec") == 0;
+  const std::string vector =
+      type ? module.type(type)
+           : fmt::format("glm::{}vec{}", element.isF32() ? "" : element.isInteger(1) ? "b" : "i", dense.getNumElements());
   if (dense.isSplat())
-    return {vector + "(" + numberCode(dense.getSplatValue<mlir::Attribute>(), isUnsigned).text + ")"};
-  std::vector<std::string> parts;
+    return construct(vector, {number(dense.getSplatValue<mlir::Attribute>(), isUnsigned)});
+  std::vector<Code> parts;
   for (mlir::Attribute part : dense.getValues<mlir::Attribute>())
-    parts.push_back(numberCode(part, isUnsigned).text);
-  return {vector + "(" + join(parts, ", ") + ")"};
+    parts.push_back(number(part, isUnsigned));
+  return construct(vector, std::move(parts));
 }
 
 Code StateWriter::place(mlir::Value address) {
   if (auto state = address.getDefiningOp<ir::StateOp>())
-    return {"rt." + state.getName().str()};
+    return member(name("rt"), state.getName().str());
   if (auto variable = address.getDefiningOp<ir::VarOp>()) {
-    mentioned.insert(variable);
-    return {nameOf(variable)};
+    const auto light = lightNumbers.find(variable);
+    return light != lightNumbers.end() ? light->second : name(nameOf(variable));
   }
   if (auto object = address.getDefiningOp<ir::FrameObjectOp>())
     for (const FrameField &field : machine.frame)
       if (field.isObject && field.slot == object.getName())
-        return {machine.frameName + "." + field.name};
+        return frameField(field.name);
   if (auto argument = address.getDefiningOp<ir::CallArgumentOp>())
-    return {machine.addressName(module, machine.given(argument))};
+    return name(machine.addressName(module, machine.given(argument)));
   if (address.getDefiningOp<ir::PayloadOp>())
-    return {module.names.of(machine.method->parameters.front().get())};
+    return name(module.names.of(machine.method->parameters.front().get()));
   if (auto field = address.getDefiningOp<ir::FieldOp>())
     if (const Type *base = declaredType(field.getBase()); base && base->is(TypeKind::Struct))
       for (const typed::Field &part : base->structure->fields)
         if (part.name == field.getField())
-          return {place(field.getBase()).text + "." + module.names.of(&part)};
+          return member(place(field.getBase()), module.names.of(&part));
   if (auto element = address.getDefiningOp<ir::ElementOp>())
-    return {place(element.getBase()).text + "[" + elementIndices[element] + "]"};
+    return subscript(place(element.getBase()), elementIndices[element]);
   unsupported(*address.getDefiningOp());
-  return {"0"};
+  return integer(0);
 }
 
-/// `isCompound`: on return, whether the first operand is the target of `target op= value`, which may be printed so.
-Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound) {
-  isCompound = false;
+/// What the leaves of the author's expression are here.
+void StateWriter::replaceLeaves(const SourceTable::Entry &entry, mlir::ValueRange operands) {
   printer.replaced.clear();
-  for (auto [leaf, operand] : llvm::zip(entry.leaves, operands)) {
-    if (!leaf)
-      continue;
-    const Code code = llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, module.type(leaf->type));
-    printer.replaced[leaf] = code;
-  }
+  for (auto [leaf, operand] : llvm::zip(entry.leaves, operands))
+    if (leaf)
+      printer.replaced[leaf] = llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, leaf->type);
   nameConstants(*entry.expr);
+}
+
+Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange operands) {
+  replaceLeaves(entry, operands);
   switch (entry.kind) {
   case SourceTable::Kind::Value:
   case SourceTable::Kind::Into:
     return printer.expr(*entry.expr);
   case SourceTable::Kind::AngleCosine:
-    return {"rtsl::cosOfAngle(" + printer.argument(*entry.expr) + ")"};
+    return cpp::call("rtsl::cosOfAngle", {printer.argument(*entry.expr)});
   case SourceTable::Kind::Compound: {
     const auto &assign = static_cast<const typed::AssignExpr &>(*entry.expr);
-    isCompound = printer.plainOperator(assign.op, *assign.target, *assign.value) != nullptr;
     return printer.binary(assign.op, *assign.target, *assign.value);
   }
   case SourceTable::Kind::Step: {
     const auto &step = static_cast<const typed::IncDecExpr &>(*entry.expr);
-    const Type *scalar = step.target->type->scalar();
-    const std::string target = printer.operand(*step.target, Binding::Sum);
-    if (scalar->is(TypeKind::Int))
-      return {fmt::format("rtsl::{}({}, 1)", step.increment ? "add" : "subtract", target)};
-    return {fmt::format("{} {} {}", target, step.increment ? "+" : "-", scalar->is(TypeKind::Float) ? "1.0f" : "1u"),
-            Binding::Sum};
+    return printer.stepped(printer.operand(*step.target, Binding::Sum), step.target->type->scalar(), step.increment);
   }
   }
-  return {"0"};
+  return integer(0);
 }
 
-namespace {
-
-/// A comparison's sign, and that of the opposite.
-struct Signs {
-  const char *own, *opposite;
-};
-
-} // namespace
-
-static constexpr Signs below = {"<", ">="};
-
-/// None where the opposite of an order would answer differently for a NaN.
-static std::optional<Signs> oppositeOf(const typed::BinaryExpr &expr) {
-  using ast::BinaryOp;
-  const Type *type = expr.left->type;
-  const bool isWhole = type->is(TypeKind::Int) || type->is(TypeKind::UInt);
-  static const std::map<BinaryOp, Signs> orders = {{BinaryOp::Less, below},
-                                                   {BinaryOp::LessEqual, {"<=", ">"}},
-                                                   {BinaryOp::Greater, {">", "<="}},
-                                                   {BinaryOp::GreaterEqual, {">=", "<"}}};
-  if (expr.op == BinaryOp::Equal)
-    return Signs{"==", "!="};
-  if (expr.op == BinaryOp::NotEqual)
-    return Signs{"!=", "=="};
-  const auto order = orders.find(expr.op);
-  return isWhole && order != orders.end() ? std::optional(order->second) : std::nullopt;
-}
-
-/// Where a text has ` sign `, once and outside of parentheses; npos: it has not.
-static std::size_t findOutside(const std::string &text, const std::string &sign) {
-  std::size_t found = std::string::npos;
-  int depth = 0;
-  for (std::size_t at = 0; at != text.size(); ++at) {
-    if (std::strchr("([{", text[at]))
-      ++depth;
-    else if (std::strchr(")]}", text[at]))
-      --depth;
-    else if (depth == 0 && text.compare(at, sign.size() + 2, " " + sign + " ") == 0)
-      found = found == std::string::npos ? at : text.size();
+/// The comparison that holds where this one does not. Of an order of floats there is none: it fails for a NaN both ways.
+static std::optional<Operator> oppositeOf(Operator op, bool isWhole) {
+  switch (op) {
+  case Operator::Equal:
+    return Operator::NotEqual;
+  case Operator::NotEqual:
+    return Operator::Equal;
+  case Operator::Less:
+    return isWhole ? std::optional(Operator::GreaterEqual) : std::nullopt;
+  case Operator::LessEqual:
+    return isWhole ? std::optional(Operator::Greater) : std::nullopt;
+  case Operator::Greater:
+    return isWhole ? std::optional(Operator::LessEqual) : std::nullopt;
+  case Operator::GreaterEqual:
+    return isWhole ? std::optional(Operator::Less) : std::nullopt;
+  default:
+    return std::nullopt;
   }
-  return found == text.size() ? std::string::npos : found;
 }
 
 /// `i >= 3` for `i < 3`, which is the code of `condition`.
 Code StateWriter::opposite(mlir::Value condition, const Code &code) {
   auto whole = condition.getDefiningOp<ir::ExpressionOp>();
   const SourceTable::Entry *entry = whole ? &source.entries[whole.getSource()] : nullptr;
-  auto *binary = entry && entry->kind == SourceTable::Kind::Value
-                     ? dynCast<typed::BinaryExpr>(entry->expr)
-                     : nullptr;
-  const bool isOfLights =
-      condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr; // below their count
-  if ((!binary && !isOfLights) ||
-      (code.binding != Binding::Relation && code.binding != Binding::Equality))
+  auto *compared = entry && entry->kind == SourceTable::Kind::Value ? dynCast<typed::BinaryExpr>(entry->expr) : nullptr;
+  const bool isOfLights = condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr; // below their count
+  const Code inner = bare(code);
+  if ((!compared && !isOfLights) || !inner->is(ExpressionKind::Binary))
     return negated(code);
-  const std::optional<Signs> signs = isOfLights ? below : oppositeOf(*binary);
-  const std::size_t at = signs ? findOutside(code.text, signs->own) : std::string::npos;
-  if (at == std::string::npos)
-    return negated(code);
-  return {code.text.substr(0, at + 1) + signs->opposite +
-              code.text.substr(at + 1 + std::strlen(signs->own)),
-          code.binding};
-}
-
-Code negated(const Code &code) {
-  if (code.binding != Binding::Unary || code.text.front() != '!')
-    return {"!" + bind(code, Binding::Unary), Binding::Unary};
-  const std::string inner = code.text.substr(1);
-  int depth = 0; // do parentheses hold all of it?
-  std::size_t end = 0;
-  do
-    depth += inner[end] == '(' ? 1 : inner[end] == ')' ? -1 : 0;
-  while (depth != 0 && ++end != inner.size());
-  if (inner.front() == '(' && end + 1 == inner.size())
-    return {inner.substr(1, inner.size() - 2), Binding::Assignment};
-  return {inner, Binding::Primary};
+  auto isInteger = [](const Type *type) { return type->is(TypeKind::Int) || type->is(TypeKind::UInt); };
+  const std::optional<Operator> op = oppositeOf(inner->op, isOfLights || isInteger(compared->left->type));
+  return op ? binary(*op, inner->parts[0], inner->parts[1]) : negated(code);
 }
 
 /// Constant arrays and structs of a function are declared where a state names them.

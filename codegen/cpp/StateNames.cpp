@@ -9,6 +9,8 @@
 #include "llvm/ADT/TypeSwitch.h"
 
 #include <algorithm>
+#include <cctype>
+#include <map>
 
 namespace rtsl::cpp {
 
@@ -32,33 +34,22 @@ std::string Machine::addressName(const ModulePrinter &printer, std::size_t numbe
   return name.empty() ? called->fields[number] : name;
 }
 
-/// The C++ type of a state variable; empty: the name is none's.
-static std::string stateType(llvm::StringRef name) {
-  static const std::map<std::string, std::string> types = {
+/// To make types that the author has not named: nothing changes but what is known.
+static TypeContext &typesOf(const ModulePrinter &printer) { return const_cast<TypeContext &>(printer.module.types); }
+
+/// The type of a state variable; null: the name is none's.
+static const Type *stateType(TypeContext &types, llvm::StringRef name) {
+  static const std::map<std::string, std::string> words = {
 #define RTSL_STATE_VARIABLE(name, type) {#name, #type},
 #include "runtime/device/StateVariables.def"
   };
-  const auto found = types.find(name.str());
-  if (found == types.end())
-    return {};
-  const std::string &word = found->second;
-  if (word == "color")
-    return "Color";
-  if (word == "uint2")
-    return "glm::uvec2";
-  return word == "float" || word == "int" ? word : "glm::" + word;
+  const auto found = words.find(name.str());
+  if (found == words.end())
+    return nullptr;
+  return types.named(found->second == "uint2" ? "uvec2" : found->second);
 }
 
-bool mentions(const std::string &text, const std::string &word) {
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
-    auto isPart = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
-    const bool begins = at == 0 || !isPart(text[at - 1]);
-    const char next = at + word.size() < text.size() ? text[at + word.size()] : ' ';
-    if (begins && (next == '.' || !isPart(next)))
-      return true;
-  }
-  return false;
-}
+const Type *StateWriter::vec3() { return typesOf(module).vector(typesOf(module).floatType, 3); }
 
 std::string StateWriter::spelling(llvm::StringRef name) {
   std::string spelled;
@@ -68,7 +59,7 @@ std::string StateWriter::spelling(llvm::StringRef name) {
     else if (name[at] != ']' && (at + 1 == name.size() || !llvm::isDigit(name[at + 1])))
       spelled += '_';
   const auto isAuthors = [&](const auto &variable) { return variable->name == name; };
-  if (stateType(name).empty() || llvm::any_of(machine.method->locals, isAuthors) ||
+  if (!stateType(typesOf(module), name) || llvm::any_of(machine.method->locals, isAuthors) ||
       llvm::any_of(machine.method->parameters, isAuthors))
     return spelled;
   spelled[0] = llvm::toLower(spelled[0]);
@@ -153,35 +144,20 @@ std::string StateWriter::nameOfValue(mlir::Value value) {
   return module.names.of(callee) + std::to_string(number);
 }
 
-static std::string scalarType(mlir::Type type) {
+/// Of a number in the IR, which does not say whether it is unsigned; null: it is none.
+static const Type *scalarType(TypeContext &types, mlir::Type type) {
   if (type.isF32())
-    return "float";
+    return types.floatType;
   if (type.isInteger(1))
-    return "bool";
-  if (type.isInteger(32))
-    return "int";
-  return {};
-}
-
-static std::string vectorOf(const std::string &scalar, std::size_t width) {
-  const std::string letter = scalar == "unsigned" ? "u" : scalar == "int" ? "i" : scalar == "bool" ? "b" : "";
-  return "glm::" + letter + "vec" + std::to_string(width);
+    return types.boolType;
+  return type.isInteger(32) ? types.intType : nullptr;
 }
 
 /// Of a vector's components; `known` is their type in the IR.
-static std::string scalarOf(const std::string &vector, mlir::Type known) {
-  if (vector.compare(0, 5, "glm::") == 0 && vector.size() > 6)
-    switch (vector[5]) {
-    case 'u':
-      return "unsigned";
-    case 'i':
-      return "int";
-    case 'b':
-      return "bool";
-    default:
-      return "float";
-    }
-  return known ? scalarType(known) : std::string();
+static const Type *scalarOf(TypeContext &types, const Type *vector, mlir::Type known) {
+  if (vector && vector->isVector())
+    return vector->element;
+  return known ? scalarType(types, known) : nullptr;
 }
 
 const Type *StateWriter::declaredType(mlir::Value address) {
@@ -213,36 +189,37 @@ static bool isMadeOfParts(mlir::Value value) {
                                vector::BroadcastOp>(value.getDefiningOp());
 }
 
-std::string StateWriter::varType(ir::VarOp variable) {
+const Type *StateWriter::varType(ir::VarOp variable) {
   auto [at, isNew] = variableTypes.try_emplace(variable);
   if (!isNew)
     return at->second;
   if (const Type *declared = declaredType(variable))
-    return variableTypes[variable] = module.type(declared);
-  std::string type;
+    return variableTypes[variable] = declared;
+  const Type *type = nullptr;
   for (const bool ofParts : {false, true}) // which may be its own
     for (mlir::Operation *user : variable->getUsers())
-      if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && type.empty() && isMadeOfParts(store.getValue()) == ofParts)
+      if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && !type && isMadeOfParts(store.getValue()) == ofParts)
         type = typeOf(store.getValue());
-  if (type.empty())
-    type = scalarType(llvm::cast<ir::PtrType>(variable.getType()).getPointee());
+  if (!type)
+    type = scalarType(typesOf(module), llvm::cast<ir::PtrType>(variable.getType()).getPointee());
   return variableTypes[variable] = type;
 }
 
-std::string StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
+const Type *StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
+  TypeContext &types = typesOf(module);
   auto vector = llvm::dyn_cast<mlir::VectorType>(type);
   const mlir::Type scalar = vector ? vector.getElementType() : type;
   const auto width = vector ? static_cast<unsigned>(vector.getNumElements()) : 1u;
   const std::string name = slot.substr(0, slot.find('.')); // "sum.2" is another sum
-  std::string found;
+  const Type *found = nullptr;
   auto look = [&](const typed::Function &function) {
     for (const auto *variables : {&function.parameters, &function.locals})
       for (const auto &variable : *variables) {
         const Type *part = variable->type->scalar();
         const bool isAlike = variable->name == name && part && variable->type->componentCount() == width &&
                              part->is(TypeKind::Float) == scalar.isF32() && part->is(TypeKind::Bool) == scalar.isInteger(1);
-        if (isAlike && found.empty())
-          found = module.type(variable->type);
+        if (isAlike && !found)
+          found = variable->type;
       }
   };
   look(*machine.method);
@@ -252,76 +229,73 @@ std::string StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
     for (const auto &function : definition->functions)
       look(*function);
   const bool isKnown = scalar.isF32() || scalar.isInteger(1); // the rest may be unsigned
-  if (!found.empty() || !isKnown)
+  if (found || !isKnown)
     return found;
-  return vector ? vectorOf(scalarType(scalar), width) : scalarType(scalar);
+  const Type *own = scalarType(types, scalar);
+  return vector ? types.vector(own, width) : own;
 }
 
-std::string StateWriter::typeOf(mlir::Value value) {
+const Type *StateWriter::typeOf(mlir::Value value) {
+  TypeContext &types = typesOf(module);
   mlir::Operation *op = value.getDefiningOp();
   if (!op)
-    return {};
-  if (llvm::isa<ir::PtrType>(value.getType())) {
-    const Type *declared = declaredType(value);
-    return declared ? module.type(declared) : std::string();
-  }
-  return llvm::TypeSwitch<mlir::Operation *, std::string>(op)
+    return nullptr;
+  if (llvm::isa<ir::PtrType>(value.getType()))
+    return declaredType(value);
+  auto vectorOf = [&](const Type *scalar, std::int64_t width) -> const Type * {
+    return scalar && scalar->isScalar() ? types.vector(scalar, static_cast<std::uint32_t>(width)) : nullptr;
+  };
+  return llvm::TypeSwitch<mlir::Operation *, const Type *>(op)
       .Case([&](ir::ExpressionOp expression) {
         const SourceTable::Entry &entry = source.entries[expression.getSource()];
-        return entry.kind == SourceTable::Kind::AngleCosine ? "float" : module.type(entry.expr->type);
+        return entry.kind == SourceTable::Kind::AngleCosine ? types.floatType : entry.expr->type;
       })
-      .Case([&](ir::EvaluateOp call) { return module.type(source.entries[call.getSource()].expr->type); })
+      .Case([&](ir::EvaluateOp call) { return source.entries[call.getSource()].expr->type; })
       .Case([&](ir::LoadOp load) {
         if (auto variable = load.getAddress().getDefiningOp<ir::VarOp>())
           return varType(variable);
         if (auto state = load.getAddress().getDefiningOp<ir::StateOp>())
-          return stateType(state.getName());
-        if (const Type *declared = declaredType(load.getAddress()))
-          return module.type(declared);
-        return scalarType(value.getType());
+          return stateType(typesOf(module), state.getName());
+        const Type *declared = declaredType(load.getAddress());
+        return declared ? declared : scalarType(types, value.getType());
       })
-      .Case([&](ir::FrameLoadOp load) {
+      .Case([&](ir::FrameLoadOp load) -> const Type * {
         for (const FrameField &field : machine.frame)
           if (!field.isObject && field.slot == load.getName())
             return field.type;
-        return std::string();
+        return nullptr;
       })
-      .Case<ir::TraceResultOp>([](auto) { return std::string("Color"); })
-      .Case([&](ir::CallArgumentOp argument) { return module.type(machine.givenType(machine.given(argument))); })
+      .Case<ir::TraceResultOp>([&](auto) { return types.color; })
+      .Case([&](ir::CallArgumentOp argument) { return machine.givenType(machine.given(argument)); })
       .Case([&](ir::CallReturnedOp) {
         const auto call = machine.callBefore.find(op->getParentOfType<mlir::func::FuncOp>().getSymName().str());
         const bool isKnown = call != machine.callBefore.end() && call->second;
-        return isKnown ? module.type(call->second->function->returnType) : std::string();
+        return isKnown ? call->second->function->returnType : nullptr;
       })
       .Case([&](ir::CastRefOp cast) { return typeOf(cast.getObject()); })
       .Case([&](arith::SelectOp select) {
-        std::string type = typeOf(select.getTrueValue());
-        return type.empty() ? typeOf(select.getFalseValue()) : type;
+        const Type *type = typeOf(select.getTrueValue());
+        return type ? type : typeOf(select.getFalseValue());
       })
       .Case([&](mlir::vector::InsertOp insert) {
-        const std::string type = typeOf(insert.getDest());
-        const std::string scalar = typeOf(insert.getValueToStore());
-        const auto width = static_cast<std::size_t>(insert.getDestVectorType().getNumElements());
-        return !type.empty() || scalar.empty() ? type : vectorOf(scalar, width);
+        const Type *type = typeOf(insert.getDest());
+        return type ? type : vectorOf(typeOf(insert.getValueToStore()), insert.getDestVectorType().getNumElements());
       })
-      .Case([&](mlir::vector::ExtractOp part) { return scalarOf(typeOf(part.getSource()), value.getType()); })
+      .Case([&](mlir::vector::ExtractOp part) { return scalarOf(types, typeOf(part.getSource()), value.getType()); })
       .Case([&](mlir::vector::FromElementsOp made) {
-        std::string scalar = scalarType(made.getElements().front().getType());
+        const Type *scalar = scalarType(types, made.getElements().front().getType());
         for (mlir::Value part : made.getElements()) // constants do not say whether they are unsigned
-          if (std::string type = typeOf(part); !type.empty() && part.getDefiningOp<arith::ConstantOp>() == nullptr)
+          if (const Type *type = typeOf(part); type && part.getDefiningOp<arith::ConstantOp>() == nullptr)
             scalar = type;
-        return vectorOf(scalar, static_cast<std::size_t>(made.getElements().size()));
+        return vectorOf(scalar, static_cast<std::int64_t>(made.getElements().size()));
       })
       .Case([&](mlir::vector::BroadcastOp same) {
-        const auto width = static_cast<std::size_t>(same.getResultVectorType().getNumElements());
-        const std::string scalar = typeOf(same.getSource());
-        return scalar.empty() ? std::string() : vectorOf(scalar, width);
+        return vectorOf(typeOf(same.getSource()), same.getResultVectorType().getNumElements());
       })
       .Case([&](mlir::vector::ShuffleOp chosen) {
-        const std::string scalar = scalarOf(typeOf(chosen.getV1()), {});
-        return scalar.empty() ? std::string() : vectorOf(scalar, chosen.getMask().size());
+        return vectorOf(scalarOf(types, typeOf(chosen.getV1()), {}), static_cast<std::int64_t>(chosen.getMask().size()));
       })
-      .Default([&](mlir::Operation *) { return scalarType(value.getType()); });
+      .Default([&](mlir::Operation *) { return scalarType(types, value.getType()); });
 }
 
 } // namespace rtsl::cpp

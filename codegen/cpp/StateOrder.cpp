@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace rtsl::cpp {
 
@@ -26,13 +25,13 @@ void StateWriter::Touches::add(const Touches &other) {
 
 /// Would it show if the two changed places?
 bool StateWriter::meet(const Touches &a, const Touches &b) {
-  auto common = [](const std::set<std::string> &x, const std::set<std::string> &y) {
-    return std::any_of(x.begin(), x.end(), [&](const std::string &key) { return y.count(key) != 0; });
+  auto common = [](const std::set<Location> &x, const std::set<Location> &y) {
+    return std::any_of(x.begin(), x.end(), [&](const Location &location) { return y.count(location) != 0; });
   };
   // Unknown methods reach the ray's state and draw random numbers; variables and the frame are this function's own.
-  auto isOpen = [](const std::set<std::string> &keys) {
-    return std::any_of(keys.begin(), keys.end(), [](const std::string &key) {
-      return key.compare(0, 6, "state ") == 0 || key == "random";
+  auto isOpen = [](const std::set<Location> &locations) {
+    return std::any_of(locations.begin(), locations.end(), [](const Location &location) {
+      return location.kind == Location::Kind::State || location.kind == Location::Kind::Random;
     });
   };
   auto writesMeet = [&](const Touches &x, const Touches &y) {
@@ -43,25 +42,24 @@ bool StateWriter::meet(const Touches &a, const Touches &b) {
   return writesMeet(a, b) || writesMeet(b, a);
 }
 
-std::string StateWriter::keyOf(mlir::Value address) {
+StateWriter::Location StateWriter::locationOf(mlir::Value address) {
+  using Kind = Location::Kind;
   mlir::Operation *op = address.getDefiningOp();
   while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(op))
     op = op->getOperand(0).getDefiningOp();
   if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
-    return "object " + object.getName().str();
-  if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
-    return "payload";
+    return {Kind::Object, object.getName().str()};
   if (auto argument = llvm::dyn_cast_or_null<ir::CallArgumentOp>(op))
-    return "argument " + std::to_string(argument.getOffset());
+    return {Kind::Argument, std::to_string(argument.getOffset())};
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
-    return "state " + state.getName().str();
+    return {Kind::State, state.getName().str()};
   if (llvm::isa_and_nonnull<ir::VarOp>(op))
-    return fmt::format("var {}", static_cast<const void *>(op));
-  return {};
+    return {Kind::Variable, fmt::format("{}", static_cast<const void *>(op))};
+  return {Kind::Payload, {}};
 }
 
 void StateWriter::note(mlir::Value address, Touches &touches, bool isWritten) {
-  (isWritten ? touches.writes : touches.reads).insert(keyOf(address));
+  (isWritten ? touches.writes : touches.reads).insert(locationOf(address));
 }
 
 bool changes(ir::EvaluateOp op, std::size_t operand) {
@@ -73,15 +71,15 @@ StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
   Touches touches;
   op->walk([&](mlir::Operation *inner) {
     if (auto load = llvm::dyn_cast<ir::LoadOp>(inner))
-      touches.reads.insert(keyOf(load.getAddress()));
+      touches.reads.insert(locationOf(load.getAddress()));
     else if (auto store = llvm::dyn_cast<ir::StoreOp>(inner))
-      touches.writes.insert(keyOf(store.getAddress()));
+      touches.writes.insert(locationOf(store.getAddress()));
     else if (auto frameLoad = llvm::dyn_cast<ir::FrameLoadOp>(inner))
-      touches.reads.insert("frame " + frameLoad.getName().str());
+      touches.reads.insert({Location::Kind::Frame, frameLoad.getName().str()});
     else if (auto frameStore = llvm::dyn_cast<ir::FrameStoreOp>(inner))
-      touches.writes.insert("frame " + frameStore.getName().str());
+      touches.writes.insert({Location::Kind::Frame, frameStore.getName().str()});
     else if (llvm::isa<ir::RandOp>(inner))
-      touches.writes.insert("random");
+      touches.writes.insert({Location::Kind::Random, {}});
     else if (auto clear = llvm::dyn_cast<ir::ClearOp>(inner))
       note(clear.getAddress(), touches, true);
     else if (auto copy = llvm::dyn_cast<ir::CopyOp>(inner)) {
@@ -96,12 +94,12 @@ StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
         }
       if (!call->hasAttr("rtsl.plain")) {
         touches.readsAny = true;
-        touches.writes.insert("random");
+        touches.writes.insert({Location::Kind::Random, {}});
         touches.writesAny |= !call.getWrites();
       }
       if (call.getWrites())
         for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
-          touches.writes.insert("state " + name.getValue().str());
+          touches.writes.insert({Location::Kind::State, name.getValue().str()});
     } else if (llvm::isa<ir::IlluminateOp>(inner)) {
       touches.readsAny = touches.writesAny = true;
     }
@@ -109,81 +107,71 @@ StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
   return touches;
 }
 
-void StateWriter::emit(Statements &out, std::string text) {
-  Statement statement;
+StateWriter::Line &StateWriter::emit(Lines &out, Statement statement) {
   if (auto comment = comments.find(currentLine); comment != comments.end()) {
-    statement.comment = module.commentText(comment->second);
+    statement.comment = comment->second;
     comments.erase(comment);
   }
   statement.hasSpace = !out.empty() && spaces.erase(currentLine) != 0;
   if (currentLine != 0)
-    statement.comment += module.lineDirective(machine.method->range, currentLine);
-  statement.text = std::move(text);
-  statement.mentions = std::move(mentioned);
-  mentioned.clear();
-  out.push_back(std::move(statement));
+    statement.place = module.lineDirective(machine.method->range, currentLine);
+  Line &line = out.emplace_back();
+  line.statement = std::move(statement);
+  return line;
 }
 
-/// Can the variable of a value become that of `value`, which the author calls the same? It can if nobody reads it any more.
+/// Can the variable of a value become that of `value`, which the author calls the same? It can if nothing reads it any more.
 bool StateWriter::isReplacedBy(mlir::Value before, mlir::Value value) {
   const auto variable = before ? declared.find(before) : declared.end();
   mlir::Operation *op = value.getDefiningOp();
   if (variable == declared.end() || before.getParentBlock() != op->getBlock() || nameOfValue(before) != nameOfValue(value) ||
       typeOf(before) != typeOf(value))
     return false;
-  const std::string &name = variable->second;
+  const std::string &own = variable->second;
   return llvm::all_of(before.getUsers(),
                       [&](mlir::Operation *user) { return user->getBlock() == op->getBlock() && !op->isBeforeInBlock(user); }) &&
-         llvm::none_of(pending, [&](const auto &waiting) { return mentions(waiting.second.code.text, name); }) &&
-         llvm::none_of(elementIndices, [&](const auto &index) { return mentions(index.second, name); });
+         llvm::none_of(pending, [&](const auto &waiting) { return mentions(waiting.second.code, own); }) &&
+         llvm::none_of(elementIndices, [&](const auto &index) { return mentions(index.second, own); });
 }
 
-/// Gives a value that waits for its use a variable now. `isNew`: it was just made, so no text that still reads the variable
-/// before it is under way to a statement.
-void StateWriter::materialise(mlir::Value value, Statements &out, bool isNew) {
-  Pending waiting = std::move(pending[value]);
+/// Gives a value that waits for its use a variable now. `isNew`: it was just made, so no expression that still reads the
+/// variable before it is under way to a statement.
+void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
+  const Pending waiting = std::move(pending[value]);
   pending.erase(value);
-  const std::set<mlir::Operation *> before = std::move(mentioned);
-  mentioned.clear();
-  const std::string type = typeOf(value);
-  if (type.empty())
+  const Type *type = typeOf(value);
+  if (!type)
     unsupported(*value.getDefiningOp());
   const std::string wanted = nameOfValue(value);
   const auto found = insertions.find(value);
   const Insertion *whole = found != insertions.end() ? &found->second : nullptr;
   const mlir::Value last = whole ? whole->before : latest[wanted];
   bool isAgain = isNew && (whole || !continuation::authorsName(value).empty()) && !isOwnName(wanted) && isReplacedBy(last, value);
-  const std::string name = isAgain ? declared[last] : "";
+  const std::string before = isAgain ? declared[last] : "";
   for (std::size_t i = 1; whole && i < whole->parts.size(); ++i) // the first has changed it then
-    isAgain = isAgain && !mentions(whole->parts[i].value, name) && !mentions(whole->parts[i].index, name);
-  const std::string &own = declared[value] = isAgain ? name : freshName(wanted);
+    isAgain = isAgain && !mentions(whole->parts[i].value, before) && !mentions(whole->parts[i].index, before);
+  const std::string own = isAgain ? before : freshName(wanted);
+  declared[value] = own;
   latest[wanted] = value;
-  mentioned = waiting.mentions;
   if (!isAgain) {
-    const std::string &begin = whole ? whole->vector : waiting.code.text;
-    emit(out, fmt::format("{} {};", type, declarator(type, own, begin)));
-    out.back().isDeclaration = true;
-    out.back().made = value;
-    out.back().value = begin;
+    const std::string typeName = type ? module.type(type) : std::string();
+    emit(out, declaration(typeName, own, whole ? whole->vector : waiting.code)).made = value;
   } else if (!whole) {
-    emit(out, assignment(own, waiting.code.text, value));
+    emit(out, assignment(name(own), waiting.code, value));
   }
-  for (std::size_t i = 0; whole && i < whole->parts.size(); ++i) {
-    mentioned = waiting.mentions;
-    emit(out, Insertion::place(own, whole->parts[i]) + " = " + whole->parts[i].value + ";");
-  }
-  mentioned = before;
+  for (std::size_t i = 0; whole && i < whole->parts.size(); ++i)
+    emit(out, assign(Insertion::place(name(own), whole->parts[i]), whole->parts[i].value));
 }
 
-/// A value for a text that has it more than once.
-std::string StateWriter::named(mlir::Value value, Statements &out) {
+/// A value for an expression that has it more than once.
+Code StateWriter::named(mlir::Value value, Lines &out) {
   if (auto waiting = pending.find(value); waiting != pending.end() && !waiting->second.isTrivial)
     materialise(value, out);
-  return bind(use(value, typeOf(value)), Binding::Primary);
+  return use(value, typeOf(value));
 }
 
 /// Before something that touches this happens, what waits and would notice is evaluated.
-void StateWriter::flush(const Touches &touches, Statements &out) {
+void StateWriter::flush(const Touches &touches, Lines &out) {
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending)
     if (meet(waiting.touches, touches))
@@ -194,7 +182,7 @@ void StateWriter::flush(const Touches &touches, Statements &out) {
 
 /// Before a construct with regions: what an inner statement would change cannot wait for another region, and nothing that
 /// is used once waits to be evaluated in each round of a loop.
-void StateWriter::flushBefore(mlir::Operation &op, Statements &out) {
+void StateWriter::flushBefore(mlir::Operation &op, Lines &out) {
   const Touches inside = touchesOf(&op);
   const bool isLoop = llvm::isa<ir::LoopOp>(op);
   llvm::SmallVector<mlir::Value> first;
@@ -212,14 +200,12 @@ void StateWriter::flushBefore(mlir::Operation &op, Statements &out) {
 }
 
 /// An operation has given a value: it waits for its use, or gets a variable.
-void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out) {
+void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool isPure, Lines &out) {
   mlir::Value value = op.getResult(0);
   const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
   if (uses == 0) {
-    const bool isName = std::all_of(code.text.begin(), code.text.end(),
-                                    [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
-    if (!isPure) // a name: of what a call returned that stands before
-      emit(out, (isName ? "static_cast<void>(" + code.text + ")" : code.text) + ";");
+    if (!isPure && code) // a name: of what a call returned that stands before
+      emit(out, isName(code) ? discarded(code) : code);
     return;
   }
   auto *user = *value.user_begin();
@@ -238,21 +224,21 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
   const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
                          (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
-  pending[value] = {std::move(code), std::move(touches), mentioned, uses, isPure, isTrivial};
+  pending[value] = {std::move(code), std::move(touches), uses, isPure, isTrivial};
   if (uses == 1 ? (isNamed && !stores()) || isLong : isNamed || !isTrivial)
     materialise(value, out, /*isNew=*/true);
 }
 
-std::string StateWriter::Insertion::text() const {
-  std::string text = vector;
+Code StateWriter::Insertion::code() const {
+  Code code = vector;
   for (const Part &part : parts)
-    text = part.component.empty() ? fmt::format("rtsl::with({}, {}, {})", text, part.index, part.value)
-                                  : fmt::format("rtsl::with<{}>({}, {})", std::string("xyzw").find(part.component), text, part.value);
-  return text;
+    code = part.component ? cpp::call(withParameters("rtsl::with", {std::to_string(*part.component)}), {code, part.value})
+                          : cpp::call("rtsl::with", {code, part.index, part.value});
+  return code;
 }
 
-std::string StateWriter::Insertion::place(const std::string &vector, const Part &part) {
-  return part.component.empty() ? fmt::format("rtsl::at({}, {})", vector, part.index) : vector + "." + part.component;
+Code StateWriter::Insertion::place(const Code &vector, const Part &part) {
+  return part.component ? component(vector, *part.component) : cpp::call("rtsl::at", {vector, part.index});
 }
 
 } // namespace rtsl::cpp

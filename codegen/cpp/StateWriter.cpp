@@ -58,100 +58,102 @@ void StateWriter::unsupported(mlir::Operation &op) {
 // Operations
 //===----------------------------------------------------------------------===//
 
-void StateWriter::operation(mlir::Operation &op, Statements &out) {
+void StateWriter::operation(mlir::Operation &op, Lines &out) {
   consumed = {};
   if (unsigned line = lineOf(op.getLoc(), machine.file))
     currentLine = line;
   auto pure = [&](Code code) { define(op, std::move(code), consumed, true, out); };
-  auto infix = [&](const char *sign, Binding binding) {
-    const auto tighter = static_cast<Binding>(static_cast<int>(binding) + 1);
-    const std::string left = bind(use(op.getOperand(0)), binding == Binding::Or ? Binding::BitOr : binding);
-    pure({left + " " + sign + " " + bind(use(op.getOperand(1)), binding == Binding::Or ? Binding::BitOr : tighter),
-          binding});
+  auto infix = [&](Operator sign) {
+    const Code left = use(op.getOperand(0));
+    pure(binary(sign, left, use(op.getOperand(1))));
+  };
+  auto isBool = [&] { return op.getResult(0).getType().isInteger(1); };
+  auto field = [&](llvm::StringRef slot) -> const FrameField * {
+    for (const FrameField &known : machine.frame)
+      if (!known.isObject && known.slot == slot)
+        return &known;
+    return nullptr;
   };
   llvm::TypeSwitch<mlir::Operation *>(&op)
       .Case([&](ir::VarOp variable) {
-        Statement statement;
-        statement.declares = variable;
-        out.push_back(std::move(statement));
+        Line line;
+        line.declares = variable;
+        out.push_back(std::move(line));
       })
       .Case([&](ir::LoadOp load) {
-        Code code = place(load.getAddress());
+        const Code code = place(load.getAddress());
         Touches touches;
-        touches.reads.insert(keyOf(load.getAddress()));
+        note(load.getAddress(), touches, false);
         flush(touches, out);
         define(op, code, touches, true, out);
       })
       .Case([&](ir::FrameLoadOp load) {
-        for (const FrameField &field : machine.frame)
-          if (!field.isObject && field.slot == load.getName()) {
-            Touches touches;
-            touches.reads.insert("frame " + field.slot);
-            define(op, {machine.frameName + "." + field.name}, touches, true, out);
-          }
+        if (const FrameField *from = field(load.getName())) {
+          Touches touches;
+          touches.reads.insert({Location::Kind::Frame, from->slot});
+          define(op, frameField(from->name), touches, true, out);
+        }
       })
       .Case([&](ir::ExpressionOp whole) {
-        bool isCompound;
-        Code code = expression(source.entries[whole.getSource()], op.getOperands(), isCompound);
+        const Code code = expression(source.entries[whole.getSource()], op.getOperands());
         usesScratch |= module.effects.expression(*source.entries[whole.getSource()].expr).usesScratch;
         pure(code);
       })
       .Case([&](ir::EvaluateOp inner) { evaluate(inner, out); })
       .Case([&](ir::ClearOp inner) { clear(inner, out); })
       .Case([&](ir::CopyOp copy) {
-        const std::string from = place(copy.getSource()).text, to = place(copy.getTarget()).text;
+        const Code from = place(copy.getSource()), to = place(copy.getTarget());
         flush(touchesOf(&op), out);
-        if (from != to)
-          emit(out, to + " = " + from + ";");
+        if (!same(from, to))
+          emit(out, assign(to, from));
       })
       .Case([&](ir::SpawnPayloadOp spawn) { spawnPayload(spawn); })
       .Case([&](ir::RandOp rand) {
         Touches touches = touchesOf(&op);
         flush(touches, out);
-        define(op, {rand.getOpen() ? "rtsl::randOpen(rt)" : "rtsl::rand(rt)"}, touches, false, out);
+        define(op, cpp::call(rand.getOpen() ? "rtsl::randOpen" : "rtsl::rand", {name("rt")}), touches, false, out);
       })
       .Case([&](ir::CallArgumentOp argument) {
         if (!llvm::isa<ir::PtrType>(argument.getType()))
-          define(op, {machine.frameName + "." + machine.called->fields[machine.given(argument)]}, {}, true, out);
+          define(op, frameField(machine.called->fields[machine.given(argument)]), {}, true, out);
       })
       .Case([&](ir::CallResultOp result) {
-        const std::string value = bind(use(result.getValue(), module.type(machine.method->returnType)), Binding::Assignment);
-        emit(out, machine.frameName + "." + machine.called->returned + " = " + value + ";");
+        const Code value = use(result.getValue(), machine.method->returnType);
+        emit(out, assign(frameField(machine.called->returned), value));
       })
       .Case([&](ir::CallReturnedOp) {
-        const auto call = machine.callBefore.find(op.getParentOfType<mlir::func::FuncOp>().getSymName().str());
-        if (op.getNumResults() != 0 && call->second)
-          define(op, {machine.callName + "." + call->second->returned}, {}, true, out);
+        const auto before = machine.callBefore.find(op.getParentOfType<mlir::func::FuncOp>().getSymName().str());
+        if (op.getNumResults() != 0 && before->second)
+          define(op, member(name(machine.callName), before->second->returned), {}, true, out);
       })
       .Case([&](ir::CastRefOp cast) { pure(use(cast.getObject())); })
-      .Case([&](ir::TraceResultOp) { define(op, {"rtsl::traced(rt)"}, {}, true, out); })
-      .Case([&](ir::LightCountOp) { define(op, {"rtsl::lightCount(rt)"}, {}, true, out); })
+      .Case([&](ir::TraceResultOp) { define(op, cpp::call("rtsl::traced", {name("rt")}), {}, true, out); })
+      .Case([&](ir::LightCountOp) { define(op, cpp::call("rtsl::lightCount", {name("rt")}), {}, true, out); })
       .Case([&](ir::IlluminateOp light) {
-        std::vector<std::string> arguments = {"rt"};
+        std::vector<Code> arguments = {name("rt")};
         for (mlir::Value operand : op.getOperands())
-          arguments.push_back(bind(use(operand), Binding::Assignment));
+          arguments.push_back(use(operand));
         Touches touches = touchesOf(&op);
         flush(touches, out);
         touches.add(consumed);
-        define(op, {"rtsl::illuminate(" + join(arguments, ", ") + ")"}, touches, false, out);
+        define(op, cpp::call("rtsl::illuminate", std::move(arguments)), touches, false, out);
       })
       .Case([&](ir::StoreOp stored) { store(stored, out); })
       .Case([&](ir::FrameStoreOp stored) {
-        for (const FrameField &field : machine.frame)
-          if (!field.isObject && field.slot == stored.getName()) {
-            const std::string value = bind(use(stored.getValue(), field.type), Binding::Assignment);
-            flush(touchesOf(&op), out);
-            if (value != machine.frameName + "." + field.name)
-              emit(out, machine.frameName + "." + field.name + " = " + value + ";");
-          }
+        if (const FrameField *to = field(stored.getName())) {
+          const Code value = use(stored.getValue(), to->type), target = frameField(to->name);
+          flush(touchesOf(&op), out);
+          if (!same(value, target))
+            emit(out, assign(target, value));
+        }
       })
       .Case([&](ir::SpawnOp spawn) {
-        const std::string origin = bind(use(spawn.getOrigin(), "glm::vec3"), Binding::Assignment);
-        spawned = origin + ", " + bind(use(spawn.getDirection(), "glm::vec3"), Binding::Assignment);
+        const Code origin = use(spawn.getOrigin(), vec3());
+        spawned = {origin, use(spawn.getDirection(), vec3())};
       })
       .Case([&](ir::ReturnOp end) { leave(end, out); })
-      .Case([&](ir::BreakOp) { emit(out, "break;"); })
-      .Case([&](ir::ContinueOp) { emit(out, "continue;"); })
+      .Case([&](ir::BreakOp) { emit(out, simple(StatementKind::Break)); })
+      .Case([&](ir::ContinueOp) { emit(out, simple(StatementKind::Continue)); })
       .Case([&](ir::IfOp inner) { choice(inner, out); })
       .Case([&](ir::LoopOp inner) { loop(inner, out); })
       .Case([&](ir::SwitchOp inner) { switchOver(inner, out); })
@@ -159,11 +161,11 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
         auto position = part.getStaticPosition();
         if (position.size() != 1 || (!part.hasDynamicPosition() && position.front() > 3))
           return unsupported(op);
-        const std::string vector = bind(use(part.getSource()), Binding::Primary);
+        const Code vector = use(part.getSource());
         if (part.hasDynamicPosition())
-          pure({"rtsl::at(" + vector + ", " + bind(use(part.getDynamicPosition().front()), Binding::Assignment) + ")"});
+          pure(cpp::call("rtsl::at", {vector, use(part.getDynamicPosition().front())}));
         else
-          pure({vector + "." + "xyzw"[position.front()]});
+          pure(component(vector, static_cast<std::size_t>(position.front())));
       })
       .Case([&](mlir::vector::InsertOp part) {
         auto position = part.getStaticPosition();
@@ -172,73 +174,68 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
         Insertion whole;
         if (auto before = insertions.find(part.getDest()); before != insertions.end() && pending.count(part.getDest()))
           whole = before->second;
-        const std::string vector = use(part.getDest(), typeOf(part.getResult())).text;
+        const Code vector = use(part.getDest(), typeOf(part.getResult()));
         if (whole.parts.empty()) {
           whole.before = part.getDest();
           whole.vector = vector;
         }
         Insertion::Part &last = whole.parts.emplace_back();
-        last.value = bind(use(part.getValueToStore()), Binding::Assignment);
+        last.value = use(part.getValueToStore());
         if (part.hasDynamicPosition())
-          last.index = bind(use(part.getDynamicPosition().front()), Binding::Assignment);
+          last.index = use(part.getDynamicPosition().front());
         else
-          last.component = "xyzw"[position.front()];
+          last.component = static_cast<std::size_t>(position.front());
         insertions[part.getResult()] = whole;
-        pure({whole.text()});
+        pure(whole.code());
       })
       .Case([&](mlir::vector::FromElementsOp made) {
-        const std::string type = typeOf(made.getResult());
-        if (type.empty())
+        const Type *type = typeOf(made.getResult());
+        if (!type)
           return unsupported(op);
-        std::vector<std::string> parts;
+        std::vector<Code> parts;
         for (mlir::Value part : made.getElements())
-          parts.push_back(bind(use(part), Binding::Assignment));
-        pure({type + "(" + join(parts, ", ") + ")"});
+          parts.push_back(use(part));
+        pure(construct(module.type(type), std::move(parts)));
       })
       .Case([&](mlir::vector::BroadcastOp same) {
-        const std::string type = typeOf(same.getResult());
-        if (type.empty() || !same.getSourceType().isIntOrFloat())
+        const Type *type = typeOf(same.getResult());
+        if (!type || !same.getSourceType().isIntOrFloat())
           return unsupported(op);
-        pure({type + "(" + bind(use(same.getSource()), Binding::Assignment) + ")"});
+        pure(construct(module.type(type), {use(same.getSource())}));
       })
       .Case([&](mlir::vector::ShuffleOp chosen) {
-        const std::string type = typeOf(chosen.getResult());
-        if (type.empty())
+        const Type *type = typeOf(chosen.getResult());
+        if (!type)
           return unsupported(op);
-        const std::string first = named(chosen.getV1(), out);
-        const std::string second = chosen.getV1() == chosen.getV2() ? first : named(chosen.getV2(), out);
+        const Code first = named(chosen.getV1(), out);
+        const Code second = chosen.getV1() == chosen.getV2() ? first : named(chosen.getV2(), out);
         const std::int64_t width = chosen.getV1VectorType().getNumElements();
-        std::vector<std::string> parts;
-        for (std::int64_t component : chosen.getMask())
-          parts.push_back(component < width ? first + "." + "xyzw"[component] : second + "." + "xyzw"[component - width]);
-        pure({type + "(" + join(parts, ", ") + ")"});
+        std::vector<Code> parts;
+        for (std::int64_t at : chosen.getMask())
+          parts.push_back(component(at < width ? first : second, static_cast<std::size_t>(at < width ? at : at - width)));
+        pure(construct(module.type(type), std::move(parts)));
       })
       .Case([&](arith::XOrIOp negation) {
-        if (!op.getResult(0).getType().isInteger(1) || !mlir::matchPattern(negation.getRhs(), mlir::m_One()))
+        if (!isBool() || !mlir::matchPattern(negation.getRhs(), mlir::m_One()))
           return unsupported(op);
         pure(opposite(negation.getLhs(), use(negation.getLhs())));
       })
-      .Case([&](arith::AndIOp) {
-        op.getResult(0).getType().isInteger(1) ? infix("&&", Binding::And) : unsupported(op);
-      })
-      .Case([&](arith::OrIOp) {
-        op.getResult(0).getType().isInteger(1) ? infix("||", Binding::Or) : unsupported(op);
-      })
+      .Case([&](arith::AndIOp) { isBool() ? infix(Operator::And) : unsupported(op); })
+      .Case([&](arith::OrIOp) { isBool() ? infix(Operator::Or) : unsupported(op); })
       .Case([&](arith::IndexCastUIOp index) { pure(use(index.getIn())); })
-      .Case([&](arith::AddIOp) { infix("+", Binding::Sum); }) // of a light's number
+      .Case([&](arith::AddIOp) { infix(Operator::Add); }) // of a light's number
       .Case([&](arith::CmpIOp compare) {
-        compare.getPredicate() == arith::CmpIPredicate::ult ? infix("<", Binding::Relation) : unsupported(op);
+        compare.getPredicate() == arith::CmpIPredicate::ult ? infix(Operator::Less) : unsupported(op);
       })
       .Case([&](arith::SelectOp select) {
-        const std::string type = typeOf(select.getResult());
-        const std::string condition = bind(use(select.getCondition()), Binding::Or);
-        const std::string first = bind(use(select.getTrueValue(), type), Binding::Assignment);
-        const std::string second = bind(use(select.getFalseValue(), type), Binding::Assignment);
-        pure({choose(condition, first, second, type), Binding::Assignment});
+        const Type *type = typeOf(select.getResult());
+        const Code condition = use(select.getCondition());
+        const Code first = use(select.getTrueValue(), type);
+        pure(choose(module, condition, first, use(select.getFalseValue(), type), type));
       })
       .Case<arith::ConstantOp, ir::NullRefOp, ir::NextOp, ir::StateOp, ir::YieldOp, ir::ConditionOp,
             ir::TraceReturnedOp, ir::EnterOp, ir::LeaveOp, ir::FrameObjectOp, ir::PayloadOp, ir::FieldOp, ir::TableOp>([](auto) {})
-      .Case([&](ir::ElementOp element) { elementIndices[element] = bind(use(element.getIndex()), Binding::Assignment); })
+      .Case([&](ir::ElementOp element) { elementIndices[element] = use(element.getIndex()); })
       .Default([&](mlir::Operation *) { unsupported(op); });
 }
 
@@ -247,19 +244,19 @@ void StateWriter::operation(mlir::Operation &op, Statements &out) {
 //===----------------------------------------------------------------------===//
 
 void StateWriter::spawnPayload(ir::SpawnPayloadOp op) {
-  std::vector<std::string> arguments = {bind(use(op.getOrigin(), "glm::vec3"), Binding::Assignment),
-                                        bind(use(op.getDirection(), "glm::vec3"), Binding::Assignment),
-                                        bind(use(op.getTmin()), Binding::Assignment),
-                                        bind(use(op.getTmax()), Binding::Assignment), place(op.getPayload()).text};
+  spawned = {use(op.getOrigin(), vec3())};
+  spawned.push_back(use(op.getDirection(), vec3()));
+  spawned.push_back(use(op.getTmin()));
+  spawned.push_back(use(op.getTmax()));
+  spawned.push_back(place(op.getPayload()));
   const mlir::Value options[] = {op.getRoot(), op.getMask(), op.getTime()};
   for (mlir::Value optional : options)
     if (optional)
-      arguments.push_back(bind(use(optional), Binding::Assignment));
-  spawned = join(arguments, ", ");
+      spawned.push_back(use(optional));
 }
 
-/// A call behind which the state ends: its arguments are looked at there, for what is saved is saved before.
-std::string StateWriter::call(ir::ReturnOp op) {
+/// A call with which the state ends: its arguments are evaluated there, for what is saved is saved before.
+Code StateWriter::call(ir::ReturnOp op) {
   mlir::Operation *at = op;
   while (at && !llvm::isa<ir::EnterOp>(at))
     at = at->getPrevNode();
@@ -269,31 +266,35 @@ std::string StateWriter::call(ir::ReturnOp op) {
     unsupported(*op);
     return {};
   }
-  std::vector<std::string> arguments = {"rt"}, given;
+  std::vector<Code> arguments = {name("rt")}, given;
   if (machine.hasFrame())
-    arguments.push_back(machine.frameName);
-  arguments.push_back("Step::" + machine.stepOf.at(enter.getResume()->str()));
-  arguments.push_back(bind(use(enter.getOperands().front()), Binding::Assignment));
+    arguments.push_back(name(machine.frameName));
+  arguments.push_back(name("Step::" + machine.stepOf.at(enter.getResume()->str())));
+  arguments.push_back(use(enter.getOperands().front()));
   for (auto [variable, value] : llvm::zip(called->given, enter.getOperands().drop_front()))
-    given.push_back(llvm::isa<ir::PtrType>(value.getType())
-                        ? "&" + place(value).text
-                        : bind(use(value, module.type(variable->type)), Binding::Assignment));
-  arguments.push_back(module.structureOf(*called) + "{" + join(given, ", ") + "}");
-  return "return rtsl::callThen(" + join(arguments, ", ") + ");";
+    given.push_back(llvm::isa<ir::PtrType>(value.getType()) ? unary(UnaryOperator::Address, place(value))
+                                                            : use(value, variable->type));
+  arguments.push_back(list(module.structureOf(*called), std::move(given)));
+  return cpp::call("rtsl::callThen", std::move(arguments));
 }
 
-void StateWriter::leave(ir::ReturnOp op, Statements &out) {
+void StateWriter::leave(ir::ReturnOp op, Lines &out) {
   auto next = op.getValues().empty() ? ir::NextOp() : op.getValues().front().getDefiningOp<ir::NextOp>();
+  auto withRay = [&](const char *callee, std::vector<Code> arguments) {
+    arguments.insert(arguments.begin(), name("rt"));
+    arguments.insert(arguments.end(), spawned.begin(), spawned.end());
+    emit(out, returning(cpp::call(callee, std::move(arguments))));
+  };
   if (!next || next.getTransition() == ir::Transition::Done)
-    return emit(out, "return rtsl::done;");
-  if (next.getTransition() == ir::Transition::Last)
-    return emit(out, "return rtsl::traceLast(rt, " + spawned + ");");
-  if (next.getTransition() == ir::Transition::Return)
-    return emit(out, "return rtsl::returnToCaller(rt);");
-  if (next.getTransition() == ir::Transition::Jump)
-    return emit(out, call(op));
-  const std::string &step = machine.stepOf.at(next.getState()->str());
-  emit(out, "return rtsl::traceThen(rt, Step::" + step + ", " + spawned + ");");
+    emit(out, returning(name("rtsl::done")));
+  else if (next.getTransition() == ir::Transition::Last)
+    withRay("rtsl::traceLast", {});
+  else if (next.getTransition() == ir::Transition::Return)
+    emit(out, returning(cpp::call("rtsl::returnToCaller", {name("rt")})));
+  else if (next.getTransition() == ir::Transition::Jump)
+    emit(out, returning(call(op)));
+  else
+    withRay("rtsl::traceThen", {name("Step::" + machine.stepOf.at(next.getState()->str()))});
 }
 
 } // namespace rtsl::cpp

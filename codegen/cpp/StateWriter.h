@@ -15,12 +15,15 @@
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/MapVector.h"
 
+#include <tuple>
+
 namespace rtsl::cpp {
 
 /// What stays in the frame of a method while its rays are traced.
 struct FrameField {
   std::string slot; // as the IR names it
-  std::string name, type;
+  std::string name;
+  const Type *type = nullptr; // null: it cannot be told
   unsigned neededBy = 0; // the first line that reads it
   unsigned madeIn = 0;   // the line of what is saved
   bool isTraced = false; // a color that a ray brought back
@@ -65,25 +68,19 @@ std::string nameFor(mlir::Value value);
 /// Is it the compiler's name for what `&&` or `||` has come to?
 bool isOwnName(llvm::StringRef name);
 
-/// Does a text of C++ name the variable, or the place `frame.x`?
-bool mentions(const std::string &text, const std::string &name);
-
-/// The opposite of a condition.
-Code negated(const Code &code);
-
-/// `condition ? first : second`, of values of a type in C++.
-std::string choose(const std::string &condition, const std::string &first, const std::string &second, const std::string &type);
+/// `condition ? first : second`, of values of a type.
+Code choose(ModulePrinter &module, Code condition, Code first, Code second, const Type *type);
 
 class StateWriter {
 public:
   StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine);
 
-  /// The statements of a state, without braces.
-  std::string body(mlir::func::FuncOp state);
-  /// The C++ type of a value; empty if it cannot be told.
-  std::string typeOf(mlir::Value value);
+  /// The statements of a state.
+  Statements body(mlir::func::FuncOp state);
+  /// The author's type of a value; null if it cannot be told.
+  const Type *typeOf(mlir::Value value);
   /// The same by the name that a value has in the frame, where all that is saved are constants.
-  std::string typeOfSlot(const std::string &slot, mlir::Type type);
+  const Type *typeOfSlot(const std::string &slot, mlir::Type type);
   /// What a value is called: as nameFor() says, or in the frame.
   std::string nameOfValue(mlir::Value value);
   /// A name of the IR as C++ writes it: `m[0]` is m0, `ray.origin` ray_origin, and the state's `HitPoint` hitPoint.
@@ -93,9 +90,16 @@ public:
   const Type *declaredType(mlir::Value address);
 
 private:
-  /// What reading or writing meets: "var x", "state RayOrigin", "frame i", "random"; `any` is everything.
+  /// Something that can be read and written: a variable of the state, of the ray or of the frame, ...
+  struct Location {
+    enum class Kind : std::uint8_t { Variable, State, Frame, Object, Payload, Argument, Random };
+    Kind kind;
+    std::string name;
+    bool operator<(const Location &other) const { return std::tie(kind, name) < std::tie(other.kind, other.name); }
+  };
+  /// What reading or writing meets; `any` is everything.
   struct Touches {
-    std::set<std::string> reads, writes;
+    std::set<Location> reads, writes;
     bool readsAny = false, writesAny = false;
     void add(const Touches &other);
   };
@@ -104,85 +108,85 @@ private:
   struct Pending {
     Code code;
     Touches touches;
-    std::set<mlir::Operation *> mentions; // the variables in the code
     unsigned usesLeft = 0;
     bool isPure = true;     // no effects of its own
     bool isTrivial = false; // may stand in the text more than once
   };
-  struct Statement {
-    std::string comment, text;
-    bool hasSpace = false; // an empty line above
+  /// A statement, and what it is of in the IR.
+  struct Line {
+    Statement statement;
     mlir::Operation *declares = nullptr; // a variable whose declaration this is, to be joined with its first assignment
-    mlir::Operation *assigns = nullptr;  // `x = value;`
-    std::string value;
-    bool isDeclaration = false;
-    mlir::Value made;        // what `type name = value;` is the variable of
-    std::string whole, from; // a field of `whole` gets that of `from`, or zero
-    std::set<mlir::Operation *> mentions;
+    mlir::Operation *assigns = nullptr;  // the variable of `x = value;`
+    mlir::Value made;                    // what `type name = value;` is the variable of
+    const Type *copies = nullptr;        // the struct whose field is assigned
   };
-  using Statements = std::vector<Statement>;
+  using Lines = std::vector<Line>;
+  static Statements statementsOf(const Lines &lines);
   /// A vector with components replaced, one after the other.
   struct Insertion {
     struct Part {
-      std::string component, index, value; // "x", or empty: the one at `index`
+      std::optional<std::size_t> component; // nothing: the one at `index`
+      Code index, value;
     };
     mlir::Value before; // all of them
-    std::string vector; // that, in C++
+    Code vector;        // that, in C++
     std::vector<Part> parts;
-    std::string text() const; // `rtsl::with<0>(v, value)`
+    Code code() const; // `rtsl::with<0>(v, value)`
     /// `v.x`
-    static std::string place(const std::string &vector, const Part &part);
+    static Code place(const Code &vector, const Part &part);
   };
 
   // StateWriter.cpp
-  void operation(mlir::Operation &op, Statements &out);
+  void operation(mlir::Operation &op, Lines &out);
   void spawnPayload(ir::SpawnPayloadOp op);
-  std::string call(ir::ReturnOp op);
-  void leave(ir::ReturnOp op, Statements &out);
+  Code call(ir::ReturnOp op);
+  void leave(ir::ReturnOp op, Lines &out);
   void unsupported(mlir::Operation &op);
 
   // StateStatements.cpp
-  void block(mlir::Block &block, Statements &out);
-  std::optional<Code> takeCondition(ir::IfOp op, Statements &out, Statement &taken);
-  std::string takeName(ir::IfOp op, const std::string &name, Statements &out);
-  void choice(ir::IfOp op, Statements &out);
-  void loop(ir::LoopOp op, Statements &out);
-  void switchOver(ir::SwitchOp op, Statements &out);
-  std::string text(const Statements &statements);
-  std::string under(const Statements &statements);
-  std::string lights(ir::LoopOp op, mlir::Block *&lit, std::string &name);
-  std::string counter(ir::LoopOp op, const std::string &condition, Statements &out, Statements &body);
-  void joinDeclarations(Statements &statements);
+  void block(mlir::Block &block, Lines &out);
+  std::optional<Code> takeCondition(ir::IfOp op, Lines &out, Statement &taken);
+  Code takeName(ir::IfOp op, const Code &named, Lines &out);
+  void choice(ir::IfOp op, Lines &out);
+  void loop(ir::LoopOp op, Lines &out);
+  void switchOver(ir::SwitchOp op, Lines &out);
+  std::optional<Statement> lights(ir::LoopOp op, mlir::Block *&lit, std::string &name);
+  std::optional<Statement> counter(ir::LoopOp op, const Code &condition, Lines &out, Lines &body);
+  void joinDeclarations(Lines &lines);
 
   // StateStores.cpp
-  void evaluate(ir::EvaluateOp op, Statements &out);
-  void clear(ir::ClearOp op, Statements &out);
-  void store(ir::StoreOp op, Statements &out);
-  std::string assignment(const std::string &target, const std::string &value, mlir::Value made);
-  void joinFields(mlir::Value address, ir::FieldOp from, const std::string &target, const std::string &value, Statements &out);
+  void evaluate(ir::EvaluateOp op, Lines &out);
+  void clear(ir::ClearOp op, Lines &out);
+  void store(ir::StoreOp op, Lines &out);
+  Code assignment(const Code &target, const Code &value, mlir::Value made);
+  void joinFields(mlir::Value address, Lines &out);
 
   // StateOrder.cpp
-  std::string keyOf(mlir::Value address);
+  Location locationOf(mlir::Value address);
   void note(mlir::Value address, Touches &touches, bool isWritten);
   Touches touchesOf(mlir::Operation *op);
-  void emit(Statements &out, std::string text);
-  void materialise(mlir::Value value, Statements &out, bool isNew = false);
+  Line &emit(Lines &out, Statement statement);
+  Line &emit(Lines &out, Code code) { return emit(out, statement(std::move(code))); }
+  void materialise(mlir::Value value, Lines &out, bool isNew = false);
   bool isReplacedBy(mlir::Value before, mlir::Value value);
-  std::string named(mlir::Value value, Statements &out);
-  void flush(const Touches &touches, Statements &out);
-  void flushBefore(mlir::Operation &op, Statements &out);
-  void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out);
+  Code named(mlir::Value value, Lines &out);
+  void flush(const Touches &touches, Lines &out);
+  void flushBefore(mlir::Operation &op, Lines &out);
+  void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Lines &out);
 
   // StateExpressions.cpp
-  Code use(mlir::Value value, const std::string &type = {});
-  Code constant(mlir::Value value, const std::string &type);
+  Code use(mlir::Value value, const Type *type = nullptr);
+  Code constant(mlir::Value value, const Type *type);
   Code place(mlir::Value address);
+  Code frameField(const std::string &field) const { return member(name(machine.frameName), field); }
   Code opposite(mlir::Value condition, const Code &code);
-  Code expression(const SourceTable::Entry &entry, mlir::ValueRange operands, bool &isCompound);
+  void replaceLeaves(const SourceTable::Entry &entry, mlir::ValueRange operands);
+  Code expression(const SourceTable::Entry &entry, mlir::ValueRange operands);
   void nameConstants(const typed::Expr &expr);
 
   // StateNames.cpp
-  std::string varType(ir::VarOp variable);
+  const Type *vec3();
+  const Type *varType(ir::VarOp variable);
   const std::string &nameOf(ir::VarOp variable);
   std::string freshName(const std::string &wanted);
 
@@ -195,17 +199,17 @@ private:
   llvm::DenseMap<mlir::Value, std::string> declared;
   std::map<std::string, mlir::Value> latest; // of the values that have a variable, by what they are called
   llvm::DenseMap<mlir::Operation *, std::string> variableNames;
-  llvm::DenseMap<mlir::Operation *, std::string> variableTypes;
-  std::set<mlir::Operation *> mentioned; // by the statement that is being put together
+  llvm::DenseMap<mlir::Operation *, const Type *> variableTypes;
+  llvm::DenseMap<mlir::Operation *, Code> lightNumbers; // what is read of the variable that counts lights
   Touches consumed;
   llvm::DenseMap<mlir::Value, Insertion> insertions;
   std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
   std::set<unsigned> spaces;                         // lines of statements with an empty line above, likewise
   unsigned currentLine = 0;
-  llvm::DenseMap<mlir::Operation *, std::string> elementIndices; // of addresses
+  llvm::DenseMap<mlir::Operation *, Code> elementIndices; // of addresses
   std::vector<const typed::Variable *> constants;                // of the author's functions, that the state names
   bool hasRefused = false;
-  std::string spawned; // the arguments of the ray that is traced when the state ends
+  std::vector<Code> spawned; // the arguments of the ray that is traced when the state ends
 };
 
 } // namespace rtsl::cpp

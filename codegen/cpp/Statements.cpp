@@ -19,7 +19,7 @@ using typed::ExprKind;
 // The whole body
 //===----------------------------------------------------------------------===//
 
-std::string FunctionPrinter::body() {
+Statements FunctionPrinter::body() {
   const auto &statements = cast<typed::CompoundStmt>(*function->body).body;
   // Which variables does anybody read? Compilers complain of the others.
   std::set<const typed::Expr *> onlyWritten;
@@ -42,231 +42,208 @@ std::string FunctionPrinter::body() {
       if (auto *named = static_cast<const typed::Variable *>(namedConstant(*literal)))
         readVariables.insert(named);
   });
-  std::string zeros;
+  Statements all;
   for (std::size_t i = 0; i != function->parameters.size(); ++i)
     if (const typed::Variable &parameter = *function->parameters[i]; module.beginsAsZero(parameter, *function))
-      zeros += module.parameterName(*function, i) + " = " + module.zero(parameter.type) + ";\n";
-  return "{\n" + zeros + block(statements) + "}";
+      all.push_back(statement(cpp::assign(name(module.parameterName(*function, i)), module.zero(parameter.type))));
+  print(statements, all);
+  return all;
 }
 
-std::string FunctionPrinter::block(const std::vector<typed::StmtPtr> &statements) {
-  std::string text;
+void FunctionPrinter::print(const std::vector<typed::StmtPtr> &statements, Statements &out) {
   for (std::size_t i = 0; i < statements.size(); ++i) {
     if (!statements[i])
       continue;
-    if (i > 0 && module.notes.followsEmptyLine(statements[i]->range, statements[i - 1] ? statements[i - 1]->range : SourceRange()))
-      text += "\n";
-    text += statement(*statements[i]);
+    const std::size_t first = out.size();
+    print(*statements[i], out);
+    const SourceRange previous = i > 0 && statements[i - 1] ? statements[i - 1]->range : SourceRange();
+    if (i > 0 && first < out.size() && module.notes.followsEmptyLine(statements[i]->range, previous))
+      out[first].hasSpace = true;
   }
-  return text;
 }
 
-std::string FunctionPrinter::statement(const typed::Stmt &stmt) {
-  std::vector<std::string> statements;
-  std::vector<std::string> *outer = before;
-  before = &statements;
-  std::string text;
-  bool mayHaveComment = false;
+Statements FunctionPrinter::block(const std::vector<typed::StmtPtr> &statements) {
+  Statements inner;
+  print(statements, inner);
+  return inner;
+}
+
+Statements FunctionPrinter::construct(const typed::Stmt &stmt) {
   switch (stmt.kind) {
   case StmtKind::Compound:
-    text = "{\n" + block(cast<typed::CompoundStmt>(stmt).body) + "}\n";
-    break;
+    return {cpp::block(block(cast<typed::CompoundStmt>(stmt).body))};
   case StmtKind::Declaration:
-    text = declaration(cast<typed::DeclarationStmt>(stmt), false);
-    mayHaveComment = true;
-    break;
+    return declaration(cast<typed::DeclarationStmt>(stmt), false);
   case StmtKind::Expression:
-    text = expressionStatement(*cast<typed::ExpressionStmt>(stmt).expr);
-    mayHaveComment = true;
-    break;
+    return expressionStatement(*cast<typed::ExpressionStmt>(stmt).expr);
   case StmtKind::If:
-    text = ifStatement(cast<typed::IfStmt>(stmt));
-    break;
+    return {ifStatement(cast<typed::IfStmt>(stmt))};
   case StmtKind::For:
-    text = forStatement(cast<typed::ForStmt>(stmt));
-    break;
+    return {forStatement(cast<typed::ForStmt>(stmt))};
   case StmtKind::While: {
-    const auto &loop = cast<typed::WhileStmt>(stmt);
-    text = "while (" + apart(*loop.condition, Binding::Comma) + ")\n" + nested(loop.body);
-    break;
+    const auto &source = cast<typed::WhileStmt>(stmt);
+    Statement made = simple(StatementKind::While);
+    made.value = apart(*source.condition, Binding::Comma);
+    nest(source.body, made);
+    return {made};
   }
   case StmtKind::DoWhile: {
-    const auto &loop = cast<typed::DoWhileStmt>(stmt);
-    text = "do\n" + nested(loop.body) + "while (" + apart(*loop.condition, Binding::Comma) + ");\n";
-    break;
+    const auto &source = cast<typed::DoWhileStmt>(stmt);
+    Statement made = simple(StatementKind::DoWhile);
+    nest(source.body, made);
+    made.value = apart(*source.condition, Binding::Comma);
+    return {made};
   }
   case StmtKind::Switch:
-    text = switchStatement(cast<typed::SwitchStmt>(stmt));
-    break;
+    return {switchStatement(cast<typed::SwitchStmt>(stmt))};
   case StmtKind::Break:
-    text = "break;\n";
-    mayHaveComment = true;
-    break;
+    return {simple(StatementKind::Break)};
   case StmtKind::Continue:
-    text = "continue;\n";
-    mayHaveComment = true;
-    break;
+    return {simple(StatementKind::Continue)};
   case StmtKind::Return: {
     const auto &value = cast<typed::ReturnStmt>(stmt).value;
-    text = value ? "return " + operand(*value, Binding::Assignment) + ";\n" : "return;\n";
-    mayHaveComment = true;
-    break;
+    return {returning(value ? operand(*value, Binding::Assignment) : Code())};
   }
   case StmtKind::Illuminance:
-    text = illuminance(cast<typed::IlluminanceStmt>(stmt));
-    break;
+    return {illuminance(cast<typed::IlluminanceStmt>(stmt))};
   case StmtKind::Case:
   case StmtKind::Empty:
-    text = ";\n";
-    break;
+    return {simple(StatementKind::Empty)};
   }
-  before = outer;
-  if (mayHaveComment && !text.empty())
-    if (const std::string comment = module.notes.trailingComment(stmt.range); !comment.empty())
-      text.insert(text.size() - 1, " " + comment);
-  std::string result = module.commentText(stmt.comment) + module.lineDirective(stmt.range);
-  for (const std::string &line : statements)
-    result += line + "\n";
-  return result + text;
+  return {};
 }
 
-// A body that takes several lines of C++ needs braces, whether the author wrote some or not.
-std::string FunctionPrinter::nested(const typed::StmtPtr &stmt, bool needsBraces) {
+/// May a comment of the author's stand after it on its last line?
+static bool endsWithLine(StmtKind kind) {
+  return kind == StmtKind::Declaration || kind == StmtKind::Expression || kind == StmtKind::Break ||
+         kind == StmtKind::Continue || kind == StmtKind::Return;
+}
+
+void FunctionPrinter::print(const typed::Stmt &stmt, Statements &out) {
+  Statements all; // what goes before it, then the statement
+  Statements *outer = before;
+  before = &all;
+  const Statements own = construct(stmt);
+  before = outer;
+  all.insert(all.end(), own.begin(), own.end());
+  if (!own.empty() && endsWithLine(stmt.kind))
+    all.back().trailing = module.notes.trailingComment(stmt.range);
+  std::optional<SourcePlace> place = module.lineDirective(stmt.range);
+  if (all.empty() && stmt.comment.empty() && !place)
+    return;
+  if (all.empty())
+    all.push_back(simple(StatementKind::Nothing));
+  all.front().comment = stmt.comment;
+  all.front().place = std::move(place);
+  out.insert(out.end(), all.begin(), all.end());
+}
+
+Statements FunctionPrinter::nested(const typed::StmtPtr &stmt, bool &hasBraces) {
+  hasBraces = !stmt || (stmt->kind == StmtKind::Compound && stmt->comment.empty());
   if (!stmt)
-    return "{\n}\n";
-  std::string text = statement(*stmt);
-  if (stmt->kind == StmtKind::Compound && text.front() == '{')
-    return text;
-  const std::string single = text.substr(0, text.find('\n'));
-  const bool isControl = stmt->kind == StmtKind::If || stmt->kind == StmtKind::For || stmt->kind == StmtKind::While ||
-                         stmt->kind == StmtKind::DoWhile || stmt->kind == StmtKind::Switch ||
-                         stmt->kind == StmtKind::Illuminance;
-  const bool isSeveral = std::count(text.begin(), text.end(), '\n') > 1 || text == ";\n" || text.empty();
-  if (needsBraces || stmt->kind == StmtKind::Declaration || (isSeveral && !isControl) || !stmt->comment.empty() ||
-      text.front() == '#' || (isControl && text.compare(0, 2, "if") != 0 && text.compare(0, 3, "for") != 0 &&
-                              text.compare(0, 5, "while") != 0 && text.compare(0, 2, "do") != 0 &&
-                              text.compare(0, 6, "switch") != 0))
-    return "{\n" + (text == ";\n" ? std::string() : text) + "}\n";
-  return text;
+    return {};
+  if (hasBraces && !module.lineDirective(stmt->range))
+    return block(cast<typed::CompoundStmt>(*stmt).body);
+  Statements inner;
+  print(*stmt, inner);
+  const bool isEmpty = inner.size() == 1 && inner.front().is(StatementKind::Empty) && inner.front().comment.empty();
+  return isEmpty ? Statements() : inner;
+}
+
+void FunctionPrinter::nest(const typed::StmtPtr &stmt, Statement &under) {
+  under.body = nested(stmt, under.hasBraces);
 }
 
 //===----------------------------------------------------------------------===//
 // Declarations and expressions
 //===----------------------------------------------------------------------===//
 
-std::string FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, bool inHeader) {
-  std::string text;
-  std::string line; // declarators of one type share a line
-  const Type *lineType = nullptr;
-  std::string lineQualifier;
-  auto finish = [&] {
-    if (!line.empty())
-      text += line + ";\n";
-    line.clear();
-  };
+Statements FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, bool inHeader) {
+  Statements all;
+  const Type *lineType = nullptr; // of the last declaration, if another variable may join it
+  Statements *const outer = before;
   for (const typed::Variable *variable : stmt.variables) {
-    const std::size_t statementsBefore = before->size();
-    const std::string &name = module.names.of(variable);
-    std::string value = variable->init ? argument(*variable->init) : module.zero(variable->type);
+    Statements hoisted;
+    before = &hoisted;
+    const std::string &own = module.names.of(variable);
+    const Code value = variable->init ? argument(*variable->init) : module.zero(variable->type);
+    before = outer;
+    // What goes before must not overtake the others.
+    Statements &above = all.empty() ? *outer : all;
+    above.insert(above.end(), hoisted.begin(), hoisted.end());
+    if (!hoisted.empty())
+      lineType = nullptr;
     if (hoistedDeclarations.count(variable)) {
-      finish();
+      lineType = nullptr;
       if (variable->init)
-        text += name + " = " + value + ";\n";
+        all.push_back(statement(cpp::assign(name(own), value)));
       continue;
     }
-    if (before->size() != statementsBefore && !line.empty()) { // what goes before must not overtake the others
-      std::vector<std::string> added(before->begin() + static_cast<std::ptrdiff_t>(statementsBefore), before->end());
-      before->resize(statementsBefore);
-      finish();
-      for (const std::string &statement : added)
-        text += statement + "\n";
-    } else if (before->size() != statementsBefore && !text.empty()) {
-      std::vector<std::string> added(before->begin() + static_cast<std::ptrdiff_t>(statementsBefore), before->end());
-      before->resize(statementsBefore);
-      for (const std::string &statement : added)
-        text += statement + "\n";
-    }
     const bool isUnread = !readVariables.count(variable);
-    const std::string qualifier = !variable->isConst                             ? ""
-                                  : variable->init && isTable(*variable->init) ? "static constexpr "
-                                                                                 : "const ";
-    if (!line.empty() && (lineType != variable->type || lineQualifier != qualifier || isUnread))
-      finish();
-    const std::string declared = declarator(module.type(variable->type), name, value);
-    if (line.empty()) {
-      line = (isUnread ? "[[maybe_unused]] " : "") + qualifier +
-             module.type(variable->type) + " " + declared;
-      lineType = variable->type;
-      lineQualifier = qualifier;
-      if (isUnread)
-        finish();
-    } else {
-      line += ", " + declared;
+    const bool isTableOf = variable->isConst && variable->init && isTable(*variable->init);
+    const std::string constness = isTableOf ? "static constexpr" : variable->isConst ? "const" : "";
+    const std::string qualifiers = !isUnread ? constness : constness.empty() ? "[[maybe_unused]]" : "[[maybe_unused]] " + constness;
+    if (lineType == variable->type && !isUnread && all.back().qualifiers == qualifiers) {
+      all.back().declarators.push_back({own, value}); // declarators of one type share a line
+      continue;
     }
+    all.push_back(cpp::declaration(qualifiers, module.type(variable->type), own, value));
+    lineType = isUnread ? nullptr : variable->type;
   }
-  if (inHeader) // one declaration, without its semicolon's line
-    return text.empty() ? line : text + line;
-  finish();
-  return text;
+  if (inHeader && !all.empty() && !all.back().is(StatementKind::Declaration))
+    all.push_back(simple(StatementKind::Nothing));
+  return all;
 }
 
-std::string FunctionPrinter::expressionStatement(const typed::Expr &expr) {
+Statements FunctionPrinter::expressionStatement(const typed::Expr &expr) {
   Code code;
   if (auto *value = dynCast<typed::AssignExpr>(&expr)) {
     code = assign(*value, false);
-    const std::size_t middle = code.text.size() / 2;
-    if (!value->compound && code.text.size() % 2 == 1 && code.text.size() > 3 &&
-        code.text.compare(middle - 1, 3, " = ") == 0 &&
-        code.text.compare(0, middle - 1, code.text.substr(middle + 2)) == 0)
-      return ""; // `x = x`
-  } else if (auto *value = dynCast<typed::IncDecExpr>(&expr)) {
+    const bool isToItself = code && !code->compound && same(code->parts[0], code->parts[1]);
+    return code && !isToItself ? Statements{statement(code)} : Statements();
+  }
+  if (auto *value = dynCast<typed::IncDecExpr>(&expr)) {
     code = incDec(*value, false);
     const typed::Expr *vector = nullptr;
-    if (components(*value->target, vector).size() > 1)
-      return "";
-  } else if (auto *comma = dynCast<typed::CommaExpr>(&expr)) { // two statements
-    std::string left = expressionStatement(*comma->left);
-    std::vector<std::string> statements;
-    std::vector<std::string> *outer = before;
-    before = &statements;
-    std::string right = expressionStatement(*comma->right);
-    before = outer;
-    return left + (statements.empty() ? "" : join(statements, "\n") + "\n") + right;
-  } else if (std::string answer = hitAnswer(expr); !answer.empty()) {
-    return answer;
-  } else {
-    code = this->expr(expr);
-    const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall || expr.kind == ExprKind::Builtin;
-    if (!code.text.empty() && !expr.type->is(TypeKind::Void) &&
-        (!isCall || code.text.find('(') == std::string::npos || module.effects.expression(expr).isPure()))
-      code.text = "static_cast<void>(" + code.text + ")";
+    return components(*value->target, vector).size() > 1 ? Statements() : Statements{statement(code)};
   }
-  return code.text.empty() ? "" : code.text + ";\n";
+  if (auto *comma = dynCast<typed::CommaExpr>(&expr)) { // two statements
+    Statements both = expressionStatement(*comma->left);
+    Statements *outer = before;
+    Statements hoisted;
+    before = &hoisted;
+    const Statements right = expressionStatement(*comma->right);
+    before = outer;
+    both.insert(both.end(), hoisted.begin(), hoisted.end());
+    both.insert(both.end(), right.begin(), right.end());
+    return both;
+  }
+  if (Statements answer = hitAnswer(expr); !answer.empty())
+    return answer;
+  code = this->expr(expr);
+  if (!code)
+    return {};
+  const bool isCall = (expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall || expr.kind == ExprKind::Builtin) &&
+                      code->is(ExpressionKind::Call);
+  const bool isUnused = !expr.type->is(TypeKind::Void) && (!isCall || module.effects.expression(expr).isPure());
+  return {statement(isUnused ? discarded(code) : code)};
 }
 
 //===----------------------------------------------------------------------===//
 // Control
 //===----------------------------------------------------------------------===//
 
-std::string FunctionPrinter::ifStatement(const typed::IfStmt &stmt) {
-  std::string text = "if (" + operand(*stmt.condition, Binding::Comma) + ")";
+Statement FunctionPrinter::ifStatement(const typed::IfStmt &stmt) {
+  Statement made = simple(StatementKind::If);
+  made.value = operand(*stmt.condition, Binding::Comma);
   // The comment behind the opening brace of the author's.
-  std::string comment;
   if (stmt.thenStmt && stmt.thenStmt->kind == StmtKind::Compound)
-    comment = module.notes.trailingComment({stmt.range.file, stmt.condition->range.begin, stmt.condition->range.end});
-  const bool dangles = stmt.elseStmt && stmt.thenStmt && stmt.thenStmt->kind != StmtKind::Compound;
-  const bool needsBraces = dangles && (stmt.thenStmt->kind == StmtKind::If || stmt.thenStmt->kind == StmtKind::For ||
-                                       stmt.thenStmt->kind == StmtKind::While ||
-                                       stmt.thenStmt->kind == StmtKind::Illuminance);
-  std::string then = nested(stmt.thenStmt, needsBraces);
-  if (!comment.empty() && then.front() == '{')
-    then.insert(1, " " + comment);
-  text += "\n" + then;
-  if (stmt.elseStmt) {
-    std::string otherwise = nested(stmt.elseStmt);
-    text += "else " + otherwise;
-  }
-  return text;
+    made.trailing = module.notes.trailingComment({stmt.range.file, stmt.condition->range.begin, stmt.condition->range.end});
+  nest(stmt.thenStmt, made);
+  if (stmt.elseStmt)
+    made.otherwise = nested(stmt.elseStmt, made.otherwiseHasBraces);
+  made.otherwiseHasBraces |= stmt.elseStmt && made.otherwise.empty();
+  return made;
 }
 
 // A counter that runs over a known interval cannot overflow.
@@ -303,42 +280,53 @@ void FunctionPrinter::noteCounter(const typed::ForStmt &stmt) {
   }
 }
 
-std::string FunctionPrinter::forStatement(const typed::ForStmt &stmt) {
+/// The step of a `for`, whose results are not used.
+Code FunctionPrinter::stepOf(const typed::Expr &expr) {
+  if (auto *comma = dynCast<typed::CommaExpr>(&expr)) {
+    const Code left = stepOf(*comma->left);
+    return cpp::comma(left, stepOf(*comma->right));
+  }
+  if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
+    return this->incDec(*incDec, false);
+  if (auto *assignment = dynCast<typed::AssignExpr>(&expr))
+    return assign(*assignment, false);
+  const Code code = argument(expr);
+  return module.effects.expression(expr).isPure() ? discarded(code) : code;
+}
+
+Statement FunctionPrinter::forStatement(const typed::ForStmt &stmt) {
   noteCounter(stmt);
-  std::string init, outside;
-  if (auto *declaration = dynCast<typed::DeclarationStmt>(stmt.init)) {
-    init = this->declaration(*declaration, true);
-    if (const std::size_t last = init.rfind('\n'); last != std::string::npos) { // of several types
-      outside = init.substr(0, last + 1);
-      init = init.substr(last + 1);
+  Statement made = simple(StatementKind::For);
+  Statements outside;
+  if (auto *declared = dynCast<typed::DeclarationStmt>(stmt.init)) {
+    outside = declaration(*declared, true);
+    if (!outside.empty()) { // the others, of other types, stand in front
+      if (outside.back().is(StatementKind::Declaration))
+        made.init = {outside.back()};
+      outside.pop_back();
     }
   } else if (auto *expression = dynCast<typed::ExpressionStmt>(stmt.init)) {
-    init = apart(*expression->expr, Binding::Comma);
+    made.init = {statement(apart(*expression->expr, Binding::Comma))};
   }
-  std::string condition = stmt.condition ? apart(*stmt.condition, Binding::Comma) : "";
-  std::string step;
+  if (stmt.condition)
+    made.value = apart(*stmt.condition, Binding::Comma);
   if (stmt.step) {
-    // In the step, results are not used.
-    std::vector<std::string> statements;
-    std::vector<std::string> *outer = before;
-    before = &statements;
-    std::function<std::string(const typed::Expr &)> print = [&](const typed::Expr &expr) -> std::string {
-      if (auto *comma = dynCast<typed::CommaExpr>(&expr))
-        return print(*comma->left) + ", " + print(*comma->right);
-      if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
-        return this->incDec(*incDec, false).text;
-      if (auto *assignment = dynCast<typed::AssignExpr>(&expr))
-        return this->assign(*assignment, false).text;
-      std::string text = argument(expr);
-      return module.effects.expression(expr).isPure() ? "static_cast<void>(" + text + ")" : text;
-    };
-    step = print(*stmt.step);
+    Statements hoisted;
+    Statements *outer = before;
+    before = &hoisted;
+    made.step = stepOf(*stmt.step);
     before = outer;
-    if (!statements.empty())
-      step = "[&] { " + join(statements, " ") + (step.empty() ? "" : " static_cast<void>(" + step + ");") + " }()";
+    if (!hoisted.empty()) {
+      if (made.step)
+        hoisted.push_back(statement(discarded(made.step)));
+      made.step = lambda(std::move(hoisted));
+    }
   }
-  std::string text = "for (" + init + "; " + condition + "; " + step + ")\n" + nested(stmt.body);
-  return outside.empty() ? text : "{\n" + outside + text + "}\n";
+  nest(stmt.body, made);
+  if (outside.empty())
+    return made;
+  outside.push_back(made);
+  return cpp::block(std::move(outside));
 }
 
 /// May control reach what stands behind the statements?
@@ -368,8 +356,9 @@ static bool mayComplete(const std::vector<typed::StmtPtr> &statements) {
 
 // A variable that is declared in one arm is in sight in those below, which C++ lets nobody jump to:
 // such variables are declared before the switch. If nobody below looks, the arm gets braces.
-std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
-  std::string text, declared;
+Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
+  Statement made = simple(StatementKind::Switch);
+  Statements declared;
   std::vector<bool> needsBraces(stmt.arms.size(), false);
   for (std::size_t i = 0; i < stmt.arms.size(); ++i)
     for (const typed::StmtPtr &inner : stmt.arms[i].body)
@@ -387,54 +376,55 @@ std::string FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
             continue;
           }
           hoistedDeclarations.insert(variable);
-          declared += module.type(variable->type) + " " + module.names.of(variable) + "{};\n";
+          declared.push_back(cpp::declaration(module.type(variable->type), module.names.of(variable), list("", {})));
         }
-  text += "switch (" + operand(*stmt.value, Binding::Comma) + ") {\n";
+  made.value = operand(*stmt.value, Binding::Comma);
   const bool isUnsigned = stmt.value->type->is(TypeKind::UInt);
   for (std::size_t i = 0; i < stmt.arms.size(); ++i) {
-    const auto &arm = stmt.arms[i];
-    std::vector<std::string> labels;
-    for (std::int64_t value : arm.values)
-      labels.push_back(isUnsigned ? fmt::format("case {}u:\n", static_cast<std::uint32_t>(value))
-                       : value == std::numeric_limits<std::int32_t>::min()
-                           ? std::string("case std::numeric_limits<int>::min():\n")
-                           : fmt::format("case {}:\n", value));
-    if (arm.isDefault)
-      labels.emplace_back("default:\n");
-    for (const std::string &label : labels)
-      text += label;
+    const auto &source = stmt.arms[i];
+    Arm &arm = made.arms.emplace_back();
+    for (std::int64_t value : source.values)
+      arm.labels.push_back(isUnsigned ? cpp::literal(fmt::format("{}u", static_cast<std::uint32_t>(value))) : integer(value));
+    arm.isDefault = source.isDefault;
     const std::size_t before = temporaries.size();
-    const std::string body = block(arm.body);
-    const bool isScope = needsBraces[i] || temporaries.size() != before;
-    if (isScope)
-      text.back() = ' ', text += "{\n";
-    text += body;
-    const bool fallsThrough = i + 1 < stmt.arms.size() && mayComplete(arm.body);
-    if (fallsThrough)
-      text += "[[fallthrough]];\n";
-    else if (body.empty() && i + 1 == stmt.arms.size())
-      text += "break;\n";
-    if (isScope)
-      text += "}\n";
+    arm.body = block(source.body);
+    arm.hasBraces = needsBraces[i] || temporaries.size() != before;
+    if (i + 1 < stmt.arms.size() && mayComplete(source.body))
+      arm.body.push_back(simple(StatementKind::Fallthrough));
+    else if (arm.body.empty() && i + 1 == stmt.arms.size())
+      arm.body.push_back(simple(StatementKind::Break));
   }
-  text += "}\n";
-  return declared.empty() ? text : "{\n" + declared + text + "}\n";
+  if (declared.empty())
+    return made;
+  declared.push_back(made);
+  return cpp::block(std::move(declared));
 }
 
-std::string FunctionPrinter::illuminance(const typed::IlluminanceStmt &stmt) {
+Statement lightLoop(const std::string &lights, std::vector<Code> arguments) {
+  arguments.insert(arguments.begin(), name("rt"));
+  Statement made = simple(StatementKind::For);
+  made.init = {declaration("rtsl::Lights", lights, construct("rtsl::Lights", std::move(arguments)))};
+  made.init.front().declarators.front().isDirect = true;
+  made.value = callMember(name(lights), "next", {});
+  return made;
+}
+
+Statement FunctionPrinter::illuminance(const typed::IlluminanceStmt &stmt) {
   std::vector<const typed::Expr *> pointers = {stmt.point.get()};
   if (stmt.normal && stmt.angle) {
     pointers.push_back(stmt.normal.get());
     pointers.push_back(stmt.angle.get());
   }
-  std::vector<std::string> args = operands(pointers, Binding::Assignment);
+  std::vector<Code> args = operands(pointers, Binding::Assignment);
   if (stmt.angle)
     if (const auto *angle = dynCast<typed::LiteralExpr>(stmt.angle.get())) {
       constexpr float pi = 3.14159265358979323846F;
       const float known = std::min(std::max(angle->value.scalars.front().f, 0.0F), pi);
-      args.push_back("/*cosine=*/" + floatText(device::cos(known)));
+      args.push_back(remark("cosine=", floatLiteral(device::cos(known))));
     }
-  return "for (rtsl::Lights lights(rt, " + join(args, ", ") + "); lights.next();)\n" + nested(stmt.body);
+  Statement made = lightLoop("lights", std::move(args));
+  nest(stmt.body, made);
+  return made;
 }
 
 } // namespace rtsl::cpp

@@ -152,13 +152,13 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
     std::string name = writer.spelling(slot);
     if (name == "evaluate" || name == "expression" || name == "call_returned") // what the IR calls it
       name = value ? writer.nameOfValue(value) : "value";
-    machine.frame.push_back({slot.str(), unique(name, taken), "", 0, 0, !isObject, !isObject, isObject});
+    machine.frame.push_back({slot.str(), unique(name, taken), nullptr, 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
   for (auto [number, state] : llvm::enumerate(machine.states))
     state.walk([&](ir::FrameObjectOp object) {
       FrameField &saved = field(object.getName(), /*isObject=*/true);
-      saved.type = writer.typeOf(object);
+      saved.type = writer.typeOf(object.getResult());
       saved.madeIn = lineOf(object.getLoc(), machine.file);
       const unsigned line = lineOfAccess(object, machine.file);
       if (number != 0 && line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
@@ -184,14 +184,14 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
     for (mlir::func::FuncOp state : machine.states)
       state.walk([&](ir::FrameStoreOp store) {
         FrameField &saved = field(store.getName());
-        if (!saved.type.empty())
+        if (saved.type)
           return;
         saved.type = writer.typeOf(store.getValue());
-        changed |= !saved.type.empty();
+        changed |= saved.type != nullptr;
       });
   }
   auto name = [&](llvm::StringRef slot, mlir::Type type) {
-    if (FrameField &saved = field(slot); saved.type.empty())
+    if (FrameField &saved = field(slot); !saved.type)
       saved.type = writer.typeOfSlot(saved.slot, type);
   };
   for (mlir::func::FuncOp state : machine.states) {
@@ -202,11 +202,11 @@ static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::st
     if (saved.neededBy == 0) // by what is called
       saved.neededBy = saved.madeIn;
   std::stable_partition(machine.frame.begin(), machine.frame.end(),
-                        [](const FrameField &saved) { return saved.type != "bool"; });
+                        [](const FrameField &saved) { return !saved.type || !saved.type->is(TypeKind::Bool); });
 }
 
 /// What a field of the frame is, in the author's words: the comment at its declaration, or the line that makes it.
-std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameField &field) const {
+std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameField &field) {
   if (field.isTraced)
     return fmt::format("what the ray of line {} brought back", field.madeIn);
   if (field.isReturned)
@@ -218,7 +218,7 @@ std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameF
         return comment.substr(3);
   std::string line = notes.textOfLine(method.range, field.madeIn);
   // On one line with the declaration, at 100 columns.
-  const std::size_t room = 64 - std::min<std::size_t>(field.type.size() + field.name.size(), 40);
+  const std::size_t room = 64 - std::min<std::size_t>(type(field.type).size() + field.name.size(), 40);
   if (line.size() > room)
     line = line.substr(0, line.rfind(' ', room - 4)) + " ...";
   return line.empty() ? field.slot : "`" + line + "`";
@@ -264,12 +264,16 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   if (!machine.frame.empty()) {
     text += fmt::format("// What `{}` needs when its rays come back.\nstruct {}{} {{\n", name, frame,
                         machine.called ? " : " + structureOf(*machine.called) : "");
-    const auto isBool = [](const FrameField &field) { return field.type == "bool" && !field.isObject; };
+    const auto isBool = [](const FrameField &field) {
+      return field.type && field.type->is(TypeKind::Bool) && !field.isObject;
+    };
     const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1; // bools share a byte
     for (const FrameField &field : machine.frame) {
-      if (field.type.empty())
+      if (!field.type) {
         unsupported(method.range, fmt::format("`{}` in the frame of a method in C++", field.slot));
-      text += fmt::format("{} {}{}; // needed by line {}: {}\n", field.type, field.name,
+        continue;
+      }
+      text += fmt::format("{} {}{}; // needed by line {}: {}\n", type(field.type), field.name,
                           packs && isBool(field) ? " : 1" : "", field.neededBy, meaningOf(method, field));
     }
     text += "};\n\n";
@@ -280,24 +284,27 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   const bool hasFrame = machine.hasFrame();
   if (hasFrame)
     (machine.called ? calledFrames : frames).push_back(frameType);
-  const std::string frameHere =
-      hasFrame ? fmt::format("rtsl::{}<{}>(frame)", machine.called ? "calledFrameAt" : "frameAt", frameType) : "frame";
+  const Code bottom = cpp::name("frame");
+  const Code frameHere =
+      hasFrame ? cpp::call(withParameters(machine.called ? "rtsl::calledFrameAt" : "rtsl::frameAt", {frameType}), {bottom}) : bottom;
 
   for (std::size_t i = 0; i < machine.states.size(); ++i) {
-    std::string body = writer.body(machine.states[i]);
+    Statements body = writer.body(machine.states[i]);
     for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at) // under the author's name
-      if (const std::string address = machine.addressName(*this, at); mentions(body, address))
-        body = fmt::format("{} &{} = *{}.{};\n", type(machine.givenType(at)), address, machine.frameName,
-                           machine.called->fields[at]) +
-               body;
-    std::vector<std::string> parameters = {mentions(body, "rt") ? "State &rt" : "State &"}, arguments = {"rt"};
+      if (const std::string address = machine.addressName(*this, at); mentions(body, address)) {
+        const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
+        body.insert(body.begin(), cpp::declaration(type(machine.givenType(at)) + " &", address,
+                                                   unary(UnaryOperator::Dereference, given)));
+      }
+    std::vector<std::string> parameters = {mentions(body, "rt") ? "State &rt" : "State &"};
+    std::vector<Code> arguments = {cpp::name("rt")};
     if (payload && mentions(body, names.of(payload))) {
       parameters.push_back(names.of(payload->type->structure) + " &" + names.of(payload));
-      arguments.push_back("rtsl::payloadOf<" + names.of(payload->type->structure) + ">(ray)");
+      arguments.push_back(payloadAt(*payload->type->structure));
     }
     if (writer.usesScratch) {
       parameters.emplace_back("const Scratch &scratch");
-      arguments.push_back("rtsl::loadScratch<" + scope + "Scratch>(rt)");
+      arguments.push_back(storedScratch(definition));
     }
     if (mentions(body, machine.frameName)) {
       bool writes = false;
@@ -313,9 +320,9 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
     if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
       const std::string given = structureOf(*before->second);
       parameters.push_back("const " + given + " &" + machine.callName);
-      arguments.push_back(fmt::format("rtsl::callAbove<{}>({})", given, frameHere));
+      arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {given}), {frameHere}));
     }
-    const std::string call = functions[i] + "(" + join(arguments, ", ") + ")";
+    const MethodCall call = {functions[i], std::move(arguments)};
     if (i == 0) {
       text += commentText(method.comment);
       firstCalls[{&definition, slot}] = call;
@@ -330,9 +337,9 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
                    : "\n";
       steps.push_back({machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
     }
-    if (i == 0)
-      text += lineDirective(method.range);
-    text += fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", functions[i], join(parameters, ", "), body);
+    if (const auto place = lineDirective(method.range); place && i == 0)
+      text += print(*place);
+    text += fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", functions[i], join(parameters, ", "), print(body));
   }
   return text;
 }
@@ -360,10 +367,10 @@ bool ModulePrinter::differsIn(const typed::Class &derived, const typed::Function
   return differs;
 }
 
-std::string ModulePrinter::inheritedStateMachines(const typed::Class &definition) {
-  std::string text;
+std::vector<std::string> ModulePrinter::inheritedStateMachines(const typed::Class &definition) {
+  std::vector<std::string> machines;
   if (!states)
-    return text;
+    return machines;
   std::set<std::string> known;
   for (const auto &own : definition.functions)
     known.insert(lowering::slotName(module, *own));
@@ -371,8 +378,8 @@ std::string ModulePrinter::inheritedStateMachines(const typed::Class &definition
     for (const auto &method : at->functions)
       if (known.insert(lowering::slotName(module, *method)).second && isSplit(definition, *method) &&
           differsIn(definition, *method))
-        text += "\n" + stateMachine(definition, *method);
-  return text;
+        machines.push_back(stateMachine(definition, *method));
+  return machines;
 }
 
 } // namespace rtsl::cpp

@@ -277,8 +277,10 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   Diagnostics refusals(diagnostics.sources());
   if (std::optional<std::string> text = printSplitCpp(module, printing, options, refusals))
     return text;
-  if (!refusals.all().empty())
-    printing.whyCalls = refusals.all().front().message;
+  if (!refusals.all().empty()) {
+    const std::string &message = refusals.all().front().message;
+    printing.whyCalls = message.substr(0, message.find(" (")); // without the advice in parentheses
+  }
   return cpp::print(module, printing, diagnostics);
 }
 

@@ -1,0 +1,23 @@
+//===- Print.h - the text of the C++ tree ---------------------------------===//
+//
+// The only place that knows how C++ is spelled. The text is clang-format's to lay out
+// (codegen/cpp/Format.h), so white space matters only where a comment or a directive ends a line.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/cpp/tree/Statement.h"
+
+namespace rtsl::cpp {
+
+/// In parentheses if it binds less tightly than `atLeast`.
+std::string print(const Code &code, Binding atLeast = Binding::Comma);
+std::string print(const std::vector<Code> &codes); // a, b, c
+std::string print(const Statement &statement);
+std::string print(const Statements &statements);
+/// `#line 7 "file"`, and the end of the line.
+std::string print(const SourcePlace &place);
+/// `name = value`, `name{...}` or `name(...)`, in a declaration of this type.
+std::string print(const Declarator &declarator, const std::string &type);
+
+} // namespace rtsl::cpp
