@@ -12,6 +12,8 @@
 #include "sema/Casting.h"
 #include "sema/Walk.h"
 
+#include <algorithm>
+
 namespace rtsl {
 
 /// The `hit(t)` that begins there; no place if there is none.
@@ -92,7 +94,7 @@ void deriveHitErrors(LinkContext &context) {
     if ((isLeft && !context.isWithout(Item::Outputs, subject)) || context.request.keep.has(Item::Outputs))
       left.push_back(name);
   }
-  const std::vector<DerivedHitError> derived = rtsl::deriveHitErrors(context.ir, context.symbols, left, context.roundingUnit);
+  std::vector<DerivedHitError> derived = rtsl::deriveHitErrors(context.ir, context.symbols, left, context.roundingUnit);
   for (const DerivedHitError &one : derived)
     if (!one.hasFunction && findings[one.className].isNeeded) {
       findings[one.className].isNeeded = false;
@@ -100,8 +102,11 @@ void deriveHitErrors(LinkContext &context) {
     }
   for (auto &[name, finding] : findings)
     context.findings.push_back(std::move(finding));
-  if (!senders.empty())
-    warnOfUnboundHits(derived, context.module, context.diagnostics);
+  // What is kept although no ray leaves it is nobody's mistake.
+  derived.erase(std::remove_if(derived.begin(), derived.end(),
+                               [&](const DerivedHitError &one) { return !sendersOn.count(one.className); }),
+                derived.end());
+  warnOfUnboundHits(derived, context.module, context.diagnostics);
 }
 
 } // namespace linking

@@ -30,6 +30,14 @@ class Ball : rt_Primitive {
 const std::string plane = "hit((center.z - rt_RayOrigin.z) / rt_RayDirection.z);";
 const std::string boundOfBall = "Ball.rt_boundHitError";
 
+/// A scene of a Ball with a material.
+LinkRequest ballOf(const std::string &material) {
+  LinkRequest request;
+  request.classes = {"Ball", material};
+  request.surfaces.emplace_back("Ball", material);
+  return request;
+}
+
 /// What the warning points at; empty: there is none.
 std::string unbound(Linked &linked, std::string *message = nullptr) {
   for (const Diagnostic &diagnostic : linked.diagnostics.all())
@@ -43,7 +51,7 @@ std::string unbound(Linked &linked, std::string *message = nullptr) {
 
 TEST(HitErrors, AreDerivedWhereRaysLeave) {
   for (const char *material : {"Mirror", "Lit"}) {
-    Linked linked(primitive(plane), {{"Ball", material}, {{"Ball", material}}});
+    Linked linked(primitive(plane), ballOf(material));
     EXPECT_TRUE(linked.function(boundOfBall)) << material;
     EXPECT_TRUE(linked.classInfo(material).needs & RTSL_NEEDS_HIT_ERRORS) << material;
     EXPECT_EQ(unbound(linked), "") << material;
@@ -51,16 +59,19 @@ TEST(HitErrors, AreDerivedWhereRaysLeave) {
 }
 
 TEST(HitErrors, AreLeftOutWhereNoRayLeaves) {
-  Linked matte(primitive(plane), {{"Ball", "Matte"}, {{"Ball", "Matte"}}});
+  Linked matte(primitive(plane), ballOf("Matte"));
   EXPECT_FALSE(matte.function(boundOfBall));
   EXPECT_FALSE(matte.program.needs & RTSL_NEEDS_HIT_ERRORS);
   // A mirror is there, but on a mesh.
-  Linked elsewhere(primitive(plane), {{"Ball", "Matte", "Mirror"}, {{"Ball", "Matte"}, {"", "Mirror"}}});
+  LinkRequest request = ballOf("Matte");
+  request.classes.emplace_back("Mirror");
+  request.surfaces.emplace_back("", "Mirror");
+  Linked elsewhere(primitive(plane), request);
   EXPECT_FALSE(elsewhere.function(boundOfBall));
 }
 
 TEST(HitErrors, AreNotDerivedWhereTheyAreStated) {
-  Linked linked(primitive("hit(center.x, 0.5);"), {{"Ball", "Mirror"}, {{"Ball", "Mirror"}}});
+  Linked linked(primitive("hit(center.x, 0.5);"), ballOf("Mirror"));
   EXPECT_FALSE(linked.function(boundOfBall));
   EXPECT_EQ(unbound(linked), "");
 }
@@ -77,12 +88,12 @@ TEST(HitErrors, WhatNothingBoundsIsAWarning) {
       {"hit(pow(center.x, center.y / 3.0));", "hit(pow(center.x, center.y / 3.0))", "exponent"},
   };
   for (const auto &one : cases) {
-    Linked linked(primitive(one.statements), {{"Ball", "Mirror"}, {{"Ball", "Mirror"}}});
+    Linked linked(primitive(one.statements), ballOf("Mirror"));
     std::string message;
     EXPECT_EQ(unbound(linked, &message), one.hit);
     EXPECT_NE(message.find(one.why), std::string::npos) << message;
     EXPECT_FALSE(linked.function(boundOfBall)) << one.hit;
-    Linked unneeded(primitive(one.statements), {{"Ball", "Matte"}, {{"Ball", "Matte"}}});
+    Linked unneeded(primitive(one.statements), ballOf("Matte"));
     EXPECT_EQ(unbound(unneeded), "") << one.hit;
   }
 }
@@ -97,7 +108,7 @@ TEST(HitErrors, AreDerivedThroughWhatAuthorsWrite) {
            "hit(pow(center.x / 3.0, 0.33333) + acos(center.y / 3.0) + cos(center.z / 3.0) + tan(center.z / 7.0) + exp(center.x * center.y) + log(1.0 + center.x * center.x));",
            "hit(center.x);",
        }) {
-    Linked linked(primitive(statements), {{"Ball", "Mirror"}, {{"Ball", "Mirror"}}});
+    Linked linked(primitive(statements), ballOf("Mirror"));
     EXPECT_TRUE(linked.function(boundOfBall)) << statements;
     EXPECT_EQ(unbound(linked), "") << statements;
   }

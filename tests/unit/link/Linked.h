@@ -4,6 +4,7 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
+#include "codegen/passes/Pipeline.h"
 #include "frontend/Parser.h"
 #include "sema/Sema.h"
 
@@ -24,6 +25,7 @@ public:
     EXPECT_FALSE(diagnostics.hasErrors()) << renderText(diagnostics, false);
     if (diagnostics.hasErrors())
       return;
+    context.loadAllAvailableDialects();
     LowerOptions options;
     options.diagnostics = &diagnostics;
     ir = lower(*module, options, context);
@@ -55,12 +57,20 @@ public:
     return info ? *info : none;
   }
 
+  /// Those that linking's passes work on.
+  static mlir::DialectRegistry dialects() {
+    mlir::DialectRegistry registry;
+    registry.insert<ir::RtslDialect>();
+    codegen::registerPassDependencies(registry);
+    return registry;
+  }
+
   SourceManager sources;
   Diagnostics diagnostics{sources};
   std::unique_ptr<ast::TranslationUnit> unit;
   std::unique_ptr<typed::Module> module;
   LinkRequest request;
-  mlir::MLIRContext context;
+  mlir::MLIRContext context{dialects()};
   mlir::OwningOpRef<mlir::ModuleOp> ir;
   runtime::Program program;
   bool succeeded = false;
