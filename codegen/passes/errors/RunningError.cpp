@@ -219,6 +219,7 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
           return exact(op.getResult(0));
         return fail(op.getLoc(), "it goes through a whole number, which may jump");
       })
+      .Case([&](ir::HideOp) { return unrounded(op.getOperand(0)); })
       .Case([&](ir::RandOp) { return fail(op.getLoc(), "it depends on `rand`"); })
       .Default([&](mlir::Operation *) {
         return onlyMoves(op) ? ofParts(op) : fail(op.getLoc(), "it goes through what the compiler does not follow");
