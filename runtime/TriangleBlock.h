@@ -51,8 +51,8 @@ inline __m256 differenceOfProducts(__m256 a, __m256 b, __m256 c, __m256 d) {
 /// The lanes that the ray's line may go through, as bits: all that intersectTriangle accepts, and
 /// some more.
 inline unsigned lanesOnLine(const device::TriangleRay &ray, const TriangleBlock &block) {
-  auto origin = [&](int axis) { return _mm256_set1_ps(ray.origin[axis]); };
-  const __m256 ox = origin(ray.kx), oy = origin(ray.ky), oz = origin(ray.kz);
+  const __m256 ox = _mm256_set1_ps(ray.turned.x), oy = _mm256_set1_ps(ray.turned.y),
+               oz = _mm256_set1_ps(ray.turned.z);
   const __m256 sx = _mm256_set1_ps(ray.sx), sy = _mm256_set1_ps(ray.sy);
   __m256 x[3], y[3];
   for (int i = 0; i < 3; ++i) {
@@ -70,13 +70,11 @@ inline unsigned lanesOnLine(const device::TriangleRay &ray, const TriangleBlock 
   const __m256 greatest = _mm256_max_ps(_mm256_max_ps(e0, e1), e2);
   const __m256 isInside = _mm256_or_ps(_mm256_cmp_ps(least, zero, _CMP_GE_OQ),
                                        _mm256_cmp_ps(greatest, zero, _CMP_LE_OQ));
-  // Products so small or large that signs may be wrong: intersectTriangle scales them first.
-  const __m256 sign = _mm256_set1_ps(-0.0f);
-  const __m256 size = _mm256_add_ps(
-      _mm256_add_ps(_mm256_andnot_ps(sign, e0), _mm256_andnot_ps(sign, e1)), _mm256_andnot_ps(sign, e2));
-  const __m256 isSmall = _mm256_cmp_ps(size, _mm256_set1_ps(0x1p-58f), _CMP_NGT_UQ);
-  const __m256 isLarge = _mm256_cmp_ps(size, _mm256_set1_ps(0x1p120f), _CMP_NLT_UQ);
-  return unsigned(_mm256_movemask_ps(_mm256_or_ps(isInside, _mm256_or_ps(isSmall, isLarge))));
+  // Products so small that signs may be wrong: intersectTriangle scales them first. None is too large:
+  // coordinates of meshes and of origins that come here are below 2^60.
+  const __m256 size = _mm256_max_ps(greatest, _mm256_sub_ps(zero, least));
+  const __m256 isSmall = _mm256_cmp_ps(size, _mm256_set1_ps(0x1p-58f), _CMP_LT_OQ);
+  return unsigned(_mm256_movemask_ps(_mm256_or_ps(isInside, isSmall)));
 }
 
 /// Tests all triangles of the block and commits the one that wins. With `anyHit` the first will do.

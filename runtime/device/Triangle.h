@@ -21,6 +21,7 @@ struct TriangleRay {
   Vec3 origin;
   Vec3 inverse;     // 1 / direction by component, for boxes
   int kx, ky, kz;   // kz: the axis along which the direction is longest
+  Vec3 turned;      // the origin along these axes
   float sx, sy, sz; // shear and scale, of the direction scaled by 2^-exponent
   int directionExponent;
 };
@@ -38,6 +39,7 @@ inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
   ray.kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
   ray.kx = ray.kz == 2 ? 0 : ray.kz + 1;
   ray.ky = ray.kx == 2 ? 0 : ray.kx + 1;
+  ray.turned = {origin[ray.kx], origin[ray.ky], origin[ray.kz]};
   ray.directionExponent = 0;
   float length = largest(direction);
   if (!(length > 0x1p-30f && length < 0x1p30f)) {
