@@ -79,7 +79,8 @@ static mlir::Operation *findNotShown(FuncOp function) {
                          math::FmaOp, math::AbsFOp, math::FloorOp, math::CeilOp, math::TruncOp, math::RoundEvenOp, vector::ExtractOp,
                          vector::InsertOp, vector::FromElementsOp, vector::BroadcastOp, vector::ShuffleOp, ir::ElementaryOp,
                          ir::ToSintOp, ir::ToUintOp, ir::StateOp, ir::MemberOp, ir::FieldOp, ir::ElementOp, ir::TableOp,
-                         ir::BufferElementOp, ir::BufferLengthOp, ir::VarOp, ir::LoadOp, ir::StoreOp, ir::ClearOp>(op);
+                         ir::BufferElementOp, ir::BufferLengthOp, ir::VarOp, ir::LoadOp, ir::StoreOp, ir::ClearOp,
+                         ir::HideOp>(op);
     if (!isShown && !found)
       found = op;
   });

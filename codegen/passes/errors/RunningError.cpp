@@ -163,6 +163,8 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
   emitter.setInsertionPointAfter(&op);
   if (op.hasTrait<mlir::OpTrait::ConstantLike>())
     return exact(op.getResult(0));
+  if (llvm::isa<ir::HideOp>(op)) // --fp=double: the same number
+    return unrounded(op.getOperand(0));
   const auto wide = [&](unsigned index) { return Wide(emitter, unrounded(op.getOperand(index)).value); };
   const auto error = [&](unsigned index) {
     const Value found = unrounded(op.getOperand(index)).error;
@@ -321,6 +323,10 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
     return alongTangent(same(F::Cos), one, spread);
   case F::Cos:
     return alongTangent(-same(F::Sin), one, spread);
+  case F::SinPi:
+    return alongTangent(3.141592653589793 * same(F::CosPi), x.like(0.25), 3.1415927 * spread);
+  case F::CosPi:
+    return alongTangent(-(3.141592653589793 * same(F::SinPi)), x.like(0.25), 3.1415927 * spread);
   case F::Atan:
     return alongTangent(1.0 / (one + x * x), one, spread);
   case F::Tanh:
@@ -401,7 +407,7 @@ bool RunningError::isIterated(Value value) {
     if (component.size() == 1)
       continue; // an operation does not use its own result
     for (Value part : component)
-      if (mlir::Operation *op = part.getDefiningOp(); op && !onlyMoves(*op) && !llvm::isa<arith::SelectOp>(op)) {
+      if (mlir::Operation *op = part.getDefiningOp(); op && !onlyMoves(*op) && !llvm::isa<arith::SelectOp, ir::HideOp>(op)) {
         (void)fail(op->getLoc(), "a loop computes it from what it was before");
         return true;
       }
