@@ -97,7 +97,12 @@ NodePtr Generator::userCall(const Type *result, unsigned depth) {
       }
       overloads.push_back(other.signature);
     }
-  return call(function.name, function.signature, overloads, index, depth - 1);
+  std::string callee = function.name;
+  if (ofClass && context.self->base && chance(40)) // the base's own, which calls none but earlier ones
+    for (const Function &inherited : context.self->base->functions)
+      if (inherited.name == function.name)
+        callee = context.self->base->name + "::" + function.name;
+  return call(callee, function.signature, overloads, index, depth - 1);
 }
 
 /// A function of another object, or what a texture says.

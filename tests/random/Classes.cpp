@@ -90,7 +90,7 @@ ClassPlan *Generator::startClass(const char *stem, const std::string &root, cons
   NodePtr list = makeList();
   members = list.get();
   program.tree->children.push_back(
-      makeNode(Role::Fixed, "class " + plan->name + " : " + (base ? base->name : root) + " {$};",
+      makeNode(Role::Fixed, "class " + plan->name + (base ? " : " + base->name : root.empty() ? "" : " : " + root) + " {$};",
                std::move(list)));
   plans.push_back(std::move(plan));
   return plans.back().get();
@@ -146,7 +146,7 @@ void Generator::addReferences(ClassPlan &plan, Node &members, const Targets &tar
     const unsigned form = below(4);
     const unsigned count = 1 + below(3);
     members.children.push_back(makeNode(
-        Role::Fixed, "public " + target->name + " " + name +
+        Role::Fixed, std::string("public ") + (chance(30) ? "optional " : "") + target->name + " " + name +
                          (form == 0   ? "[" + std::to_string(count) + "]"
                           : form == 1 ? "[]"
                                       : "") +
@@ -196,6 +196,31 @@ void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigne
   plan.functions.push_back(std::move(made));
 }
 
+/// A function that calls itself on what a member refers to: an object made before, so that it ends.
+void Generator::addRecursion(ClassPlan &plan, Node &members) {
+  const std::string next = fresh("o");
+  members.children.push_back(
+      makeNode(Role::Fixed, "public optional " + plan.name + " " + next + ";"));
+  Function made;
+  made.name = fresh("g");
+  made.remote = true;
+  made.work = 40;
+  made.signature.result = types.floatType;
+  made.signature.parameters.push_back({types.floatType, ast::Direction::In});
+  context = contextOf(made, plan);
+  references = plan.references;
+  scope = around(plan, made);
+  scope.push_back({"x", types.floatType, true});
+  NodePtr value = expression(types.floatType, 2);
+  members.children.push_back(
+      makeNode(Role::Fixed,
+               "float " + made.name + "(float x) { float own = $; return " + next + " ? own + 0.5 * " + next + "." +
+                   made.name + "(0.75 * x) : own - x; }",
+               std::move(value)));
+  plan.references.push_back({next, &plan, 0, false});
+  plan.functions.push_back(std::move(made));
+}
+
 /// Another definition of an inherited function. It calls only what stood before that: no circles.
 void Generator::overrideFunction(ClassPlan &plan, Node &members) {
   if (!plan.base || plan.base->functions.empty())
@@ -213,7 +238,7 @@ void Generator::overrideFunction(ClassPlan &plan, Node &members) {
 /// A method of the engine's: some statements, then everything that they made, as one hash, then
 /// `result`, which makes the state that the method writes from it. What it may do is the checker's table; `rules` is what it
 /// does of that. `more` is what it sees beside state.
-void Generator::addMethod(const ClassPlan &plan, Node &members, const std::string &name, std::vector<Variable> more,
+void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &name, std::vector<Variable> more,
                           const std::string &result, unsigned statementCount, Context rules,
                           const std::string &parameters) {
   const MethodModel &model = *rootModel(plan.root)->method(name, !parameters.empty());
@@ -240,6 +265,14 @@ void Generator::addMethod(const ClassPlan &plan, Node &members, const std::strin
   for (const Variable &variable : state)
     if (chance(12) && scalarCount(variable.type) <= 12)
       body->children.push_back(hashed(variable));
+  const std::size_t payload = parameters.find_last_of(' ') + 1; // its name
+  const std::string method = name + parameters.substr(0, payload);
+  if (plan.base && plan.base->methods.count(method) && chance(context.traces != 0 ? 25 : 50)) {
+    body->children.push_back(makeNode(
+        Role::Statement, plan.base->name + "::" + name + "(" + parameters.substr(payload) + ");"));
+    context.traces /= 2; // the base's rays are sent too
+  }
+  plan.methods.insert(method);
   statements(*body, some(statementCount), nesting());
   hashAll(*body, first);
   for (const Variable &variable : state)
@@ -250,7 +283,7 @@ void Generator::addMethod(const ClassPlan &plan, Node &members, const std::strin
 }
 
 /// A method that answers rays which carry a `payload`.
-void Generator::addPayloadMethod(const ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
+void Generator::addPayloadMethod(ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
                                  std::vector<Variable> state, Context rules) {
   const std::string parameter = fresh("p");
   const bool asks = name == "anyHit";
@@ -376,6 +409,22 @@ const ClassPlan *Generator::makeLight(const Targets &targets) {
   return plan;
 }
 
+/// A class of no rt_ class.
+const ClassPlan *Generator::makeHelper(const ClassPlan *base) {
+  Node *members = nullptr;
+  ClassPlan *plan = startClass("Helper", "", base, members);
+  addMembers(*plan, *members, some(1 + below(3)));
+  if (!base && chance(50))
+    addConstructor(*plan, *members);
+  if (!base && chance(60))
+    addRecursion(*plan, *members);
+  if (base)
+    overrideFunction(*plan, *members);
+  addFunction(*plan, *members, true, 0);
+  program.helpers.push_back(plan->name);
+  return plan;
+}
+
 const ClassPlan *Generator::makeTexture(const ClassPlan *base, const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Texture", "rt_Texture", base, members);
@@ -383,6 +432,8 @@ const ClassPlan *Generator::makeTexture(const ClassPlan *base, const Targets &ta
   addReferences(*plan, *members, targets);
   if (!base && chance(50))
     addConstructor(*plan, *members);
+  if (!base && chance(30))
+    addRecursion(*plan, *members);
   if (base)
     overrideFunction(*plan, *members);
   if (!base || chance(40))
@@ -446,8 +497,10 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
     rules.illuminance = false;
     for (const Type *payload : payloads) {
       rules.traces = traces / 2;
+      rules.illuminance = chance(40);
       if (chance(80))
         addPayloadMethod(*plan, *members, "closestHit", payload, attributesOfHit, rules);
+      rules.illuminance = false;
       rules.traces = 0;
       if (chance(50))
         addPayloadMethod(*plan, *members, "anyHit", payload, attributesOfHit, rules);
@@ -462,7 +515,7 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
 }
 
 /// What who samples a surface asks of its material.
-void Generator::addBsdf(const ClassPlan &plan, Node &members) {
+void Generator::addBsdf(ClassPlan &plan, Node &members) {
   if (!likely(40))
     return;
   std::vector<Variable> attributesOfHit = plan.scratch;
@@ -490,14 +543,20 @@ void Generator::makeClasses() {
   if (program.traces && likely(80))
     for (unsigned n = 1 + below(2); n-- > 0;)
       makePayload();
-  Targets textures, all;
+  Targets helpers, textures, all;
+  if (likely(60)) {
+    helpers.push_back(makeHelper(nullptr));
+    if (likely(60))
+      makeHelper(helpers[0]);
+  }
   if (likely(80)) {
-    textures.push_back(makeTexture(nullptr, {}));
+    textures.push_back(makeTexture(nullptr, helpers));
     if (likely(70))
       makeTexture(textures[0], {});
     if (likely(40))
       textures.push_back(makeTexture(nullptr, {textures[0]}));
   }
+  textures.insert(textures.end(), helpers.begin(), helpers.end()); // what materials refer to
   all = textures;
   if (chance(50))
     all.push_back(makeLight(textures));

@@ -276,11 +276,15 @@ NodePtr Generator::ofObject(const Type *type, unsigned depth) {
   }
   if (type == types.color && context.illuminance && chance(20))
     return make(type, "ambient()");
+  if (type == types.intType && context.illuminance && chance(30))
+    return make(type, "lightCount()");
   if (type == types.boolType && chance(30)) {
     const ClassPlan *plan = nullptr;
     NodePtr a = referenceTo(&plan, false);
     if (!a)
       return nullptr;
+    if (chance(40))
+      return make(type, chance(50) ? "bool($)" : "(!$)", std::move(a));
     const ClassPlan *wanted = plan;
     for (unsigned attempt = 0; attempt != 4; ++attempt) {
       NodePtr b = referenceTo(&plan, false);

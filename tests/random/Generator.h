@@ -57,6 +57,7 @@ struct ClassPlan {
   std::vector<Variable> scratch;
   std::vector<Reference> references;
   std::vector<Function> functions; // that methods of it may call
+  std::set<std::string> methods;   // that it has, inherited ones too: the name, and the payload's type behind it
 };
 
 /// What may be done where code stands.
@@ -194,10 +195,10 @@ private:
   StateSet someReads(const std::string &root);
   std::vector<Variable> stateOf(StateSet reads, StateSet writes);
   void overrideFunction(ClassPlan &plan, Node &members);
-  void addMethod(const ClassPlan &plan, Node &members, const std::string &name,
+  void addMethod(ClassPlan &plan, Node &members, const std::string &name,
                  std::vector<Variable> more, const std::string &result, unsigned statementCount,
                  Context rules, const std::string &parameters = "");
-  void addPayloadMethod(const ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
+  void addPayloadMethod(ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
                         std::vector<Variable> state, Context rules);
   const ClassPlan *makeTexture(const ClassPlan *base, const Targets &targets);
   void makeCamera(const Targets &targets);
@@ -207,7 +208,9 @@ private:
   Targets someOf(const Targets &targets);
   const ClassPlan *makeMaterial(const ClassPlan *base,
                                 const Targets &targets);
-  void addBsdf(const ClassPlan &plan, Node &members);
+  void addBsdf(ClassPlan &plan, Node &members);
+  const ClassPlan *makeHelper(const ClassPlan *base);
+  void addRecursion(ClassPlan &plan, Node &members);
   std::vector<Variable> around(const ClassPlan &plan);
   std::vector<Variable> around(const ClassPlan &plan, const Function &function);
   Context contextOf(const Function &function, const ClassPlan &plan) const;

@@ -49,7 +49,7 @@ public:
     if (diagnostics.hasErrors())
       return;
     request.classes = {program.camera, program.miss};
-    for (const auto *names : {&program.textures, &program.lights, &program.primitives, &program.materials,
+    for (const auto *names : {&program.helpers, &program.textures, &program.lights, &program.primitives, &program.materials,
                               &program.meshMaterials})
       request.classes.insert(request.classes.end(), names->begin(), names->end());
     request.surfaces = World::surfaces(program);

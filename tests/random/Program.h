@@ -22,7 +22,7 @@ struct Program {
   bool traces = false;
   unsigned colorComponents = 3;
   /// The objects of the scene, by class; what refers to others stands behind them.
-  std::vector<std::string> textures, lights, primitives, materials;
+  std::vector<std::string> helpers, textures, lights, primitives, materials;
   std::string camera, miss; // miss may be empty
   std::vector<std::string> meshMaterials; // those that ask nothing of a primitive that meshes have not
 

@@ -261,13 +261,15 @@ NodePtr Generator::answer() {
 NodePtr Generator::illuminance(unsigned depth) {
   const Type *vec3 = types.vector(types.floatType, 3);
   const Context outer = context;
+  const bool isOne = chance(30); // of the lights
+  NodePtr number = isOne ? expression(types.intType, 2) : nullptr;
   NodePtr point = chance(60) ? makeNode(Role::Fixed, "rt_HitPoint") : expression(vec3, 2);
   NodePtr axis = chance(50) ? expression(vec3, 2) : nullptr;
   NodePtr angle = axis ? expression(types.floatType, 1) : nullptr;
   context.illuminance = false; // not inside of another one
   context.weight *= 2;         // lights
-  context.canContinue = true;
-  ++context.loops;
+  context.canContinue |= !isOne;
+  context.loops += isOne ? 0 : 1;
   const std::size_t variables = scope.size();
   scope.push_back({"rt_LightDirection", vec3, false});
   scope.push_back({"rt_LightDistance", types.floatType, false});
@@ -277,6 +279,11 @@ NodePtr Generator::illuminance(unsigned depth) {
   const unsigned traces = context.traces;
   context = outer;
   context.traces = traces;
+  if (isOne && axis)
+    return makeNode(Role::Statement, "if (illuminate($, $, ($).x > 0.0)) {$}", std::move(number), std::move(point),
+                    std::move(axis), std::move(body));
+  if (isOne)
+    return makeNode(Role::Statement, "if (illuminate($, $)) {$}", std::move(number), std::move(point), std::move(body));
   if (!axis)
     return makeNode(Role::Statement, "illuminance ($) {$}", std::move(point), std::move(body));
   return makeNode(Role::Statement, "illuminance ($, $, $) {$}", std::move(point), std::move(axis),

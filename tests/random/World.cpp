@@ -285,7 +285,7 @@ World::World(const runtime::Program &code, const Program &program)
     : code(code), program(program), host{code.slots}, mesh(someMesh()) {
   std::size_t words = used;
   std::vector<std::string> all = {program.camera, program.miss};
-  for (const auto *names : {&program.textures, &program.lights, &program.primitives, &program.materials})
+  for (const auto *names : {&program.helpers, &program.textures, &program.lights, &program.primitives, &program.materials})
     all.insert(all.end(), names->begin(), names->end());
   for (const std::string &name : all)
     if (const ClassInfo *info = code.find(name))
@@ -294,6 +294,7 @@ World::World(const runtime::Program &code, const Program &program)
   launch.records = reinterpret_cast<std::uint8_t *>(records.data());
 
   std::vector<RtslRef> cameras, misses;
+  addObjects(program.helpers, &others);
   addObjects(program.textures, &others);
   addObjects(program.lights, &lights);
   addObjects(program.primitives, &primitives);
@@ -364,6 +365,7 @@ runtime::SceneFacts World::facts() const {
   for (const Object &object : objects)
     facts.objects.push_back({object.info->name, launch.records + object.reference});
   facts.lightCount = launch.lightCount;
+  facts.referenceChain = static_cast<std::uint32_t>(objects.size()); // no longer
   facts.ambient.assign(launch.ambient, launch.ambient + code.colorComponents);
   return facts;
 }
