@@ -1,9 +1,10 @@
 //===- LowerFunction.cpp - entry and exit of functions --------------------===//
 //
 // Scratch members of a primitive. In `intersect` they are variables of that call: what one
-// candidate computes must not touch what the best hit so far has stored. Each `hit(t)` that is
-// accepted is remembered, and where `intersect` returns after one, the scratch members are stored
-// as attributes of the hit:
+// candidate without a hit computes must not touch what the best hit so far has stored. Each `hit(t)`
+// that is accepted is remembered, and where `intersect` returns after one, the scratch members are
+// stored as attributes of the hit. If a hit that does not win has stored its own, traversal runs
+// `intersect` of the winner again (findLostAttributes in runtime/device/Traverse.h):
 //
 //   %n = rtsl.var "n"                       a variable for each scratch member
 //   %accepted = rtsl.var "accepted"

@@ -55,7 +55,7 @@ inline Frame &frameAt(void *memory) {
   return *static_cast<Frame *>(memory);
 }
 
-/// Reports a hit at distance `t`; true if it is the nearest so far.
+/// Reports a hit at distance `t`; true if it is the primitive's nearest so far.
 template <int N>
 inline bool hit(State<N> &rt, float t) {
   return rtsl_hit(rawState(rt), t) != 0;

@@ -123,7 +123,7 @@ inline std::uint32_t classOf(const State<N> &rt, RtslRef reference) {
 
 /// Base of a class's `Scratch`.
 struct Scratch {
-  bool accepted = false; // has this `intersect` reported a hit that counts?
+  bool accepted = false; // has this `intersect` reported a hit?
 
   /// Calls `at(word, value)` for each attribute that is kept.
   template <typename Visit>
