@@ -45,7 +45,7 @@ FlipMap flip(const runtime::Image &reference, const runtime::Image &test,
 FlipMap flipHdr(const runtime::Image &reference, const runtime::Image &test, const FlipExposures &exposures,
                 double pixelsPerDegree = defaultPixelsPerDegree);
 
-/// The exposures that a reference asks for (2021, section 3): from the one that brings its brightest
+/// The exposures for a reference (2021, section 3): from the one that brings its brightest
 /// pixel to 0.85 on the screen to the one that brings its median there, a stop apart or less.
 FlipExposures exposuresFor(const runtime::Image &reference);
 

@@ -25,7 +25,7 @@ struct Subject {
   std::function<Picture(std::uint32_t samplesPerPixel, std::uint32_t seed)> render;
 };
 
-/// Told how far a long piece of work is, in [0, 1], and what it does now.
+/// Called with the share of a long piece of work that is done, in [0, 1], and what is done now.
 using ProgressFunction = std::function<void(double, const std::string &)>;
 
 } // namespace rtsl::report
