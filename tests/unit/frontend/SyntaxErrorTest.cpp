@@ -334,8 +334,8 @@ TEST(DeclarationErrors, FunctionsWithoutReturnType) {
 }
 
 TEST(DeclarationErrors, Classes) {
-  EXPECT_EQ(messages("class A { };\nvoid f() { }\n"),
-            "E0111 1:9-1:10 expected `:` and the class that it derives from, found `{`\n");
+  EXPECT_EQ(messages("class A { };\nvoid f() { }\n"), "");
+  EXPECT_EQ(messages("class A;\n"), "E0171 1:1-1:8 class `A` has neither a base nor members of its own\n");
   EXPECT_EQ(messages("class : rt_Light { };\n"), "E0111 1:7-1:8 expected a name, found `:`\n");
   EXPECT_EQ(messages("class A : public rt_Light { };\n"),
             "E0119 1:11-1:17 `public` cannot stand here: a class derives in one way only\n");
@@ -516,7 +516,7 @@ TEST(Recovery, EachStatementGivesItsOwnMessage) {
             "E0103 4:15-4:16 unknown character `$`\n"
             "E0111 6:18-6:19 expected an expression, found `;`\n"
             "E0111 8:16-8:17 expected `;`, found `z`\n"
-            "E0111 9:9-9:10 expected `:` and the class that it derives from, found `{`\n"
+            "E0112 9:12-9:12 missing `;` after class `A`\n"
             "E0111 10:20-10:21 expected a name, found `;`\n");
 }
 
