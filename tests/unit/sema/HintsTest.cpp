@@ -191,7 +191,7 @@ TEST(Hints, CallersOfHelpersAreNamed) {
 
 TEST(Hints, CyclesAreShown) {
   EXPECT_EQ(hints("float a(float x) { return b(x); }\nfloat b(float x) { return a(x); }"),
-            "b: `a` calls `b` here\n`a` calls `b`, which calls `a`\nonly `trace` recurses, and methods that trace, on objects that members refer to\n");
+            "b: `a` calls `b` here\n`a` calls `b`, which calls `a`\nonly `trace` recurses, and functions on objects that members refer to: `member.function()`\n");
 }
 
 TEST(Hints, ExpectedMethodsAreShown) {
