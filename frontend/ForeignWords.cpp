@@ -299,7 +299,8 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
 std::size_t ForeignWords::skipNamespace(std::size_t index) {
   const bool isNamed = typeAt(index) == RtslLexer::IDENTIFIER;
   const std::size_t colons = index + (isNamed ? 1 : 0);
-  if (typeAt(colons) != RtslLexer::COLON_COLON || typeAt(colons + 1) != RtslLexer::IDENTIFIER)
+  if (typeAt(colons) != RtslLexer::COLON_COLON || typeAt(colons + 1) != RtslLexer::IDENTIFIER ||
+      (!isNamed && before() == RtslLexer::IDENTIFIER)) // the word before has been looked at
     return 0;
   const std::string_view word = isNamed ? textOf(at(index)) : std::string_view();
   bool isKnown = false;
