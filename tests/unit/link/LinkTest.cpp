@@ -155,7 +155,7 @@ class Strange : rt_Material {
 )";
 
 TEST(Link, AttributesAreMatchedByNameAndHaveOnePlace) {
-  Linked linked(surfaces, {{"Ball", "Plate", "Wood", "Fog"}, {{"Ball", "Wood"}, {"Plate", "Fog"}, {"Ball", "Fog"}}});
+  Linked linked(surfaces, {{"Ball", "Plate", "Wood", "Fog"}, {}, {{"Ball", "Wood"}, {"Plate", "Fog"}, {"Ball", "Fog"}}});
   ASSERT_TRUE(linked.succeeded);
   std::map<std::string, std::set<std::int64_t>> places;
   linked.ir->walk([&](ir::AttributeOp op) {
@@ -170,7 +170,7 @@ TEST(Link, AttributesAreMatchedByNameAndHaveOnePlace) {
 }
 
 TEST(Link, AMissingAttributeIsAnErrorWithBothPlaces) {
-  Linked linked(surfaces, {{"Plate", "Wood"}, {{"Plate", "Wood"}}});
+  Linked linked(surfaces, {{"Plate", "Wood"}, {}, {{"Plate", "Wood"}}});
   EXPECT_FALSE(linked.succeeded);
   ASSERT_EQ(linked.diagnostics.all().size(), 1u);
   const Diagnostic &error = linked.diagnostics.all().front();
@@ -182,14 +182,14 @@ TEST(Link, AMissingAttributeIsAnErrorWithBothPlaces) {
 }
 
 TEST(Link, AMeshHasNoAttributes) {
-  Linked linked(surfaces, {{"Fog"}, {{"", "Fog"}}});
+  Linked linked(surfaces, {{"Fog"}, {}, {{"", "Fog"}}});
   EXPECT_FALSE(linked.succeeded);
   ASSERT_EQ(linked.diagnostics.all().size(), 1u);
   EXPECT_EQ(linked.diagnostics.all().front().code, Code::attributeMissing);
 }
 
 TEST(Link, AnAttributeOfAnotherTypeIsAnErrorWithBothPlaces) {
-  Linked linked(surfaces, {{"Ball", "Strange"}, {{"Ball", "Strange"}}});
+  Linked linked(surfaces, {{"Ball", "Strange"}, {}, {{"Ball", "Strange"}}});
   EXPECT_FALSE(linked.succeeded);
   ASSERT_EQ(linked.diagnostics.all().size(), 1u);
   const Diagnostic &error = linked.diagnostics.all().front();
