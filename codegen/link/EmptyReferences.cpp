@@ -132,11 +132,14 @@ void emptyReferences(LinkContext &context) {
   if (empty.empty())
     return;
   for (auto function : context.ir.getOps<FuncOp>()) {
-    bool found = false;
+    llvm::SmallVector<ir::MemberOp> members; // loads behind them go, on which a walk may stand
     function.walk([&](ir::MemberOp member) {
       if (empty.count(keyOf(member)))
-        found |= emptyLoads(member);
+        members.push_back(member);
     });
+    bool found = false;
+    for (ir::MemberOp member : members)
+      found |= emptyLoads(member);
     if (!found)
       continue;
     dropBranches(function);
