@@ -51,6 +51,7 @@ struct [[gnu::may_alias]] State {
 #include "runtime/device/StateVariables.def"
 
   std::uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
+  unsigned char ofTheTraversal[sizeof(RtslState) - offsetof(RtslState, foundDistance)];
 };
 
 /// The runtime's state as shaders see it.
