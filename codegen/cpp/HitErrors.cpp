@@ -95,7 +95,9 @@ private:
   std::string whole(Value value) {
     mlir::Attribute attribute;
     const unsigned width = widthOf(value.getType());
-    if (!width || !mlir::matchPattern(value, mlir::m_Constant(&attribute)))
+    if (!mlir::matchPattern(value, mlir::m_Constant(&attribute)))
+      return nameOf(value);
+    if (!width)
       return part(value, 0);
     std::vector<std::string> parts;
     for (unsigned i = 0; i < width; ++i)
