@@ -13,7 +13,8 @@ from harness import RTSLC, SECONDS, Case
 
 RTSL_RUN = os.environ["RTSL_RUN"]
 SIZE = ("--size", "64x64", "--threads", "2", "--format=exr")
-ENDLESS = (*SIZE, "--spp", "100000000")  # samples that nobody waits for
+FOREVER = ("--spp", "100000000")
+ENDLESS = (*SIZE, *FOREVER)              # samples that nobody waits for
 LONG = (*SIZE, "--spp", "20000")         # pixels that are finished one after the other
 
 
@@ -22,15 +23,15 @@ class Interruptions(Case):
         super().setUp()
         self.glass_scene()
 
-    def wait_for_handler(self, running, by):
-        """Until the program catches the signal, which it does before the first sample."""
+    def wait_for_handler(self, running, by, isCaught=True):
+        """Until the program catches the signal, which it does from before the first sample until the first signal."""
         status = pathlib.Path(f"/proc/{running.pid}/status")
         for _ in range(SECONDS * 50):
             self.assertIsNone(running.poll(), "it was still to run")
             caught = re.search(r"^SigCgt:\s*(\w+)$", status.read_text(), re.M)
-            if int(caught.group(1), 16) >> (by - 1) & 1:
+            if bool(int(caught.group(1), 16) >> (by - 1) & 1) == isCaught:
                 return
-            time.sleep(0.02)
+            time.sleep(0.02 if isCaught else 0.001)
         self.fail("no handler")
 
     def interrupt(self, program, *arguments, by=signal.SIGINT, after=0.5, again=False):
@@ -43,6 +44,7 @@ class Interruptions(Case):
         self.assertIsNone(running.poll(), "it was still to run")
         running.send_signal(by)
         if again:
+            self.wait_for_handler(running, by, isCaught=False)
             running.send_signal(by)
         out, error = running.communicate(timeout=SECONDS)
         self.assertEqual(running.returncode, -by if again else 128 + by, error)
@@ -81,7 +83,8 @@ class Interruptions(Case):
         self.assertLess(json.loads(out)["pixelsThatDiffer"], 64 * 64)
 
     def test_a_second_signal_ends_it_at_once(self):
-        self.interrupt(RTSLC, "render", "scene.json", "-o", "a.exr", *ENDLESS, again=True)
+        large = ("--size", "3000x3000")  # it takes a while to write
+        self.interrupt(RTSLC, "render", "scene.json", "-o", "a.exr", *FOREVER, *large, again=True)
         self.assertNotIn("a.exr", self.files())
         self.assertEqual([name for name in self.files() if name.endswith(".tmp")], [])
 

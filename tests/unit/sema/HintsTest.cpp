@@ -121,7 +121,7 @@ std::string withAllFixes(const Checked &checked, const std::string &text) {
 TEST(Hints, NoSuggestionIsMisplaced) {
   const std::set<Code> misplaced = {Code::stateNotVisible, Code::stateWithoutRay, Code::misplacedTrace,
                                     Code::misplacedIlluminance, Code::misplacedLookup, Code::misplacedCall,
-                                    Code::unknownName, Code::unknownFunction, Code::unknownState};
+                                    Code::unknownName, Code::unknownState};
   std::vector<std::string> words = foreignNames();
   for (const std::string &state : stateVariableNames())
     words.insert(words.end(), {state.substr(3), state + "x"});
