@@ -8,6 +8,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Reflect.h"
 #include "codegen/link/Steps.h"
+#include "codegen/passes/errors/DeriveHitErrors.h"
 
 namespace rtsl::linking {
 
@@ -40,7 +41,8 @@ void makeSlot(LinkContext &context, const Slot &slot) {
   const bool isNoted = llvm::any_of(context.findings, [&](const Finding &finding) { return finding.subject == subject; });
   const auto hasMethod = [&](const LinkedClass *linked) { return findMethod(context, *linked, slot.method); };
   const bool isForBuilding = std::string_view(slot.method) == "computeBounds";
-  if (!isNoted && !isForBuilding && llvm::any_of(classes, hasMethod))
+  const bool isDerived = slot.method == hitErrorMethod; // no author has made a choice
+  if (!isNoted && !isForBuilding && !isDerived && llvm::any_of(classes, hasMethod))
     context.findings.push_back(describeDispatch(subject, classes, {}));
 
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
