@@ -78,7 +78,8 @@ TEST(Link, AClassNeedsWhatItReadsItself) {
   ASSERT_TRUE(linked.succeeded);
   EXPECT_EQ(linked.classInfo("Matte").needs, 0u); // a scene knows what its `albedo` refers to
   EXPECT_EQ(linked.classInfo("Stripes").needs, RTSL_NEEDS_TEXTURE_COORDINATES);
-  EXPECT_EQ(linked.classInfo("Shiny").needs, RTSL_NEEDS_NORMALS); // its rays begin at hits
+  // Its rays begin at hits.
+  EXPECT_EQ(linked.classInfo("Shiny").needs, RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);
 }
 
 TEST(Link, RecordsAreDescribed) {
