@@ -22,7 +22,9 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <iostream>
 #include <optional>
+#include <sstream>
 
 using namespace rtsl;
 
@@ -213,7 +215,9 @@ int main(int argc, char **argv) {
       app.parse(argc, argv);
       status = tool::statusAfterInterruption(render(options));
     } catch (const CLI::ParseError &error) {
-      status = app.exit(error) == 0 ? Fine : Usage;
+      std::ostringstream help;
+      status = app.exit(error, help, std::cerr) == 0 ? Fine : Usage;
+      tool::printOut(help.str());
     }
     return tool::finishOutput("rtsl-run") || status != Fine ? status : Refused;
   } catch (const runtime::Error &error) {

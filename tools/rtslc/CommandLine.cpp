@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <iostream>
+#include <sstream>
 #include <unistd.h>
 
 namespace rtsl::tool {
@@ -183,7 +185,10 @@ int runCommand(CLI::App &app, Action &action, int argc, char **argv) {
     app.parse(std::move(arguments));
     return action();
   } catch (const CLI::ParseError &error) {
-    return app.exit(error) == 0 ? Fine : Usage;
+    std::ostringstream help;
+    const int status = app.exit(error, help, std::cerr) == 0 ? Fine : Usage;
+    printOut(help.str());
+    return status;
   }
 }
 
