@@ -86,8 +86,3 @@ extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
   return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)
       ->traverseFast(*state, how);
 }
-
-// A compiled program has a constant in its place; this traversal serves all programs.
-extern "C" __attribute__((weak)) std::uint32_t rtsl_needs(const RtslLaunch *launch) {
-  return launch->needs;
-}
