@@ -126,6 +126,9 @@ std::size_t Lowered::count(const std::string &function, const std::string &part)
 // Shader
 //===----------------------------------------------------------------------===//
 
+/// What linking derives from `intersect`, which these programs are made without.
+static void deriveNothing(RtslState *, RtslRef) {}
+
 struct Shader::Code {
   std::unique_ptr<codegen::Jit> jit;
 };
@@ -189,7 +192,8 @@ Shader::Shader(const std::string &source, Options options) : code(std::make_uniq
   codegen::optimize(*module, *target, machine);
   code->jit =
       take(codegen::Jit::create(std::move(context), std::move(module), std::move(target),
-                                {{"rtsl_traverse", reinterpret_cast<void *>(&testTraverse)}}));
+                                {{"rtsl_traverse", reinterpret_cast<void *>(&testTraverse)},
+                                 {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)}}));
 }
 
 Shader::~Shader() = default;

@@ -96,9 +96,9 @@ TEST(Package, RefusalsSayWhy) {
   EXPECT_EQ(refusal("an ordinary text that has nothing to do with it"), "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 4;
+  newer[8] = 5;
   EXPECT_EQ(refusal(newer),
-            "`x.rtslpkg` is a package of format 4, and this program reads format 3: use a newer rtsl-run");
+            "`x.rtslpkg` is a package of format 5, and this program reads format 4: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"), std::string::npos);
   std::string damaged = whole;
   damaged[whole.size() - 1] ^= 1;

@@ -67,7 +67,7 @@ TEST(JsonValue, SyntaxErrorsPointAtTheToken) {
             "s.json:1:3+1: jsonSyntax: this is not JSON: invalid literal; expected string literal "
             "(note JSON has no comments)");
   EXPECT_EQ(parseError("{\"a\": 1e999}"),
-            "s.json:1:7+5: jsonSyntax: this is not JSON: number overflow parsing '1e999'");
+            "s.json:1:7+5: outOfRange: `1e999` is too large: numbers reach to 1.8e+308");
   EXPECT_NE(parseError("[\"\xff\"]").find("jsonSyntax"), std::string::npos);
 }
 
