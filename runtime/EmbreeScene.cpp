@@ -311,9 +311,12 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
     : self(std::make_unique<Implementation>()) {
   std::string config = threads ? fmt::format("threads={}", threads) : "";
   self->device = rtcNewDevice(config.c_str());
-  if (!self->device)
-    throw Error(ErrorCode::Internal,
-                fmt::format("Embree does not start (error {})", int(rtcGetDeviceError(nullptr))));
+  if (!self->device) {
+    const RTCError error = rtcGetDeviceError(nullptr);
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+      throw Error(ErrorCode::OutOfMemory, "not enough memory for Embree to start");
+    throw Error(ErrorCode::Internal, fmt::format("Embree does not start (error {})", int(error)));
+  }
   rtcSetDeviceErrorFunction(self->device, noteError, self.get());
 
   RtslLaunch launch = scene.launch();

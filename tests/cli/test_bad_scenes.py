@@ -171,7 +171,8 @@ class BadScenes(Case):
 
     def test_picture_of_unknown_format(self):
         self.glass_scene()
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "picture.jpeg", *SMALL), "E0903", "jpeg")
+        _, error = self.run_rtslc("render", "scene.json", "-o", "picture.jpeg", *SMALL, status=USAGE)
+        self.assertIn("`picture.jpeg`", error)
 
     def test_arguments_that_make_no_sense(self):
         self.glass_scene()

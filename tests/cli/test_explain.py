@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import shutil
 import subprocess
 import unittest
@@ -212,6 +213,11 @@ class Explain(Case):
             for old in self.folder.iterdir():
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
             shutil.copytree(example.parent, self.folder, dirs_exist_ok=True)
+            text = example.read_text()
+            for other in {path for path in json.loads(text)["import"] if path.startswith("../")}:
+                shutil.copy(example.parent / other, self.folder)
+                text = text.replace(f'"{other}"', f'"{pathlib.Path(other).name}"')
+            self.write("scene.json", text)
             items = self.entries()
             before = self.ptx()
             here = self.change_methods(items)
@@ -239,8 +245,8 @@ class Explain(Case):
     def test_what_is_referred_to_through_others_is_used(self):
         self.write("all.rtsl", SHADERS + """
 class Plain : rt_Texture { public color value; void lookup() { rt_TextureColor = value; } };
-class Twice : rt_Texture { public rt_Texture inner; void lookup() { inner.lookup(); rt_TextureColor = rt_TextureColor + rt_TextureColor; } };
-class Papered : rt_Material { public rt_Texture paper; void shade() { paper.lookup(); rt_SampleColor = rt_TextureColor; } };
+class Twice : rt_Texture { public rt_Texture inner; void lookup() { rt_TextureColor = 2.0 * inner.lookup(); } };
+class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleColor = paper.lookup(); } };
 """)
         scene = {**SCENE, "textures": {"a": {"class": "Plain", "value": [1, 2, 3]}, "b": {"class": "Twice", "inner": "a"},
                                        "c": {"class": "Twice", "inner": "b"}, "d": {"class": "Plain", "value": [3, 2, 1]}},

@@ -51,7 +51,7 @@ class Objects(Case):
             self.assertNotIn("cannot be statically determined", said.stderr)
         self.scene(layers=40)
         error = self.run_rtslc("compile", "scene.json", "--emit=ptx", "-o", "x.ptx", status=1)[1]
-        self.assertIn("error E0770: `", error)
+        self.assertIn("error[E0770]: `", error)
         self.assertIn("calls itself on more objects in a row than a GPU's program has room for: 32", error)
 
     def test_a_package_holds_them(self):
@@ -67,7 +67,6 @@ class Objects(Case):
         self.assertNotIn("@dispatch.rt_Texture.lookup", ir)
         self.assertNotIn("TextureUVW", ir)
         self.require_same_pictures()
-        self.assertRegex(self.run_rtslc("explain", "scene.json")[0], r"Painted\.bump\b.*no object has anything there")
         kept = self.run_rtslc("compile", "scene.json", "--emit=ir", "--keep=parameters")[0]
         self.assertIn("@dispatch.rt_Texture.lookup", kept)
         self.run_rtslc("render", "scene.json", "-o", "kept.exr", "--keep=parameters", *WAYS[0])

@@ -11,7 +11,7 @@ from harness import DIAGNOSED, EXAMPLES, FINE, RTSLC, SECONDS, Case
 RTSL_RUN = os.environ["RTSL_RUN"]
 SMALL = ("--size", "8x8", "--spp", "1")
 MATERIAL = ('#include "part.inc"\nimport "other.rtsl";\nclass Grey : rt_Material {\n'
-            "  void shade() { rt_SampleColor = color(shared() * other()); }\n};\n")
+            "  void shade() { rt_SampleColor = shared() * other() * trace(rt_HitPoint, vec3(0.0, 1.0, 0.0)); }\n};\n")
 
 
 class Outputs(Case):

@@ -209,9 +209,13 @@ void Generator::addRecursion(ClassPlan &plan, Node &members) {
   made.signature.parameters.push_back({types.floatType, ast::Direction::In});
   context = contextOf(made, plan);
   references = plan.references;
-  scope = around(plan, made);
-  scope.push_back({"x", types.floatType, true});
-  NodePtr value = expression(types.floatType, 2);
+  NodePtr value;
+  do { // the function has no room for declarations that an expression needs before it
+    pending.clear();
+    scope = around(plan, made);
+    scope.push_back({"x", types.floatType, true});
+    value = expression(types.floatType, 2);
+  } while (!pending.empty());
   members.children.push_back(
       makeNode(Role::Fixed,
                "float " + made.name + "(float x) { float own = $; return " + next + " ? own + 0.5 * " + next + "." +

@@ -23,7 +23,10 @@ public:
     job.pixels = &value;
     job.samplesPerPixel = samples;
   }
-  void add(float sample) { device::addSample(job, lane, &sample); }
+  void add(float sample) {
+    device::addSample(job, lane, &sample);
+    ++lane.sample;
+  }
   float finish() {
     device::writePixel(job, lane);
     return value;
