@@ -48,7 +48,7 @@ class Report(Case):
         self.assertFalse((self.folder / "out" / "partial").exists())
 
     # Of 24x16 pixels with some 32 000 samples each in the reference an eighth meets one that is ten thousand times as bright.
-    HOT = "class Hot : rt_Miss { void miss() { rt_SampleColor = color(rand() < 0.000004 ? 1000000.0 : 0.05); } };"
+    HOT = "class Hot : rt_Miss { void miss() { rt_SampleColor = color(rand() < 0.00004 ? 1000000.0 : 0.05); } };"
 
     def test_rare_hot_samples_have_no_interval(self):
         self.glass_scene()
