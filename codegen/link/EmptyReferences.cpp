@@ -138,8 +138,11 @@ void emptyReferences(LinkContext &context) {
         members.push_back(member);
     });
     bool found = false;
-    for (ir::MemberOp member : members)
+    for (ir::MemberOp member : members) {
       found |= emptyLoads(member);
+      if (member->use_empty()) // nobody reads it
+        member.erase();
+    }
     if (!found)
       continue;
     dropBranches(function);
