@@ -213,7 +213,7 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
     if (info->initialize)
       info->initialize(&state, reference);
     for (const MemberInfo &member : info->members)
-      if (member.isPublic && (!member.hasDefault || key & 1))
+      if (member.isPublic && (!member.hasDefault || key & 1 || member.type.bufferRank != 0)) // none is empty by chance
         fill(member.type, record + member.offset, mix(key, hashOf(member.name)));
     if (info->construct) {
       std::vector<std::uint32_t> arguments(info->parameterSize / 4 + 1);
