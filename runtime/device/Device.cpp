@@ -40,6 +40,7 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
 
 #ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp asks the program
 /// What programs say otherwise that have more.
+__attribute__((weak)) void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
 __attribute__((weak)) uint32_t rtsl_features(RtslState *) {
   return 0;
 }

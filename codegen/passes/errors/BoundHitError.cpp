@@ -61,6 +61,8 @@ bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<Unboun
   const Num distance = stateOf(emitter, "HitDistance");
   const Value bound = emitter.variable("bound", emitter.getF32Type());
   emitter.store(emitter.floatConstant(-1), bound);
+  const Value nearest = emitter.variable("nearest", emitter.getF32Type());
+  emitter.store(emitter.floatConstant(std::numeric_limits<float>::infinity()), nearest);
   bool hasBound = false;
   for (ir::HitOp hit : hits) {
     const std::optional<Unrounded> exact = hit.getError() ? std::nullopt : errors.of(hit.getT());
@@ -70,12 +72,14 @@ bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<Unboun
     emitter.setInsertionPoint(hit);
     const Num t(emitter, hit.getT());
     if (exact) {
-      // Where arithmetic is not strict, t is not the very same again.
-      const Num before(emitter, emitter.load(bound)), isThis = lessEqual(abs(t - distance), abs(distance) * 0x1p-20);
+      // The hit that is nearest to T; where arithmetic is not strict, its t is not the very same again.
+      const Num before(emitter, emitter.load(bound)), least(emitter, emitter.load(nearest));
+      const Num away = abs(t - distance), isThis = less(away, least) & lessEqual(away, abs(distance) * 0x1p-6);
       Wide error = abs(widened(emitter, distance) - Wide(emitter, exact->value));
       if (exact->error)
         error = error + Wide(emitter, exact->error);
-      emitter.store(select(isThis, maximum(before, {emitter, narrowed(error)}), before), bound);
+      emitter.store(select(isThis, {emitter, narrowed(error)}, before), bound);
+      emitter.store(select(isThis, away, least), nearest);
       hasBound = true;
     }
     // Of a hit that is nearer it is known that it did not count; of one that is further away, that it would have.

@@ -4,7 +4,7 @@
 //     ...                                         %T = HitDistance
 //     %h = rtsl.hit %t                   ==>      ... with t in double beside it, %t64 (RunningError.h)
 //     ...                                         %h = T < t
-//                                                 bound = t is T ? max(bound, |T - t64|) : bound
+//                                                 bound = t is nearest to T ? |T - t64| : bound
 //                                                 ...
 //                                                 hitError = bound
 //

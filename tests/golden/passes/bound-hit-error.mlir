@@ -9,8 +9,8 @@
 // CHECK: arith.divf %{{.*}}, %{{.*}} : f64
 // CHECK-NOT: rtsl.hit
 // CHECK: math.absf %{{.*}} : f64
-// CHECK: arith.truncf %{{.*}} : f64 to f32
-// CHECK: arith.select %{{.*}}, %{{.*}}, %[[NONE]] : f32
+// CHECK: %[[ERROR:.*]] = arith.truncf %{{.*}} : f64 to f32
+// CHECK: arith.select %{{.*}}, %[[ERROR]], %[[NONE]] : f32
 // CHECK: rtsl.state "hitError"
 // CHECK: rtsl.store
 func.func @Plane.intersect(%height: f32, %y: f32, %slope: f32) {
