@@ -3,8 +3,11 @@
 // For code that builds or reads IR. RtslTypes.h alone is enough for code that looks at types.
 //
 //===----------------------------------------------------------------------===//
-#pragma once
+#ifndef RTSL_CODEGEN_IR_RTSL_H // not `#pragma once`: see Precompiled.h
+#define RTSL_CODEGEN_IR_RTSL_H
 
 #include "codegen/ir/RtslDialect.h"
 #include "codegen/ir/RtslOps.h"
 #include "codegen/ir/RtslTypes.h"
+
+#endif

@@ -1,6 +1,9 @@
 //===- RtslDialect.h - the `rtsl` dialect itself --------------------------===//
-#pragma once
+#ifndef RTSL_CODEGEN_IR_RTSL_DIALECT_H // not `#pragma once`: see Precompiled.h
+#define RTSL_CODEGEN_IR_RTSL_DIALECT_H
 
 #include "mlir/IR/Dialect.h"
 
 #include "codegen/ir/RtslDialect.h.inc"
+
+#endif

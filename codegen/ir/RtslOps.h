@@ -1,5 +1,6 @@
 //===- RtslOps.h - operations of the `rtsl` dialect -----------------------===//
-#pragma once
+#ifndef RTSL_CODEGEN_IR_RTSL_OPS_H // not `#pragma once`: see Precompiled.h
+#define RTSL_CODEGEN_IR_RTSL_OPS_H
 
 #include "codegen/ir/RtslTypes.h"
 
@@ -42,3 +43,5 @@ mlir::Value createZero(mlir::OpBuilder &builder, mlir::Location location, mlir::
 constexpr llvm::StringLiteral computesInDouble = "rtsl.double";
 
 } // namespace rtsl::ir
+
+#endif

@@ -421,7 +421,7 @@ def Rtsl_PrintOp : Rtsl_Op<"print"> {
 }
 
 def Rtsl_HitOp : Rtsl_Op<"hit"> {
-  let summary = "reports an intersection at parameter t; true if it is the nearest so far";
+  let summary = "reports an intersection at parameter t; true if it is the primitive's nearest so far";
   let description = [{
     With `error` the author states a bound of the error of t.
 

@@ -3,7 +3,8 @@
 // And the questions about types that the ops, the lowering and the passes ask.
 //
 //===----------------------------------------------------------------------===//
-#pragma once
+#ifndef RTSL_CODEGEN_IR_RTSL_TYPES_H // not `#pragma once`: see Precompiled.h
+#define RTSL_CODEGEN_IR_RTSL_TYPES_H
 
 #include "mlir/IR/BuiltinTypes.h"
 #include "mlir/IR/Types.h"
@@ -50,3 +51,5 @@ mlir::Type intLike(mlir::Type type);
 unsigned leafCount(mlir::Type type);
 
 } // namespace rtsl::ir
+
+#endif

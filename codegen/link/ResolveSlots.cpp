@@ -75,7 +75,7 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
                    bool mayBeNone) {
   const llvm::StringRef base =
       llvm::cast<ir::RefType>(function.getArgumentTypes().front()).getClassName();
-  if (classes.size() > 1 && context.isWithout(Item::Dispatch, (base + "." + method).str()))
+  if ((classes.size() > 1 || mayBeNone) && context.isWithout(Item::Dispatch, (base + "." + method).str()))
     return buildDispatch(context, function, {classes.front()}, method, false);
   std::vector<std::pair<const LinkedClass *, mlir::func::FuncOp>> targets;
   for (const LinkedClass *linked : classes)

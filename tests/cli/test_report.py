@@ -57,7 +57,7 @@ class Report(Case):
         scene["import"] = (scene["import"] if isinstance(scene["import"], list) else [scene["import"]]) + ["hot.rtsl"]
         scene["background"] = {"class": "Hot"}
         self.write("hot.json", json.dumps(scene))
-        out, _ = self.run_rtslc("report", "hot.json", "--out", "hot", "--size", "24x16", "--budget", "300ms", "--runs", "4", "--only", "embree recurse")
+        out, _ = self.run_rtslc("report", "hot.json", "--out", "hot", "--size", "24x16", "--budget", "1s", "--runs", "4", "--only", "embree recurse")
         self.assertIn("no interval can be given", out)
         document = json.loads((self.folder / "hot" / "report.json").read_text())
         self.assertTrue(document["reference"]["ownError"]["heavyTails"])
