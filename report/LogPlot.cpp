@@ -178,6 +178,21 @@ std::string drawPoint(const PlotPoint &point, unsigned style, double x, double y
   return svg;
 }
 
+/// The part of `x` where the line lies within the range `y`; a steep one leaves the frame.
+Range withinFrame(const LineFit &line, const Range &x, const Range &y) {
+  const double first = line.at(x.low).value, rise = line.at(x.high).value - first;
+  if (rise == 0 || x.low == x.high)
+    return first >= y.low && first <= y.high ? x : Range();
+  const auto where = [&](double value) {
+    return x.low + (value - first) / rise * (x.high - x.low);
+  };
+  const auto [enters, leaves] = std::minmax({where(y.low), where(y.high)});
+  Range shown;
+  shown.low = std::max(x.low, enters);
+  shown.high = std::min(x.high, leaves);
+  return shown;
+}
+
 /// The fitted line over the range of its points, with its band.
 std::string drawLine(const PlotSeries &series, const Axes &axes) {
   Range range;
@@ -195,11 +210,15 @@ std::string drawLine(const PlotSeries &series, const Axes &axes) {
     upper += fmt::format("{}{:.1f} {:.1f}", i ? "L" : "M", axes.toX(x), inside(y.high));
     lower = fmt::format("L{:.1f} {:.1f}", axes.toX(x), inside(y.low)) + lower;
   }
-  return fmt::format("<path class=\"band\" d=\"{}{}z\"/><line class=\"fit{}\" x1=\"{:.1f}\" "
-                     "y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>",
-                     upper, lower, series.line.bends() ? " bent" : "", axes.toX(range.low),
-                     axes.toY(series.line.at(range.low).value), axes.toX(range.high),
-                     axes.toY(series.line.at(range.high).value));
+  std::string svg = fmt::format("<path class=\"band\" d=\"{}{}z\"/>", upper, lower);
+  const Range shown = withinFrame(series.line, range, axes.y);
+  if (!shown.isEmpty())
+    svg += fmt::format("<line class=\"fit{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" "
+                       "y2=\"{:.1f}\"/>",
+                       series.line.bends() ? " bent" : "", axes.toX(shown.low),
+                       axes.toY(series.line.at(shown.low).value), axes.toX(shown.high),
+                       axes.toY(series.line.at(shown.high).value));
+  return svg;
 }
 
 std::string drawSeries(const PlotSeries &series, const Axes &axes) {

@@ -4,6 +4,7 @@
 #include "report/Exposure.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -256,6 +257,67 @@ void describeBends(const Summary &summary, const char *over, LineFit SubjectSumm
         100 * largest, lastLevels));
 }
 
+/// What is to be said of configurations: one line for all of which the same is true.
+class Remarks {
+public:
+  void add(const std::string &name, std::string text) {
+    const auto known = std::find_if(remarks.begin(), remarks.end(),
+                                    [&](const Remark &remark) { return remark.text == text; });
+    if (known == remarks.end())
+      remarks.push_back({std::move(text), {name}});
+    else
+      known->names.push_back(name);
+  }
+  void list(std::size_t configurations, std::vector<std::string> &problems) const {
+    for (const Remark &remark : remarks)
+      problems.push_back(remark.names.size() == configurations && configurations > 1
+                             ? "all configurations: " + remark.text
+                             : fmt::format("{}: {}", fmt::join(remark.names, ", "), remark.text));
+  }
+
+private:
+  struct Remark {
+    std::string text;
+    std::vector<std::string> names;
+  };
+  std::vector<Remark> remarks;
+};
+
+void remark(const SubjectSummary &subject, const Summary &summary, const Reference &reference,
+            Remarks &remarks) {
+  if (subject.nanPixels || subject.infinitePixels)
+    remarks.add(subject.name,
+                fmt::format("{} pixels were not a number and {} infinite, over all pictures",
+                            subject.nanPixels, subject.infinitePixels));
+  if (subject.samplesNotFinite)
+    remarks.add(subject.name, fmt::format("{} samples were not finite and are left out of the "
+                                          "means of their pixels",
+                                          subject.samplesNotFinite));
+  if (subject.raysTooDeep)
+    remarks.add(subject.name,
+                fmt::format("{} rays were deeper than the limit of depth and saw nothing; the "
+                            "reference has the same limit, so no error shows that",
+                            subject.raysTooDeep));
+  const std::vector<LevelSummary> &levels = subject.levels;
+  if (!levels.empty() && std::all_of(levels.begin(), levels.end(), [](const LevelSummary &level) {
+        return level.runs > 1 && level.variance == 0;
+      }))
+    remarks.add(subject.name, "all runs gave the same picture (zero variance), so its efficiency "
+                              "has no meaning");
+  if (!subject.noFit.empty() && summary.heavyTails.empty())
+    remarks.add(subject.name, "no line was fitted: " + subject.noFit);
+  const auto unresolved = std::count_if(levels.begin(), levels.end(), [](const LevelSummary &level) {
+    return !level.isResolved;
+  });
+  if (unresolved && reference.ownError)
+    remarks.add(subject.name,
+                fmt::format("the reference's own error is more than a tenth of the error with {}, "
+                            "which the line leaves out; a larger `--budget` makes a better reference",
+                            unresolved == 1 ? std::string("the most samples")
+                                            : fmt::format("the {} largest numbers of samples",
+                                                          unresolved)));
+}
+
 void findProblems(Summary &summary, const Reference &reference) {
   std::vector<std::string> &problems = summary.problems;
   if (!reference.problem.empty())
@@ -276,28 +338,10 @@ void findProblems(Summary &summary, const Reference &reference) {
         fmt::format("{:.0f} % of the reference's pixels are brighter than a screen: FLIP takes "
                     "them for white and sees no error there, HDR-FLIP does",
                     100 * beyond));
-  for (const SubjectSummary &subject : summary.subjects) {
-    if (subject.nanPixels || subject.infinitePixels)
-      problems.push_back(fmt::format("{}: {} pixels were not a number and {} infinite, over all pictures", subject.name,
-                                     subject.nanPixels, subject.infinitePixels));
-    if (subject.samplesNotFinite)
-      problems.push_back(fmt::format("{}: {} samples were not finite and are left out of the means of their pixels", subject.name, subject.samplesNotFinite));
-    if (subject.raysTooDeep)
-      problems.push_back(fmt::format("{}: {} rays were deeper than the limit of depth and saw nothing; the reference has the same limit, so no error shows that",
-                                     subject.name, subject.raysTooDeep));
-    const bool isConstant = !subject.levels.empty() && std::all_of(subject.levels.begin(), subject.levels.end(), [](const LevelSummary &level) {
-      return level.runs > 1 && level.variance == 0;
-    });
-    if (isConstant)
-      problems.push_back(fmt::format("{}: all runs gave the same picture (zero variance), so its efficiency has no meaning", subject.name));
-    if (!subject.noFit.empty() && summary.heavyTails.empty())
-      problems.push_back(fmt::format("{}: no line was fitted: {}", subject.name, subject.noFit));
-    const auto unresolved = std::count_if(subject.levels.begin(), subject.levels.end(), [](const LevelSummary &l) { return !l.isResolved; });
-    if (unresolved && reference.ownError)
-      problems.push_back(fmt::format("{}: the reference's own error is more than a tenth of that of the last {} numbers of samples, "
-                                     "which the line leaves out; a larger `--budget` makes a better reference",
-                                     subject.name, unresolved));
-  }
+  Remarks remarks;
+  for (const SubjectSummary &subject : summary.subjects)
+    remark(subject, summary, reference, remarks);
+  remarks.list(summary.subjects.size(), problems);
   describeBends(summary, "seconds", &SubjectSummary::relMseOverSeconds, problems);
   describeBends(summary, "samples", &SubjectSummary::relMseOverSamples, problems);
 }

@@ -52,6 +52,28 @@ TEST(LogPlot, ANearMarkIsDrawn) {
   EXPECT_EQ(count(svg, "↓"), 0u);
 }
 
+// Where intervals are wide, a line may be far steeper than the points beside it.
+TEST(LogPlot, ASteepLineStaysInItsFrame) {
+  for (const double slope : {-45.0, -2.0, 45.0}) {
+    LogPlot plot = falling(1, 0.01, 0);
+    LineFit &line = plot.series.front().line;
+    line.points = 2;
+    line.slope = {slope, slope - 1, slope + 1};
+    line.intercept = slope < 0 ? 0 : -46;
+    const std::string svg = drawLogPlot(plot);
+    std::smatch ends;
+    ASSERT_TRUE(std::regex_search(
+        svg, ends,
+        std::regex("<line class=\"fit\" x1=\"([0-9.]+)\" y1=\"(.*?)\" x2=\"([0-9.]+)\" y2=\"(.*?)\"")))
+        << slope;
+    for (const int end : {2, 4}) {
+      EXPECT_GE(std::stod(ends[end]), 61.9) << slope;
+      EXPECT_LE(std::stod(ends[end]), 320.1) << slope;
+    }
+    EXPECT_LT(std::stod(ends[1]), std::stod(ends[3])) << slope;
+  }
+}
+
 TEST(LogPlot, EveryAxisHasTicksWithTexts) {
   for (const auto &[first, last] : {std::pair(1.02, 0.99),
                                     {3.0, 1.1},

@@ -303,6 +303,14 @@ TEST_F(Studies, LeaveOutWhatTheReferenceCannotTell) {
   EXPECT_NE(problems(summary).find("larger `--budget`"), std::string::npos);
 }
 
+TEST_F(Studies, SayOnceWhatIsTrueOfAll) {
+  const Summary both = study({noisy("first", 0), noisy("second", 0)});
+  EXPECT_NE(problems(both).find("all configurations: all runs gave the same picture"), std::string::npos) << problems(both);
+  fs::remove_all(folder);
+  const Summary some = study({noisy("first", 0), noisy("second", 0), noisy("third", 0.2)});
+  EXPECT_NE(problems(some).find("first, second: all runs gave the same picture"), std::string::npos) << problems(some);
+}
+
 TEST_F(Studies, MakeAReferenceWithItsOwnError) {
   Subject single = noisy("single", 0.2);
   single.render = [exact = single.render](std::uint32_t samples, std::uint32_t seed) {
