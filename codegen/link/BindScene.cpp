@@ -16,6 +16,7 @@
 
 #include "codegen/link/Steps.h"
 #include "llvm/ADT/STLExtras.h"
+#include "llvm/ADT/SetVector.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -77,9 +78,29 @@ std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberD
 /// The first place that reads a member, by class and name.
 using Readers = std::map<std::pair<std::string, std::string>, std::pair<std::string, ir::SourcePlace>>;
 
-Readers findReaders(mlir::ModuleOp ir) {
-  Readers readers;
+/// The functions that the runtime calls, and those that they call: what only constructors and
+/// bounds need is not read when a picture is made.
+std::vector<mlir::func::FuncOp> reachedFunctions(mlir::ModuleOp ir,
+                                                 const mlir::SymbolTable &symbols) {
+  llvm::SetVector<mlir::Operation *> reached;
   for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (!function.isPrivate())
+      reached.insert(function);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    if (const auto uses = mlir::SymbolTable::getSymbolUses(reached[i]))
+      for (const mlir::SymbolTable::SymbolUse &use : *uses)
+        if (auto callee = symbols.lookup<mlir::func::FuncOp>(use.getSymbolRef().getRootReference()))
+          reached.insert(callee);
+  std::vector<mlir::func::FuncOp> inOrder;
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (reached.contains(function))
+      inOrder.push_back(function);
+  return inOrder;
+}
+
+Readers findReaders(mlir::ModuleOp ir, const mlir::SymbolTable &symbols) {
+  Readers readers;
+  for (mlir::func::FuncOp function : reachedFunctions(ir, symbols))
     function.walk([&](ir::MemberOp op) {
       const auto object = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
       readers.try_emplace({object.str(), op.getMember().str()},
@@ -170,7 +191,7 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
   mlir::Builder builder(ir.getContext());
   const mlir::SymbolTable symbols(ir);
   const ir::ClassTable classes(ir);
-  const Readers readers = findReaders(ir);
+  const Readers readers = findReaders(ir, symbols);
   const std::map<mlir::Operation *, Objects> byClass = objectsByClass(symbols, scene);
   for (auto record : ir.getOps<ir::ClassOp>()) {
     const auto objects = byClass.find(record);
