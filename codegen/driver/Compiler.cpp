@@ -4,6 +4,7 @@
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/HitErrors.h"
 #include "codegen/cpp/States.h"
+#include "codegen/driver/Graphviz.h"
 #include "codegen/driver/Stages.h"
 #include "codegen/emit/DoublePrecision.h"
 #include "codegen/emit/Jit.h"
@@ -288,7 +289,7 @@ static std::string write(const SplitReport &report, ReportFormat format) {
   switch (format) {
   case ReportFormat::Json: return toJson(report);
   case ReportFormat::Dot: return toDot(report);
-  case ReportFormat::Svg: return toSvg(report);
+  case ReportFormat::Svg: return drawGraph(toDot(report), "states of functions that trace");
   case ReportFormat::Text: break;
   }
   return toText(report);

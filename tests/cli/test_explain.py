@@ -295,6 +295,23 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
         kept, _ = self.run_rtslc("compile", "scene.json", "--emit=ssa", "--keep=parameters")
         self.assertNotIn("rtsl.bound", kept)
 
+    def test_picture_without_graphviz(self):
+        self.write_scene()
+        with_dot, _ = self.run_rtslc("explain", "--states", "--format=svg", "all.rtsl")
+        self.assertTrue(with_dot.startswith("<svg"), with_dot[:200])
+
+        def without_programs():
+            os.environ["PATH"] = str(self.folder)
+        (message,) = self.diagnose("explain", "--states", "--format=svg", "all.rtsl", "-o", "states.svg", prepare=without_programs)
+        self.assert_message([message], "E0900", "cannot find `dot` of Graphviz")
+        self.assertIn("--format=dot", str(message["notes"]))
+        self.assertFalse((self.folder / "states.svg").exists())
+
+        self.write("dot", "#!/bin/sh\necho 'syntax error in line 1' >&2\nexit 3\n")
+        (self.folder / "dot").chmod(0o755)
+        (message,) = self.diagnose("explain", "--states", "--format=svg", "all.rtsl", prepare=without_programs)
+        self.assert_message([message], "E0901", "failed: syntax error in line 1")
+
     def test_usage(self):
         self.write_scene()
         for arguments, text in ((("explain", "all.rtsl"), "give one, or --states"),

@@ -157,7 +157,7 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, I
   addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel, "with --measure: samples per pixel; 1 if not given");
   const Choices<ReportFormat> formats = {
       {"text", ReportFormat::Text}, {"json", ReportFormat::Json}, {"dot", ReportFormat::Dot}, {"svg", ReportFormat::Svg}};
-  addChoice(*command, "--format", options->format, formats, "text; json; of --states also dot, for Graphviz, and svg, a picture");
+  addChoice(*command, "--format", options->format, formats, "text; json; of --states also dot, for Graphviz, and svg, a picture that Graphviz lays out");
   command->add_flag_callback("--json", [options] { options->format = ReportFormat::Json; }, "the same as --format=json");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
   addSetOption(*command, options->overrides);

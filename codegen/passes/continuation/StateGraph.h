@@ -1,7 +1,7 @@
 //===- StateGraph.h - the states of a program as a picture ----------------===//
 //
-// For each function that traces, its states from the top to the bottom and the ways between them: a
-// trace and what it saves, a jump, the end. As text for Graphviz, or drawn.
+// For each function that traces a cluster: its states, and edges for what leads from one to the
+// next, which is a trace with what it saves, a call, a jump, or the end of the function.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -10,9 +10,7 @@
 
 namespace rtsl {
 
-/// A `digraph` with a cluster a function.
+/// In the language of Graphviz, which lays it out (codegen/driver/Graphviz.h).
 std::string toDot(const SplitReport &report);
-/// A document of its own, legible on light and dark pages.
-std::string toSvg(const SplitReport &report);
 
 } // namespace rtsl
