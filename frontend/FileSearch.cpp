@@ -1,6 +1,7 @@
 //===- FileSearch.cpp - which file a name means ---------------------------===//
 #include "frontend/FileSearch.h"
-#include "frontend/ClosestName.h"
+
+#include "support/ClosestName.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,6 @@
 //===- Warnings.cpp - which warnings are shown: -W ------------------------===//
-#include "frontend/ClosestName.h"
 #include "frontend/Diagnostics.h"
+#include "support/ClosestName.h"
 
 namespace rtsl {
 

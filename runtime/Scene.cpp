@@ -3,6 +3,7 @@
 #include "runtime/ErrorCollector.h"
 #include "runtime/ValueStore.h"
 #include "runtime/device/Random.h"
+#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 
@@ -360,8 +361,8 @@ void Scene::Implementation::runConstructor(const ClassInfo &classInfo, const Obj
         std::vector<std::string> names;
         for (const MemberInfo &parameter : parameters)
           names.push_back(parameter.name);
-        if (auto near = nearestName(one.name, names))
-          error.fix(*near);
+        if (const std::string near = closestName(one.name, names); !near.empty())
+          error.fix(near);
         throw error.note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
       }
       const Value *&argument = arguments[std::size_t(found - parameters.begin())];
@@ -414,8 +415,8 @@ void Scene::Implementation::setMember(const ClassInfo &classInfo, const ObjectIn
     for (const MemberInfo &member : classInfo.members)
       if (member.isPublic)
         names.push_back(member.name);
-    if (auto near = nearestName(one.name, names))
-      error.fix(*near);
+    if (const std::string near = closestName(one.name, names); !near.empty())
+      error.fix(near);
     throw error;
   }
   if (!found->isPublic)
@@ -461,8 +462,8 @@ RtslRef Scene::addObject(const std::string &className, const ObjectValues &value
     std::vector<std::string> names;
     for (const ClassInfo &one : self->program->classes)
       names.push_back(one.name);
-    if (auto near = nearestName(className, names))
-      error.fix(*near);
+    if (const std::string near = closestName(className, names); !near.empty())
+      error.fix(near);
     throw error;
   }
   std::vector<std::uint8_t> &records = self->records;

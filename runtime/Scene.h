@@ -124,8 +124,4 @@ private:
   std::unique_ptr<Implementation> self;
 };
 
-/// The name in `candidates` that is nearest to `name`, if near enough to have been meant.
-std::optional<std::string> nearestName(std::string_view name,
-                                       const std::vector<std::string> &candidates);
-
 } // namespace rtsl::runtime

@@ -1,6 +1,7 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "runtime/ErrorCollector.h"
 #include "scene/SceneFile.h"
+#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 
@@ -215,8 +216,8 @@ private:
                   fmt::format("no {}texture or material is named `{}`",
                               description.helpers.empty() ? "" : "helper, ", name),
                   place);
-      if (auto near = runtime::nearestName(name, allNames()))
-        error.fix(*near);
+      if (const std::string near = closestName(name, allNames()); !near.empty())
+        error.fix(near);
       throw error;
     }
     if (refused.count(name))

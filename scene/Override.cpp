@@ -1,6 +1,7 @@
 //===- Override.cpp - values given on the command line --------------------===//
 #include "runtime/Scene.h"
 #include "scene/JsonValue.h"
+#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 
@@ -99,8 +100,8 @@ private:
     // slip.
     if (!last && !first) {
       std::string message = fmt::format("`{}` has no `{}`", walked, part);
-      if (auto near = runtime::nearestName(part, keysOf(from)))
-        message += fmt::format("; did you mean `{}`?", *near);
+      if (const std::string near = closestName(part, keysOf(from)); !near.empty())
+        message += fmt::format("; did you mean `{}`?", near);
       fail(message);
     }
     JsonValue added;

@@ -2,6 +2,7 @@
 
 #include "runtime/ErrorCollector.h"
 #include "runtime/Scene.h"
+#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 
@@ -23,15 +24,16 @@ const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std:
 
 void checkKeys(const JsonValue &object, std::initializer_list<const char *> known,
                const std::string &what) {
+  const std::vector<std::string> names(known.begin(), known.end());
   runtime::ErrorCollector errors;
   for (const auto &member : object.members) {
     const std::string &key = member.first.text;
-    if (std::find(known.begin(), known.end(), key) != known.end())
+    if (std::find(names.begin(), names.end(), key) != names.end())
       continue;
     Error error(ErrorCode::UnknownKey, fmt::format("{} has no key `{}`", what, key),
                 member.second.fromOverride ? member.second.place() : object.place(member.first));
-    if (auto near = runtime::nearestName(key, std::vector<std::string>(known.begin(), known.end())))
-      error.fix(*near);
+    if (const std::string near = closestName(key, names); !near.empty())
+      error.fix(near);
     errors.add(std::move(error));
   }
   errors.throwIfAny();

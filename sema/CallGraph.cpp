@@ -5,8 +5,8 @@
 // that lead to it may use. All walks are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
-#include "frontend/ClosestName.h"
 #include "sema/Program.h"
+#include "support/ClosestName.h"
 
 #include <algorithm>
 #include <unordered_set>

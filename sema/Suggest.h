@@ -1,8 +1,8 @@
 //===- Suggest.h - what the author may have meant -------------------------===//
 #pragma once
 
-#include "frontend/ClosestName.h"
 #include "frontend/Diagnostics.h"
+#include "support/ClosestName.h"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 //===- Messages.cpp - what clang's preprocessor says, in our words --------===//
 #include "Messages.h"
 
-#include "frontend/ClosestName.h"
 #include "frontend/FileSearch.h"
+#include "support/ClosestName.h"
 
 #include <clang/Basic/DiagnosticLex.h>
 #include <clang/Lex/Lexer.h>

@@ -5,9 +5,9 @@
 #include "OutOfMemory.h"
 #include "Output.h"
 #include "codegen/driver/LlvmErrors.h"
-#include "frontend/ClosestName.h"
 #include "runtime/Error.h"
 #include "runtime/device/Abi.h"
+#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 

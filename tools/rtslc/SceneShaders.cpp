@@ -6,6 +6,7 @@
 #include "runtime/AtomicFile.h"
 #include "runtime/Scene.h"
 #include "scene/SceneParts.h"
+#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 
@@ -72,8 +73,8 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
     const SourceRange range = messages.rangeOf(mention.place);
     Diagnostic &diagnostic = messages.diagnostics.report(Code::sceneUnknownClass, range,
                                                          fmt::format("no class is named `{}`", mention.text));
-    if (const auto near = runtime::nearestName(mention.text, names))
-      diagnostic.fix(range, *near);
+    if (const std::string near = closestName(mention.text, names); !near.empty())
+      diagnostic.fix(range, near);
   }
 }
 

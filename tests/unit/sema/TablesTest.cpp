@@ -133,6 +133,7 @@ TEST(Builtins, AllHaveASignature) {
   EXPECT_NE(std::find(builtinNames().begin(), builtinNames().end(), name), builtinNames().end())   \
       << name;
 #include "sema/Builtins.def"
+#include "support/ClosestName.h"
 }
 
 TEST(ClassModel, EveryStateVariableBelongsToAClass) {

@@ -1,5 +1,5 @@
 //===- ClosestName.cpp - the name that was meant --------------------------===//
-#include "frontend/ClosestName.h"
+#include "support/ClosestName.h"
 
 #include <algorithm>
 #include <cctype>
