@@ -17,6 +17,7 @@
 #include "codegen/lower/KnownConditions.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
+#include "codegen/passes/continuation/Dispatch.h"
 #include "codegen/passes/continuation/StateGraph.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 #include "codegen/passes/restructure/Restructure.h"
@@ -27,6 +28,7 @@
 #include "sema/Casting.h"
 #include "sema/Walk.h"
 
+#include "mlir/Dialect/LLVMIR/LLVMDialect.h"
 #include "mlir/IR/Verifier.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/StructuralHash.h"
@@ -46,12 +48,12 @@ bool isLookedAtSplit(Stage stage) { return stage == Stage::Split || stage == Sta
 /// The PTX of a module without a scene: a function a method, or a state where it traces. What others supply is declared:
 /// slots, and the functions of runtime/device.
 std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (function->hasAttr(continuation::factOfScene))
+      function->setAttr("llvm.linkage", mlir::LLVM::LinkageAttr::get(ir.getContext(), mlir::LLVM::Linkage::Internal));
   LlvmCode code = translate(ir, gpuOptions(options));
   for (llvm::Function &function : *code.module)
-    if (function.getName().ends_with("_first") || function.getName().starts_with("rtsl_ray"))
-      // no scene, so nothing begins anywhere
-      function.setLinkage(llvm::GlobalValue::InternalLinkage);
-    else
+    if (!function.hasLocalLinkage())
       function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them
   return toPtx(std::move(code));
 }

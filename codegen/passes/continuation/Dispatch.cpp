@@ -9,6 +9,8 @@
 //   func @rtsl_rays_sent(%kind: i32) -> i32                     what bounds the stack (RayGraph.h)
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/passes/continuation/Dispatch.h"
+
 #include "codegen/ir/Separate.h"
 #include "codegen/passes/continuation/RayGraph.h"
 #include "codegen/passes/continuation/Steps.h"
@@ -46,8 +48,8 @@ private:
   mlir::Value loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset, mlir::Type type);
   mlir::LogicalResult number(ir::NextOp next);
   FuncOp makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type> inputs);
-  void makeConstant(llvm::StringRef name, std::int32_t value);
-  void makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values);
+  FuncOp makeConstant(llvm::StringRef name, std::int32_t value);
+  FuncOp makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values);
   void makeFrameSize();
   void makeRunState();
 
@@ -248,14 +250,15 @@ FuncOp Dispatcher::makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type>
   return function;
 }
 
-void Dispatcher::makeConstant(llvm::StringRef name, std::int32_t value) {
-  makeFunction(name, {});
+FuncOp Dispatcher::makeConstant(llvm::StringRef name, std::int32_t value) {
+  FuncOp function = makeFunction(name, {});
   mlir::Location location = builder.getUnknownLoc();
   mlir::func::ReturnOp::create(builder, location, constant(location, value));
+  return function;
 }
 
 /// @name(%index: i32) -> i32: one of the values; 0 where there is none.
-void Dispatcher::makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values) {
+FuncOp Dispatcher::makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values) {
   mlir::Location location = builder.getUnknownLoc();
   FuncOp function = makeFunction(name, {builder.getI32Type()});
   mlir::Block *entry = &function.getBody().front();
@@ -275,6 +278,7 @@ void Dispatcher::makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> v
   llvm::SmallVector<mlir::ValueRange> operands(constants.begin(), constants.end());
   mlir::cf::SwitchOp::create(builder, location, entry->getArgument(0), end, mlir::ValueRange(none),
                              llvm::ArrayRef<std::int32_t>(indices), blocks, operands);
+  return function;
 }
 
 /// @rtsl_frame_size(%chain: i32) -> i32: from the last value on the last difference is added.
@@ -287,8 +291,7 @@ void Dispatcher::makeFrameSize() {
     mlir::func::ReturnOp::create(builder, location, constant(location, areas.empty() ? 0 : asInt(areas.back())));
     return;
   }
-  makeTable("rtsl_frame_area", areas);
-  mlir::func::FuncOp table = module.lookupSymbol<FuncOp>("rtsl_frame_area");
+  FuncOp table = makeTable("rtsl_frame_area", areas);
   table.setPrivate();
   table->removeAttr("rtsl.export");
   FuncOp function = makeFunction("rtsl_frame_size", {builder.getI32Type()});
@@ -387,16 +390,19 @@ mlir::LogicalResult Dispatcher::run() {
   makeRunState();
   makeFrameSize();
   makeConstant("rtsl_calls", hasCalls);
+  const auto tellOfScene = [&](FuncOp function) {
+    function->setAttr(factOfScene, builder.getUnitAttr());
+  };
   for (const auto &[name, number] : entries)
-    makeConstant(name, number);
+    tellOfScene(makeConstant(name, number));
   llvm::SmallVector<std::uint32_t> sent, sentLast;
   for (const RayGraph::Kind &kind : rays.kinds) {
     sent.push_back(kind.sent);
     sentLast.push_back(kind.sentLast);
   }
-  makeConstant("rtsl_ray_kinds", static_cast<std::int32_t>(rays.kinds.size()));
-  makeTable("rtsl_rays_sent", sent);
-  makeTable("rtsl_rays_sent_last", sentLast);
+  tellOfScene(makeConstant("rtsl_ray_kinds", static_cast<std::int32_t>(rays.kinds.size())));
+  tellOfScene(makeTable("rtsl_rays_sent", sent));
+  tellOfScene(makeTable("rtsl_rays_sent_last", sentLast));
   return mlir::success();
 }
 
