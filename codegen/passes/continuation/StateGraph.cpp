@@ -118,7 +118,7 @@ std::string toDot(const SplitReport &report) {
   llvm::raw_string_ostream out(text);
   out << "digraph states {\n"
          "  graph [fontname=\"monospace\"];\n"
-         "  node [shape=box, fontname=\"monospace\"];\n"
+         "  node [shape=box, margin=\"0.3,0.08\", fontname=\"monospace\"];\n"
          "  edge [fontname=\"monospace\"];\n";
   if (report.functions.empty())
     out << "  none [shape=plaintext, label=\"No function traces a ray.\"];\n";
