@@ -17,6 +17,10 @@ namespace rtsl::device {
 /// RtslState::hitError where the author states none.
 constexpr float errorNotStated = -1;
 
+/// The same where the derived function finds no hit at that distance. Where arithmetic is not strict
+/// it may round otherwise than `intersect`, which decides whether a ray that grazes has a hit at all.
+constexpr float hitNotFound = -2;
+
 /// Is it a bound that means something?
 inline bool isBound(float error) {
   return error >= 0 && error < infinity;
@@ -51,7 +55,7 @@ inline bool mayBeWhereItStarts(RtslState &state, float t, float error) {
     return false;
   if (error == errorNotStated)
     error = derivedErrorOfCandidate(state, t);
-  return isBound(error) && t - error <= state.Epsilon;
+  return error == hitNotFound || (isBound(error) && t - error <= state.Epsilon);
 }
 
 /// `hit(t, error)`: the rule of Hit.h, but for what may be where the ray starts. `error` may be

@@ -4,6 +4,7 @@
 #include "codegen/lower/Emitter.h"
 #include "codegen/lower/Library.h"
 #include "codegen/passes/errors/Wide.h"
+#include "runtime/device/HitError.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/Dialect/Math/IR/Math.h"
@@ -60,10 +61,11 @@ bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<Unboun
   emitter.setInsertionPointToStart(&intersect.getBody().front());
   const Num distance = stateOf(emitter, "HitDistance");
   const Value bound = emitter.variable("bound", emitter.getF32Type());
-  emitter.store(emitter.floatConstant(-1), bound);
+  const Value atFirst = emitter.floatConstant(device::errorNotStated);
+  emitter.store(atFirst, bound);
   const Value nearest = emitter.variable("nearest", emitter.getF32Type());
   emitter.store(emitter.floatConstant(std::numeric_limits<float>::infinity()), nearest);
-  bool hasBound = false;
+  bool hasBound = false, allHaveBounds = true;
   for (ir::HitOp hit : hits) {
     const std::optional<Unrounded> exact = hit.getError() ? std::nullopt : errors.of(hit.getT());
     if (!exact && !hit.getError())
@@ -81,11 +83,16 @@ bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<Unboun
       emitter.store(select(isThis, {emitter, narrowed(error)}, before), bound);
       emitter.store(select(isThis, away, least), nearest);
       hasBound = true;
+    } else {
+      allHaveBounds = false;
     }
     // Of a hit that is nearer it is known that it did not count; of one that is further away, that it would have.
     hit.replaceAllUsesWith(Value(less(distance, t)));
     hit.erase();
   }
+  if (allHaveBounds) // a hit that none of them is was there by rounding alone
+    llvm::cast<mlir::arith::ConstantOp>(atFirst.getDefiningOp())
+        .setValueAttr(emitter.getF32FloatAttr(device::hitNotFound));
   for (mlir::Block &block : intersect.getBody())
     if (llvm::isa<mlir::func::ReturnOp>(block.getTerminator())) {
       emitter.setInsertionPoint(block.getTerminator());

@@ -9,8 +9,9 @@
 //                                                 hitError = bound
 //
 // The new function computes again what `intersect` has computed when it reported the hit at T, and
-// how far that is from exact arithmetic; -1 if that is not known. So nothing is lost where no ray
-// leaves the hit. It writes no scratch members, prints nothing, and draws no random numbers.
+// how far that is from exact arithmetic; -1 if that is not known, and -2 if there is no such hit
+// (runtime/device/HitError.h). So nothing is lost where no ray leaves the hit. It writes no scratch
+// members, prints nothing, and draws no random numbers.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

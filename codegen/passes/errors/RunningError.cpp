@@ -7,9 +7,11 @@
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 #include "mlir/IR/IRMapping.h"
+#include "mlir/IR/Matchers.h"
 #include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/TypeSwitch.h"
 
+#include <cmath>
 #include <limits>
 
 namespace rtsl {
@@ -51,6 +53,36 @@ static Error timesBoth(Error a, Error b) {
   return *a * *b;
 }
 static Value valueOf(Error error) { return error ? Value(*error) : Value(); }
+
+/// Half a unit of a literal that was rounded to single precision; 0 of whole numbers and of those
+/// with few digits in binary, such as 0.375.
+static double roundingOf(const llvm::APFloat &literal) {
+  const double value = literal.convertToDouble();
+  const bool isWhole = std::abs(value) < 0x1p24 && value == std::trunc(value);
+  const bool isShort = (literal.bitcastToAPInt().getZExtValue() & 0xff) == 0;
+  return isWhole || isShort || !literal.isFinite() ? 0 : std::abs(value) * 0x1p-24;
+}
+
+/// The roundings of a constant's components.
+static llvm::SmallVector<double> roundingsOf(mlir::Operation &constant) {
+  mlir::Attribute value;
+  mlir::matchPattern(&constant, mlir::m_Constant(&value));
+  llvm::SmallVector<double> roundings;
+  if (auto scalar = llvm::dyn_cast_or_null<mlir::FloatAttr>(value))
+    roundings.push_back(roundingOf(scalar.getValue()));
+  else if (auto vector = llvm::dyn_cast_or_null<mlir::DenseFPElementsAttr>(value))
+    for (const llvm::APFloat &component : vector.getValues<llvm::APFloat>())
+      roundings.push_back(roundingOf(component));
+  return roundings;
+}
+
+static bool bringsError(mlir::Operation *op) {
+  if (!op)
+    return false;
+  return llvm::isa<ir::ElementaryOp>(op) ||
+         (op->hasTrait<mlir::OpTrait::ConstantLike>() && isFloats(op->getResult(0)) &&
+          llvm::any_of(roundingsOf(*op), [](double rounding) { return rounding != 0; }));
+}
 
 //===----------------------------------------------------------------------===//
 // The whole
@@ -121,7 +153,7 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
   const Value zero = emitter.make<arith::ConstantOp>(emitter.getZeroAttr(type));
   Unrounded made = {block->addArgument(type, argument.getLoc()), {}, false};
   const unsigned index = block->getNumArguments() - 1;
-  if (hasFunctions)
+  if (hasErrors)
     made.error = block->addArgument(type, argument.getLoc());
   known[argument] = made;
 
@@ -135,7 +167,7 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
     for (unsigned successor = 0; successor < branch->getNumSuccessors(); ++successor)
       if (branch->getSuccessor(successor) == block) {
         branch.getSuccessorOperands(successor).append(zero); // until it is known
-        if (hasFunctions)
+        if (hasErrors)
           branch.getSuccessorOperands(successor).append(zero);
         edges.push_back({branch, successor});
       }
@@ -162,7 +194,7 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
   emitter.setLoc(op.getLoc());
   emitter.setInsertionPointAfter(&op);
   if (op.hasTrait<mlir::OpTrait::ConstantLike>())
-    return exact(op.getResult(0));
+    return ofConstant(op);
   if (llvm::isa<ir::HideOp>(op)) // --fp=double: the same number
     return unrounded(op.getOperand(0));
   const auto wide = [&](unsigned index) { return Wide(emitter, unrounded(op.getOperand(index)).value); };
@@ -232,6 +264,19 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
 // Operations
 //===----------------------------------------------------------------------===//
 
+Unrounded RunningError::ofConstant(mlir::Operation &op) {
+  Unrounded made = exact(op.getResult(0));
+  if (!bringsError(&op))
+    return made;
+  mlir::Type type = wideType(op.getResult(0).getType());
+  const llvm::SmallVector<double> roundings = roundingsOf(op);
+  mlir::TypedAttr error = emitter.getF64FloatAttr(roundings.front());
+  if (auto vector = llvm::dyn_cast<mlir::VectorType>(type))
+    error = mlir::DenseElementsAttr::get(vector, llvm::ArrayRef(roundings));
+  made.error = emitter.make<arith::ConstantOp>(error);
+  return made;
+}
+
 Unrounded RunningError::ofLoad(mlir::Operation &op) {
   mlir::Operation *from = llvm::cast<ir::LoadOp>(op).getAddress().getDefiningOp();
   while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp, ir::BufferElementOp>(from))
@@ -295,9 +340,12 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
   auto call = llvm::cast<ir::ElementaryOp>(op);
   const F function = call.getFunction();
   const Value argument = call.getOperands().front();
-  const Wide result = widened(emitter, call.getResult()), own = abs(result) * result.like(unit);
-  const bool isExact = llvm::all_of(call.getOperands(), [&](Value operand) { return unrounded(operand).isExact; });
-  if (isExact)
+  const Wide result = widened(emitter, call.getResult());
+  Wide own = abs(result) * result.like(unit);
+  const auto hasNoError = [&](Value operand) {
+    return unrounded(operand).isExact && !unrounded(operand).error;
+  };
+  if (llvm::all_of(call.getOperands(), hasNoError))
     return {result, own};
 
   const Wide x = widened(emitter, argument), one = x.like(1);
@@ -367,6 +415,11 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
       return fail(op.getLoc(), "it depends on an exponent that is not exact");
     // Beyond: |x^p - y^p| <= |x - y|^p for 0 <= p <= 1.
     const Wide p = widened(emitter, exponent);
+    if (const Value rounding = unrounded(exponent).error) { // of x^p along p: x^p log x
+      const Value log = emitter.make<ir::ElementaryOp>(call.getType(), F::Log, mlir::ValueRange{argument});
+      const Wide slope = choose(isAtMost(x, none), none, abs(result * widened(emitter, log)));
+      own = own + slope * Wide(emitter, rounding);
+    }
     const Wide root = widened(emitter, emitter.make<ir::ElementaryOp>(call.getType(), F::Pow, mlir::ValueRange{narrowed(spread), exponent}).getResult());
     const Wide far = choose(isAtMost(none, p), choose(isAtMost(p, one), 1.0000005 * root, infinite), infinite);
     return alongTangent(p * result / x, abs(x) / (one + abs(p)), far);
@@ -398,9 +451,9 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
 bool RunningError::isIterated(Value value) {
   llvm::SmallSetVector<Value, 16> reached;
   reached.insert(value);
-  hasFunctions = false;
+  hasErrors = false;
   for (std::size_t i = 0; i < reached.size(); ++i) {
-    hasFunctions |= llvm::isa_and_nonnull<ir::ElementaryOp>(reached[i].getDefiningOp());
+    hasErrors |= bringsError(reached[i].getDefiningOp());
     forEachSource(reached[i], [&](Value source) { reached.insert(source); });
   }
   for (const auto &component : Components<Value>::of(reached, forEachSource)) {

@@ -6,8 +6,9 @@
 // known, not bounded, and does not grow along the way as sums of worst cases do. Elementary functions
 // have no double form on a GPU. Theirs is the single result, moved along the tangent by the error of
 // the argument, and a bound of what that leaves out travels on: |a| eb + |b| ea + ea eb for a
-// product, and so on. Members of objects and the ray are exact, for they are what they are. All of
-// this holds for the branches that were taken.
+// product, and so on. Members of objects and the ray are exact, for they are what they are; a
+// literal such as 0.33333333 is not, and stands for what an author may have meant within half a unit.
+// All of this holds for the branches that were taken.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -48,6 +49,7 @@ public:
 private:
   Unrounded unrounded(mlir::Value value);
   Unrounded ofArgument(mlir::BlockArgument argument);
+  Unrounded ofConstant(mlir::Operation &op);
   Unrounded ofResult(mlir::Operation &op);
   Unrounded ofParts(mlir::Operation &op);
   Unrounded ofChoice(mlir::Operation &op);
@@ -63,7 +65,7 @@ private:
   double unit;
   lowering::Emitter emitter;
   llvm::DenseMap<mlir::Value, Unrounded> known;
-  bool hasFunctions = false; // what is asked for depends on elementary functions, so that errors travel
+  bool hasErrors = false; // what is asked for depends on elementary functions or rounded literals, so that errors travel
   std::optional<ErrorUnknown> obstacle;
 };
 
