@@ -41,7 +41,7 @@ struct Mesh {
   void apply(const Transform &transform);
 };
 
-/// Reads an OBJ, PLY or glTF file (whatever the installed assimp reads). All meshes of the file
+/// Reads an OBJ, PLY or glTF file (or whatever else the installed assimp reads). All meshes of the file
 /// become one; polygons are triangulated, points and lines left out. Throws Error: FileNotFound,
 /// FileUnreadable, UnsupportedFormat, BadMesh.
 Mesh loadMesh(const std::string &path);

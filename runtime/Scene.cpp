@@ -596,8 +596,6 @@ std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name) {
   validateMesh(mesh, shown);
   auto storage = std::make_unique<MeshStorage>(MeshStorage{std::move(mesh), std::move(shown)});
   Mesh &kept = storage->mesh;
-  // Embree reads 16 bytes at each vertex, so one float more than there is must be readable.
-  kept.positions.push_back(0);
   RtslMesh table{};
   table.positions = kept.positions.data();
   table.normals = kept.normals.empty() ? nullptr : kept.normals.data();

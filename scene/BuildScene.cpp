@@ -1,5 +1,6 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "runtime/ErrorCollector.h"
+#include "scene/MeshFiles.h"
 #include "scene/SceneFile.h"
 #include "support/ClosestName.h"
 
@@ -14,7 +15,6 @@ using runtime::ClassInfo;
 using runtime::Error;
 using runtime::ErrorCode;
 using runtime::MemberInfo;
-using runtime::Mesh;
 using runtime::NamedValue;
 using runtime::ObjectValues;
 using runtime::Program;
@@ -29,7 +29,7 @@ using Kind = JsonValue::Kind;
 class SceneBuilder {
 public:
   SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program)
-      : description(description), program(*program), scene(std::move(program)) {}
+      : description(description), program(*program), scene(std::move(program)), files(description) {}
 
   Scene build() {
     attempt([&] {
@@ -270,17 +270,15 @@ private:
                 name.place);
   }
 
-  /// A file that is placed twice in the same way is held once.
+  /// Objects that have the same file in the same place share its mesh.
   std::uint32_t mesh(const GeometryDescription &geometry) {
-    auto key = std::make_pair(geometry.meshPath, geometry.transform.columns);
-    auto found = meshes.find(key);
+    const std::size_t number = files.numberOf(geometry);
+    auto found = meshes.find(number);
     if (found != meshes.end())
       return found->second;
     try {
-      Mesh moved = runtime::loadMesh(geometry.meshPath);
-      moved.apply(geometry.transform);
-      return meshes[key] =
-                 scene.addMesh(std::move(moved),
+      return meshes[number] =
+                 scene.addMesh(files.take(number),
                                geometry.name.text.empty() ? geometry.meshPath : geometry.name.text);
     } catch (Error &error) {
       error.place = geometry.mesh.place;
@@ -311,7 +309,8 @@ private:
   std::map<std::string, RtslRef> made; // 0: on the way
   std::set<std::string> refused;
   runtime::ErrorCollector errors;
-  std::map<std::pair<std::string, decltype(runtime::Transform::columns)>, std::uint32_t> meshes;
+  MeshFiles files;
+  std::map<std::size_t, std::uint32_t> meshes; // by their number in `files`
 };
 
 } // namespace

@@ -2,15 +2,22 @@
 #include "runtime/AtomicFile.h"
 #include "runtime/Image.h"
 #include "runtime/Mesh.h"
+#include "runtime/mesh/AssimpFile.h"
+#include "runtime/mesh/ObjFile.h"
+#include "runtime/mesh/PlyFile.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <random>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -276,6 +283,186 @@ TEST_F(Meshes, BinaryPlyThatEndsTooEarly) {
               "badMesh:")
         << cut;
   }
+}
+
+namespace {
+
+/// Triangle by triangle, what stands at their corners: coordinates, normals and texture coordinates.
+std::vector<float> corners(const Mesh &mesh) {
+  std::vector<float> values;
+  auto append = [&](const std::vector<float> &from, std::size_t width, std::size_t vertex) {
+    for (std::size_t i = 0; i < width && !from.empty(); ++i)
+      values.push_back(from[width * vertex + i]);
+  };
+  for (std::uint32_t vertex : mesh.indices) {
+    append(mesh.positions, 3, vertex);
+    append(mesh.normals, 3, vertex);
+    append(mesh.uvs, 2, vertex);
+  }
+  return values;
+}
+
+/// Numbers agree but for how they are rounded, which assimp does not do correctly.
+void expectSame(const Mesh &plain, const Mesh &general) {
+  const std::vector<float> a = corners(plain), b = corners(general);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_NEAR(a[i], b[i], 1e-6f * std::max(1.0f, std::fabs(b[i]))) << i;
+}
+
+/// A grid of quadrilaterals and triangles, some of them concave, in the notations that OBJ has.
+std::string randomObj(std::mt19937 &random) {
+  auto below = [&](int n) { return int(random() % unsigned(n)); };
+  auto number = [&] { return fmt::format("{:.6g}", std::ldexp(double(random()) - 0x1p31, -28)); };
+  const bool uvs = below(2), normals = below(2), relative = below(2);
+  const int width = 2 + below(5), count = width * width;
+  std::string text = "# a grid\r\nmtllib none.mtl\no grid\ns off\n\n";
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format("v  {} {}\t{:g}{}\n", i % width + 0.3 * below(3), i / width + 0.3 * below(3),
+                        1e-4 * below(100), below(2) ? " 0.5 0.25 1" : "");
+    if (uvs)
+      text += fmt::format("vt {} {}{}\n", number(), number(), below(2) ? " 0" : "");
+    if (normals)
+      text += fmt::format("vn {} {} {}  \r\n", number(), number(), number());
+  }
+  auto corner = [&](int vertex) {
+    auto index = [&](int i) { return relative ? i - count : i + 1; };
+    std::string written = fmt::format("{}", index(vertex));
+    if (uvs)
+      written += fmt::format("/{}", index(below(count)));
+    if (normals)
+      written += fmt::format("{}{}", uvs ? "/" : "//", index(below(count)));
+    return " " + written;
+  };
+  for (int y = 0; y + 1 < width; ++y)
+    for (int x = 0; x + 1 < width; ++x) {
+      const int first = y * width + x;
+      if (below(9) == 0)
+        text += "usemtl other\n";
+      text += "f" + corner(first) + corner(first + 1) + corner(first + width + 1) +
+              (below(2) ? corner(first + width) : "") + "\n";
+    }
+  return text;
+}
+
+} // namespace
+
+TEST_F(Meshes, PlainObjIsWhatAssimpReads) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 100; ++i) {
+    const std::string text = randomObj(random), file = put("plain.obj", text);
+    const std::optional<Mesh> plain = readPlainObj(text);
+    ASSERT_TRUE(plain) << text;
+    ASSERT_NO_FATAL_FAILURE(expectSame(*plain, readByAssimp(file))) << text;
+  }
+}
+
+TEST_F(Meshes, CornersThatAreEqualShareAVertex) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\n";
+  EXPECT_EQ(readPlainObj(vertices + "f 1 2 3\nf 1 3 4\n")->vertexCount(), 4u);
+  EXPECT_EQ(readPlainObj(vertices + "f 1//1 2//1 3//1\nf 1//2 3//1 4//1\n")->vertexCount(), 5u);
+}
+
+TEST_F(Meshes, WhatIsNotPlainIsLeftToAssimp) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\n";
+  ASSERT_TRUE(readPlainObj(vertices + "f 1 2 3\n"));
+  for (const char *rest : {"f 1 2 3 4 5\n", "f 1 2 3 \\\n4\n", "v 1 1 1 2\nf 1 2 6\n", "f 1 2 3\nl 1 2\n"}) {
+    EXPECT_FALSE(readPlainObj(vertices + rest)) << rest;
+    EXPECT_GE(loadMesh(put("general.obj", vertices + rest)).triangleCount(), 1u) << rest;
+  }
+  for (const char *rest : {"", "f 1 2\n", "f 1 2 9\n", "f 1 2 0\n", "f 1 2 -9\n", "f 1 2 3/1\n", "f 1 2 3//1\n",
+                           "f 1 2 x\n", "f 1 2 3/\n", "v 1 nan 1\nf 1 2 3\n", "v 1 1\nf 1 2 3\n", "v 1 1e99 1\nf 1 2 3\n",
+                           "v 1 1 x\nf 1 2 3\n", "vn 0 0\nf 1 2 3\n", "vt 0\nf 1 2 3\n", "nonsense\nf 1 2 3\n"})
+    EXPECT_FALSE(readPlainObj(vertices + rest)) << rest;
+}
+
+namespace {
+
+/// The grid of quadrilaterals again, with numbers that nobody needs, in one of PLY's formats.
+std::string plyGrid(const char *format, bool normals, bool uvs) {
+  const bool isText = std::string(format) == "ascii", isBig = std::string(format) == "binary_big_endian";
+  std::string body;
+  auto put = [&](auto value) {
+    if (isText) {
+      body += fmt::format("{} ", value);
+      return;
+    }
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    if (isBig)
+      std::reverse(bytes, bytes + sizeof value);
+    body.append(bytes, sizeof value);
+  };
+  std::string header = fmt::format("ply\nformat {} 1.0\ncomment a grid\nelement vertex 9\nproperty float x\n"
+                                   "property double y\nproperty float z\nproperty uchar red\n", format);
+  if (normals)
+    header += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (uvs)
+    header += "property float s\nproperty float t\n";
+  for (int i = 0; i < 9; ++i) {
+    put(float(i % 3));
+    put(double(i / 3));
+    put(0.001f * float(i * i % 5));
+    put(std::uint8_t(7));
+    for (int axis = 0; axis < 3 && normals; ++axis)
+      put(0.5f * float(axis + i));
+    for (int axis = 0; axis < 2 && uvs; ++axis)
+      put(0.125f * float(axis + i));
+    if (isText)
+      body += "\n";
+  }
+  header += "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 2; ++x) {
+      const int first = 3 * y + x;
+      put(std::uint8_t(x ? 3 : 4));
+      put(std::int32_t(first));
+      put(std::int32_t(first + 1));
+      put(std::int32_t(first + 4));
+      if (!x)
+        put(std::int32_t(first + 3));
+      if (isText)
+        body += "\n";
+    }
+  return header + body;
+}
+
+} // namespace
+
+TEST_F(Meshes, PlainPlyIsWhatAssimpReads) {
+  for (const char *format : {"ascii", "binary_little_endian", "binary_big_endian"})
+    for (bool normals : {false, true})
+      for (bool uvs : {false, true}) {
+        const std::string bytes = plyGrid(format, normals, uvs), file = put("plain.ply", bytes);
+        const std::optional<Mesh> plain = readPlainPly(bytes);
+        ASSERT_TRUE(plain) << format;
+        EXPECT_EQ(plain->triangleCount(), 6u);
+        EXPECT_EQ(plain->normals.empty(), !normals);
+        EXPECT_EQ(plain->uvs.empty(), !uvs);
+        ASSERT_NO_FATAL_FAILURE(expectSame(*plain, readByAssimp(file))) << format;
+        for (std::size_t length = 1; length < bytes.size(); length += 3) {
+          const std::string cut = bytes.substr(0, bytes.size() - length);
+          if (std::strcmp(format, "ascii") != 0) {
+            ASSERT_FALSE(readPlainPly(cut)) << length;
+          }
+        }
+      }
+}
+
+TEST_F(Meshes, PlyThatIsNotPlainIsLeftToAssimp) {
+  const std::string header = plyHeader;
+  ASSERT_TRUE(readPlainPly(header + "3 0 1 2\n3 1 2 3\n"));
+  for (const char *faces : {"3 0 1 2\n3 1 2 4\n", "3 0 1 2\n3 1 2 -1\n", "3 0 1 2\n2 1 2\n", "3 0 1 2\n3 1 2 x\n", "3 0 1 2\n3 1 2\n", ""})
+    EXPECT_FALSE(readPlainPly(header + faces)) << faces;
+  auto with = [&](const std::string &what, const std::string &instead) {
+    std::string text = header + "3 0 1 2\n3 1 2 3\n";
+    return text.replace(text.find(what), what.size(), instead);
+  };
+  EXPECT_FALSE(readPlainPly(with("float z", "float q")));
+  EXPECT_FALSE(readPlainPly(with("float z", "float y")));
+  EXPECT_FALSE(readPlainPly(with("float z", "list uchar float z")));
+  EXPECT_FALSE(readPlainPly(with("vertex_indices", "strips")));
+  EXPECT_FALSE(readPlainPly(with("1 1 0", "1 nan 0")));
 }
 
 TEST(MeshTransform, MovesNormalsAndKeepsSides) {

@@ -1,0 +1,20 @@
+//===- Normals.h - normals of length 1 ------------------------------------===//
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// Normals of files may have any length; between vertices all are to weigh the same. Zeros stay.
+inline void normalize(std::vector<float> &normals) {
+  for (std::size_t i = 0; i < normals.size(); i += 3) {
+    const double x = normals[i], y = normals[i + 1], z = normals[i + 2];
+    const double length = std::sqrt(x * x + y * y + z * z);
+    for (std::size_t axis = 0; axis < 3 && length > 0; ++axis)
+      normals[i + axis] = float(normals[i + axis] / length);
+  }
+}
+
+} // namespace rtsl::runtime

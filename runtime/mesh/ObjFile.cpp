@@ -1,0 +1,259 @@
+#include "runtime/mesh/ObjFile.h"
+
+#include "runtime/mesh/Normals.h"
+#include "runtime/mesh/PolygonSplit.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace rtsl::runtime {
+
+namespace {
+
+constexpr std::uint32_t none = ~std::uint32_t(0);
+
+/// What stands at a corner of a face, counted from 0.
+struct Corner {
+  std::uint32_t position = none, uv = none, normal = none;
+
+  bool operator==(const Corner &other) const {
+    return position == other.position && uv == other.uv && normal == other.normal;
+  }
+};
+
+/// Corners become vertices; equal ones the same.
+class Vertices {
+public:
+  std::uint32_t add(const Corner &corner) {
+    if (corner.position >= firstAt.size())
+      firstAt.resize(std::max<std::size_t>(corner.position + 1, 2 * firstAt.size()), none);
+    std::uint32_t *link = &firstAt[corner.position];
+    while (*link != none) {
+      Vertex &vertex = vertices[*link];
+      if (vertex.corner == corner)
+        return *link;
+      link = &vertex.nextAt;
+    }
+    const auto number = std::uint32_t(vertices.size());
+    *link = number;
+    vertices.push_back({corner, none});
+    return number;
+  }
+
+  std::size_t size() const { return vertices.size(); }
+
+  /// `width` floats of each vertex, of those in `from` that its `index` says. Empty if no vertex has any; zeros for
+  /// those that have none.
+  std::vector<float> gather(const std::vector<float> &from, std::uint32_t Corner::*index,
+                            std::size_t width) const {
+    auto has = [&](const Vertex &vertex) { return vertex.corner.*index != none; };
+    if (std::none_of(vertices.begin(), vertices.end(), has))
+      return {};
+    std::vector<float> gathered(width * vertices.size(), 0.0f);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      if (has(vertices[i]))
+        std::copy_n(&from[width * (vertices[i].corner.*index)], width, &gathered[width * i]);
+    return gathered;
+  }
+
+private:
+  struct Vertex {
+    Corner corner;
+    std::uint32_t nextAt; // another one with the same position
+  };
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> firstAt; // by position
+};
+
+/// Reads line by line. Functions return false where the file is not plain.
+class Reader {
+public:
+  explicit Reader(std::string_view text) : at(text.data()), end(text.data() + text.size()) {}
+
+  bool readAll() {
+    while (at != end)
+      if (!readLine())
+        return false;
+    return !indices.empty();
+  }
+
+  Mesh takeMesh() {
+    normalize(normals);
+    Mesh mesh;
+    mesh.positions = vertices.gather(positions, &Corner::position, 3);
+    mesh.normals = vertices.gather(normals, &Corner::normal, 3);
+    mesh.uvs = vertices.gather(uvs, &Corner::uv, 2);
+    mesh.indices = std::move(indices);
+    return mesh;
+  }
+
+private:
+  static bool isBlank(char c) { return c == ' ' || c == '\t'; }
+  bool isAtEnd() const { return at == end || *at == '\n' || *at == '\r'; }
+  void skipBlanks() {
+    while (at != end && isBlank(*at))
+      ++at;
+  }
+
+  std::string_view readWord() {
+    const char *start = at;
+    while (!isAtEnd() && !isBlank(*at))
+      ++at;
+    return {start, std::size_t(at - start)};
+  }
+
+  /// Only blanks may be left.
+  bool endLine() {
+    skipBlanks();
+    if (at != end && *at == '\r')
+      ++at;
+    if (at == end)
+      return true;
+    return *at++ == '\n';
+  }
+
+  /// What is left means nothing. A backslash at the end would go on with the next line.
+  bool skipLine() {
+    const char *start = at;
+    const void *newline = std::memchr(at, '\n', std::size_t(end - at));
+    const char *last = newline ? static_cast<const char *>(newline) : end;
+    at = newline ? last + 1 : end;
+    if (last != start && last[-1] == '\r')
+      --last;
+    return last == start || last[-1] != '\\';
+  }
+
+  bool readLine() {
+    skipBlanks();
+    if (isAtEnd())
+      return endLine();
+    if (*at == '#')
+      return skipLine();
+    const std::string_view word = readWord();
+    if (word == "v")
+      return readPosition();
+    if (word == "vn")
+      return readNumbers(normals, 3) && endLine();
+    if (word == "vt")
+      return readTextureCoordinates();
+    if (word == "f")
+      return readFace();
+    const bool meansNothing =
+        word == "g" || word == "o" || word == "s" || word == "usemtl" || word == "mtllib";
+    return meansNothing && skipLine();
+  }
+
+  bool readNumber(float &number) {
+    skipBlanks();
+    const auto [after, error] = std::from_chars(at, end, number);
+    at = after;
+    return error == std::errc() && std::isfinite(number) && (isAtEnd() || isBlank(*at));
+  }
+
+  bool readNumbers(std::vector<float> &to, int count) {
+    for (float number; count > 0; --count) {
+      if (!readNumber(number))
+        return false;
+      to.push_back(number);
+    }
+    return true;
+  }
+
+  /// x y z, and perhaps a color. Four numbers would be homogeneous coordinates.
+  bool readPosition() {
+    if (!readNumbers(positions, 3))
+      return false;
+    skipBlanks();
+    float ignored;
+    return (isAtEnd() || (readNumber(ignored) && readNumber(ignored) && readNumber(ignored))) && endLine();
+  }
+
+  /// u v, and perhaps w.
+  bool readTextureCoordinates() {
+    if (!readNumbers(uvs, 2))
+      return false;
+    skipBlanks();
+    float ignored;
+    return (isAtEnd() || readNumber(ignored)) && endLine();
+  }
+
+  /// An index counts from 1, or back from the last one before the face.
+  bool readIndex(std::size_t count, std::uint32_t &index) {
+    std::int64_t number;
+    const auto [after, error] = std::from_chars(at, end, number);
+    at = after;
+    if (error != std::errc() || number == 0 || count >= none)
+      return false;
+    if (number < 0)
+      number += std::int64_t(count) + 1;
+    index = std::uint32_t(number - 1);
+    return number > 0 && number <= std::int64_t(count);
+  }
+
+  bool skip(char c) {
+    if (at == end || *at != c)
+      return false;
+    ++at;
+    return true;
+  }
+
+  /// v, v/vt, v//vn or v/vt/vn.
+  bool readCorner(Corner &corner) {
+    if (!readIndex(positions.size() / 3, corner.position))
+      return false;
+    if (skip('/')) {
+      if (at != end && *at != '/' && !readIndex(uvs.size() / 2, corner.uv))
+        return false;
+      if (skip('/') && !readIndex(normals.size() / 3, corner.normal))
+        return false;
+    }
+    return isAtEnd() || isBlank(*at);
+  }
+
+  bool readFace() {
+    std::array<Corner, 4> corners;
+    int count = 0;
+    for (skipBlanks(); !isAtEnd(); skipBlanks()) {
+      if (count == 4 || !readCorner(corners[std::size_t(count)]))
+        return false;
+      ++count;
+    }
+    if (count < 3)
+      return false;
+    std::array<std::uint32_t, 4> vertex;
+    for (int i = 0; i < count; ++i)
+      vertex[std::size_t(i)] = vertices.add(corners[std::size_t(i)]);
+    int first = 0;
+    if (count == 4)
+      first = cornerOfDiagonal({position(corners[0]), position(corners[1]), position(corners[2]),
+                                position(corners[3])});
+    for (int i = 1; i + 1 < count; ++i)
+      for (int corner : {first, first + i, first + i + 1})
+        indices.push_back(vertex[std::size_t(corner % count)]);
+    return endLine();
+  }
+
+  const float *position(const Corner &corner) const {
+    return &positions[3 * std::size_t(corner.position)];
+  }
+
+  const char *at, *end;
+  std::vector<float> positions, normals, uvs; // as the file numbers them
+  Vertices vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+} // namespace
+
+std::optional<Mesh> readPlainObj(std::string_view text) {
+  Reader reader(text);
+  if (!reader.readAll())
+    return std::nullopt;
+  return reader.takeMesh();
+}
+
+} // namespace rtsl::runtime

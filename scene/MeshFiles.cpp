@@ -1,0 +1,88 @@
+#include "scene/MeshFiles.h"
+
+#include "runtime/WorkerThreads.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+namespace rtsl::scene {
+
+using runtime::Mesh;
+using runtime::Transform;
+
+namespace {
+
+/// Calls work(0) ... work(count - 1) in any order, on all cores.
+template <typename Work>
+void forEachOnAllCores(std::size_t count, Work work) {
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  std::atomic<std::size_t> next{0};
+  runtime::runOnThreads(unsigned(std::min(count, cores)), 0, [&](unsigned) {
+    for (std::size_t i = next++; i < count; i = next++)
+      work(i);
+  });
+}
+
+/// Where a file's mesh is to be.
+struct Placement {
+  std::size_t file;
+  const Transform *transform;
+};
+
+} // namespace
+
+MeshFiles::MeshFiles(const SceneDescription &description) {
+  std::map<std::string, std::size_t> fileNumbers;
+  std::vector<const std::string *> paths;
+  std::vector<std::size_t> uses; // placements of each file
+  std::vector<Placement> placements;
+  for (const GeometryDescription &geometry : description.objects) {
+    if (geometry.primitive ||
+        !numbers.emplace(std::make_pair(geometry.meshPath, geometry.transform.columns), numbers.size()).second)
+      continue;
+    const auto [file, isNew] = fileNumbers.emplace(geometry.meshPath, paths.size());
+    if (isNew) {
+      paths.push_back(&geometry.meshPath);
+      uses.push_back(0);
+    }
+    ++uses[file->second];
+    placements.push_back({file->second, &geometry.transform});
+  }
+
+  std::vector<Result> files(paths.size());
+  forEachOnAllCores(files.size(), [&](std::size_t i) {
+    try {
+      files[i].mesh = runtime::loadMesh(*paths[i]);
+    } catch (...) {
+      files[i].failure = std::current_exception();
+    }
+  });
+  results.resize(placements.size());
+  forEachOnAllCores(results.size(), [&](std::size_t i) {
+    Result &file = files[placements[i].file], &result = results[i];
+    try {
+      result.failure = file.failure;
+      if (uses[placements[i].file] == 1)
+        result.mesh = std::move(file.mesh);
+      else
+        result.mesh = file.mesh;
+      result.mesh.apply(*placements[i].transform);
+    } catch (...) {
+      result.failure = std::current_exception();
+    }
+  });
+}
+
+std::size_t MeshFiles::numberOf(const GeometryDescription &geometry) const {
+  return numbers.at({geometry.meshPath, geometry.transform.columns});
+}
+
+Mesh MeshFiles::take(std::size_t number) {
+  Result &result = results[number];
+  if (result.failure)
+    std::rethrow_exception(result.failure);
+  return std::move(result.mesh);
+}
+
+} // namespace rtsl::scene
