@@ -52,7 +52,7 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
 }
 
 /// Any ray: also those whose hits may be refused, and those for which some instances are not there.
-std::uint32_t HostScene::traverseAny(RtslState &state, std::uint32_t how) const {
+[[gnu::cold, gnu::noinline]] std::uint32_t HostScene::traverseAny(RtslState &state, std::uint32_t how) const {
   if (!device::isGoodRay(state)) {
     ++rayCounters().badRays;
     return RTSL_BAD_RAY;
@@ -82,7 +82,8 @@ std::uint32_t HostScene::traverse(RtslState &state, std::uint32_t how) const {
 
 } // namespace rtsl::runtime
 
-extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
+// Flattened, for what is called with vectors of three by value gets them through memory.
+extern "C" [[gnu::flatten]] std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
   return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)
       ->traverseFast(*state, how);
 }

@@ -1,8 +1,9 @@
 //===- TriangleBlock.h - eight triangles, tested at once ------------------===//
 //
-// What lies in a leaf of the host's tree. The edge tests of runtime/device/Triangle.h are made for
-// all eight, with the same operations in the same order, and so with the same bits; what passes them
-// is tested by that file's own function, which also computes t, u and v.
+// What lies in a leaf of the host's tree. All eight are tested by the operations of
+// runtime/device/Triangle.h and moveIntoBox (runtime/device/Traverse.h), in the same order, and so
+// with the same bits. Where those take another course for numbers of unusual size, or near the ray's
+// origin, the triangle is tested by their own functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -41,54 +42,175 @@ struct alignas(32) TriangleBlock {
   }
 };
 
-/// a b - c d as differenceOfProducts of runtime/device/Vector.h computes it.
-inline __m256 differenceOfProducts(__m256 a, __m256 b, __m256 c, __m256 d) {
-  __m256 cd = _mm256_mul_ps(c, d);
-  __m256 error = _mm256_fnmadd_ps(c, d, cd);
-  return _mm256_add_ps(_mm256_fmsub_ps(a, b, cd), error);
+/// One number of each lane.
+using Lanes = __m256;
+
+inline Lanes all(float a) {
+  return _mm256_set1_ps(a);
+}
+inline Lanes absolute(Lanes a) {
+  return _mm256_andnot_ps(all(-0.0f), a);
+}
+/// maximum and minimum of runtime/device/Vector.h.
+inline Lanes maximum(Lanes a, Lanes b) {
+  return _mm256_max_ps(a, b);
+}
+inline Lanes minimum(Lanes a, Lanes b) {
+  return _mm256_min_ps(a, b);
+}
+inline Lanes maximum(Lanes a, Lanes b, Lanes c) {
+  return maximum(maximum(a, b), c);
+}
+inline Lanes minimum(Lanes a, Lanes b, Lanes c) {
+  return minimum(minimum(a, b), c);
 }
 
-/// The lanes that the ray's line may go through, as bits: all that intersectTriangle accepts, and
-/// some more.
-inline unsigned lanesOnLine(const device::TriangleRay &ray, const TriangleBlock &block) {
-  const __m256 ox = _mm256_set1_ps(ray.turned.x), oy = _mm256_set1_ps(ray.turned.y),
-               oz = _mm256_set1_ps(ray.turned.z);
-  const __m256 sx = _mm256_set1_ps(ray.sx), sy = _mm256_set1_ps(ray.sy);
-  __m256 x[3], y[3];
+/// a b - c d as differenceOfProducts of runtime/device/Vector.h computes it.
+inline Lanes differenceOfProducts(Lanes a, Lanes b, Lanes c, Lanes d) {
+  const Lanes cd = c * d;
+  const Lanes error = _mm256_fnmadd_ps(c, d, cd);
+  return _mm256_fmsub_ps(a, b, cd) + error;
+}
+
+/// Puts the right depths where hits are near the ray's origin.
+[[gnu::cold, gnu::noinline]] inline void correctNearDepths(const device::TriangleRay &ray,
+                                                           const TriangleBlock &block,
+                                                           unsigned near, Lanes &depth) {
+  alignas(32) float depths[TriangleBlock::lanes];
+  _mm256_store_ps(depths, depth);
+  for (; near != 0; near &= near - 1) {
+    const unsigned i = unsigned(__builtin_ctz(near));
+    const auto [v0, v1, v2] = block.lane(i);
+    depths[i] = device::depthNearOrigin(ray, v0, v1, v2, 1, depths[i]);
+  }
+  depth = _mm256_load_ps(depths);
+}
+
+/// Where the lines of a ray and the planes of triangles meet, and which lanes have a hit.
+struct LaneHits {
+  Lanes t, u, v;
+  unsigned hit;   // t, u and v are right, before moveIntoBox
+  unsigned other; // lanes to be tested by device::testTriangle
+};
+
+/// intersectTriangle for all lanes.
+[[gnu::always_inline]] inline LaneHits intersectLanes(const device::TriangleRay &ray,
+                                                      const TriangleBlock &block) {
+  const Lanes ox = all(ray.turned.x), oy = all(ray.turned.y), oz = all(ray.turned.z);
+  const Lanes sx = all(ray.sx), sy = all(ray.sy);
+  Lanes x[3], y[3], z[3];
+#pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
     const auto &vertex = block.vertices[i];
-    const __m256 z = _mm256_sub_ps(_mm256_load_ps(vertex[ray.kz]), oz);
-    x[i] = _mm256_sub_ps(_mm256_sub_ps(_mm256_load_ps(vertex[ray.kx]), ox), _mm256_mul_ps(sx, z));
-    y[i] = _mm256_sub_ps(_mm256_sub_ps(_mm256_load_ps(vertex[ray.ky]), oy), _mm256_mul_ps(sy, z));
+    z[i] = _mm256_load_ps(vertex[ray.kz]) - oz;
+    x[i] = (_mm256_load_ps(vertex[ray.kx]) - ox) - sx * z[i];
+    y[i] = (_mm256_load_ps(vertex[ray.ky]) - oy) - sy * z[i];
   }
-  const __m256 e0 = differenceOfProducts(x[2], y[1], y[2], x[1]);
-  const __m256 e1 = differenceOfProducts(x[0], y[2], y[0], x[2]);
-  const __m256 e2 = differenceOfProducts(x[1], y[0], y[1], x[0]);
+  const Lanes e0 = differenceOfProducts(x[2], y[1], y[2], x[1]);
+  const Lanes e1 = differenceOfProducts(x[0], y[2], y[0], x[2]);
+  const Lanes e2 = differenceOfProducts(x[1], y[0], y[1], x[0]);
+  const Lanes zero = _mm256_setzero_ps();
+  const Lanes isInside = _mm256_or_ps(_mm256_cmp_ps(minimum(e0, e1, e2), zero, _CMP_GE_OQ),
+                                      _mm256_cmp_ps(maximum(e0, e1, e2), zero, _CMP_LE_OQ));
+  // Coordinates of meshes and of origins that come here are below 2^60; small ones are scaled there.
+  const Lanes size = maximum(maximum(absolute(x[0]), absolute(x[1]), absolute(x[2])),
+                             maximum(absolute(y[0]), absolute(y[1]), absolute(y[2])));
+  const Lanes isUsual = _mm256_and_ps(_mm256_cmp_ps(size, all(0x1p-30f), _CMP_GT_OQ),
+                                      _mm256_cmp_ps(size, all(0x1p30f), _CMP_LT_OQ));
+  LaneHits hits;
+  hits.other = ~unsigned(_mm256_movemask_ps(isUsual)) & 0xffu;
+  hits.hit = unsigned(_mm256_movemask_ps(isInside)) & ~hits.other;
+  if ((hits.hit | hits.other) == 0)
+    return hits;
 
-  const __m256 zero = _mm256_setzero_ps();
-  const __m256 least = _mm256_min_ps(_mm256_min_ps(e0, e1), e2);
-  const __m256 greatest = _mm256_max_ps(_mm256_max_ps(e0, e1), e2);
-  const __m256 isInside = _mm256_or_ps(_mm256_cmp_ps(least, zero, _CMP_GE_OQ),
-                                       _mm256_cmp_ps(greatest, zero, _CMP_LE_OQ));
-  // Products so small that signs may be wrong: intersectTriangle scales them first. None is too large:
-  // coordinates of meshes and of origins that come here are below 2^60.
-  const __m256 size = _mm256_max_ps(greatest, _mm256_sub_ps(zero, least));
-  const __m256 isSmall = _mm256_cmp_ps(size, _mm256_set1_ps(0x1p-58f), _CMP_LT_OQ);
-  return unsigned(_mm256_movemask_ps(_mm256_or_ps(isInside, isSmall)));
+  const Lanes determinant = (e0 + e1) + e2;
+  const Lanes deepest = maximum(absolute(z[0]), absolute(z[1]), absolute(z[2]));
+  const Lanes isUsualDepth =
+      _mm256_and_ps(_mm256_cmp_ps(determinant, zero, _CMP_NEQ_OQ),
+                    _mm256_and_ps(_mm256_cmp_ps(deepest, all(0x1p-30f), _CMP_GT_OQ),
+                                  _mm256_cmp_ps(deepest, all(0x1p30f), _CMP_LT_OQ)));
+  const unsigned usualDepth = unsigned(_mm256_movemask_ps(isUsualDepth));
+  hits.other |= hits.hit & ~usualDepth;
+  hits.hit &= usualDepth;
+
+  const Lanes reciprocal = all(1.0f) / determinant;
+  Lanes depth = ((e0 * z[0] + e1 * z[1]) + e2 * z[2]) * reciprocal;
+  const Lanes isNear = _mm256_cmp_ps(absolute(depth), all(device::nearShare) * (size + deepest), _CMP_LT_OQ);
+  if (const unsigned near = hits.hit & unsigned(_mm256_movemask_ps(isNear)))
+    correctNearDepths(ray, block, near, depth);
+  hits.t = depth * all(ray.sz);
+  hits.u = e1 * reciprocal;
+  hits.v = e2 * reciprocal;
+  return hits;
+}
+
+/// moveIntoBox for all lanes. Returns those that meet their box, of `hit`.
+[[gnu::always_inline]] inline unsigned moveLanesIntoBoxes(const device::TriangleRay &ray,
+                                                          const TriangleBlock &block, Lanes &t) {
+  Lanes near = _mm256_setzero_ps(), far = all(device::infinity);
+#pragma GCC unroll 3
+  for (int axis = 0; axis < 3; ++axis) {
+    const Lanes a = _mm256_load_ps(block.vertices[0][axis]),
+                b = _mm256_load_ps(block.vertices[1][axis]),
+                c = _mm256_load_ps(block.vertices[2][axis]);
+    const Lanes lower = minimum(a, b, c), upper = maximum(a, b, c);
+    const float inverse = ray.inverse[axis];
+    const Lanes origin = all(ray.origin[axis]);
+    const Lanes first = (inverse < 0 ? upper : lower) - origin, last = (inverse < 0 ? lower : upper) - origin;
+    near = maximum(first * all(inverse), near);
+    far = minimum(last * all(inverse), far);
+  }
+  const Lanes isMet = _mm256_cmp_ps(near, far * all(device::bvhSlack), _CMP_LE_OQ);
+  near = near * all(1.0f - device::rangeShare);
+  far = far * all(1.0f + device::rangeShare);
+  const Lanes notBehind = _mm256_blendv_ps(t, far, _mm256_cmp_ps(t, far, _CMP_GT_OQ));
+  t = _mm256_blendv_ps(notBehind, near, _mm256_cmp_ps(t, near, _CMP_LT_OQ));
+  return unsigned(_mm256_movemask_ps(isMet));
+}
+
+/// device::testTriangle of one lane.
+[[gnu::cold, gnu::noinline]] inline bool testLane(RtslState &state, const device::TriangleRay &ray,
+                                                  const TriangleBlock &block, unsigned i) {
+  return block.instance[i] != RTSL_NO_HIT &&
+         device::testTriangle(state, ray, block.lane(i), block.instance[i], block.triangle[i]);
 }
 
 /// Tests all triangles of the block and commits the one that wins. With `anyHit` the first will do.
 inline bool testBlock(RtslState &state, const device::TriangleRay &ray, const TriangleBlock &block,
                       bool anyHit) {
-  bool found = false;
-  for (unsigned lanes = lanesOnLine(ray, block); lanes != 0; lanes &= lanes - 1) {
-    const unsigned i = unsigned(__builtin_ctz(lanes));
-    if (block.instance[i] == RTSL_NO_HIT)
-      continue;
-    found |= device::testTriangle(state, ray, block.lane(i), block.instance[i], block.triangle[i]);
-    if (found && anyHit)
-      break;
+  LaneHits hits = intersectLanes(ray, block);
+  if ((hits.hit | hits.other) == 0)
+    return false;
+  if (__builtin_expect(ray.directionExponent != 0, 0)) {
+    hits.other |= hits.hit;
+    hits.hit = 0;
   }
+  bool found = false;
+  if (hits.hit) {
+    const unsigned met = moveLanesIntoBoxes(ray, block, hits.t);
+    const Lanes mayWin = _mm256_and_ps(_mm256_cmp_ps(hits.t, all(state.Epsilon), _CMP_GT_OQ),
+                                       _mm256_cmp_ps(hits.t, all(state.nearest), _CMP_LE_OQ));
+    alignas(32) float t[TriangleBlock::lanes], u[TriangleBlock::lanes], v[TriangleBlock::lanes];
+    unsigned lanes = hits.hit & met & unsigned(_mm256_movemask_ps(mayWin));
+    if (lanes) {
+      _mm256_store_ps(t, hits.t);
+      _mm256_store_ps(u, hits.u);
+      _mm256_store_ps(v, hits.v);
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned i = unsigned(__builtin_ctz(lanes));
+      if (block.instance[i] == RTSL_NO_HIT || !device::wins(state, t[i], block.instance[i], block.triangle[i]))
+        continue;
+      device::commit(state, t[i], t[i], block.instance[i], block.triangle[i]);
+      state.u = u[i];
+      state.v = v[i];
+      found = true;
+      if (anyHit)
+        return true;
+    }
+  }
+  for (unsigned lanes = hits.other; __builtin_expect(lanes != 0, 0); lanes &= lanes - 1)
+    found |= testLane(state, ray, block, unsigned(__builtin_ctz(lanes)));
   return found;
 }
 
