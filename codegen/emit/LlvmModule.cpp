@@ -227,6 +227,13 @@ static void addScalarization(llvm::PassBuilder &builder) {
       });
 }
 
+/// Leaves out the pass that loads 16 bytes where it knows that so many are there, to use one or two
+/// lanes of them: that load, too, waits for the narrow stores that wrote them, and meets denormals.
+static void keepLoadsNarrow(llvm::PassInstrumentationCallbacks &callbacks) {
+  callbacks.registerShouldRunOptionalPassCallback(
+      [](llvm::StringRef pass, llvm::Any) { return pass != "VectorCombinePass"; });
+}
+
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
   llvm::PipelineTuningOptions tuning;
   tuning.LoopVectorization = options.optimization > 1;
@@ -237,7 +244,10 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   llvm::FunctionAnalysisManager functions;
   llvm::CGSCCAnalysisManager components;
   llvm::ModuleAnalysisManager modules;
-  llvm::PassBuilder builder(&machine, tuning);
+  llvm::PassInstrumentationCallbacks callbacks;
+  if (!machine.getTargetTriple().isNVPTX())
+    keepLoadsNarrow(callbacks);
+  llvm::PassBuilder builder(&machine, tuning, std::nullopt, &callbacks);
   builder.registerModuleAnalyses(modules);
   builder.registerCGSCCAnalyses(components);
   builder.registerFunctionAnalyses(functions);
