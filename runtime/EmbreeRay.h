@@ -7,7 +7,7 @@
 #pragma once
 
 #include "runtime/EmbreeScene.h"
-#include "runtime/TriangleBlock.h"
+#include "runtime/TriangleBlocks.h"
 #include "runtime/device/Hit.h"
 #include "runtime/device/Traverse.h"
 
@@ -54,7 +54,7 @@ struct EmbreeLevel {
 struct EmbreeScene::Implementation {
   RTCDevice device = nullptr;
   const RtslInstance *instances = nullptr;
-  std::vector<TriangleBlock> blocks;
+  LargeArray<TriangleBlock> blocks;
   std::vector<EmbreePrimitive> primitives;
   void (*intersect)(RtslState *, RtslRef) = nullptr; // of any class
   mutable std::vector<std::unique_ptr<EmbreeLevel>> levels; // by largestOrigin; the first one is built

@@ -203,91 +203,6 @@ void addLevels(Implementation &self) {
   }
 }
 
-//===----------------------------------------------------------------------===//
-// Blocks
-//===----------------------------------------------------------------------===//
-
-/// Every triangle with its box. geomID is the instance.
-std::vector<RTCBuildPrimitive> triangleBoxes(const RtslLaunch &launch) {
-  std::size_t count = 0;
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
-    if (launch.instances[i].primitive == 0)
-      count += launch.meshes[launch.instances[i].mesh].triangleCount;
-  std::vector<RTCBuildPrimitive> boxes;
-  boxes.reserve(count);
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
-    if (launch.instances[i].primitive != 0)
-      continue;
-    const RtslMesh &mesh = launch.meshes[launch.instances[i].mesh];
-    for (std::uint32_t triangle = 0; triangle < mesh.triangleCount; ++triangle) {
-      const auto [a, b, c] = device::triangleVertices(mesh, triangle);
-      RTCBuildPrimitive box;
-      box.lower_x = std::min({a.x, b.x, c.x}), box.upper_x = std::max({a.x, b.x, c.x});
-      box.lower_y = std::min({a.y, b.y, c.y}), box.upper_y = std::max({a.y, b.y, c.y});
-      box.lower_z = std::min({a.z, b.z, c.z}), box.upper_z = std::max({a.z, b.z, c.z});
-      box.geomID = i;
-      box.primID = triangle;
-      boxes.push_back(box);
-    }
-  }
-  return boxes;
-}
-
-/// Sorts the boxes into runs of up to TriangleBlock::lanes that lie together, by Embree's builder. At
-/// the beginning of each run there is how many they are.
-std::vector<std::uint8_t> sortIntoRuns(RTCDevice device, std::vector<RTCBuildPrimitive> &boxes) {
-  struct Runs {
-    const RTCBuildPrimitive *first;
-    std::vector<std::uint8_t> lengths;
-  } runs{boxes.data(), std::vector<std::uint8_t>(boxes.size())};
-  RTCBVH tree = rtcNewBVH(device);
-  RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  arguments.byteSize = sizeof arguments;
-  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
-  arguments.maxBranchingFactor = 2; // more would make leaves that are not full
-  arguments.maxDepth = 1024;
-  arguments.sahBlockSize = TriangleBlock::lanes;
-  arguments.minLeafSize = 1;
-  arguments.maxLeafSize = TriangleBlock::lanes;
-  arguments.bvh = tree;
-  arguments.primitives = boxes.data();
-  arguments.primitiveCount = arguments.primitiveArrayCapacity = boxes.size();
-  arguments.userPtr = &runs;
-  // Of the tree only its leaves are wanted: nodes are nothing, but not null.
-  arguments.createNode = [](RTCThreadLocalAllocator, unsigned, void *user) { return user; };
-  arguments.setNodeChildren = [](void *, void **, unsigned, void *) {};
-  arguments.setNodeBounds = [](void *, const RTCBounds **, unsigned, void *) {};
-  arguments.createLeaf = [](RTCThreadLocalAllocator, const RTCBuildPrimitive *leaf,
-                            std::size_t count, void *user) -> void * {
-    Runs &runs = *static_cast<Runs *>(user);
-    runs.lengths[std::size_t(leaf - runs.first)] = std::uint8_t(count);
-    return user;
-  };
-  rtcBuildBVH(&arguments);
-  rtcReleaseBVH(tree);
-  return std::move(runs.lengths);
-}
-
-void addBlocks(Implementation &self, const RtslLaunch &launch) {
-  std::vector<RTCBuildPrimitive> boxes = triangleBoxes(launch);
-  if (boxes.empty())
-    return;
-  const std::vector<std::uint8_t> lengths = sortIntoRuns(self.device, boxes);
-  check(self);
-  self.blocks.reserve(
-      std::size_t(std::count_if(lengths.begin(), lengths.end(), [](std::uint8_t n) { return n != 0; })));
-  for (std::size_t first = 0; first < boxes.size(); first += lengths[first]) {
-    TriangleBlock &block = self.blocks.emplace_back();
-    for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
-      const bool isEmpty = lane >= lengths[first];
-      const RTCBuildPrimitive &box = boxes[first + (isEmpty ? 0 : lane)];
-      const RtslMesh &mesh = launch.meshes[launch.instances[box.geomID].mesh];
-      block.setLane(lane, device::triangleVertices(mesh, box.primID),
-                    isEmpty ? RTSL_NO_HIT : box.geomID, box.primID);
-    }
-  }
-}
-
 } // namespace
 
 EmbreeScene::Implementation::~Implementation() {
@@ -322,7 +237,8 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
   RtslLaunch launch = scene.launch();
   self->instances = launch.instances;
   self->intersect = slots.rt_Primitive_intersect;
-  addBlocks(*self, launch);
+  self->blocks = makeTriangleBlocks(self->device, launch, threads);
+  check(*self);
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
     if (RtslRef object = launch.instances[i].primitive) {
       auto *intersect = scene.classOf(object).intersect;

@@ -1,6 +1,7 @@
 //===- WorkerThreads.h - threads with the stack that they need --------------===//
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 
@@ -15,5 +16,10 @@ constexpr std::uint64_t stackMargin = std::uint64_t(1) << 20;
 /// with the number of bytes, if there is no stack for it. What `work` throws comes out.
 void runOnThreads(unsigned count, std::uint64_t stackBytes,
                   const std::function<void(unsigned)> &work);
+
+/// Calls `work(0)` ... `work(count - 1)`, in any order, on up to so many threads; 0: one for each core.
+/// What `work` throws comes out.
+void forEachOnThreads(unsigned threads, std::size_t count,
+                      const std::function<void(std::size_t)> &work);
 
 } // namespace rtsl::runtime

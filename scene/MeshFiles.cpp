@@ -2,9 +2,6 @@
 
 #include "runtime/WorkerThreads.h"
 
-#include <algorithm>
-#include <atomic>
-#include <thread>
 
 namespace rtsl::scene {
 
@@ -12,17 +9,6 @@ using runtime::Mesh;
 using runtime::Transform;
 
 namespace {
-
-/// Calls work(0) ... work(count - 1) in any order, on all cores.
-template <typename Work>
-void forEachOnAllCores(std::size_t count, Work work) {
-  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  std::atomic<std::size_t> next{0};
-  runtime::runOnThreads(unsigned(std::min(count, cores)), 0, [&](unsigned) {
-    for (std::size_t i = next++; i < count; i = next++)
-      work(i);
-  });
-}
 
 /// Where a file's mesh is to be.
 struct Placement {
@@ -51,7 +37,7 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
   }
 
   std::vector<Result> files(paths.size());
-  forEachOnAllCores(files.size(), [&](std::size_t i) {
+  runtime::forEachOnThreads(0, files.size(), [&](std::size_t i) {
     try {
       files[i].mesh = runtime::loadMesh(*paths[i]);
     } catch (...) {
@@ -59,7 +45,7 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
     }
   });
   results.resize(placements.size());
-  forEachOnAllCores(results.size(), [&](std::size_t i) {
+  runtime::forEachOnThreads(0, results.size(), [&](std::size_t i) {
     Result &file = files[placements[i].file], &result = results[i];
     try {
       result.failure = file.failure;

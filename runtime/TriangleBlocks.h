@@ -1,0 +1,15 @@
+//===- TriangleBlocks.h - the triangles of a scene in blocks --------------===//
+#pragma once
+
+#include "runtime/LargeArray.h"
+#include "runtime/TriangleBlock.h"
+
+#include <embree3/rtcore.h>
+
+namespace rtsl::runtime {
+
+/// All triangles of the launch in blocks of those that lie together, by Embree's builder. Errors of Embree go to the
+/// device; throws std::bad_alloc.
+LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const RtslLaunch &launch, unsigned threads);
+
+} // namespace rtsl::runtime
