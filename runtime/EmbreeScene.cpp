@@ -224,7 +224,11 @@ RTCScene EmbreeScene::Implementation::treeForFar(float origin) const {
 
 EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsigned threads)
     : self(std::make_unique<Implementation>()) {
-  std::string config = threads ? fmt::format("threads={}", threads) : "";
+  // With AVX-512 Embree orders the children of a node by instructions whose results a single ray waits
+  // for: its code for AVX2 takes 0.92 to 0.98 of the time (Zen 5).
+  std::string config = "max_isa=avx2";
+  if (threads)
+    config += fmt::format(",threads={}", threads);
   self->device = rtcNewDevice(config.c_str());
   if (!self->device) {
     const RTCError error = rtcGetDeviceError(nullptr);

@@ -176,7 +176,7 @@ struct LaneHits {
 }
 
 /// Tests all triangles of the block and commits the one that wins. With `anyHit` the first will do.
-inline bool testBlock(RtslState &state, const device::TriangleRay &ray, const TriangleBlock &block,
+[[gnu::always_inline]] inline bool testBlock(RtslState &state, const device::TriangleRay &ray, const TriangleBlock &block,
                       bool anyHit) {
   LaneHits hits = intersectLanes(ray, block);
   if ((hits.hit | hits.other) == 0)
