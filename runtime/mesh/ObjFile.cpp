@@ -30,7 +30,7 @@ class Vertices {
 public:
   std::uint32_t add(const Corner &corner) {
     if (corner.position >= firstAt.size())
-      firstAt.resize(std::max<std::size_t>(corner.position + 1, 2 * firstAt.size()), none);
+      firstAt.resize(corner.position + std::size_t(1), none);
     std::uint32_t *link = &firstAt[corner.position];
     while (*link != none) {
       Vertex &vertex = vertices[*link];
@@ -44,7 +44,10 @@ public:
     return number;
   }
 
-  std::size_t size() const { return vertices.size(); }
+  void reserve(std::size_t count) {
+    vertices.reserve(count);
+    firstAt.reserve(count);
+  }
 
   /// `width` floats of each vertex, of those in `from` that its `index` says. Empty if no vertex has any; zeros for
   /// those that have none.
@@ -75,6 +78,7 @@ public:
   explicit Reader(std::string_view text) : at(text.data()), end(text.data() + text.size()) {}
 
   bool readAll() {
+    makeRoom();
     while (at != end)
       if (!readLine())
         return false;
@@ -92,6 +96,24 @@ public:
   }
 
 private:
+  /// Counts the lines, so that nothing has to be moved while they are read.
+  void makeRoom() {
+    std::size_t positionLines = 0, normalLines = 0, uvLines = 0, faces = 0;
+    for (const char *line = at; end - line > 1;) {
+      positionLines += line[0] == 'v' && line[1] == ' ';
+      normalLines += line[0] == 'v' && line[1] == 'n';
+      uvLines += line[0] == 'v' && line[1] == 't';
+      faces += line[0] == 'f';
+      const void *newline = std::memchr(line, '\n', std::size_t(end - line));
+      line = newline ? static_cast<const char *>(newline) + 1 : end;
+    }
+    positions.reserve(3 * positionLines);
+    normals.reserve(3 * normalLines);
+    uvs.reserve(2 * uvLines);
+    indices.reserve(3 * faces);
+    vertices.reserve(positionLines);
+  }
+
   static bool isBlank(char c) { return c == ' ' || c == '\t'; }
   bool isAtEnd() const { return at == end || *at == '\n' || *at == '\r'; }
   void skipBlanks() {
