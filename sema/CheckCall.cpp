@@ -343,7 +343,7 @@ ExprPtr FunctionChecker::checkBaseCall(const ast::CallExpr &expr) {
   }
   Diagnostic &diagnostic =
       diagnostics.report(Code::notABase, expr.base.range, expr.base.text,
-                         scope ? "`" + scope->definition->name + "`" : "a function at file level");
+                         scope ? "`" + scope->definition->name + "`" : "any class here");
   const SourceRange front{expr.base.range.file, expr.base.range.begin, expr.callee.range.begin};
   if (scope && scope->definition->name == expr.base.text)
     diagnostic.fix(front, "");

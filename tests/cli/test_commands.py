@@ -114,11 +114,11 @@ class Commands(Case):
         (message,) = json.loads(error)["diagnostics"]
         self.assertEqual((message["code"], message["warning"], message["range"]["begin"]["line"]),
                          ("W2901", "live-state", 10))
-        self.assertRegex(message["message"], "^1[0-9][0-9] bytes .*more than 128; `w` costs most: 128 bytes$")
+        self.assertRegex(message["message"], "^1[0-9][0-9] bytes .*more than 128; `w` takes the most: 128 bytes$")
         self.write("narrow.rtsl", text.replace("32", "12"))
         self.assertEqual(self.run_rtslc("check", "narrow.rtsl", "-Wlive-state"), ("", ""))
         _, error = self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=64")
-        self.assertRegex(error, "more than 64; `w` costs most: 48 bytes")
+        self.assertRegex(error, "more than 64; `w` takes the most: 48 bytes")
         self.assertEqual(self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=1000"), ("", ""))
         _, error = self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=much", status=2)
         self.assertIn("give a number of bytes", error)
@@ -129,7 +129,7 @@ class Commands(Case):
                    f"  float s = {quotients}luminance(trace(rt_HitPoint, rt_RayDirection)){')' * 34};\n"
                    "  rt_SampleColor = color(s);\n}\n")
         _, error = self.run_rtslc("check", "sums.rtsl", "-Wlive-state")
-        self.assertRegex(error, "bytes stay alive over this `trace`, more than 128; what line 4 computes costs most: 4 bytes")
+        self.assertRegex(error, "bytes are live across this `trace`, more than 128; what line 4 computes takes the most: 4 bytes")
         self.assertRegex(error, "and then: what line 4 computes 4, ")
         self.assertNotIn("rand.2", error)
 

@@ -66,7 +66,7 @@ TEST_F(Messages, ShowPlaceLineAndCaret) {
 
 TEST_F(Messages, UnderlineTheWholeRange) {
   diagnostics.report(Code::notCallable, at("b + c"));
-  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  |          ^^^^^\n"
@@ -84,7 +84,7 @@ TEST_F(Messages, ShowOneCaretForAnEmptyRangeAtTheEndOfALine) {
 
 TEST_F(Messages, ExpandTabs) {
   diagnostics.report(Code::notCallable, at("tabbed"));
-  EXPECT_EQ(shown(), "a.rtsl:2:8: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:2:8: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "2 |     float tabbed = x;\n"
                      "  |           ^^^^^^\n"
@@ -93,7 +93,7 @@ TEST_F(Messages, ExpandTabs) {
 
 TEST_F(Messages, PutTheTextOfTheLastLabelBehindItsUnderline) {
   diagnostics.report(Code::notCallable, at("b")).label(at("c"), "a `float`");
-  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  |          ^   - a `float`\n"
@@ -106,7 +106,7 @@ TEST_F(Messages, HangTheOtherLabelsOfALineBelowIt) {
       .label(at("b"), "a `vec3`")
       .label(at("c"), "a `float`")
       .label(at("+"), "no such operator");
-  EXPECT_EQ(shown(), "a.rtsl:1:12: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:1:12: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  | ----     - ^ - a `float`\n"
@@ -119,7 +119,7 @@ TEST_F(Messages, HangTheOtherLabelsOfALineBelowIt) {
 
 TEST_F(Messages, ShowLabelsOnOtherLines) {
   diagnostics.report(Code::notCallable, at("five")).label(at("a ="), "here");
-  EXPECT_EQ(shown(), "a.rtsl:5:6: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:5:6: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  |      --- here\n"
@@ -131,7 +131,7 @@ TEST_F(Messages, ShowLabelsOnOtherLines) {
 
 TEST_F(Messages, ShowTheOneLineBetweenTwoOthers) {
   diagnostics.report(Code::notCallable, at("five")).label(at("three"), "here");
-  EXPECT_EQ(shown(), "a.rtsl:5:6: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:5:6: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "3 | line three\n"
                      "  |      ----- here\n"
@@ -144,7 +144,7 @@ TEST_F(Messages, ShowTheOneLineBetweenTwoOthers) {
 TEST_F(Messages, ShowLabelsInOtherFiles) {
   const FileId other = sources.add("other.rtsl", "class Base : rt_Light;\n");
   diagnostics.report(Code::notCallable, at("b")).label({other, 6, 10}, "declared here");
-  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  |          ^\n"
@@ -157,7 +157,7 @@ TEST_F(Messages, ShowLabelsInOtherFiles) {
 
 TEST_F(Messages, ShowTheFirstAndTheLastLineOfALongRange) {
   diagnostics.report(Code::notCallable, SourceRange{file, find("b +"), find(" five")});
-  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  |          ^^^^^^\n"
@@ -169,7 +169,7 @@ TEST_F(Messages, ShowTheFirstAndTheLastLineOfALongRange) {
 
 TEST_F(Messages, EndALineRangeAtItsLineEnding) {
   diagnostics.report(Code::notCallable, SourceRange{file, find("three"), find("line four")});
-  EXPECT_EQ(shown(), "a.rtsl:3:6: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:3:6: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "3 | line three\n"
                      "  |      ^^^^^\n"
@@ -182,7 +182,7 @@ TEST_F(Messages, ShowNotesAndFixes) {
       .fix(at("c"), "cc")
       .fix({file, 14, 14}, ")")
       .fix(at(" + c"), "");
-  EXPECT_EQ(shown(), "a.rtsl:1:14: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:1:14: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  |              ^\n"
@@ -204,7 +204,7 @@ TEST_F(Messages, ShowNotesAndFixes) {
 
 TEST_F(Messages, ShowFixesOfSeveralLines) {
   diagnostics.report(Code::notCallable, at("b")).fix({file, 0, 0}, "int x;\nint y;\n");
-  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "a.rtsl:1:10: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | half a = b + c;\n"
                      "  |          ^\n"
@@ -219,7 +219,7 @@ TEST_F(Messages, AlignTheGutterToTheLargestLineNumber) {
   const FileId other = sources.add("long.rtsl", std::string(99, '\n') + "bad\n");
   diagnostics.report(Code::notCallable, SourceRange{other, 99, 102})
       .label({other, 98, 98}, "the line before");
-  EXPECT_EQ(shown(), "long.rtsl:100:1: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "long.rtsl:100:1: error[E0122]: expression is not callable\n"
                      "    |\n"
                      " 99 |\n"
                      "    | - the line before\n"
@@ -251,7 +251,7 @@ TEST_F(Messages, ShowBytesThatAreNoCharacters) {
 TEST_F(Messages, CountTheCellsOfWideCharacters) {
   const FileId other = sources.add("wide.rtsl", "\xE6\x97\xA5\xE6\x9C\xAC x;\n");
   diagnostics.report(Code::notCallable, SourceRange{other, 7, 8});
-  EXPECT_EQ(shown(), "wide.rtsl:1:8: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "wide.rtsl:1:8: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | \xE6\x97\xA5\xE6\x9C\xAC x;\n"
                      "  |      ^\n"
@@ -263,7 +263,7 @@ TEST_F(Messages, ShowAWindowOfAVeryLongLine) {
   const FileId other = sources.add("line.rtsl", line);
   diagnostics.report(Code::notCallable, SourceRange{other, 500000, 500001})
       .fix({other, 500000, 500001}, "?");
-  EXPECT_EQ(shown(), "line.rtsl:1:500001: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "line.rtsl:1:500001: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | ..." +
                          std::string(50, 'a') + "!" + std::string(109, 'b') +
@@ -286,7 +286,7 @@ TEST_F(Messages, ShowAWindowOfAVeryLongLine) {
 TEST_F(Messages, ShowTheBeginningOfALongLineOfNoCharacters) {
   const FileId other = sources.add("line.rtsl", std::string(3, '\x80') + std::string(200, 'a'));
   diagnostics.report(Code::notCallable, SourceRange{other, 0, 1});
-  EXPECT_EQ(shown(), "line.rtsl:1:1: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "line.rtsl:1:1: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | \\x80\\x80\\x80" +
                          std::string(157, 'a') +
@@ -299,7 +299,7 @@ TEST_F(Messages, ShowFarPlacesOfALongLineApart) {
   const FileId other = sources.add("line.rtsl", "(" + std::string(1000, 'a') + "!");
   diagnostics.report(Code::notCallable, SourceRange{other, 1001, 1002})
       .label({other, 0, 1}, "opened here");
-  EXPECT_EQ(shown(), "line.rtsl:1:1002: error[E0122]: this cannot be called\n"
+  EXPECT_EQ(shown(), "line.rtsl:1:1002: error[E0122]: expression is not callable\n"
                      "  |\n"
                      "1 | ..." +
                          std::string(159, 'a') +

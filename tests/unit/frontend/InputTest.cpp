@@ -25,24 +25,24 @@ std::string inFunction(const std::string &statement) {
 //===----------------------------------------------------------------------===//
 
 TEST(Input, OfNothing) {
-  EXPECT_EQ(Parsed("").messages(), "E0102 1:1-1:1 this file declares nothing\n");
-  EXPECT_EQ(Parsed("  \r\n\t\n").messages(), "E0102 1:1-1:1 this file declares nothing\n");
-  EXPECT_EQ(Parsed("// only a comment").messages(), "E0102 1:1-1:1 this file declares nothing\n");
-  EXPECT_EQ(Parsed("\xEF\xBB\xBF").messages(), "E0102 1:1-1:1 this file declares nothing\n");
+  EXPECT_EQ(Parsed("").messages(), "E0102 1:1-1:1 file contains no declarations\n");
+  EXPECT_EQ(Parsed("  \r\n\t\n").messages(), "E0102 1:1-1:1 file contains no declarations\n");
+  EXPECT_EQ(Parsed("// only a comment").messages(), "E0102 1:1-1:1 file contains no declarations\n");
+  EXPECT_EQ(Parsed("\xEF\xBB\xBF").messages(), "E0102 1:1-1:1 file contains no declarations\n");
 }
 
 TEST(Input, ThatIsNoText) {
   EXPECT_EQ(Parsed(std::string("float\n a\0b", 10)).messages(),
-            "E0101 2:3-2:4 this is not RTSL text: it holds a NUL byte\n");
+            "E0101 2:3-2:4 source is not valid text: it holds a NUL byte\n");
   EXPECT_EQ(Parsed("float \xE9;").messages(),
-            "E0101 1:7-1:8 this is not RTSL text: the byte \\xE9 is not UTF-8\n");
+            "E0101 1:7-1:8 source is not valid text: the byte \\xE9 is not UTF-8\n");
   EXPECT_EQ(Parsed(std::string("\xFF\xFE\x61\0", 4)).messages(),
-            "E0101 1:1-1:3 this is not RTSL text: it is encoded in UTF-16\n");
+            "E0101 1:1-1:3 source is not valid text: it is encoded in UTF-16\n");
   EXPECT_EQ(Parsed(std::string("\x7F"
                                "ELF\2\1\1\0\0\xFF",
                                10))
                 .shown(),
-            "test.rtsl:1:8: error[E0101]: this is not RTSL text: it holds a NUL byte\n"
+            "test.rtsl:1:8: error[E0101]: source is not valid text: it holds a NUL byte\n"
             "  |\n"
             "1 | \\x7FELF\\x02\\x01\\x01\\x00\\x00\\xFF\n"
             "  |                    ^^^^\n"
@@ -81,7 +81,7 @@ TEST(Depth, OfOperatorsIsLimited) {
   const auto first = [](const std::string &statement) { // code, place and message
     return Parsed(inFunction(statement)).messages();
   };
-  const std::string expression = "this expression is nested deeper than 1000 levels\n";
+  const std::string expression = "expression is nested deeper than 1000 levels\n";
   EXPECT_EQ(first(repeated("- ", 100000) + "1;"), "E0110 1:2012-1:2013 " + expression);
   EXPECT_EQ(first("x = " + repeated("1+", 100000) + "1;"), "E0110 1:2015-1:2016 " + expression);
   EXPECT_EQ(first(repeated("a = ", 100000) + "1;"), "E0110 1:4014-1:4015 " + expression);
@@ -106,7 +106,7 @@ TEST(Depth, OfOperatorsIsLimited) {
 }
 
 TEST(Depth, OfStatementsIsLimited) {
-  const std::string statement = "this statement is nested deeper than 1000 levels\n";
+  const std::string statement = "statement is nested deeper than 1000 levels\n";
   const auto first = [](const std::string &text) { return Parsed(inFunction(text)).messages(); };
   EXPECT_EQ(first(repeated("if (x) ", 100000) + "y;"), "E0110 1:7005-1:7007 " + statement);
   EXPECT_EQ(first("if (x) {}" + repeated(" else if (x) {}", 10000)),
@@ -166,7 +166,7 @@ TEST(TenMegabytes, OfOneComment) {
 
 TEST(TenMegabytes, OfAnOpenComment) {
   EXPECT_EQ(Parsed("void f() { }\n/*" + repeated(" /* \n", tenMegabytes / 5)).messages(),
-            "E0104 2:1-2:3 this comment is never closed\n");
+            "E0104 2:1-2:3 unterminated comment\n");
 }
 
 TEST(TenMegabytes, OfOneLine) {

@@ -197,7 +197,7 @@ TEST(Preprocessor, ShowsWhatTheCommandLineDefined) {
 
 TEST(Preprocessor, ShowsBothEndsOfAConflict) {
   const Preprocessed source("#define A 1\n#define A 2\n#if 1\nfloat f() { return 1.0; }\n");
-  EXPECT_EQ(source.shown(), "main.rtsl:2:9: error[E0157]: macro `A` is defined already, and differently\n"
+  EXPECT_EQ(source.shown(), "main.rtsl:2:9: error[E0157]: macro `A` is already defined differently\n"
                             "  |\n"
                             "1 | #define A 1\n"
                             "  |         - defined here first\n"
@@ -205,7 +205,7 @@ TEST(Preprocessor, ShowsBothEndsOfAConflict) {
                             "  |         ^\n"
                             "  = note: `#undef A` in front of it makes way\n"
                             "\n"
-                            "main.rtsl:3:2: error[E0151]: `#if` has no `#endif`\n"
+                            "main.rtsl:3:2: error[E0151]: `#if` without `#endif`\n"
                             "  |\n"
                             "3 | #if 1\n"
                             "  |  ^^\n"
@@ -327,7 +327,7 @@ TEST(Preprocessor, CountsNestingBehindMacros) {
 
 TEST(Preprocessor, ShowsTheWayIntoACircle) {
   const Preprocessed source("#include \"a.rtsl\"\n", {{"a.rtsl", "#include \"b.rtsl\"\n"}, {"b.rtsl", "\n#include \"a.rtsl\"\n"}});
-  EXPECT_EQ(source.shown(), "b.rtsl:2:10: error[E0147]: files include one another more than 100 levels deep\n"
+  EXPECT_EQ(source.shown(), "b.rtsl:2:10: error[E0147]: includes are nested deeper than 100 levels\n"
                             "  |\n"
                             "2 | #include \"a.rtsl\"\n"
                             "  |          ^^^^^^^^\n"
@@ -352,7 +352,7 @@ TEST(Preprocessor, LimitsWhatIsIncluded) {
 
 TEST(Preprocessor, RefusesFilesThatAreNoText) {
   const Preprocessed source("#include \"a.bin\"\nfloat f() { return missing(; }\n", {{"a.bin", std::string("a\0b", 3)}});
-  EXPECT_EQ(source.shown(), "a.bin:1:2: error[E0101]: this is not RTSL text: it holds a NUL byte\n"
+  EXPECT_EQ(source.shown(), "a.bin:1:2: error[E0101]: source is not valid text: it holds a NUL byte\n"
                             "  |\n"
                             "1 | a\\x00b\n"
                             "  |  ^^^^\n"

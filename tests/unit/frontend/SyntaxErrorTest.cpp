@@ -153,11 +153,11 @@ TEST(Brackets, AnUnclosedBraceIsFoundByIndentation) {
 }
 
 TEST(Brackets, OnesTooManyAreShown) {
-  EXPECT_EQ(inFunction("a = b);"), "E0114 2:6-2:7 `)` closes nothing\n");
-  EXPECT_EQ(inFunction("a = b];"), "E0114 2:6-2:7 `]` closes nothing\n");
-  EXPECT_EQ(messages("void f() { a; } }\nvoid g() { }\n"), "E0114 1:17-1:18 `}` closes nothing\n");
+  EXPECT_EQ(inFunction("a = b);"), "E0114 2:6-2:7 unmatched `)`\n");
+  EXPECT_EQ(inFunction("a = b];"), "E0114 2:6-2:7 unmatched `]`\n");
+  EXPECT_EQ(messages("void f() { a; } }\nvoid g() { }\n"), "E0114 1:17-1:18 unmatched `}`\n");
   EXPECT_EQ(Parsed("void f() {\n  a; }\n  b;\n}\n").shown(),
-            "test.rtsl:4:1: error[E0114]: `}` closes nothing\n"
+            "test.rtsl:4:1: error[E0114]: unmatched `}`\n"
             "  |\n"
             "2 |   a; }\n"
             "  |      - all brackets were closed here\n"
@@ -206,15 +206,15 @@ TEST(Words, UnknownCharacters) {
 
 TEST(Words, CommentsAndStringsWithoutAnEnd) {
   EXPECT_EQ(Parsed("void f() { }\n  /* never\n  closed * /\n").shown(),
-            "test.rtsl:2:3: error[E0104]: this comment is never closed\n"
+            "test.rtsl:2:3: error[E0104]: unterminated comment\n"
             "  |\n"
             "2 |   /* never\n"
             "  |   ^^\n"
             "\n");
-  EXPECT_EQ(messages("/*"), "E0104 1:1-1:3 this comment is never closed\n");
-  EXPECT_EQ(messages("/*/"), "E0104 1:1-1:3 this comment is never closed\n");
+  EXPECT_EQ(messages("/*"), "E0104 1:1-1:3 unterminated comment\n");
+  EXPECT_EQ(messages("/*/"), "E0104 1:1-1:3 unterminated comment\n");
   EXPECT_EQ(Parsed("void f() {\n  print(\"a \\\" b);\n  c;\n}\n").shown(),
-            "test.rtsl:2:9: error[E0105]: this string is never closed\n"
+            "test.rtsl:2:9: error[E0105]: unterminated string\n"
             "  |\n"
             "2 |   print(\"a \\\" b);\n"
             "  |         ^\n"
@@ -223,26 +223,26 @@ TEST(Words, CommentsAndStringsWithoutAnEnd) {
             "2 |   print(\"a \\\" b\");\n"
             "  |                +\n"
             "\n");
-  EXPECT_EQ(messages("import \"a"), "E0105 1:8-1:9 this string is never closed\n");
+  EXPECT_EQ(messages("import \"a"), "E0105 1:8-1:9 unterminated string\n");
 }
 
 TEST(Words, EscapesThatMeanNothing) {
   EXPECT_EQ(inFunction(R"(print("a\q b\n\0");)"),
-            "E0107 2:9-2:11 unknown escape `\\q` in a string\n"
-            "E0107 2:15-2:17 unknown escape `\\0` in a string\n");
+            "E0107 2:9-2:11 unknown escape sequence `\\q`\n"
+            "E0107 2:15-2:17 unknown escape sequence `\\0`\n");
 }
 
 TEST(Words, NumbersThatAreNone) {
-  EXPECT_EQ(inFunction("a = 09;"), "E0106 2:5-2:7 `09` is not a number\n");
-  EXPECT_EQ(inFunction("a = 0x;"), "E0106 2:5-2:7 `0x` is not a number\n");
-  EXPECT_EQ(inFunction("a = 0xfg;"), "E0106 2:5-2:9 `0xfg` is not a number\n");
-  EXPECT_EQ(inFunction("a = 1.2.3;"), "E0106 2:5-2:10 `1.2.3` is not a number\n");
-  EXPECT_EQ(inFunction("a = 12abc;"), "E0106 2:5-2:10 `12abc` is not a number\n");
-  EXPECT_EQ(inFunction("a = 1e+ + 1;"), "E0106 2:5-2:8 `1e+` is not a number\n");
-  EXPECT_EQ(inFunction("a = 1.5h;"), "E0106 2:5-2:9 `1.5h` is not a number\n");
-  EXPECT_EQ(inFunction("float 3x;"), "E0106 2:7-2:9 `3x` is not a number\n");
+  EXPECT_EQ(inFunction("a = 09;"), "E0106 2:5-2:7 `09` is not a valid number\n");
+  EXPECT_EQ(inFunction("a = 0x;"), "E0106 2:5-2:7 `0x` is not a valid number\n");
+  EXPECT_EQ(inFunction("a = 0xfg;"), "E0106 2:5-2:9 `0xfg` is not a valid number\n");
+  EXPECT_EQ(inFunction("a = 1.2.3;"), "E0106 2:5-2:10 `1.2.3` is not a valid number\n");
+  EXPECT_EQ(inFunction("a = 12abc;"), "E0106 2:5-2:10 `12abc` is not a valid number\n");
+  EXPECT_EQ(inFunction("a = 1e+ + 1;"), "E0106 2:5-2:8 `1e+` is not a valid number\n");
+  EXPECT_EQ(inFunction("a = 1.5h;"), "E0106 2:5-2:9 `1.5h` is not a valid number\n");
+  EXPECT_EQ(inFunction("float 3x;"), "E0106 2:7-2:9 `3x` is not a valid number\n");
   EXPECT_EQ(Parsed("void f() {\n  a = 1f;\n}\n").shown(),
-            "test.rtsl:2:7: error[E0106]: `1f` is not a number\n"
+            "test.rtsl:2:7: error[E0106]: `1f` is not a valid number\n"
             "  |\n"
             "2 |   a = 1f;\n"
             "  |       ^^\n"
@@ -255,19 +255,19 @@ TEST(Words, NumbersThatAreNone) {
 
 TEST(Words, KeywordsAsNames) {
   EXPECT_EQ(messages("class A : rt_Light;\npublic float in = 3;\n"),
-            "E0115 2:14-2:16 `in` is a keyword and cannot be a name\n");
+            "E0115 2:14-2:16 `in` is a keyword and cannot be used as a name\n");
   EXPECT_EQ(messages("void f(float out, vec3 class) { }\n"),
-            "E0115 1:14-1:17 `out` is a keyword and cannot be a name\n"
-            "E0115 1:24-1:29 `class` is a keyword and cannot be a name\n");
+            "E0115 1:14-1:17 `out` is a keyword and cannot be used as a name\n"
+            "E0115 1:24-1:29 `class` is a keyword and cannot be used as a name\n");
   EXPECT_EQ(inFunction("float default; int for = 1, a;"),
-            "E0115 2:7-2:14 `default` is a keyword and cannot be a name\n"
-            "E0115 2:20-2:23 `for` is a keyword and cannot be a name\n");
-  EXPECT_EQ(inFunction("a.in = 2;"), "E0115 2:3-2:5 `in` is a keyword and cannot be a name\n");
+            "E0115 2:7-2:14 `default` is a keyword and cannot be used as a name\n"
+            "E0115 2:20-2:23 `for` is a keyword and cannot be used as a name\n");
+  EXPECT_EQ(inFunction("a.in = 2;"), "E0115 2:3-2:5 `in` is a keyword and cannot be used as a name\n");
   EXPECT_EQ(messages("void return() { }"),
-            "E0115 1:6-1:12 `return` is a keyword and cannot be a name\n");
+            "E0115 1:6-1:12 `return` is a keyword and cannot be used as a name\n");
   EXPECT_EQ(messages("struct switch { float a; };\nclass do : rt_Light { };\n"),
-            "E0115 1:8-1:14 `switch` is a keyword and cannot be a name\n"
-            "E0115 2:7-2:9 `do` is a keyword and cannot be a name\n");
+            "E0115 1:8-1:14 `switch` is a keyword and cannot be used as a name\n"
+            "E0115 2:7-2:9 `do` is a keyword and cannot be used as a name\n");
 }
 
 TEST(Words, PrecisionQualifiersAreToBeRemoved) {
@@ -294,7 +294,7 @@ TEST(Words, PrecisionQualifiersAreToBeRemoved) {
 
 TEST(Words, Directives) { // those that the preprocessor left
   EXPECT_EQ(messages("void f() { } #define A 1\nvoid g() { }\n"),
-            "E0141 1:14-1:15 `#` begins a directive only at the beginning of a line\n");
+            "E0141 1:14-1:15 `#` starts a directive only at the start of a line\n");
 }
 
 //===----------------------------------------------------------------------===//
@@ -317,7 +317,7 @@ TEST(DeclarationErrors, MethodsWithoutBody) {
   EXPECT_EQ(messages("class A : rt_Material { void shade(vec3 a) };"),
             "E0117 1:30-1:35 method `shade` has no body\n");
   EXPECT_EQ(messages("void f() const { a; }\nvoid g() { }\n"),
-            "E0121 1:10-1:15 `const` is not a qualifier of RTSL\n");
+            "E0121 1:10-1:15 `const` is not an RTSL qualifier\n");
 }
 
 TEST(DeclarationErrors, FunctionsWithoutReturnType) {
@@ -338,9 +338,9 @@ TEST(DeclarationErrors, Classes) {
   EXPECT_EQ(messages("class A;\n"), "E0171 1:1-1:8 class `A` has neither a base nor members of its own\n");
   EXPECT_EQ(messages("class : rt_Light { };\n"), "E0111 1:7-1:8 expected a name, found `:`\n");
   EXPECT_EQ(messages("class A : public rt_Light { };\n"),
-            "E0119 1:11-1:17 `public` cannot stand here: a class derives in one way only\n");
+            "E0119 1:11-1:17 `public` is not allowed here: a class derives in one way only\n");
   EXPECT_EQ(messages("class A : rt_Light {\npublic:\n  public float a;\n};\n"),
-            "E0119 2:1-2:8 `public:` cannot stand here: write `public` in front of each member\n");
+            "E0119 2:1-2:8 `public:` is not allowed here: write `public` in front of each member\n");
   EXPECT_EQ(messages("class A : rt_Light {\n  return 1;\n  void f() { }\n};\n"),
             "E0111 2:3-2:9 expected a member, found `return`\n");
 }
@@ -358,9 +358,9 @@ TEST(DeclarationErrors, NothingFollowsAClassToTheEndOfTheFile) {
             "  = note: a file of several declarations is written `class A : rt_Light { ... };`\n"
             "\n");
   EXPECT_EQ(messages("class A : rt_Light;\nstruct S { float a; };\nimport std.lights;\n"),
-            "E0118 2:1-2:7 `class A : rt_Light;` holds everything up to the end of the file: a "
+            "E0118 2:1-2:7 `class A : rt_Light;` extends to the end of the file: a "
             "struct cannot follow it\n"
-            "E0118 3:1-3:7 `class A : rt_Light;` holds everything up to the end of the file: an "
+            "E0118 3:1-3:7 `class A : rt_Light;` extends to the end of the file: an "
             "import cannot follow it\n");
 }
 
@@ -370,19 +370,19 @@ TEST(DeclarationErrors, Qualifiers) {
             "E0120 3:7-3:12 `const` contradicts or repeats `const`\n");
   EXPECT_EQ(messages("void f(in out float a, public float b) { }\n"),
             "E0120 1:11-1:14 `out` contradicts or repeats `in`\n"
-            "E0119 1:24-1:30 `public` cannot stand here: it is for members of classes\n");
+            "E0119 1:24-1:30 `public` is not allowed here: it is for members of classes\n");
   EXPECT_EQ(messages("struct S { public float a; const float b; inout float c; };\n"),
-            "E0119 1:12-1:18 `public` cannot stand here: it is for members of classes\n"
-            "E0119 1:28-1:33 `const` cannot stand here: the fields of a struct have no qualifiers\n"
-            "E0119 1:43-1:48 `inout` cannot stand here: it is for parameters\n");
+            "E0119 1:12-1:18 `public` is not allowed here: it is for members of classes\n"
+            "E0119 1:28-1:33 `const` is not allowed here: the fields of a struct have no qualifiers\n"
+            "E0119 1:43-1:48 `inout` is not allowed here: it is for parameters\n");
   EXPECT_EQ(messages("public void f() { in float a; }\n"),
-            "E0119 1:1-1:7 `public` cannot stand here: functions have no qualifiers\n"
-            "E0119 1:19-1:21 `in` cannot stand here: it is for parameters\n");
+            "E0119 1:1-1:7 `public` is not allowed here: functions have no qualifiers\n"
+            "E0119 1:19-1:21 `in` is not allowed here: it is for parameters\n");
   EXPECT_EQ(messages("uniform float a;\nvarying highp vec2 b;\nstatic const float c = 1;\n"),
-            "E0121 1:1-1:8 `uniform` is not a qualifier of RTSL\n"
-            "E0121 2:1-2:8 `varying` is not a qualifier of RTSL\n"
+            "E0121 1:1-1:8 `uniform` is not an RTSL qualifier\n"
+            "E0121 2:1-2:8 `varying` is not an RTSL qualifier\n"
             "E0116 2:9-2:14 RTSL has no precision qualifiers\n"
-            "E0121 3:1-3:7 `static` is not a qualifier of RTSL\n");
+            "E0121 3:1-3:7 `static` is not an RTSL qualifier\n");
 }
 
 TEST(DeclarationErrors, Variables) {
@@ -466,9 +466,9 @@ TEST(ExpressionErrors, AreReportedOnceEach) {
   EXPECT_EQ(inFunction("a.3;"), "E0111 2:2-2:4 expected `;`, found `.3`\n");
   EXPECT_EQ(inFunction("a. = 3;"), "E0111 2:4-2:5 expected a name, found `=`\n");
   EXPECT_EQ(inFunction("a[] = 3;"), "E0123 2:2-2:4 expected an index between `[` and `]`\n");
-  EXPECT_EQ(inFunction("3(4);"), "E0122 2:1-2:2 this cannot be called\n");
-  EXPECT_EQ(inFunction("(a)(b);"), "E0122 2:1-2:4 this cannot be called\n");
-  EXPECT_EQ(inFunction("f()[1](2);"), "E0122 2:1-2:7 this cannot be called\n");
+  EXPECT_EQ(inFunction("3(4);"), "E0122 2:1-2:2 expression is not callable\n");
+  EXPECT_EQ(inFunction("(a)(b);"), "E0122 2:1-2:4 expression is not callable\n");
+  EXPECT_EQ(inFunction("f()[1](2);"), "E0122 2:1-2:7 expression is not callable\n");
   EXPECT_EQ(inFunction("f({1, 2});"), "E0111 2:3-2:4 expected an expression, found `{`\n");
 }
 
