@@ -1,4 +1,4 @@
-# The libraries that rtslc stands on; docs/dependencies.md says why each. `make deps` installs them.
+# The libraries that rtslc stands on; docs/dependencies.md says why each. `make dependencies` installs them.
 find_package(fmt REQUIRED)
 find_package(glm REQUIRED)
 find_package(nlohmann_json REQUIRED)

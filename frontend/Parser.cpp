@@ -1,9 +1,7 @@
 //===- Parser.cpp - RTSL text to syntax tree ------------------------------===//
 //
-//   text --Tokenizer--> words --TokenCheck--> balanced words --RtslParser--> parse tree
-//   --AstBuilder--> syntax tree
-//
-// (A preprocessor will stand between the first two.)
+//   text --preprocessor/, or Tokenizer where there is nothing to preprocess--> tokens
+//   --TokenCheck--> balanced tokens --RtslParser--> parse tree --AstBuilder--> syntax tree
 //
 //===----------------------------------------------------------------------===//
 #include "frontend/Parser.h"

@@ -142,8 +142,7 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU. If not given: recurse; of "
             "C++ split, if it can be printed so");
   addChoice(command, "--save", options.compile.savesAllThatIsLive, Choices<bool>{{"needed", false}, {"live", true}},
-            "what states keep over a `trace`: needed, what cannot be had again for less; live, all that is alive there, to "
-            "compare with");
+            "what states save across a `trace`: needed, and rematerialise cheap values; live, all live values, to compare with");
   addChoice(command, "--gpu-arch", options.compile.gpu,
             {"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"},
             "the oldest NVIDIA GPU that PTX is for; sm_75 if not given");

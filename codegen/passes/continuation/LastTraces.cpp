@@ -1,4 +1,4 @@
-//===- LastTraces.cpp - rays behind which nothing happens -----------------===//
+//===- LastTraces.cpp - tail traces ---------------------------------------===//
 //
 //     rtsl.suspend %o, %d, ^resume
 //   ^resume:                                     rtsl.spawn %o, %d last

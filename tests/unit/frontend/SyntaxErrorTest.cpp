@@ -347,7 +347,7 @@ TEST(DeclarationErrors, Classes) {
 
 TEST(DeclarationErrors, NothingFollowsAClassToTheEndOfTheFile) {
   EXPECT_EQ(Parsed("class A : rt_Light;\nfloat a;\nclass B : A { };\n").shown(),
-            "test.rtsl:3:1: error[E0118]: `class A : rt_Light;` holds everything up to the end of "
+            "test.rtsl:3:1: error[E0118]: `class A : rt_Light;` extends to the end of "
             "the file: a class cannot follow it\n"
             "  |\n"
             "1 | class A : rt_Light;\n"
