@@ -1,226 +1,52 @@
 //===- Builtins.cpp - the signatures of the built-in functions ------------===//
 #include "sema/Builtins.h"
+#include "sema/Walk.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <string_view>
 
 namespace rtsl {
 
 using typed::Builtin;
 
-//===----------------------------------------------------------------------===//
-// The table
-//
-// One row an operation and shape: "result parameter parameter ...". A letter is a type:
-//
-//   F I U B   float, int, uint, bool or the vectors of them: the same number of components, 1 to 4,
-//   all over the row v w x y   the vectors alone, 2 to 4 components f i u b   the scalars 2 3 4
-//   vec2 vec3 vec4           c  color           n  void M T       a matrix of C columns and R rows,
-//   and its transpose; p a vector of R, q a vector of C components S         a square matrix
-//
-// `>` before a letter makes an out parameter.
-//===----------------------------------------------------------------------===//
-
 namespace {
+/// An operation and one of its signatures, as Builtins.def has it.
 struct Row {
   Builtin builtin;
   const char *signature;
 };
 } // namespace
 
-static const Row rows[] = {
-    {Builtin::Radians, "F F"},
-    {Builtin::Degrees, "F F"},
-    {Builtin::Sin, "F F"},
-    {Builtin::Cos, "F F"},
-    {Builtin::Tan, "F F"},
-    {Builtin::SinPi, "F F"},
-    {Builtin::CosPi, "F F"},
-    {Builtin::Asin, "F F"},
-    {Builtin::Acos, "F F"},
-    {Builtin::Atan, "F F"},
-    {Builtin::Atan2, "F F F"},
-    {Builtin::Sinh, "F F"},
-    {Builtin::Cosh, "F F"},
-    {Builtin::Tanh, "F F"},
-    {Builtin::Asinh, "F F"},
-    {Builtin::Acosh, "F F"},
-    {Builtin::Atanh, "F F"},
+static const std::vector<Row> &allRows() {
+  static const std::vector<Row> rows = [] {
+    std::vector<Row> all;
+    const auto add = [&](Builtin builtin, std::initializer_list<const char *> signatures) {
+      for (const char *signature : signatures)
+        all.push_back({builtin, signature});
+    };
+#define RTSL_BUILTIN(id, name, effect, cost, ...) add(Builtin::id, {__VA_ARGS__});
+#include "sema/Builtins.def"
+    return all;
+  }();
+  return rows;
+}
 
-    {Builtin::Pow, "F F F"},
-    {Builtin::Pow, "c c f"},
-    {Builtin::Pow, "c c c"},
-    {Builtin::PowInt, "F F i"},
-    {Builtin::Exp, "F F"},
-    {Builtin::Exp, "c c"},
-    {Builtin::Log, "F F"},
-    {Builtin::Log, "c c"},
-    {Builtin::Exp2, "F F"},
-    {Builtin::Log2, "F F"},
-    {Builtin::Expm1, "F F"},
-    {Builtin::Log1p, "F F"},
-    {Builtin::Sqrt, "F F"},
-    {Builtin::Sqrt, "c c"},
-    {Builtin::InverseSqrt, "F F"},
-
-    {Builtin::Abs, "F F"},
-    {Builtin::Abs, "I I"},
-    {Builtin::Abs, "c c"},
-    {Builtin::Sign, "F F"},
-    {Builtin::Sign, "I I"},
-    {Builtin::Floor, "F F"},
-    {Builtin::Trunc, "F F"},
-    {Builtin::Round, "F F"},
-    {Builtin::RoundEven, "F F"},
-    {Builtin::Ceil, "F F"},
-    {Builtin::Fract, "F F"},
-    {Builtin::Mod, "F F F"},
-    {Builtin::Mod, "F F f"},
-    {Builtin::Modf, "F F >F"},
-    {Builtin::Min, "F F F"},
-    {Builtin::Min, "F F f"},
-    {Builtin::Min, "I I I"},
-    {Builtin::Min, "I I i"},
-    {Builtin::Min, "U U U"},
-    {Builtin::Min, "U U u"},
-    {Builtin::Min, "c c c"},
-    {Builtin::Min, "c c f"},
-    {Builtin::MinComponent, "f v"},
-    {Builtin::MinComponent, "i w"},
-    {Builtin::MinComponent, "u x"},
-    {Builtin::MinComponent, "f c"},
-    {Builtin::Max, "F F F"},
-    {Builtin::Max, "F F f"},
-    {Builtin::Max, "I I I"},
-    {Builtin::Max, "I I i"},
-    {Builtin::Max, "U U U"},
-    {Builtin::Max, "U U u"},
-    {Builtin::Max, "c c c"},
-    {Builtin::Max, "c c f"},
-    {Builtin::MaxComponent, "f v"},
-    {Builtin::MaxComponent, "i w"},
-    {Builtin::MaxComponent, "u x"},
-    {Builtin::MaxComponent, "f c"},
-    {Builtin::Clamp, "F F F F"},
-    {Builtin::Clamp, "F F f f"},
-    {Builtin::Clamp, "I I I I"},
-    {Builtin::Clamp, "I I i i"},
-    {Builtin::Clamp, "U U U U"},
-    {Builtin::Clamp, "U U u u"},
-    {Builtin::Clamp, "c c c c"},
-    {Builtin::Clamp, "c c f f"},
-    {Builtin::Mix, "F F F F"},
-    {Builtin::Mix, "F F F f"},
-    {Builtin::Mix, "c c c f"},
-    {Builtin::Mix, "c c c c"},
-    {Builtin::MixSelect, "F F F B"},
-    {Builtin::MixSelect, "I I I B"},
-    {Builtin::MixSelect, "U U U B"},
-    {Builtin::MixSelect, "B B B B"},
-    {Builtin::Step, "F F F"},
-    {Builtin::Step, "F f F"},
-    {Builtin::SmoothStep, "F F F F"},
-    {Builtin::SmoothStep, "F f f F"},
-    {Builtin::IsNan, "B F"},
-    {Builtin::IsInf, "B F"},
-    {Builtin::FloatBitsToInt, "I F"},
-    {Builtin::FloatBitsToUint, "U F"},
-    {Builtin::IntBitsToFloat, "F I"},
-    {Builtin::UintBitsToFloat, "F U"},
-    {Builtin::Fma, "F F F F"},
-    {Builtin::Frexp, "F F >I"},
-    {Builtin::Ldexp, "F F I"},
-
-    {Builtin::PackUnorm2x16, "u 2"},
-    {Builtin::PackSnorm2x16, "u 2"},
-    {Builtin::PackUnorm4x8, "u 4"},
-    {Builtin::PackSnorm4x8, "u 4"},
-    {Builtin::PackHalf2x16, "u 2"},
-    {Builtin::UnpackUnorm2x16, "2 u"},
-    {Builtin::UnpackSnorm2x16, "2 u"},
-    {Builtin::UnpackUnorm4x8, "4 u"},
-    {Builtin::UnpackSnorm4x8, "4 u"},
-    {Builtin::UnpackHalf2x16, "2 u"},
-
-    {Builtin::Length, "f F"},
-    {Builtin::Distance, "f F F"},
-    {Builtin::Dot, "f F F"},
-    {Builtin::Cross, "3 3 3"},
-    {Builtin::Normalize, "F F"},
-    {Builtin::FaceForward, "F F F F"},
-    {Builtin::Reflect, "F F F"},
-    {Builtin::Refract, "F F F f"},
-
-    {Builtin::MatrixCompMult, "M M M"},
-    {Builtin::OuterProduct, "M p q"},
-    {Builtin::Transpose, "T M"},
-    {Builtin::Determinant, "f S"},
-    {Builtin::Inverse, "S S"},
-
-    {Builtin::LessThan, "y v v"},
-    {Builtin::LessThan, "y w w"},
-    {Builtin::LessThan, "y x x"},
-    {Builtin::LessThanEqual, "y v v"},
-    {Builtin::LessThanEqual, "y w w"},
-    {Builtin::LessThanEqual, "y x x"},
-    {Builtin::GreaterThan, "y v v"},
-    {Builtin::GreaterThan, "y w w"},
-    {Builtin::GreaterThan, "y x x"},
-    {Builtin::GreaterThanEqual, "y v v"},
-    {Builtin::GreaterThanEqual, "y w w"},
-    {Builtin::GreaterThanEqual, "y x x"},
-    {Builtin::Equal, "y v v"},
-    {Builtin::Equal, "y w w"},
-    {Builtin::Equal, "y x x"},
-    {Builtin::Equal, "y y y"},
-    {Builtin::NotEqual, "y v v"},
-    {Builtin::NotEqual, "y w w"},
-    {Builtin::NotEqual, "y x x"},
-    {Builtin::NotEqual, "y y y"},
-    {Builtin::Any, "b y"},
-    {Builtin::All, "b y"},
-    {Builtin::Not, "y y"},
-
-    {Builtin::UaddCarry, "U U U >U"},
-    {Builtin::UsubBorrow, "U U U >U"},
-    {Builtin::UmulExtended, "n U U >U >U"},
-    {Builtin::ImulExtended, "n I I >I >I"},
-    {Builtin::BitfieldExtract, "I I i i"},
-    {Builtin::BitfieldExtract, "U U i i"},
-    {Builtin::BitfieldInsert, "I I I i i"},
-    {Builtin::BitfieldInsert, "U U U i i"},
-    {Builtin::BitfieldReverse, "I I"},
-    {Builtin::BitfieldReverse, "U U"},
-    {Builtin::BitCount, "I I"},
-    {Builtin::BitCount, "I U"},
-    {Builtin::FindLSB, "I I"},
-    {Builtin::FindLSB, "I U"},
-    {Builtin::FindMSB, "I I"},
-    {Builtin::FindMSB, "I U"},
-
-    {Builtin::DominantAxis, "i v"},
-    {Builtin::PerpendicularTo, "3 3"},
-    {Builtin::Inside, "b F F F"},
-    {Builtin::Inside, "b F f f"},
-    {Builtin::Inside, "b I I I"},
-    {Builtin::Inside, "b I i i"},
-    {Builtin::Inside, "b U U U"},
-    {Builtin::Inside, "b U u u"},
-    {Builtin::Rand, "f"},
-    {Builtin::RandOpen, "f"},
-    {Builtin::Luminance, "f c"},
-    {Builtin::Trace,
-     "c 3 3"}, // the form with a payload is checked by hand: its type is the author's
-    {Builtin::Hit, "b f"},
-    {Builtin::Hit, "b f f"},
-    {Builtin::Ambient, "c"},
-    {Builtin::LightCount, "i"},
-    {Builtin::Illuminate, "b i 3"},
-    {Builtin::Illuminate, "b i 3 b"},
-    {Builtin::IgnoreIntersection, "n"},
-    {Builtin::TerminateRay, "n"},
-    {Builtin::VisitChild, "n i"},
-    {Builtin::Print, "n"}, // takes anything, checked by hand
-};
+bool isOutArgument(Builtin builtin, std::size_t index) {
+  if (builtin == Builtin::TracePayload)
+    return index == 4;
+  if (typed::info(builtin).effect != typed::BuiltinEffect::Outputs)
+    return false;
+  for (const Row &row : allRows())
+    if (row.builtin == builtin) { // "F F >F": the result, and a letter a parameter
+      const std::string_view signature = row.signature;
+      for (std::size_t at = signature.find(' '); at != signature.npos; at = signature.find(' ', at + 1))
+        if (index-- == 0)
+          return signature[at + 1] == '>';
+      return false;
+    }
+  return false;
+}
 
 //===----------------------------------------------------------------------===//
 // Expansion
@@ -331,7 +157,7 @@ const BuiltinOverloads *BuiltinTable::find(const std::string &name) {
   if (auto found = expanded.find(name); found != expanded.end())
     return found->second.signatures.empty() ? nullptr : &found->second;
   BuiltinOverloads overloads;
-  for (const Row &row : rows) {
+  for (const Row &row : allRows()) {
     if (name != typed::name(row.builtin))
       continue;
     for (Shape shape : shapesOf(row.signature)) {
@@ -353,7 +179,7 @@ const BuiltinOverloads *BuiltinTable::find(const std::string &name) {
 const std::vector<std::string> &builtinNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Row &row : rows)
+    for (const Row &row : allRows())
       if (std::find(all.begin(), all.end(), typed::name(row.builtin)) == all.end())
         all.emplace_back(typed::name(row.builtin));
     return all;
@@ -363,7 +189,7 @@ const std::vector<std::string> &builtinNames() {
 
 std::vector<std::string> colorFunctionNames() {
   std::vector<std::string> names;
-  for (const Row &row : rows)
+  for (const Row &row : allRows())
     if (const std::string name = typed::name(row.builtin);
         std::string(row.signature).find(" c") != std::string::npos &&
         std::find(names.begin(), names.end(), name) == names.end())

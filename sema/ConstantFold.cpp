@@ -464,22 +464,6 @@ std::optional<std::int64_t> evaluateInteger(const typed::Expr &expr, const typed
                                       : std::int64_t(value->scalars[0].u);
 }
 
-/// Functions whose result depends on nothing but their arguments, and that write to none of them.
-static bool isPure(typed::Builtin builtin) {
-  using typed::Builtin;
-  switch (builtin) {
-  case Builtin::Modf:
-  case Builtin::Frexp:
-  case Builtin::UaddCarry:
-  case Builtin::UsubBorrow:
-  case Builtin::UmulExtended:
-  case Builtin::ImulExtended:
-    return false;
-  default:
-    return builtin < Builtin::Rand || builtin == Builtin::Luminance;
-  }
-}
-
 bool isConstantExpression(const typed::Expr &expr, const typed::Expr **obstacle) {
   auto all = [&](const std::vector<typed::ExprPtr> &exprs) {
     return std::all_of(exprs.begin(), exprs.end(), [&](const typed::ExprPtr &each) {
@@ -523,7 +507,7 @@ bool isConstantExpression(const typed::Expr &expr, const typed::Expr **obstacle)
     return all(cast<typed::ConstructExpr>(expr).args);
   case typed::ExprKind::Builtin: {
     const auto &call = cast<typed::BuiltinExpr>(expr);
-    if (isPure(call.builtin))
+    if (typed::info(call.builtin).effect == typed::BuiltinEffect::Pure)
       return all(call.args);
     break;
   }

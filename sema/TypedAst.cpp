@@ -3,12 +3,16 @@
 
 namespace rtsl::typed {
 
-const char *name(Builtin builtin) {
-  static const char *const names[] = {
-#define RTSL_BUILTIN(id, name) name,
+const BuiltinInfo &info(Builtin builtin) {
+  static const BuiltinInfo table[] = {
+#define RTSL_BUILTIN(id, name, effect, cost, ...) {name, BuiltinEffect::effect, cost},
 #include "sema/Builtins.def"
   };
-  return names[static_cast<std::size_t>(builtin)];
+  return table[static_cast<std::size_t>(builtin)];
+}
+
+const char *name(Builtin builtin) {
+  return info(builtin).name;
 }
 
 const char *name(StateVariable variable) {

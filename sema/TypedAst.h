@@ -23,10 +23,27 @@ using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
 
 enum class Builtin : std::uint8_t {
-#define RTSL_BUILTIN(id, name) id,
+#define RTSL_BUILTIN(id, name, effect, cost, ...) id,
 #include "sema/Builtins.def"
 };
 const char *name(Builtin builtin);
+
+/// What a call of a built-in function does beside yielding a value (Builtins.def).
+enum class BuiltinEffect : std::uint8_t { Pure, Reads, Outputs, Effects };
+
+/// What Builtins.def says of a built-in function, but for its signatures (Builtins.h).
+struct BuiltinInfo {
+  const char *name;
+  BuiltinEffect effect;
+  unsigned cost; // about how many instructions a component takes
+};
+const BuiltinInfo &info(Builtin builtin);
+
+/// Changes nothing, and yields the same for the same arguments during a ray.
+inline bool isPure(Builtin builtin) {
+  const BuiltinEffect effect = info(builtin).effect;
+  return effect == BuiltinEffect::Pure || effect == BuiltinEffect::Reads;
+}
 /// Whether it takes the next random number of the ray.
 inline bool drawsRandom(Builtin builtin) { return builtin == Builtin::Rand || builtin == Builtin::RandOpen; }
 

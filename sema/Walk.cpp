@@ -152,24 +152,6 @@ const Variable *rootVariable(const Expr &place) {
   }
 }
 
-bool isOutArgument(Builtin builtin, std::size_t index) {
-  switch (builtin) {
-  case Builtin::Modf:
-  case Builtin::Frexp:
-    return index == 1;
-  case Builtin::UaddCarry:
-  case Builtin::UsubBorrow:
-    return index == 2;
-  case Builtin::UmulExtended:
-  case Builtin::ImulExtended:
-    return index >= 2;
-  case Builtin::TracePayload:
-    return index == 4;
-  default:
-    return false;
-  }
-}
-
 /// Adds what this expression itself assigns.
 static void addAssigned(const Expr &expr, std::set<const Variable *> &assigned) {
   const auto add = [&](const Expr &place) {

@@ -131,15 +131,9 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::VisitChild:
     module.unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "` in C++");
     return integer(0);
-  case Builtin::Modf:
-  case Builtin::Frexp:
-    return withOutputs(callee, expr, 1);
-  case Builtin::UaddCarry:
-  case Builtin::UsubBorrow:
-  case Builtin::UmulExtended:
-  case Builtin::ImulExtended:
-    return withOutputs(callee, expr, 2);
   default:
+    if (typed::info(expr.builtin).effect == typed::BuiltinEffect::Outputs)
+      return withOutputs(callee, expr, lowering::outputsOf(expr.builtin).first);
     return with({});
   }
 }

@@ -286,20 +286,11 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     case Builtin::Print:
       effects.usesRay = effects.hasOutput = true;
       break;
-    case Builtin::Modf:
-    case Builtin::Frexp:
-      collectWrite(*builtin.args[1], effects);
-      break;
-    case Builtin::UaddCarry:
-    case Builtin::UsubBorrow:
-      collectWrite(*builtin.args[2], effects);
-      break;
-    case Builtin::UmulExtended:
-    case Builtin::ImulExtended:
-      collectWrite(*builtin.args[2], effects);
-      collectWrite(*builtin.args[3], effects);
-      break;
     default:
+      if (typed::info(builtin.builtin).effect == typed::BuiltinEffect::Outputs)
+        for (std::size_t i = 0; i < builtin.args.size(); ++i)
+          if (isOutArgument(builtin.builtin, i))
+            collectWrite(*builtin.args[i], effects);
       break;
     }
     break;

@@ -16,43 +16,19 @@ using typed::ExprKind;
 //===----------------------------------------------------------------------===//
 
 bool isPureBuiltin(typed::Builtin builtin) {
-  switch (builtin) {
-  case typed::Builtin::Modf:
-  case typed::Builtin::Frexp:
-  case typed::Builtin::UaddCarry:
-  case typed::Builtin::UsubBorrow:
-  case typed::Builtin::UmulExtended:
-  case typed::Builtin::ImulExtended:
-  case typed::Builtin::Rand:
-  case typed::Builtin::RandOpen:
-  case typed::Builtin::Trace:
-  case typed::Builtin::TracePayload:
-  case typed::Builtin::Hit:
-  case typed::Builtin::Illuminate:
-  case typed::Builtin::IgnoreIntersection:
-  case typed::Builtin::TerminateRay:
-  case typed::Builtin::VisitChild:
-  case typed::Builtin::Print:
-    return false;
-  default:
-    return true;
-  }
+  return typed::isPure(builtin);
 }
 
 std::pair<std::size_t, std::size_t> outputsOf(typed::Builtin builtin) {
-  switch (builtin) {
-  case typed::Builtin::Modf:
-  case typed::Builtin::Frexp:
-    return {1, 1};
-  case typed::Builtin::UaddCarry:
-  case typed::Builtin::UsubBorrow:
-    return {2, 1};
-  case typed::Builtin::UmulExtended:
-  case typed::Builtin::ImulExtended:
-    return {2, 2};
-  default:
+  constexpr std::size_t mostArguments = 4;
+  if (typed::info(builtin).effect != typed::BuiltinEffect::Outputs)
     return {0, 0};
-  }
+  std::size_t first = 0, count = 0;
+  while (first < mostArguments && !isOutArgument(builtin, first))
+    ++first;
+  while (first + count < mostArguments && isOutArgument(builtin, first + count))
+    ++count;
+  return {first, count};
 }
 
 bool isLocal(const typed::Expr &expr) {
@@ -99,43 +75,6 @@ bool hasSideEffects(const typed::Expr &expr) {
   return found;
 }
 
-// A few operations each, on every target.
-static unsigned costOf(typed::Builtin builtin, unsigned limit) {
-  switch (builtin) {
-  case typed::Builtin::Abs:
-  case typed::Builtin::Floor:
-  case typed::Builtin::Ceil:
-  case typed::Builtin::Trunc:
-  case typed::Builtin::IsNan:
-  case typed::Builtin::IsInf:
-  case typed::Builtin::Not:
-    return 1;
-  case typed::Builtin::Min:
-  case typed::Builtin::Max:
-  case typed::Builtin::Step:
-  case typed::Builtin::Fract:
-  case typed::Builtin::Fma:
-  case typed::Builtin::LessThan:
-  case typed::Builtin::LessThanEqual:
-  case typed::Builtin::GreaterThan:
-  case typed::Builtin::GreaterThanEqual:
-  case typed::Builtin::Equal:
-  case typed::Builtin::NotEqual:
-    return 2;
-  case typed::Builtin::Any:
-  case typed::Builtin::All:
-  case typed::Builtin::Sign:
-  case typed::Builtin::Clamp:
-  case typed::Builtin::Mix:
-    return 4;
-  case typed::Builtin::Dot:
-  case typed::Builtin::Inside:
-    return 6;
-  default:
-    return limit;
-  }
-}
-
 bool isCheap(const typed::Expr &expr) {
   constexpr unsigned limit = 12;
   unsigned cost = 0;
@@ -159,7 +98,7 @@ bool isCheap(const typed::Expr &expr) {
       break;
     }
     case ExprKind::Builtin:
-      cost += costOf(cast<typed::BuiltinExpr>(inner).builtin, limit + 1);
+      cost += typed::info(cast<typed::BuiltinExpr>(inner).builtin).cost;
       break;
     case ExprKind::Construct:
       cost += inner.type->isScalar() || inner.type->isVector() ? 1 : limit + 1;

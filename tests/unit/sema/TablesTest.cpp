@@ -5,6 +5,7 @@
 #include "sema/Conversion.h"
 #include "sema/Suggest.h"
 #include "sema/TypeProperties.h"
+#include "support/ClosestName.h"
 
 #include <gtest/gtest.h>
 
@@ -129,11 +130,10 @@ TEST(Builtins, ExpandToEveryShapeOnce) {
 }
 
 TEST(Builtins, AllHaveASignature) {
-#define RTSL_BUILTIN(id, name)                                                                     \
+#define RTSL_BUILTIN(id, name, ...)                                                                \
   EXPECT_NE(std::find(builtinNames().begin(), builtinNames().end(), name), builtinNames().end())   \
       << name;
 #include "sema/Builtins.def"
-#include "support/ClosestName.h"
 }
 
 TEST(ClassModel, EveryStateVariableBelongsToAClass) {
