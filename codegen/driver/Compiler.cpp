@@ -5,9 +5,8 @@
 #include "codegen/cpp/HitErrors.h"
 #include "codegen/cpp/States.h"
 #include "codegen/driver/Graphviz.h"
+#include "codegen/driver/HostCode.h"
 #include "codegen/driver/Stages.h"
-#include "codegen/emit/DoublePrecision.h"
-#include "codegen/emit/Jit.h"
 #include "codegen/emit/NativeImage.h"
 #include "codegen/emit/Ptx.h"
 #include "codegen/ir/Rtsl.h"
@@ -23,13 +22,11 @@
 #include "codegen/passes/restructure/Restructure.h"
 #include "frontend/Expansion.h"
 #include "runtime/DeviceBitcode.h"
-#include "runtime/NumberCheck.h"
 #include "runtime/WorkerThreads.h"
 #include "sema/Casting.h"
 #include "sema/Walk.h"
 
 #include "mlir/Dialect/LLVMIR/LLVMDialect.h"
-#include "mlir/IR/Verifier.h"
 #include "llvm/IR/Module.h"
 #include "llvm/IR/StructuralHash.h"
 
@@ -56,61 +53,6 @@ std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
     if (!function.hasLocalLinkage())
       function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them
   return toPtx(std::move(code));
-}
-
-/// What samples of a linked program come from.
-std::vector<std::string> sampleSymbols(const runtime::Program &program, const CompileOptions &options) {
-  if (options.target == Target::HostMegakernel)
-    return {"rtsl_lane_bytes", "rtsl_run_lane"};
-  if (options.trace == TraceMode::Split)
-    return {"rtsl_sample_split"};
-  return {program.engine == runtime::Engine::Classic ? "rtsl_sample" : "rtsl_generate"};
-}
-
-/// The functions of a linked program that the runtime asks for.
-std::vector<std::string> entries(const runtime::Program &program, const CompileOptions &options) {
-  std::vector<std::string> names = sampleSymbols(program, options);
-  names.push_back("rtsl_rt_Material_anyHit_payload");
-#define RTSL_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
-#include "runtime/device/Slots.def"
-#define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
-#include "runtime/device/SamplingSlots.def"
-  for (const runtime::ClassInfo &info : program.classes) {
-    names.push_back(initializeSymbol(info.name));
-    names.push_back(constructSymbol(info.name));
-    names.push_back(intersectSymbol(info.name));
-  }
-  return names;
-}
-
-template <typename Function>
-void find(const codegen::Jit &jit, const std::string &name, Function *&function) {
-  function = reinterpret_cast<Function *>(jit.lookup(name));
-}
-
-/// Looks up the entries of a compiled program.
-void fillEntries(runtime::Program &program, const codegen::Jit &jit, const CompileOptions &options) {
-  if (options.target == Target::HostMegakernel) {
-    find(jit, "rtsl_lane_bytes", program.megakernel.laneBytes);
-    find(jit, "rtsl_run_lane", program.megakernel.runLane);
-    program.megakernel.stackBytes = jit.stackUse()->bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
-  } else {
-    find(jit, sampleSymbols(program, options).front(), program.sample);
-  }
-  program.stackBytes = [use = jit.stackUse()](std::uint32_t maxDepth, std::uint32_t referenceChain) {
-    // The camera's ray or `generate`, and rays of depth 0 to maxDepth.
-    return use->bytes(std::uint64_t(maxDepth) + 2, referenceChain);
-  };
-  find(jit, "rtsl_rt_Material_anyHit_payload", program.slots.rt_Material_anyHit_payload);
-#define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
-#include "runtime/device/Slots.def"
-#define RTSL_SAMPLING_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
-#include "runtime/device/SamplingSlots.def"
-  for (runtime::ClassInfo &info : program.classes) {
-    find(jit, initializeSymbol(info.name), info.initialize);
-    find(jit, constructSymbol(info.name), info.construct);
-    find(jit, intersectSymbol(info.name), info.intersect);
-  }
 }
 
 /// Where `word` stands, which begins at a place in the IR.
@@ -334,50 +276,6 @@ mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const L
                    options.floatingPoint))
     return nullptr;
   return ir;
-}
-
-/// Tells the device code what it may leave out.
-void defineFacts(LlvmCode &code, const runtime::Program &program) {
-  codegen::defineConstant(*code.module, "rtsl_needs", program.needs);
-  codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
-}
-
-/// What a GPU's program needs of runtime/device, for one or for the CPU.
-const std::vector<std::string_view> &megakernelCode(bool forGpu) {
-  static const std::vector<std::string_view> host = {runtime::deviceBitcode(), runtime::megakernelBitcode()};
-  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(), runtime::gpuMegakernelBitcode()};
-  return forGpu ? gpu : host;
-}
-
-/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into the program.
-void load(LlvmCode code, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
-          runtime::Program &program) {
-  symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
-  symbols.push_back({"rtsl_check_number", reinterpret_cast<void *>(&rtsl_check_number)});
-  if (options.floatingPoint == FloatingPoint::Double)
-    for (const codegen::HostSymbol &function : codegen::doubleFunctions())
-      symbols.push_back(function);
-  codegen::optimize(*code.module, *code.machine, code.options);
-  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(code.context), std::move(code.module),
-                                                                std::move(code.machine), symbols));
-  fillEntries(program, *jit, options);
-  program.code = jit;
-}
-
-/// What makes the objects of a scene, and can do nothing else. It runs once.
-void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
-  std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
-  for (const runtime::ClassInfo &info : program.classes) {
-    names.push_back(initializeSymbol(info.name));
-    names.push_back(constructSymbol(info.name));
-  }
-  run(ir, codegen::buildSsaPipeline);
-  codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
-  machine.optimization = std::min(machine.optimization, 1u);
-  LlvmCode code = translate(ir, machine);
-  defineFacts(code, program);
-  linkDeviceCode(code, runtime::deviceBitcode(), names);
-  load(std::move(code), {}, options, program);
 }
 
 /// With arithmetic in double what a scene sets stays a variable, for a bound index would change what lies in memory, and so where
@@ -608,33 +506,6 @@ std::optional<std::string> explainSceneStates(const typed::Module &module, const
   return write(report, format);
 }
 
-namespace {
-
-/// Linked level 1 as a program in this process: the parts of it that are exported.
-void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
-  const bool isMegakernel = options.target == Target::HostMegakernel;
-  runToSsa(ir, options, isMegakernel ? TraceMode::Split : options.trace);
-  if (options.restructure) {
-    expectSuccess(ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
-    run(ir, codegen::buildSsaPipeline);
-  }
-
-  LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true),
-                            options.checksNumbers ? &program.numberPlaces : nullptr);
-  defineFacts(code, program);
-  std::vector<codegen::HostSymbol> symbols;
-  if (isMegakernel) {
-    linkDeviceCode(code, megakernelCode(/*forGpu=*/false), entries(program, options));
-  } else {
-    linkDeviceCode(code, runtime::deviceBitcode(), entries(program, options));
-    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
-    symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
-  }
-  load(std::move(code), symbols, options, program);
-}
-
-} // namespace
-
 std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
                                                        const CompileOptions &options, Diagnostics &diagnostics,
                                                        const MakeObjects &makeObjects) {
@@ -643,6 +514,7 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   const auto ir = linkScene(module, request, options, diagnostics, *context, *program);
   if (!ir)
     return nullptr;
+  allowThreads(*ir, options);
   if (makeObjects)
     bindToScene(*ir, request, options, makeObjects, *program);
   compileLinked(*ir, options, *program);

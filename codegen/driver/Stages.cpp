@@ -10,6 +10,7 @@
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
+#include "runtime/DeviceBitcode.h"
 
 #include "llvm/Support/raw_ostream.h"
 
@@ -33,6 +34,26 @@ std::unique_ptr<mlir::MLIRContext> makeContext() {
   auto context = std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
   context->loadAllAvailableDialects();
   return context;
+}
+
+/// With fewer functions threads take longer to start than they save.
+constexpr std::ptrdiff_t fewestFunctionsForThreads = 100;
+
+void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
+  const auto functions = ir.getOps<mlir::func::FuncOp>();
+  if (options.threads == 1 || std::distance(functions.begin(), functions.end()) < fewestFunctionsForThreads)
+    return;
+  mlir::MLIRContext &context = *ir.getContext();
+  // Pipelines load their dialects when they run, and several that run at once must not.
+  for (const auto build : {codegen::buildSsaPipeline, codegen::buildLlvmPipeline}) {
+    mlir::PassManager passes(&context);
+    build(passes);
+    mlir::DialectRegistry dialects;
+    passes.getDependentDialects(dialects);
+    context.appendDialectRegistry(dialects);
+  }
+  context.loadAllAvailableDialects();
+  context.enableMultithreading();
 }
 
 mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
@@ -120,6 +141,17 @@ LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
   else if (options.floatingPoint == FloatingPoint::Double)
     codegen::widenArithmetic(*code.module);
   return code;
+}
+
+void defineFacts(LlvmCode &code, const runtime::Program &program) {
+  codegen::defineConstant(*code.module, "rtsl_needs", program.needs);
+  codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
+}
+
+const std::vector<std::string_view> &megakernelCode(bool forGpu) {
+  static const std::vector<std::string_view> host = {runtime::deviceBitcode(), runtime::megakernelBitcode()};
+  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(), runtime::gpuMegakernelBitcode()};
+  return forGpu ? gpu : host;
 }
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports) {

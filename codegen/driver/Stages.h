@@ -22,6 +22,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rtsl::driver {
@@ -37,6 +38,9 @@ T take(llvm::Expected<T> expected) {
 }
 
 std::unique_ptr<mlir::MLIRContext> makeContext();
+
+/// Passes and what else works on functions alone may use several threads from now on, if the module is large.
+void allowThreads(mlir::ModuleOp ir, const CompileOptions &options);
 
 /// Null if something is not supported, which is reported.
 mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
@@ -74,6 +78,12 @@ struct LlvmCode {
 /// With `numberPlaces`, numbers are checked, and their places are added there (CheckNumbers.h).
 LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
                    std::vector<runtime::Place> *numberPlaces = nullptr);
+
+/// Tells the device code what it may leave out.
+void defineFacts(LlvmCode &code, const runtime::Program &program);
+
+/// What a GPU's program needs of runtime/device, for one or for the CPU.
+const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports);
 

@@ -63,8 +63,13 @@ LogicalResult checkLinked(mlir::ModuleOp module) {
 }
 
 //===----------------------------------------------------------------------===//
-// 2. Where members may change
+// 2. What only the whole program says
 //===----------------------------------------------------------------------===//
+
+/// On a module of which all this is noted.
+constexpr llvm::StringLiteral wholeProgramNoted = "rtsl.noted";
+/// On a module: a ray that was sent points to its payload, which lies in the frame of the state that sent it.
+constexpr llvm::StringLiteral holdsPayloads = "rtsl.holds_payloads";
 
 /// Marks constructors and everything that they call, directly or not.
 void markWriters(mlir::ModuleOp module) {
@@ -81,6 +86,22 @@ void markWriters(mlir::ModuleOp module) {
   const mlir::SymbolTable symbols(module);
   while (!worklist.empty())
     worklist.pop_back_val().walk([&](CallOp call) { mark(symbols.lookup<FuncOp>(call.getCallee())); });
+}
+
+void notePayloads(mlir::ModuleOp module) {
+  if (module.walk([](ir::SpawnPayloadOp) { return mlir::WalkResult::interrupt(); }).wasInterrupted())
+    module->setAttr(holdsPayloads, mlir::UnitAttr::get(module.getContext()));
+}
+
+/// While the classes can be found.
+void noteMemberOffsets(mlir::ModuleOp module) {
+  const ir::ClassTable classes(module);
+  mlir::Builder builder(module.getContext());
+  module.walk([&](ir::MemberOp op) {
+    llvm::StringRef className = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
+    const uint32_t offset = *classes.find(className, op.getMember())->offset;
+    op->setAttr(ir::offsetInRecord, builder.getI32IntegerAttr(static_cast<int32_t>(offset)));
+  });
 }
 
 //===----------------------------------------------------------------------===//
@@ -133,9 +154,7 @@ void describePointer(FuncOp function, unsigned index, uint64_t size, unsigned al
 
 void addStateParameter(mlir::ModuleOp module) {
   mlir::Type pointer = LLVM::LLVMPointerType::get(module.getContext());
-  // A ray that was sent points to its payload, which lies in the frame of the state that sent it.
-  bool holdsPayloads = module.walk([](ir::SpawnPayloadOp) { return mlir::WalkResult::interrupt(); })
-                           .wasInterrupted();
+  const bool pointsToFrames = module->hasAttr(holdsPayloads);
   for (FuncOp function : module.getOps<FuncOp>()) {
     bool isState = function->hasAttr("rtsl.state") || function.getSymName() == "rtsl_run_state";
     for (auto [index, type] : llvm::enumerate(function.getArgumentTypes()))
@@ -143,7 +162,7 @@ void addStateParameter(mlir::ModuleOp module) {
         // Arguments in memory are copies of the caller's (in) or temporaries (out, inout, results),
         // or a frame.
         describePointer(function, index, ir::sizeInBytes(address.getPointee()), ir::memoryAlignment,
-                        isState && holdsPayloads ? Sharing::Shared : Sharing::None);
+                        isState && pointsToFrames ? Sharing::Shared : Sharing::None);
     // The runtime may keep the state: a child ray could know its parent.
     (void)function.insertArgument(0, pointer, {}, function.getLoc());
     describePointer(function, 0, sizeof(RtslState), alignof(RtslState), Sharing::Captured);
@@ -229,17 +248,6 @@ void declareTables(mlir::ModuleOp module) {
   });
 }
 
-/// While the classes can be found.
-void noteMemberOffsets(mlir::ModuleOp module) {
-  const ir::ClassTable classes(module);
-  mlir::Builder builder(module.getContext());
-  module.walk([&](ir::MemberOp op) {
-    llvm::StringRef className = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
-    const uint32_t offset = *classes.find(className, op.getMember())->offset;
-    op->setAttr(ir::offsetInRecord, builder.getI32IntegerAttr(static_cast<int32_t>(offset)));
-  });
-}
-
 LogicalResult convertOperations(mlir::ModuleOp module) {
   mlir::MLIRContext *context = module.getContext();
   mlir::LLVMTypeConverter converter(context);
@@ -281,14 +289,14 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     mlir::ModuleOp module = getOperation();
     if (mlir::failed(checkLinked(module)))
       return signalPassFailure();
-    markWriters(module);
+    if (!module->hasAttr(wholeProgramNoted))
+      noteWholeProgram(module);
     renameFunctions(module);
     addStateParameter(module);
     returnBoolsAsNumbers(module);
     declareRuntimeFunctions(module);
     declareNullRecord(module);
     declareTables(module);
-    noteMemberOffsets(module);
     llvm::SmallVector<ir::ClassOp> classes(module.getOps<ir::ClassOp>());
     if (mlir::failed(convertOperations(module)))
       return signalPassFailure();
@@ -296,6 +304,8 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
       classOp.erase();
     for (auto function : module.getOps<LLVM::LLVMFuncOp>())
       finish(function);
+    module->removeAttr(wholeProgramNoted);
+    module->removeAttr(holdsPayloads);
   }
 
   /// What holds for every function: it throws nothing. Our own attributes have done their work.
@@ -313,6 +323,13 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
 };
 
 } // namespace
+
+void noteWholeProgram(mlir::ModuleOp module) {
+  markWriters(module);
+  notePayloads(module);
+  noteMemberOffsets(module);
+  module->setAttr(wholeProgramNoted, mlir::UnitAttr::get(module.getContext()));
+}
 
 std::unique_ptr<mlir::Pass> createConvertToLlvmPass() {
   return std::make_unique<ConvertToLlvm>();

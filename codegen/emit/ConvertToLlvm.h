@@ -19,6 +19,7 @@
 #include <memory>
 
 namespace mlir {
+class ModuleOp;
 class OpPassManager;
 class Pass;
 } // namespace mlir
@@ -28,6 +29,10 @@ namespace rtsl::codegen {
 /// `rtsl-to-llvm`, on a module of level 2. Fails with a message where something is missing that
 /// linking supplies: a dispatch slot, or the offset of an attribute.
 std::unique_ptr<mlir::Pass> createConvertToLlvmPass();
+
+/// Notes on operations what the pass finds in the whole program and in no part of it (Parts.h). The pass does so itself for
+/// a module that is a whole program.
+void noteWholeProgram(mlir::ModuleOp module);
 
 /// From level 2 to the LLVM dialect, cleaned up.
 void buildLlvmPipeline(mlir::OpPassManager &module);

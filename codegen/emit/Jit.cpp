@@ -1,11 +1,12 @@
 //===- Jit.cpp - LLVM IR that runs in this process ------------------------===//
 #include "codegen/emit/Jit.h"
 
-#include "llvm/ExecutionEngine/Orc/CompileUtils.h"
-#include "llvm/ExecutionEngine/Orc/LLJIT.h"
+#include "llvm/ExecutionEngine/Orc/AbsoluteSymbols.h"
 #include "llvm/ExecutionEngine/Orc/ObjectLinkingLayer.h"
+#include "llvm/ExecutionEngine/Orc/SelfExecutorProcessControl.h"
 #include "llvm/IR/LLVMContext.h"
 #include "llvm/IR/Module.h"
+#include "llvm/Support/SmallVectorMemoryBuffer.h"
 #include "llvm/Target/TargetMachine.h"
 
 #include <cmath>
@@ -17,10 +18,17 @@ namespace rtsl::codegen {
 namespace orc = llvm::orc;
 
 struct Jit::Implementation {
-  std::unique_ptr<orc::LLJIT> jit;
+  std::unique_ptr<orc::ExecutionSession> session;
+  std::unique_ptr<orc::ObjectLinkingLayer> linker;
   std::map<std::string, void *> addresses;
   std::string messages; // what went wrong on the way, beside what is returned
   std::shared_ptr<StackUse> stackUse;
+
+  llvm::Error findAddresses(orc::JITDylib &library, const orc::SymbolNameSet &exports);
+  ~Implementation() {
+    if (session)
+      llvm::consumeError(session->endSession()); // nothing is left to say it to
+  }
 };
 
 Jit::Jit() : implementation(std::make_unique<Implementation>()) {}
@@ -41,71 +49,75 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::unique_ptr<llvm::LLVMConte
                                                  std::unique_ptr<llvm::Module> module,
                                                  std::unique_ptr<llvm::TargetMachine> machine,
                                                  const std::vector<HostSymbol> &symbols) {
-  std::vector<std::string> exports;
-  for (const llvm::Function &function : *module)
-    if (!function.isDeclaration() && !function.hasLocalLinkage())
-      exports.push_back(function.getName().str());
+  llvm::Expected<ObjectCode> code = makeObjectCode(*module, *machine);
+  if (!code)
+    return code.takeError();
+  module.reset();
+  context.reset();
+  std::vector<ObjectCode> parts;
+  parts.push_back(std::move(*code));
+  return create(std::move(parts), symbols);
+}
 
+/// All symbols at once: a search for each alone takes longer than its function.
+llvm::Error Jit::Implementation::findAddresses(orc::JITDylib &library, const orc::SymbolNameSet &exports) {
+  auto found = session->lookup(orc::makeJITDylibSearchOrder(&library),
+                               orc::SymbolLookupSet(exports));
+  if (!found) {
+    std::string message = llvm::toString(found.takeError());
+    if (!messages.empty())
+      message = messages + message;
+    return llvm::createStringError("%s", message.c_str());
+  }
+  for (const auto &[name, symbol] : *found)
+    addresses[(*name).str()] = symbol.getAddress().toPtr<void *>();
+  return llvm::Error::success();
+}
+
+llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::vector<ObjectCode> parts, const std::vector<HostSymbol> &symbols) {
   std::unique_ptr<Jit> result(new Jit);
   Implementation &self = *result->implementation;
 
-  // No threads, no platform with its own run-time modules, no search in the process: a small module
+  // No threads, no platform with its own run-time modules, no search in the process: a small program
   // is up in milliseconds, and calls only what it is given.
-  orc::JITTargetMachineBuilder machineBuilder(machine->getTargetTriple());
-  std::shared_ptr<llvm::TargetMachine> shared = std::move(machine);
-  auto jit = orc::LLJITBuilder()
-                 .setJITTargetMachineBuilder(std::move(machineBuilder))
-                 .setDataLayout(module->getDataLayout())
-                 .setNumCompileThreads(0)
-                 .setLinkProcessSymbolsByDefault(false)
-                 .setPlatformSetUp(orc::setUpInactivePlatform)
-                 .setObjectLinkingLayerCreator([](orc::ExecutionSession &session) {
-                   return std::make_unique<orc::ObjectLinkingLayer>(session);
-                 })
-                 .setCompileFunctionCreator(
-                     [shared](orc::JITTargetMachineBuilder)
-                         -> llvm::Expected<std::unique_ptr<orc::IRCompileLayer::IRCompiler>> {
-                       return std::make_unique<orc::SimpleCompiler>(*shared);
-                     })
-                 .create();
-  if (!jit)
-    return jit.takeError();
-  self.jit = std::move(*jit);
-  orc::ExecutionSession &session = self.jit->getExecutionSession();
-  session.setErrorReporter(
+  auto process = orc::SelfExecutorProcessControl::Create(nullptr, std::make_unique<orc::InPlaceTaskDispatcher>());
+  if (!process)
+    return process.takeError();
+  self.session = std::make_unique<orc::ExecutionSession>(std::move(*process));
+  self.session->setErrorReporter(
       [&self](llvm::Error error) { self.messages += llvm::toString(std::move(error)) + "\n"; });
+  self.linker = std::make_unique<orc::ObjectLinkingLayer>(*self.session);
+  orc::JITDylib &library = self.session->createBareJITDylib("program");
 
+  orc::SymbolNameSet exports;
+  for (const ObjectCode &part : parts)
+    for (const std::string &name : part.exports)
+      exports.insert(self.session->intern(name));
   orc::SymbolMap defined;
-  auto define = [&](const HostSymbol &symbol) {
-    defined[self.jit->mangleAndIntern(symbol.name)] = {orc::ExecutorAddr::fromPtr(symbol.address),
-                                                       llvm::JITSymbolFlags::Exported |
-                                                           llvm::JITSymbolFlags::Callable};
+  const auto define = [&](const HostSymbol &symbol) {
+    const orc::SymbolStringPtr name = self.session->intern(symbol.name);
+    if (!exports.contains(name)) // what the program defines itself is its own
+      defined[name] = {orc::ExecutorAddr::fromPtr(symbol.address),
+                       llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
   };
   for (const HostSymbol &symbol : compilerSymbols)
     define(symbol);
   for (const HostSymbol &symbol : symbols)
     define(symbol);
-  orc::JITDylib &library = self.jit->getMainJITDylib();
-  // What the module defines itself is its own.
-  for (const std::string &name : exports)
-    defined.erase(self.jit->mangleAndIntern(name));
   if (llvm::Error error = library.define(orc::absoluteSymbols(std::move(defined))))
     return error;
-  self.stackUse = std::make_shared<StackUse>(*module);
-  if (llvm::Error error = self.jit->addIRModule(
-          orc::ThreadSafeModule(std::move(module), orc::ThreadSafeContext(std::move(context)))))
-    return error;
 
-  for (const std::string &name : exports) {
-    auto address = self.jit->lookup(name);
-    if (!address) {
-      std::string message = llvm::toString(address.takeError());
-      if (!self.messages.empty())
-        message = self.messages + message;
-      return llvm::createStringError("%s", message.c_str());
-    }
-    self.addresses[name] = address->toPtr<void *>();
+  for (ObjectCode &part : parts) {
+    if (self.stackUse)
+      self.stackUse->add(part.stackUse);
+    else
+      self.stackUse = std::make_shared<StackUse>(std::move(part.stackUse));
+    if (llvm::Error error = self.linker->add(
+            library, std::make_unique<llvm::SmallVectorMemoryBuffer>(std::move(part.bytes), /*RequiresNullTerminator=*/false)))
+      return error;
   }
+  if (llvm::Error error = self.findAddresses(library, exports))
+    return error;
   return result;
 }
 

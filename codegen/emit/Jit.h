@@ -2,7 +2,7 @@
 #pragma once
 
 #include "codegen/emit/LlvmModule.h"
-#include "codegen/emit/StackUse.h"
+#include "codegen/emit/ObjectCode.h"
 
 #include <memory>
 #include <string>
@@ -20,18 +20,21 @@ struct HostSymbol {
 /// may call what compilers take for granted (memcpy, memset, ...) and nothing else.
 class Jit {
 public:
-  /// Compiles all of the module at once, on this thread. An error names the symbols that nobody
-  /// defines.
+  /// Links parts of a program, which may call one another. An error names the symbols that nobody defines.
+  static llvm::Expected<std::unique_ptr<Jit>> create(std::vector<ObjectCode> parts,
+                                                     const std::vector<HostSymbol> &symbols);
+
+  /// Compiles all of a module at once, on this thread.
   static llvm::Expected<std::unique_ptr<Jit>> create(std::unique_ptr<llvm::LLVMContext> context,
                                                      std::unique_ptr<llvm::Module> module,
                                                      std::unique_ptr<llvm::TargetMachine> machine,
                                                      const std::vector<HostSymbol> &symbols);
   ~Jit();
 
-  /// Address of an exported function; null if the module defines none of that name.
+  /// Address of an exported function; null if there is none of that name.
   void *lookup(const std::string &name) const;
 
-  /// Of all of the module.
+  /// Of all that is linked.
   std::shared_ptr<const StackUse> stackUse() const;
 
 private:

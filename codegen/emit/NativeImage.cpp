@@ -6,13 +6,12 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/emit/NativeImage.h"
 
-#include "codegen/emit/StackUse.h"
+#include "codegen/emit/ObjectCode.h"
 
 #include "llvm/ADT/BitmaskEnum.h"
 #include "llvm/ExecutionEngine/JITLink/ELF_x86_64.h"
 #include "llvm/ExecutionEngine/JITLink/JITLinkMemoryManager.h"
 #include "llvm/ExecutionEngine/JITLink/x86_64.h"
-#include "llvm/IR/LegacyPassManager.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Support/MemoryBuffer.h"
 #include "llvm/Support/raw_ostream.h"
@@ -171,23 +170,18 @@ private:
 
 llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMachine &machine,
                                             llvm::ArrayRef<std::string> entries) {
-  llvm::SmallString<0> object;
-  llvm::raw_svector_ostream stream(object);
-  llvm::legacy::PassManager passes;
-  const StackUse stackUse(module);
-  if (machine.addPassesToEmitFile(passes, stream, nullptr, llvm::CodeGenFileType::ObjectFile))
-    return llvm::createStringError("the code generator writes no object files");
-  passes.run(module);
-
+  llvm::Expected<ObjectCode> object = makeObjectCode(module, machine);
+  if (!object)
+    return object.takeError();
   auto graph = jitlink::createLinkGraphFromELFObject_x86_64(
-      llvm::MemoryBufferRef(object.str(), "host code"), std::make_shared<orc::SymbolStringPool>());
+      llvm::MemoryBufferRef(llvm::StringRef(object->bytes.data(), object->bytes.size()), "host code"), std::make_shared<orc::SymbolStringPool>());
   if (!graph)
     return graph.takeError();
   Result result;
   jitlink::link_ELF_x86_64(std::move(*graph), std::make_unique<Context>(result, entries));
   if (result.error)
     return std::move(result.error);
-  result.image.stackBytes = stackUse.bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
+  result.image.stackBytes = object->stackUse.bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
   return std::move(result.image);
 }
 

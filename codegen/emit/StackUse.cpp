@@ -1,6 +1,7 @@
 //===- StackUse.cpp - how much stack machine code takes --------------------===//
 #include "codegen/emit/StackUse.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/StringMap.h"
 #include "llvm/IR/DiagnosticInfo.h"
 #include "llvm/IR/DiagnosticHandler.h"
@@ -10,6 +11,7 @@
 #include "llvm/IR/Module.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,8 +26,9 @@ constexpr std::uint64_t callBytes = 32;
 
 struct Node {
   std::string name;
-  std::uint64_t frame = callBytes;
-  std::vector<Index> callees; // in the module, each once
+  bool isDefined = false; // in one of the modules
+  std::uint64_t frame = 0;
+  std::vector<Index> callees; // each once
 
   /// Functions of runtime/device and the switches over classes, of which a ray passes through each
   /// once: trace, and the slots of methods. Functions of shaders have a dot in their names.
@@ -138,7 +141,15 @@ std::uint64_t longestPath(const Graph &graph, const std::vector<bool> &chosen, W
 
 struct StackUse::Implementation {
   Graph graph;
+  llvm::StringMap<Index> indices; // in the graph, by name
   std::shared_ptr<Frames> frames = std::make_shared<Frames>();
+
+  Index nodeOf(llvm::StringRef name) {
+    const auto [at, isNew] = indices.try_emplace(name, graph.size());
+    if (isNew)
+      graph.push_back({name.str(), false, 0, {}});
+    return at->second;
+  }
 
   /// One ray's frames in functions that call one another in a circle. Without the runtime's part,
   /// which leads from one ray to the next, there is no circle left, or one of methods that go from
@@ -161,31 +172,46 @@ struct StackUse::Implementation {
 };
 
 StackUse::StackUse(llvm::Module &module) : self(std::make_unique<Implementation>()) {
-  llvm::StringMap<Index> indices;
-  for (llvm::Function &function : module)
-    if (!function.isDeclaration()) {
-      function.addFnAttr("warn-stack-size", "0"); // report each frame
-      indices[function.getName()] = self->graph.size();
-      self->graph.push_back({function.getName().str(), callBytes, {}});
-    }
-  for (const llvm::Function &function : module)
+  for (llvm::Function &function : module) {
+    if (function.isDeclaration())
+      continue;
+    function.addFnAttr("warn-stack-size", "0"); // report each frame
+    const Index caller = self->nodeOf(function.getName());
+    self->graph[caller].isDefined = true;
+    llvm::SmallPtrSet<const llvm::Function *, 16> called;
     for (const llvm::Instruction &instruction : llvm::instructions(function))
       if (const auto *call = llvm::dyn_cast<llvm::CallBase>(&instruction))
-        if (const llvm::Function *callee = call->getCalledFunction(); callee && !callee->isDeclaration()) {
-          std::vector<Index> &callees = self->graph[indices[function.getName()]].callees;
-          const Index index = indices[callee->getName()];
-          if (std::find(callees.begin(), callees.end(), index) == callees.end())
-            callees.push_back(index);
+        if (const llvm::Function *callee = call->getCalledFunction();
+            callee && !callee->isIntrinsic() && called.insert(callee).second) {
+          const Index index = self->nodeOf(callee->getName());
+          self->graph[caller].callees.push_back(index);
         }
+  }
   module.getContext().setDiagnosticHandler(std::make_unique<CollectFrames>(self->frames));
 }
 
+StackUse::StackUse(StackUse &&) noexcept = default;
 StackUse::~StackUse() = default;
+
+void StackUse::add(const StackUse &other) {
+  for (const Node &node : other.self->graph) {
+    const Index index = self->nodeOf(node.name);
+    self->graph[index].isDefined |= node.isDefined;
+    std::set<Index> callees(self->graph[index].callees.begin(), self->graph[index].callees.end());
+    for (Index callee : node.callees)
+      if (const Index here = self->nodeOf(other.self->graph[callee].name); callees.insert(here).second)
+        self->graph[index].callees.push_back(here);
+  }
+  for (const auto &frame : *other.self->frames) {
+    std::uint64_t &largest = (*self->frames)[frame.first()];
+    largest = std::max(largest, frame.second);
+  }
+}
 
 std::uint64_t StackUse::bytes(std::uint64_t rays, std::uint64_t referenceChain) const {
   Graph known = self->graph;
   for (Node &node : known)
-    node.frame = callBytes + self->frames->lookup(node.name);
+    node.frame = node.isDefined ? callBytes + self->frames->lookup(node.name) : 0;
   const std::vector<bool> all(known.size(), true);
   bool isRecursive = false;
   const std::uint64_t path = longestPath(known, all, [&](const std::vector<Index> &component) {

@@ -22,7 +22,11 @@ public:
   /// Notes the calls in a module that is about to become machine code, and frames as they are laid
   /// out. This object must live until the code is made.
   explicit StackUse(llvm::Module &module);
+  StackUse(StackUse &&) noexcept;
   ~StackUse();
+
+  /// Adds what another module of the same program has. Functions of one name are copies of one another.
+  void add(const StackUse &other);
 
   /// Bytes of stack that functions of the module take at most, their callees in it included, where
   /// so many rays are under way and objects refer to one another in chains of `referenceChain`.

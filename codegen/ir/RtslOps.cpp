@@ -1,6 +1,7 @@
 //===- RtslOps.cpp - building and verifying the operations ----------------===//
 #include "codegen/ir/RtslOps.h"
 
+#include "codegen/ir/ClassTable.h"
 #include "codegen/ir/RtslDialect.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -212,6 +213,8 @@ void MemberOp::getAsmResultNames(NameSetter setName) {
 }
 
 LogicalResult MemberOp::verifySymbolUses(mlir::SymbolTableCollection &symbols) {
+  if ((*this)->hasAttr(offsetInRecord)) // the class has done its work
+    return mlir::success();
   llvm::StringRef className = llvm::cast<RefType>(getObject().getType()).getClassName();
   auto classOp = symbols.lookupNearestSymbolFrom<ClassOp>(
       *this, mlir::StringAttr::get(getContext(), className));

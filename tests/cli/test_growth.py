@@ -25,6 +25,15 @@ def classes(count):
                    for i in range(count))
 
 
+def large_classes(count):
+    """So many that their code is compiled in parts."""
+    lines = "".join(f"    x = x * 0.{k % 9 + 1}5 + rt_HitPoint.{'xyz'[k % 3]};\n" for k in range(80))
+    return "".join(f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n    float x = gloss;\n{lines}"
+                   f"    rt_SampleColor = color(abs(x) * 0.1);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
+                   f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
+                   for i in range(count))
+
+
 class Growth(Case):
     def write_scene(self, names):
         glass = EXAMPLES / "glass"
@@ -74,6 +83,14 @@ class Growth(Case):
         self.write("large.rtsl", classes(40))
         self.write_scene([f"M{i}" for i in range(40)])
         self.assert_same_pictures()
+
+    def test_parts_and_threads_change_no_picture(self):
+        self.write("large.rtsl", large_classes(80))
+        self.write_scene([f"M{i}" for i in range(80)])
+        self.assert_same_pictures()
+        for number, options in enumerate((["-O3"], ["--threads", "1"], ["--trace=split", "--threads", "1"])):
+            self.run_rtslc("render", "scene.json", "-o", f"again{number}.exr", "-q", *SMALL, "--traversal=device", *options)
+            self.assertEqual((self.folder / f"again{number}.exr").read_bytes(), (self.folder / "0.exr").read_bytes())
 
 
 if __name__ == "__main__":

@@ -216,6 +216,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   filesRead = withMeshes(description, filesRead);
   checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
+  compile.threads = options.threads;
   LinkRequest request = linkRequest(description);
   request.features |= features(options.prints, options.exceptions);
   keep(options.common.keep, request, compile);

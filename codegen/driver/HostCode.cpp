@@ -1,0 +1,229 @@
+//===- HostCode.cpp - linked IR as a program in this process --------------===//
+#include "codegen/driver/HostCode.h"
+
+#include "codegen/driver/Stages.h"
+#include "codegen/emit/DoublePrecision.h"
+#include "codegen/emit/Jit.h"
+#include "codegen/emit/Parts.h"
+#include "codegen/link/Link.h"
+#include "codegen/passes/Pipeline.h"
+#include "codegen/passes/restructure/Restructure.h"
+#include "runtime/DeviceBitcode.h"
+#include "runtime/NumberCheck.h"
+
+#include "mlir/IR/Threading.h"
+#include "mlir/IR/Verifier.h"
+#include "mlir/Transforms/Passes.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <optional>
+
+namespace rtsl::driver {
+
+namespace {
+
+//===----------------------------------------------------------------------===//
+// What the runtime calls
+//===----------------------------------------------------------------------===//
+
+/// What samples of a linked program come from.
+std::vector<std::string> sampleSymbols(const runtime::Program &program, const CompileOptions &options) {
+  if (options.target == Target::HostMegakernel)
+    return {"rtsl_lane_bytes", "rtsl_run_lane"};
+  if (options.trace == TraceMode::Split)
+    return {"rtsl_sample_split"};
+  return {program.engine == runtime::Engine::Classic ? "rtsl_sample" : "rtsl_generate"};
+}
+
+/// The functions of a linked program that the runtime asks for.
+std::vector<std::string> entries(const runtime::Program &program, const CompileOptions &options) {
+  std::vector<std::string> names = sampleSymbols(program, options);
+  names.push_back("rtsl_rt_Material_anyHit_payload");
+#define RTSL_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
+#include "runtime/device/Slots.def"
+#define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
+#include "runtime/device/SamplingSlots.def"
+  for (const runtime::ClassInfo &info : program.classes) {
+    names.push_back(initializeSymbol(info.name));
+    names.push_back(constructSymbol(info.name));
+    names.push_back(intersectSymbol(info.name));
+  }
+  return names;
+}
+
+template <typename Function>
+void find(const codegen::Jit &jit, const std::string &name, Function *&function) {
+  function = reinterpret_cast<Function *>(jit.lookup(name));
+}
+
+/// Looks up the entries of a compiled program.
+void fillEntries(runtime::Program &program, const codegen::Jit &jit, const CompileOptions &options) {
+  if (options.target == Target::HostMegakernel) {
+    find(jit, "rtsl_lane_bytes", program.megakernel.laneBytes);
+    find(jit, "rtsl_run_lane", program.megakernel.runLane);
+    program.megakernel.stackBytes = jit.stackUse()->bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
+  } else {
+    find(jit, sampleSymbols(program, options).front(), program.sample);
+  }
+  program.stackBytes = [use = jit.stackUse()](std::uint32_t maxDepth, std::uint32_t referenceChain) {
+    // The camera's ray or `generate`, and rays of depth 0 to maxDepth.
+    return use->bytes(std::uint64_t(maxDepth) + 2, referenceChain);
+  };
+  find(jit, "rtsl_rt_Material_anyHit_payload", program.slots.rt_Material_anyHit_payload);
+#define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
+#include "runtime/device/Slots.def"
+#define RTSL_SAMPLING_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
+#include "runtime/device/SamplingSlots.def"
+  for (runtime::ClassInfo &info : program.classes) {
+    find(jit, initializeSymbol(info.name), info.initialize);
+    find(jit, constructSymbol(info.name), info.construct);
+    find(jit, intersectSymbol(info.name), info.intersect);
+  }
+}
+
+/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into the program.
+void load(std::vector<codegen::ObjectCode> parts, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
+          runtime::Program &program) {
+  symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
+  symbols.push_back({"rtsl_check_number", reinterpret_cast<void *>(&rtsl_check_number)});
+  if (options.floatingPoint == FloatingPoint::Double)
+    for (const codegen::HostSymbol &function : codegen::doubleFunctions())
+      symbols.push_back(function);
+  std::shared_ptr<codegen::Jit> jit = take(codegen::Jit::create(std::move(parts), symbols));
+  fillEntries(program, *jit, options);
+  program.code = jit;
+}
+
+//===----------------------------------------------------------------------===//
+// Machine code
+//===----------------------------------------------------------------------===//
+
+codegen::ObjectCode toObject(LlvmCode code) {
+  codegen::optimize(*code.module, *code.machine, code.options);
+  return take(codegen::makeObjectCode(*code.module, *code.machine));
+}
+
+/// Calls `work(0)` ... `work(count - 1)`, on several threads if the context may have them. What one of them throws comes out.
+template <typename Work>
+void forEach(mlir::MLIRContext &context, std::size_t count, Work work) {
+  std::exception_ptr thrown;
+  std::mutex mutex;
+  mlir::parallelFor(&context, 0, count, [&](std::size_t index) {
+    try {
+      work(index);
+    } catch (...) { // which must not leave a thread of LLVM's
+      const std::lock_guard<std::mutex> lock(mutex);
+      thrown = std::current_exception();
+    }
+  });
+  if (thrown)
+    std::rethrow_exception(thrown);
+}
+
+/// Level 2 with its device code, in as many parts as it has.
+class PartCompiler {
+public:
+  PartCompiler(mlir::ModuleOp ir, const CompileOptions &options, llvm::ArrayRef<std::string_view> bitcodes,
+               std::vector<std::string> exports, runtime::Program &program)
+      : ir(ir), options(options), bitcodes(bitcodes), exports(std::move(exports)), program(program) {}
+
+  std::vector<codegen::ObjectCode> run();
+
+private:
+  LlvmCode rest();
+  LlvmCode part(mlir::ModuleOp functions, std::vector<std::string> &missing);
+
+  mlir::ModuleOp ir;
+  const CompileOptions &options;
+  llvm::ArrayRef<std::string_view> bitcodes;
+  std::vector<std::string> exports;
+  runtime::Program &program;
+};
+
+/// What is in no part of its own: all of a small program.
+LlvmCode PartCompiler::rest() {
+  LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true),
+                            options.checksNumbers ? &program.numberPlaces : nullptr);
+  defineFacts(code, program);
+  linkDeviceCode(code, bitcodes, exports);
+  return code;
+}
+
+/// A part has many functions of which each runs seldom, and they have been simplified before: most of what LLVM's level 2
+/// adds is time.
+LlvmCode PartCompiler::part(mlir::ModuleOp functions, std::vector<std::string> &missing) {
+  codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
+  if (machine.optimization < 3)
+    machine.optimization = std::min(machine.optimization, 1u);
+  LlvmCode code = translate(functions, machine);
+  const std::vector<std::string> own = codegen::visibleFunctions(*code.module);
+  defineFacts(code, program);
+  linkDeviceCode(code, bitcodes, own);
+  missing = codegen::shareLargeFunctions(*code.module);
+  return code;
+}
+
+std::vector<codegen::ObjectCode> PartCompiler::run() {
+  const bool isWhole = options.checksNumbers || options.floatingPoint == FloatingPoint::Double; // both look at all of it
+  std::vector<mlir::OwningOpRef<mlir::ModuleOp>> parts;
+  if (!isWhole)
+    parts = codegen::takeParts(ir);
+  std::vector<std::optional<LlvmCode>> codes(parts.size());
+  std::vector<std::vector<std::string>> missing(parts.size());
+  mlir::MLIRContext &context = *ir.getContext();
+  forEach(context, parts.size(), [&](std::size_t index) { codes[index].emplace(part(*parts[index], missing[index])); });
+  for (std::vector<std::string> &names : missing)
+    exports.insert(exports.end(), names.begin(), names.end());
+
+  std::vector<std::optional<codegen::ObjectCode>> objects(parts.size() + 1); // the rest takes longest, so it comes first
+  forEach(context, objects.size(),
+          [&](std::size_t index) { objects[index].emplace(toObject(index == 0 ? rest() : std::move(*codes[index - 1]))); });
+  std::vector<codegen::ObjectCode> made;
+  for (std::optional<codegen::ObjectCode> &object : objects)
+    made.push_back(std::move(*object));
+  return made;
+}
+
+} // namespace
+
+void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
+  const bool isMegakernel = options.target == Target::HostMegakernel;
+  runToSsa(ir, options, isMegakernel ? TraceMode::Split : options.trace);
+  if (options.restructure) {
+    expectSuccess(ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
+    run(ir, codegen::buildSsaPipeline);
+  }
+
+  std::vector<codegen::HostSymbol> symbols;
+  if (!isMegakernel) {
+    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
+    symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
+  }
+  const std::vector<std::string_view> whole = {runtime::deviceBitcode()};
+  PartCompiler compiler(ir, options, isMegakernel ? megakernelCode(/*forGpu=*/false) : whole, entries(program, options), program);
+  load(compiler.run(), std::move(symbols), options, program);
+}
+
+void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
+  std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
+  for (const runtime::ClassInfo &info : program.classes) {
+    names.push_back(initializeSymbol(info.name));
+    names.push_back(constructSymbol(info.name));
+  }
+  run(ir, [](mlir::OpPassManager &passes) {
+    passes.addPass(mlir::createSymbolDCEPass()); // what renders
+    codegen::buildSsaPipeline(passes);
+  });
+  codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
+  machine.optimization = std::min(machine.optimization, 1u);
+  LlvmCode code = translate(ir, machine);
+  defineFacts(code, program);
+  linkDeviceCode(code, runtime::deviceBitcode(), names);
+  std::vector<codegen::ObjectCode> objects;
+  objects.push_back(toObject(std::move(code)));
+  load(std::move(objects), {}, options, program);
+}
+
+} // namespace rtsl::driver
