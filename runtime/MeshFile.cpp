@@ -56,18 +56,30 @@ std::string extensionOf(const std::string &path) {
   return extension;
 }
 
+bool isPipe(const std::string &path) {
+  struct stat status;
+  return ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
+}
+
+/// Nothing if assimp has to read the file, which is not possible once a pipe has been read.
 std::optional<Mesh> readPlain(const std::string &path, const std::string &extension) {
-  if (extension == ".obj")
-    return readPlainObj(readFile(path));
-  if (extension != ".ply")
+  const bool isPly = extension == ".ply";
+  if (!isPly && extension != ".obj")
     return std::nullopt;
+  const bool isRead = isPipe(path);
   const std::string bytes = readFile(path);
-  std::optional<Mesh> mesh = readPlainPly(bytes);
+  std::optional<Mesh> mesh = isPly ? readPlainPly(bytes) : readPlainObj(bytes);
   if (mesh)
     return mesh;
-  const std::string missing = findMissingPlyElements(bytes);
+  const std::string missing = isPly ? findMissingPlyElements(bytes) : "";
   if (!missing.empty())
     throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` is truncated: it {}", path, missing),
+                Place{path});
+  if (isRead)
+    throw Error(ErrorCode::BadMesh,
+                fmt::format("cannot read mesh `{}` from a pipe: it is damaged, or has something in "
+                            "it that can only be read from a file",
+                            path),
                 Place{path});
   return std::nullopt;
 }

@@ -20,6 +20,7 @@
 #include <random>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
 namespace report = rtsl::report;
@@ -374,6 +375,19 @@ TEST_F(Meshes, WhatIsNotPlainIsLeftToAssimp) {
                            "f 1 2 x\n", "f 1 2 3/\n", "v 1 nan 1\nf 1 2 3\n", "v 1 1\nf 1 2 3\n", "v 1 1e99 1\nf 1 2 3\n",
                            "v 1 1 x\nf 1 2 3\n", "vn 0 0\nf 1 2 3\n", "vt 0\nf 1 2 3\n", "nonsense\nf 1 2 3\n"})
     EXPECT_FALSE(readPlainObj(vertices + rest)) << rest;
+}
+
+TEST_F(Meshes, APipeIsReadOnce) {
+  const std::string pipe = path("pipe.obj"), triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  auto read = [&](const std::string &text) {
+    std::thread writer([&] { std::ofstream(pipe) << text; });
+    const std::string message = errorOf([&] { EXPECT_EQ(loadMesh(pipe).triangleCount(), 1u); });
+    writer.join();
+    return message;
+  };
+  EXPECT_EQ(read(triangle), "no error");
+  EXPECT_NE(read(triangle + "nonsense\n").find("from a pipe"), std::string::npos);
 }
 
 namespace {
