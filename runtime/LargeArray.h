@@ -9,8 +9,8 @@
 
 namespace rtsl::runtime {
 
-/// An array of a fixed size, in pages of 2 MiB where the system has them: there are fewer to be made when it is filled,
-/// and to be looked up when it is read. Elements are zero.
+/// An array of a fixed size, in pages of 2 MiB where the system has them: there are fewer to be
+/// made when it is filled, and to be looked up when it is read. Elements are zero.
 template <typename T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= 4096);
@@ -23,7 +23,8 @@ public:
       return;
     if (count > std::size_t(-1) / sizeof(T))
       throw std::bad_alloc();
-    void *memory = ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    void *memory =
+        ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
       throw std::bad_alloc();
     ::madvise(memory, bytes(), MADV_HUGEPAGE); // if it cannot be, usual pages will do

@@ -1,8 +1,8 @@
 //===- MeshFile.cpp - meshes from files -----------------------------------===//
 //
-// assimp reads all formats, but takes its time: for each OBJ or PLY file it clears 32 MiB before it begins. So files of
-// these formats that hold nothing unusual are read here, and assimp has what is left: other formats, rare features, and
-// whatever is damaged, which it describes.
+// assimp reads all formats, but takes its time: for each OBJ or PLY file it clears 32 MiB before it
+// begins. So files of these formats that hold nothing unusual are read here, and assimp has what is
+// left: other formats, rare features, and whatever is damaged, which it describes.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/AtomicFile.h"

@@ -2,8 +2,8 @@
 //
 // What lies in a leaf of the host's tree. All eight are tested by the operations of
 // runtime/device/Triangle.h and moveIntoBox (runtime/device/Traverse.h), in the same order, and so
-// with the same bits. Where those take another course for numbers of unusual size, or near the ray's
-// origin, the triangle is tested by their own functions.
+// with the same bits. Where those take another course for numbers of unusual size, or near the
+// ray's origin, the triangle is tested by their own functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,7 +19,7 @@ namespace rtsl::runtime {
 struct alignas(32) TriangleBlock {
   static constexpr unsigned lanes = 8;
 
-  float vertices[3][3][lanes]; // [vertex][axis]; an empty lane has the vertices of another one
+  float vertices[3][3][lanes];   // [vertex][axis]; an empty lane has the vertices of another one
   std::uint32_t instance[lanes]; // RTSL_NO_HIT: the lane is empty
   std::uint32_t triangle[lanes];
 
@@ -112,7 +112,8 @@ struct LaneHits {
   const Lanes zero = _mm256_setzero_ps();
   const Lanes isInside = _mm256_or_ps(_mm256_cmp_ps(minimum(e0, e1, e2), zero, _CMP_GE_OQ),
                                       _mm256_cmp_ps(maximum(e0, e1, e2), zero, _CMP_LE_OQ));
-  // Coordinates of meshes and of origins that come here are below 2^60; small ones are scaled there.
+  // Coordinates of meshes and of origins that come here are below 2^60; small ones are scaled
+  // there.
   const Lanes size = maximum(maximum(absolute(x[0]), absolute(x[1]), absolute(x[2])),
                              maximum(absolute(y[0]), absolute(y[1]), absolute(y[2])));
   const Lanes isUsual = _mm256_and_ps(_mm256_cmp_ps(size, all(0x1p-30f), _CMP_GT_OQ),
@@ -135,7 +136,8 @@ struct LaneHits {
 
   const Lanes reciprocal = all(1.0f) / determinant;
   Lanes depth = ((e0 * z[0] + e1 * z[1]) + e2 * z[2]) * reciprocal;
-  const Lanes isNear = _mm256_cmp_ps(absolute(depth), all(device::nearShare) * (size + deepest), _CMP_LT_OQ);
+  const Lanes isNear =
+      _mm256_cmp_ps(absolute(depth), all(device::nearShare) * (size + deepest), _CMP_LT_OQ);
   if (const unsigned near = hits.hit & unsigned(_mm256_movemask_ps(isNear)))
     correctNearDepths(ray, block, near, depth);
   hits.t = depth * all(ray.sz);
@@ -156,7 +158,8 @@ struct LaneHits {
     const Lanes lower = minimum(a, b, c), upper = maximum(a, b, c);
     const float inverse = ray.inverse[axis];
     const Lanes origin = all(ray.origin[axis]);
-    const Lanes first = (inverse < 0 ? upper : lower) - origin, last = (inverse < 0 ? lower : upper) - origin;
+    const Lanes first = (inverse < 0 ? upper : lower) - origin,
+                last = (inverse < 0 ? lower : upper) - origin;
     near = maximum(first * all(inverse), near);
     far = minimum(last * all(inverse), far);
   }
@@ -176,8 +179,8 @@ struct LaneHits {
 }
 
 /// Tests all triangles of the block and commits the one that wins. With `anyHit` the first will do.
-[[gnu::always_inline]] inline bool testBlock(RtslState &state, const device::TriangleRay &ray, const TriangleBlock &block,
-                      bool anyHit) {
+[[gnu::always_inline]] inline bool testBlock(RtslState &state, const device::TriangleRay &ray,
+                                             const TriangleBlock &block, bool anyHit) {
   LaneHits hits = intersectLanes(ray, block);
   if ((hits.hit | hits.other) == 0)
     return false;
@@ -199,7 +202,8 @@ struct LaneHits {
     }
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned i = unsigned(__builtin_ctz(lanes));
-      if (block.instance[i] == RTSL_NO_HIT || !device::wins(state, t[i], block.instance[i], block.triangle[i]))
+      if (block.instance[i] == RTSL_NO_HIT ||
+          !device::wins(state, t[i], block.instance[i], block.triangle[i]))
         continue;
       device::commit(state, t[i], t[i], block.instance[i], block.triangle[i]);
       state.u = u[i];

@@ -8,8 +8,9 @@
 
 namespace rtsl::runtime {
 
-/// All triangles of the launch in blocks of those that lie together, by Embree's builder. Errors of Embree go to the
-/// device; throws std::bad_alloc.
-LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const RtslLaunch &launch, unsigned threads);
+/// All triangles of the launch in blocks of those that lie together, by Embree's builder. Errors of
+/// Embree go to the device; throws std::bad_alloc.
+LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const RtslLaunch &launch,
+                                             unsigned threads);
 
 } // namespace rtsl::runtime

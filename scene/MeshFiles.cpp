@@ -2,7 +2,6 @@
 
 #include "runtime/WorkerThreads.h"
 
-
 namespace rtsl::scene {
 
 using runtime::Mesh;
@@ -25,7 +24,9 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
   std::vector<Placement> placements;
   for (const GeometryDescription &geometry : description.objects) {
     if (geometry.primitive ||
-        !numbers.emplace(std::make_pair(geometry.meshPath, geometry.transform.columns), numbers.size()).second)
+        !numbers
+             .emplace(std::make_pair(geometry.meshPath, geometry.transform.columns), numbers.size())
+             .second)
       continue;
     const auto [file, isNew] = fileNumbers.emplace(geometry.meshPath, paths.size());
     if (isNew) {

@@ -13,8 +13,8 @@
 
 namespace rtsl::scene {
 
-/// Reads each file of a scene once and moves its mesh to where objects have it, on all cores. Objects that have a file in
-/// the same place share a mesh.
+/// Reads each file of a scene once and moves its mesh to where objects have it, on all cores.
+/// Objects that have a file in the same place share a mesh.
 class MeshFiles {
 public:
   explicit MeshFiles(const SceneDescription &description);

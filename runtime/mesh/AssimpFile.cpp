@@ -83,7 +83,8 @@ Mesh readByAssimp(const std::string &path) {
     while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' '))
       reason.pop_back();
     if (reason.find("bad_alloc") != std::string::npos) // assimp catches what the reader throws
-      throw Error(ErrorCode::OutOfMemory, fmt::format("not enough memory to read mesh `{}`", path), Place{path});
+      throw Error(ErrorCode::OutOfMemory, fmt::format("not enough memory to read mesh `{}`", path),
+                  Place{path});
     throw Error(ErrorCode::BadMesh,
                 fmt::format("cannot read mesh `{}`: {}", path,
                             reason.empty() ? "the file is damaged" : reason),

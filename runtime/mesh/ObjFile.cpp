@@ -49,8 +49,8 @@ public:
     firstAt.reserve(count);
   }
 
-  /// `width` floats of each vertex, of those in `from` that its `index` says. Empty if no vertex has any; zeros for
-  /// those that have none.
+  /// `width` floats of each vertex, of those in `from` that its `index` says. Empty if no vertex
+  /// has any; zeros for those that have none.
   std::vector<float> gather(const std::vector<float> &from, std::uint32_t Corner::*index,
                             std::size_t width) const {
     auto has = [&](const Vertex &vertex) { return vertex.corner.*index != none; };
@@ -191,7 +191,8 @@ private:
       return false;
     skipBlanks();
     float ignored;
-    return (isAtEnd() || (readNumber(ignored) && readNumber(ignored) && readNumber(ignored))) && endLine();
+    return (isAtEnd() || (readNumber(ignored) && readNumber(ignored) && readNumber(ignored))) &&
+           endLine();
   }
 
   /// u v, and perhaps w.
@@ -251,8 +252,8 @@ private:
       vertex[std::size_t(i)] = vertices.add(corners[std::size_t(i)]);
     int first = 0;
     if (count == 4)
-      first = cornerOfDiagonal({position(corners[0]), position(corners[1]), position(corners[2]),
-                                position(corners[3])});
+      first = cornerOfDiagonal(
+          {position(corners[0]), position(corners[1]), position(corners[2]), position(corners[3])});
     for (int i = 1; i + 1 < count; ++i)
       for (int corner : {first, first + i, first + i + 1})
         indices.push_back(vertex[std::size_t(corner % count)]);

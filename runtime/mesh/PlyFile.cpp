@@ -48,11 +48,11 @@ struct Header {
 /// None for a type that PLY does not have.
 Type typeOf(const std::string &name) {
   static constexpr std::pair<const char *, Type> types[] = {
-      {"char", Type::Int8},    {"int8", Type::Int8},       {"uchar", Type::UInt8},
-      {"uint8", Type::UInt8},  {"short", Type::Int16},     {"int16", Type::Int16},
-      {"ushort", Type::UInt16}, {"uint16", Type::UInt16},  {"int", Type::Int32},
-      {"int32", Type::Int32},  {"uint", Type::UInt32},     {"uint32", Type::UInt32},
-      {"float", Type::Float},  {"float32", Type::Float},   {"double", Type::Double},
+      {"char", Type::Int8},     {"int8", Type::Int8},     {"uchar", Type::UInt8},
+      {"uint8", Type::UInt8},   {"short", Type::Int16},   {"int16", Type::Int16},
+      {"ushort", Type::UInt16}, {"uint16", Type::UInt16}, {"int", Type::Int32},
+      {"int32", Type::Int32},   {"uint", Type::UInt32},   {"uint32", Type::UInt32},
+      {"float", Type::Float},   {"float32", Type::Float}, {"double", Type::Double},
       {"float64", Type::Double}};
   for (const auto &[known, type] : types)
     if (name == known)
@@ -118,7 +118,8 @@ std::optional<Header> readHeader(std::string_view bytes) {
 // Values
 //===----------------------------------------------------------------------===//
 
-/// Steps over values. Functions return false when they run out, or where a value is not what it should be.
+/// Steps over values. Functions return false when they run out, or where a value is not what it
+/// should be.
 class Body {
 public:
   Body(std::string_view bytes, const Header &header)
@@ -265,7 +266,9 @@ private:
         return false;
       if (!target.to)
         continue;
-      unsigned &seen = components[target.to == &mesh.positions ? 0 : target.to == &mesh.normals ? 1 : 2];
+      unsigned &seen = components[target.to == &mesh.positions ? 0
+                                  : target.to == &mesh.normals ? 1
+                                                               : 2];
       const unsigned bit = 1u << target.component;
       if (seen & bit)
         return false;
@@ -318,8 +321,9 @@ private:
         return false;
     auto position = [&](int corner) { return &mesh.positions[3 * corners[std::size_t(corner)]]; };
     const std::size_t first =
-        count == 3 ? 0
-                   : std::size_t(cornerOfDiagonal({position(0), position(1), position(2), position(3)}));
+        count == 3
+            ? 0
+            : std::size_t(cornerOfDiagonal({position(0), position(1), position(2), position(3)}));
     for (std::size_t i = 1; i + 1 < count; ++i)
       for (std::size_t corner : {first, first + i, first + i + 1})
         mesh.indices.push_back(std::uint32_t(corners[corner % count]));

@@ -56,7 +56,8 @@ public:
 
   /// From anywhere, or from a vertex or an inner point of a triangle.
   TriangleRay ray(const TriangleBlock &block, float scale) {
-    const TriangleVertices p = block.lane(below(TriangleBlock::lanes)), to = block.lane(below(TriangleBlock::lanes));
+    const TriangleVertices p = block.lane(below(TriangleBlock::lanes)),
+                           to = block.lane(below(TriangleBlock::lanes));
     Vec3 origin = point(2 * scale);
     if (below(3) == 0)
       origin = p.v0;
@@ -103,7 +104,8 @@ TEST(TriangleBlock, FindsWhatTheTrianglesFindOneByOne) {
       bool foundAlone = false;
       for (unsigned lane = TriangleBlock::lanes; lane-- > 0;)
         if (block.instance[lane] != RTSL_NO_HIT)
-          foundAlone |= rtsl::device::testTriangle(alone, ray, block.lane(lane), block.instance[lane], block.triangle[lane]);
+          foundAlone |= rtsl::device::testTriangle(alone, ray, block.lane(lane),
+                                                   block.instance[lane], block.triangle[lane]);
       ASSERT_EQ(found, foundAlone) << exponent << ' ' << i;
       ASSERT_EQ(testBlock(any, ray, block, true), found);
       ASSERT_EQ(std::memcmp(&together, &alone, sizeof alone), 0) << exponent << ' ' << i;
