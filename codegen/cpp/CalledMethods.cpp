@@ -22,13 +22,14 @@
 
 namespace rtsl::cpp {
 
-std::set<std::string> ModulePrinter::typeNames() const {
-  std::set<std::string> found;
+const std::set<std::string> &ModulePrinter::typeNames() const {
+  if (!fileTypes.empty())
+    return fileTypes;
   for (const auto &structure : module.structs)
-    found.insert(names.of(structure.get()));
+    fileTypes.insert(names.of(structure.get()));
   for (const auto &definition : module.classes)
-    found.insert(names.of(definition.get()));
-  return found;
+    fileTypes.insert(names.of(definition.get()));
+  return fileTypes;
 }
 
 std::string ModulePrinter::stepName(const typed::Class &definition, const std::string &function) {

@@ -20,8 +20,10 @@ ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options
       mayReferToNothing(lowering::mayReferToNothing(module)),
       lookupsNest(lowering::lookupsNest(module)), states(states),
       diagnostics(diagnostics) {
-  if (states)
-    findCalledMethods();
+  if (!states)
+    return;
+  findStates();
+  findCalledMethods();
 }
 
 void ModulePrinter::unsupported(SourceRange range, const std::string &what) {

@@ -3,6 +3,7 @@
 #include "codegen/lower/Analysis.h"
 #include "sema/Casting.h"
 
+#include <algorithm>
 #include <cctype>
 
 namespace rtsl::cpp {
@@ -62,26 +63,29 @@ static std::string cleaned(std::string word) {
   return word;
 }
 
-std::string unique(std::string name, std::set<std::string> &taken) {
+std::string unique(std::string name, std::set<std::string> &taken, const std::set<std::string> &around) {
   for (std::size_t at; (at = name.find("__")) != std::string::npos;) // C++ keeps these for itself
     name.erase(at, 1);
   const std::string base = name;
-  for (unsigned i = 2; isReserved(name) || !taken.insert(name).second; ++i)
+  for (unsigned i = 2; isReserved(name) || around.count(name) || !taken.insert(name).second; ++i)
     name = base + std::to_string(i);
   return name;
 }
 
-/// `avoid` must not be its name; `all` are names that others have.
-void Names::give(const void *entity, const std::string &name, const std::string &shown,
-                 const std::set<std::string> &avoid, const std::set<std::string> &all) {
+/// What is avoided must not be its name; `all` are names that others have.
+void Names::give(const void *entity, const std::string &name, const std::string &shown, const Avoided &avoided,
+                 const std::set<std::string> &all) {
+  const auto avoids = [&avoided](const std::string &one) {
+    return std::any_of(avoided.begin(), avoided.end(), [&one](const auto *names) { return names->count(one) != 0; });
+  };
   std::string result = cleaned(name);
-  if (isReserved(result) || avoid.count(result) || (result != name && all.count(result))) {
+  if (isReserved(result) || avoids(result) || (result != name && all.count(result))) {
     std::string base = result.back() == '_' ? result : result + "_";
     for (const char *prefix : {"GLM_", "RTSL_", "rtsl_"}) // no name begins so, whatever stands behind it
       if (const std::size_t length = std::string(prefix).size(); base.compare(0, length, prefix) == 0)
         base.erase(length - 1, 1);
     result = base;
-    for (unsigned i = 2; avoid.count(result) || all.count(result) || isReserved(result); ++i)
+    for (unsigned i = 2; avoids(result) || all.count(result) || isReserved(result); ++i)
       result = base + std::to_string(i);
   }
   if (result != name)
@@ -112,7 +116,7 @@ void Names::nameFileLevel(const typed::Module &module) {
     all.insert(function->name);
 
   auto add = [&](const void *entity, const std::string &name, const std::set<std::string> &avoid = {}) {
-    give(entity, name, name, avoid, all);
+    give(entity, name, name, {&avoid}, all);
     fileLevel.insert(names[entity]);
   };
   for (const auto &structure : module.structs)
@@ -145,7 +149,7 @@ void Names::nameFileLevel(const typed::Module &module) {
     for (const typed::Field &field : structure->fields)
       fields.insert(field.name);
     for (const typed::Field &field : structure->fields)
-      give(&field, field.name, structure->name + "." + field.name, typeNames, fields);
+      give(&field, field.name, structure->name + "." + field.name, {&typeNames}, fields);
   }
 }
 
@@ -161,7 +165,7 @@ void Names::nameClass(const typed::Class &definition) {
       all.insert(function->name);
   }
   auto add = [&](const void *entity, const std::string &name) {
-    give(entity, name, definition.name + "." + name, typeNames, all);
+    give(entity, name, definition.name + "." + name, {&typeNames}, all);
     memberNames.insert(names[entity]);
   };
   for (const auto &member : definition.members)
@@ -191,23 +195,20 @@ void Names::nameLocals(const typed::Function &function) {
   const std::string prefix =
       function.owner ? function.owner->name + "." + function.name : function.name;
 
-  std::set<std::string> avoid = fileLevel;
-  avoid.insert(methods.begin(), methods.end());
   for (const auto &parameter : function.parameters)
     if (!parameter->name.empty())
-      give(parameter.get(), parameter->name, prefix + "." + parameter->name, avoid, all);
+      give(parameter.get(), parameter->name, prefix + "." + parameter->name, {&fileLevel, &methods}, all);
     else
       names[parameter.get()] = "";
-  avoid.insert(members.begin(), members.end());
   for (const auto &local : function.locals) {
-    std::set<std::string> forbidden = avoid;
+    std::set<std::string> read;
     if (local->init)
       forEachExpr(*local->init, [&](const typed::Expr &expr) {
         if (auto *variable = dynCast<typed::VariableExpr>(&expr))
           if (auto known = names.find(variable->variable); known != names.end())
-            forbidden.insert(known->second);
+            read.insert(known->second);
       });
-    give(local.get(), local->name, prefix + "." + local->name, forbidden, all);
+    give(local.get(), local->name, prefix + "." + local->name, {&fileLevel, &methods, &members, &read}, all);
     all.insert(names[local.get()]);
   }
 }

@@ -32,8 +32,10 @@ private:
   void nameFileLevel(const typed::Module &module);
   void nameClass(const typed::Class &definition);
   void nameLocals(const typed::Function &function);
-  void give(const void *entity, const std::string &name, const std::string &shown,
-            const std::set<std::string> &taken, const std::set<std::string> &all);
+  /// Sets of names that are not copied, for there may be thousands at file level.
+  using Avoided = std::vector<const std::set<std::string> *>;
+  void give(const void *entity, const std::string &name, const std::string &shown, const Avoided &avoided,
+            const std::set<std::string> &all);
 
   std::map<const void *, std::string> names;
   std::map<std::string, std::string> references;
@@ -43,9 +45,9 @@ private:
   std::set<std::string> memberNames; // of all classes, methods too
 };
 
-/// The name, or the name with a number behind it, as none of these; it is one of them then. Without two underscores in a row, which
+/// The name, or the name with a number behind it, as none of these and none around them; it is one of these then. Without two underscores in a row, which
 /// C++ keeps for itself.
-std::string unique(std::string name, std::set<std::string> &taken);
+std::string unique(std::string name, std::set<std::string> &taken, const std::set<std::string> &around = {});
 
 /// The class of include/rtsl/shader that an `rt_` base is, or that of none: `rt_Texture` is rtsl::Texture.
 std::string nameOfRoot(const std::string &root);

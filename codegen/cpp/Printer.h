@@ -15,11 +15,14 @@
 #include "codegen/lower/Analysis.h"
 #include "codegen/cpp/tree/Print.h"
 
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+
 #include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <unordered_set>
 #include <vector>
 
@@ -82,8 +85,9 @@ public:
   const CalledMethod *calledMethod(const std::string &symbol) const;
   /// The struct of what it is given: `FilterRef::Follow`.
   std::string structureOf(const CalledMethod &called) const;
-  /// The C++ names that mean something in every method of a class.
-  std::set<std::string> namesInScope(const typed::Class &definition) const;
+  /// The C++ names that mean something in every method of a class: those at file level, and those of the class.
+  const std::set<std::string> &namesInFile() const;
+  std::set<std::string> namesInClass(const typed::Class &definition) const;
 
   std::string commentText(const std::string &comment) const;
   /// Where the text stands, if that is to be printed.
@@ -126,6 +130,7 @@ private:
   bool hasScratch(const typed::Class &definition);
 
   // States.cpp
+  void findStates();
   /// Is the method printed as its states in this class? Has it become part of those of others?
   bool isSplit(const typed::Class &definition, const typed::Function &method) const;
   bool isPartOfStates(const typed::Function &function) const;
@@ -144,7 +149,7 @@ private:
 
   // CalledMethods.cpp
   void findCalledMethods();
-  std::set<std::string> typeNames() const; // of the author's structs and classes
+  const std::set<std::string> &typeNames() const; // of the author's structs and classes
   std::string stepName(const typed::Class &definition, const std::string &function);
   const CalledMethod *calledMethod(const typed::Class &definition, const typed::Function &method) const;
   std::string callStructures(const std::string &className);
@@ -209,6 +214,9 @@ private:
   std::vector<RayType> rayTypes;
 
   const StateProgram *states;
+  /// The states of each method of each class, by the names that the IR has and whether the method has a frame of its own.
+  std::map<std::tuple<std::string, std::string, bool>, std::vector<mlir::func::FuncOp>> statesOf;
+  mutable std::set<std::string> fileNames, fileTypes; // that namesInFile() and typeNames() give
   Diagnostics &diagnostics;
   struct ThroughReference {
     std::string method;

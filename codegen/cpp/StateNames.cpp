@@ -73,8 +73,8 @@ std::string StateWriter::freshName(const std::string &wanted) {
   if (clean.empty() || std::isdigit(static_cast<unsigned char>(clean.front())))
     clean = "value" + clean;
   std::string name = clean;
-  for (unsigned i = 2; isReserved(name) || always.count(name) || printer.temporaries.count(name) || !taken.insert(name).second; ++i)
-    name = clean + (i == 2 && (isReserved(clean) || always.count(clean)) ? "_" : std::to_string(i));
+  for (unsigned i = 2; isReserved(name) || isAlways(name) || printer.temporaries.count(name) || !taken.insert(name).second; ++i)
+    name = clean + (i == 2 && (isReserved(clean) || isAlways(clean)) ? "_" : std::to_string(i));
   printer.usedNames.insert(name);
   return name;
 }

@@ -247,7 +247,7 @@ std::optional<Statement> StateWriter::lights(ir::LoopOp op, mlir::Block *&lit, s
     arguments.push_back(angle->parts[1]);
   }
   name = "lights"; // within another loop over lights it is another
-  for (unsigned i = 2; always.count(name) || !taken.insert(name).second; ++i)
+  for (unsigned i = 2; isAlways(name) || !taken.insert(name).second; ++i)
     name = "lights" + std::to_string(i);
   lightNumbers[variable] = callMember(cpp::name(name), "number", {}); // for what goes on with the next light later
   return lightLoop(name, std::move(arguments));

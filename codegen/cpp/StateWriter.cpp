@@ -31,11 +31,11 @@ unsigned lineOf(mlir::Location location, llvm::StringRef file) {
 StateWriter::StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine)
     : module(module), source(source), machine(machine), printer(module, machine.method) {
   printer.isNested = false;
-  always = module.namesInScope(*machine.definition);
+  always = module.namesInClass(*machine.definition);
   for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
     always.insert(machine.addressName(module, at));
   for (std::string *name : {&machine.frameName, &machine.callName}) {
-    while (always.count(*name))
+    while (isAlways(*name))
       *name += '_';
     always.insert(*name);
   }
@@ -291,6 +291,8 @@ void StateWriter::leave(ir::ReturnOp op, Lines &out) {
     withRay("rtsl::traceLast", {});
   else if (next.getTransition() == ir::Transition::Return)
     emit(out, returning(cpp::call("rtsl::returnToCaller", {name("rt")})));
+  else if (next.getTransition() == ir::Transition::Jump && machine.joins.count(next.getState()->str()))
+    emit(out, returning(cpp::call("rtsl::goOn", {name("Step::" + machine.stepOf.at(next.getState()->str()))})));
   else if (next.getTransition() == ir::Transition::Jump)
     emit(out, returning(call(op)));
   else

@@ -43,6 +43,8 @@ struct Machine {
   const CalledMethod *called = nullptr;               // the method is called through references
   std::map<std::string, const CalledMethod *> callBefore; // what has returned when a state begins; null: it cannot be shown
 
+  std::set<std::string> joins; // states that begin where others have come together, by symbol
+
   bool hasFrame() const { return called || !frame.empty(); }
   /// Which of what it is given the operation asks for.
   std::size_t given(ir::CallArgumentOp argument) const;
@@ -195,6 +197,7 @@ private:
   Machine &machine;
   FunctionPrinter printer;
   std::set<std::string> taken, always;
+  bool isAlways(const std::string &name) const { return always.count(name) || module.namesInFile().count(name); }
   llvm::MapVector<mlir::Value, Pending> pending;
   llvm::DenseMap<mlir::Value, std::string> declared;
   std::map<std::string, mlir::Value> latest; // of the values that have a variable, by what they are called

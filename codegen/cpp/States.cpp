@@ -59,40 +59,42 @@ SourceTable makeSourceTable(const typed::Module &module) {
 // What is split
 //===----------------------------------------------------------------------===//
 
-/// `isFramed`: of the method as others call it, on a frame of its own.
-static std::vector<mlir::func::FuncOp> statesOf(const StateProgram &program, const std::string &className,
-                                                const std::string &method, bool isFramed) {
-  std::vector<mlir::func::FuncOp> states;
-  mlir::ModuleOp ir = program.ir;
+void ModulePrinter::findStates() {
+  mlir::ModuleOp ir = states->ir;
   for (auto function : ir.getOps<mlir::func::FuncOp>()) {
     auto ofClass = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
     auto ofMethod = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
-    if (function->hasAttr("rtsl.state") && ofClass && ofMethod && ofClass.getValue() == className &&
-        ofMethod.getValue() == method && continuation::isFramed(function) == isFramed)
-      states.push_back(function);
+    if (function->hasAttr("rtsl.state") && ofClass && ofMethod)
+      statesOf[{ofClass.str(), ofMethod.str(), continuation::isFramed(function)}].push_back(function);
   }
-  return states;
 }
 
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
   return states && tracing.contains(method) && (method.isStateMethod || calledMethod(definition, method)) &&
-         !statesOf(*states, definition.name, lowering::slotName(module, method), !method.isStateMethod).empty();
+         statesOf.count({definition.name, lowering::slotName(module, method), !method.isStateMethod}) != 0;
 }
 
 bool ModulePrinter::isPartOfStates(const typed::Function &function) const {
   return states && !function.isStateMethod && tracing.contains(function);
 }
 
-std::set<std::string> ModulePrinter::namesInScope(const typed::Class &definition) const {
-  std::set<std::string> found = {module.classes.empty() ? std::string() : options.name};
+const std::set<std::string> &ModulePrinter::namesInFile() const {
+  if (!fileNames.empty())
+    return fileNames;
+  fileNames = {module.classes.empty() ? std::string() : options.name};
   for (const auto &structure : module.structs)
-    found.insert(names.of(structure.get()));
+    fileNames.insert(names.of(structure.get()));
   for (const auto &constant : module.constants)
-    found.insert(names.of(constant.get()));
+    fileNames.insert(names.of(constant.get()));
   for (const auto &function : module.functions)
-    found.insert(names.of(function.get()));
+    fileNames.insert(names.of(function.get()));
   for (const auto &other : module.classes)
-    found.insert(names.of(other.get()));
+    fileNames.insert(names.of(other.get()));
+  return fileNames;
+}
+
+std::set<std::string> ModulePrinter::namesInClass(const typed::Class &definition) const {
+  std::set<std::string> found;
   for (const typed::Class *at = &definition; at; at = at->base) {
     for (const auto &member : at->members)
       found.insert(names.of(member.get()));
@@ -138,21 +140,37 @@ static unsigned lineOfUse(ir::FrameLoadOp load, llvm::StringRef file) {
   return line;
 }
 
+/// The states that others of the method go on in at once.
+static std::set<std::string> joinsOf(const std::vector<mlir::func::FuncOp> &states) {
+  std::set<std::string> symbols, joins;
+  for (mlir::func::FuncOp state : states)
+    if (state != states.front()) // where calls begin
+      symbols.insert(state.getSymName().str());
+  for (mlir::func::FuncOp state : states)
+    state.walk([&](ir::NextOp next) {
+      if (next.getTransition() == ir::Transition::Jump && next.getState() && symbols.count(next.getState()->str()))
+        joins.insert(next.getState()->str());
+    });
+  return joins;
+}
+
 /// The fields of the frame, in the order in which they are saved first; none is called as a type.
-static void collectFrame(Machine &machine, StateWriter &writer, std::set<std::string> taken) {
+static void collectFrame(Machine &machine, StateWriter &writer, const std::set<std::string> &types) {
+  std::set<std::string> taken;
   if (machine.called) {
     taken.insert(machine.called->fields.begin(), machine.called->fields.end());
     taken.insert({"begin", machine.called->returned});
   }
+  std::map<std::pair<std::string, bool>, std::size_t> fields; // in the frame
   auto field = [&](llvm::StringRef slot, bool isObject = false,
                    mlir::Value value = {}) -> FrameField & {
-    for (FrameField &known : machine.frame)
-      if (known.slot == slot && known.isObject == isObject)
-        return known;
+    const auto [at, isNew] = fields.try_emplace({slot.str(), isObject}, machine.frame.size());
+    if (!isNew)
+      return machine.frame[at->second];
     std::string name = writer.spelling(slot);
     if (name == "evaluate" || name == "expression" || name == "call_returned") // what the IR calls it
       name = value ? writer.nameOfValue(value) : "value";
-    machine.frame.push_back({slot.str(), unique(name, taken), nullptr, 0, 0, !isObject, !isObject, isObject});
+    machine.frame.push_back({slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
   for (auto [number, state] : llvm::enumerate(machine.states))
@@ -239,7 +257,7 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   machine.file = notes.shownFile(method.range);
   machine.called = method.isStateMethod ? nullptr : calledMethod(definition, method);
   const std::string slot = lowering::slotName(module, method);
-  machine.states = statesOf(*states, definition.name, slot, machine.called != nullptr);
+  machine.states = statesOf.at({definition.name, slot, machine.called != nullptr});
   std::string name = nameOfMachine(definition, method);
   const typed::Variable *payload = lowering::takesPayload(method) ? method.parameters.front().get() : nullptr;
   if (machine.called && machine.called->structure != capitalised(name)) // there are others of the name
@@ -248,17 +266,19 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
     state.walk([&](ir::EnterOp call) {
       machine.callBefore[call.getResume().value_or("").str()] = calledMethod(call.getCallee().str());
     });
-  std::set<std::string> taken = namesInScope(definition); // what is printed beside the author's own stands behind it
+  machine.joins = joinsOf(machine.states);
+  std::set<std::string> taken = namesInClass(definition); // what is printed beside the author's own stands behind it
   std::vector<std::string> functions = {name};
   for (std::size_t i = 1; i < machine.states.size(); ++i) {
     const std::string symbol = machine.states[i].getSymName().str();
-    functions.push_back(unique(fmt::format("{}After{}{}", name, machine.callBefore.count(symbol) ? "Call" : "Trace", i), taken));
+    const char *begin = machine.joins.count(symbol) ? "FromJoin" : machine.callBefore.count(symbol) ? "AfterCall" : "AfterTrace";
+    functions.push_back(unique(fmt::format("{}{}{}", name, begin, i), taken, namesInFile()));
     machine.stepOf[symbol] = stepName(definition, functions.back());
   }
   StateWriter writer(*this, states->source, machine);
   collectFrame(machine, writer, typeNames());
 
-  std::string frame = unique(capitalised(name) + "Frame", taken);
+  std::string frame = unique(capitalised(name) + "Frame", taken, namesInFile());
   const std::string scope = names.of(&definition) + "::";
   std::string text;
   if (!machine.frame.empty()) {
@@ -333,8 +353,11 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
           line = lineOf(op->getLoc(), machine.file);
       });
       const bool isCall = before != machine.callBefore.end();
-      text += line ? fmt::format(isCall ? "\n// When the call of line {} is over.\n" : "\n// When the ray of line {} is back.\n", line)
-                   : "\n";
+      const bool isJoin = machine.joins.count(machine.states[i].getSymName().str()) != 0;
+      text += !line    ? "\n"
+              : isJoin ? fmt::format("\n// From line {} on, whatever came before.\n", line)
+              : isCall ? fmt::format("\n// When the call of line {} is over.\n", line)
+                       : fmt::format("\n// When the ray of line {} is back.\n", line);
       steps.push_back({machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
     }
     if (const auto place = lineDirective(method.range); place && i == 0)

@@ -67,6 +67,19 @@ class Growth(Case):
         few, many = self.lines_of_states(60), self.lines_of_states(120)
         self.assertLess(many, 2.6 * few)
 
+    def cpp_of(self, count):
+        self.write("large.rtsl", traces(count))
+        text, _ = self.run_rtslc("compile", "large.rtsl", "--emit=cpp", "-o", "-")
+        return text
+
+    def test_cpp_grows_with_the_number_of_traces(self):
+        few, many = self.cpp_of(60), self.cpp_of(120)
+        self.assertIn("return rtsl::goOn(Step::", many)
+        self.assertLess(many.count("\n"), 2.6 * few.count("\n"))
+
+    def test_cpp_of_a_few_traces_has_no_state_that_no_trace_made(self):
+        self.assertNotIn("rtsl::goOn", self.cpp_of(12))
+
     def test_a_few_traces_are_cut_at_no_join(self):
         self.write("large.rtsl", traces(12))
         text, _ = self.run_rtslc("explain", "--states", "large.rtsl")

@@ -13,6 +13,8 @@ struct JoinOptions {
   std::size_t copies = 4;
   /// Operations between two cuts, at least.
   std::size_t shortest = 16;
+
+  static JoinOptions forPeople() { return {10000, 8, 64}; }
 };
 
 /// On suspends that send no ray: the state goes on in the next at once.

@@ -223,11 +223,11 @@ mlir::LogicalResult FunctionSplitter::run() {
   insertSuspends(function, summary);
   for (mlir::Location last : endAtLastTraces(function))
     report.lastTraces.push_back(ir::placeOf(last));
-  // A program that is printed for people has no states but those that its traces make.
-  if (!function->getParentOfType<mlir::ModuleOp>()->hasAttr("rtsl.source"))
-    cutJoins(function);
+  // In a program that is printed for people copies read better than states that no trace has made, unless they are many.
+  const bool isForPeople = function->getParentOfType<mlir::ModuleOp>()->hasAttr("rtsl.source");
+  cutJoins(function, isForPeople ? JoinOptions::forPeople() : JoinOptions());
   moveVariablesToFrame(function);
-  if (function->getParentOfType<mlir::ModuleOp>()->hasAttr("rtsl.source"))
+  if (isForPeople)
     removeIdleClears(function);
   if (mlir::failed(check("suspend")))
     return mlir::failure();

@@ -33,6 +33,12 @@ inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const gl
   return static_cast<Next>(step);
 }
 
+/// Another state goes on at once, and no ray is sent.
+template <typename Step>
+constexpr Next goOn(Step step) {
+  return -static_cast<Next>(step);
+}
+
 /// Prepares a ray that takes the place of the one that sends it: what it brings back is SampleColor.
 template <int N>
 inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction) {
