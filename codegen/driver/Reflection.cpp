@@ -3,10 +3,12 @@
 
 #include "codegen/cpp/Effects.h"
 #include "codegen/cpp/Names.h"
+#include "codegen/driver/Stages.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/link/Members.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/lower/Lowering.h"
+#include "codegen/passes/continuation/ReportJson.h"
 #include "sema/ConstantFold.h"
 
 #include "mlir/IR/MLIRContext.h"
@@ -209,9 +211,12 @@ private:
 std::optional<std::string> emitReflection(const typed::Module &module, const CompileOptions &options,
                                           Diagnostics &diagnostics) {
   // How traces cut functions into states, and the frames of those.
-  const std::optional<std::string> states = explainStates(module, options, ReportFormat::Json, diagnostics);
-  if (!states)
+  const std::unique_ptr<mlir::MLIRContext> splitContext = driver::makeContext();
+  const mlir::OwningOpRef<mlir::ModuleOp> split =
+      driver::lowerModule(module, options, {}, diagnostics, *splitContext);
+  if (!split)
     return std::nullopt;
+  const SplitReport states = driver::runToExplainedStates(*split, options);
 
   mlir::MLIRContext context(mlir::MLIRContext::Threading::DISABLED);
   LowerOptions lowering;
@@ -223,7 +228,7 @@ std::optional<std::string> emitReflection(const typed::Module &module, const Com
     return std::nullopt;
   Json json = Reflection(module, lowering, *ir).describe();
   json["colorComponents"] = options.colorComponents;
-  json["tracing"] = Json::parse(*states);
+  json["tracing"] = rtsl::describe(states);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

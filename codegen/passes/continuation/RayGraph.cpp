@@ -148,6 +148,14 @@ RayGraph Finder::run() {
 
 } // namespace
 
+std::vector<std::string> RayGraph::names(std::uint32_t set) const {
+  std::vector<std::string> result;
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+    if (set >> kind & 1)
+      result.push_back(kinds[kind].name);
+  return result;
+}
+
 std::uint32_t RayGraph::levels(std::uint32_t maxDepth) const {
   return device::mostLevels(
       kinds.size(), hasGenerate, maxDepth, [&](std::uint32_t kind) { return kinds[kind].sent; },

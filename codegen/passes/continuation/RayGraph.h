@@ -28,6 +28,8 @@ struct RayGraph {
   std::uint32_t levels(std::uint32_t maxDepth) const;
   /// Does a larger limit of depth need a larger stack?
   bool grows() const;
+  /// Of a set of kinds, given as bits.
+  std::vector<std::string> names(std::uint32_t set) const;
 };
 
 /// The graph of a module whose functions have been split.

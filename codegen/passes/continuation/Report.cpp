@@ -4,7 +4,6 @@
 #include "runtime/device/Machine.h"
 
 #include "llvm/ADT/StringExtras.h"
-#include "llvm/Support/JSON.h"
 #include "llvm/Support/Path.h"
 #include "llvm/Support/raw_ostream.h"
 
@@ -27,14 +26,6 @@ std::uint64_t SplitReport::levelBytes() const {
   return device::levelSize(std::uint64_t(frameSize()));
 }
 
-static std::vector<std::string> namesOf(const RayGraph &rays, std::uint32_t kinds) {
-  std::vector<std::string> names;
-  for (std::size_t kind = 0; kind < rays.kinds.size(); ++kind)
-    if (kinds >> kind & 1)
-      names.push_back(rays.kinds[kind].name);
-  return names;
-}
-
 /// "rays: P waits for P, Shadow" and the like, and how large a stack follows from it.
 static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
   for (const RayGraph::Kind &kind : report.rays.kinds) {
@@ -42,10 +33,10 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
       continue;
     out << "rays: " << kind.name;
     if (kind.sent != 0)
-      out << " waits for " << llvm::join(namesOf(report.rays, kind.sent), ", ");
+      out << " waits for " << llvm::join(report.rays.names(kind.sent), ", ");
     if (kind.sentLast != 0)
       out << (kind.sent != 0 ? ", and" : "") << " gives its place to "
-          << llvm::join(namesOf(report.rays, kind.sentLast), ", ");
+          << llvm::join(report.rays.names(kind.sentLast), ", ");
     out << "\n";
   }
   for (const continuation::TrimmedPayload &trimmed : report.trimmed)
@@ -144,119 +135,6 @@ std::string toText(const SplitReport &report) {
   }
   if (!report.functions.empty())
     writeRays(out, report);
-  return text;
-}
-
-static void writeStep(llvm::json::OStream &json, const StepReport &step) {
-  json.attribute("after", step.step);
-  json.attribute("savedBytes", step.savedBytes);
-  json.attribute("storedBytes", step.traffic.stored.most);
-  json.attribute("storedBytesLeast", step.traffic.stored.least);
-  json.attribute("restoredBytes", step.traffic.restored.most);
-  json.attribute("restoredBytesLeast", step.traffic.restored.least);
-}
-
-static void writeExtra(llvm::json::OStream &json, const ExtraReport &extra) {
-  json.attribute("recomputedOperations", extra.recomputed);
-  json.attribute("stores", extra.stores);
-  json.attribute("loads", extra.loads);
-  json.attribute("cost", extra.cost);
-}
-
-std::string toJson(const SplitReport &report) {
-  std::string text;
-  llvm::raw_string_ostream out(text);
-  llvm::json::OStream json(out, 2);
-  auto names = [&](llvm::StringRef key, const std::vector<std::string> &values) {
-    json.attributeArray(key, [&] {
-      for (const std::string &value : values)
-        json.value(value);
-    });
-  };
-  json.object([&] {
-    json.attribute("version", 1);
-    json.attribute("frameSize", report.frameSize());
-    json.attributeObject("stack", [&] {
-      const std::uint32_t levels = report.rays.levels(report.maxDepth);
-      json.attribute("depth", report.maxDepth);
-      json.attribute("levels", levels);
-      json.attribute("levelBytes", report.levelBytes());
-      json.attribute("bytes", levels * report.levelBytes());
-      json.attribute("growsWithDepth", report.rays.grows());
-      if (report.frameGrowth() != 0)
-        json.attribute("levelBytesAReference", report.frameGrowth());
-    });
-    json.attributeArray("payloads", [&] {
-      for (const continuation::TrimmedPayload &trimmed : report.trimmed)
-        json.object([&] {
-          json.attribute("name", trimmed.payload);
-          json.attribute("bytes", trimmed.bytes);
-          json.attribute("bytesBefore", trimmed.bytesBefore);
-          names("notPassed", trimmed.fields);
-        });
-    });
-    json.attributeArray("rays", [&] {
-      for (const RayGraph::Kind &kind : report.rays.kinds)
-        json.object([&] {
-          json.attribute("kind", kind.name);
-          names("waitsFor", namesOf(report.rays, kind.sent));
-          names("givesPlaceTo", namesOf(report.rays, kind.sentLast));
-        });
-    });
-    json.attributeArray("functions", [&] {
-      for (const FunctionReport &function : report.functions)
-        json.object([&] {
-          json.attribute("name", function.name);
-          json.attribute("frameSize", function.frame.size);
-          json.attribute("frameSizeUnshared", function.frame.unshared);
-          json.attribute("frameLowerBound", function.frame.lowerBound);
-          names("states", function.states);
-          json.attribute("alwaysTraces", function.endings.alwaysTraces);
-          names("endsBy", function.endings.by);
-          json.attributeArray("lastTraces", [&] {
-            for (const TracePlace &last : function.lastTraces)
-              json.value(last.text());
-          });
-          json.attributeArray("traces", [&] {
-            for (const TraceReport &trace : function.traces)
-              json.object([&] {
-                json.attribute("location", trace.place.text());
-                if (trace.isJoin)
-                  json.attribute("join", true);
-                if (!trace.callee.empty())
-                  json.attribute("callee", trace.callee);
-                json.attribute("resumesAt", trace.resumesAt);
-                json.attribute("liveBytes", trace.liveBytes);
-                names("live", trace.live);
-                json.attribute("savedBytes", trace.savedBytes);
-                names("saved", trace.saved);
-                names("rematerialised", trace.rematerialised);
-                json.attribute("rematerialisedBytes", trace.rematerialisedBytes);
-                json.attributeArray("steps", [&] {
-                  for (const StepReport &step : trace.steps)
-                    json.object([&] { writeStep(json, step); });
-                });
-                json.attributeObject("extra", [&] { writeExtra(json, trace.extra); });
-                json.attributeObject("extraOfPlainLiveness", [&] { writeExtra(json, trace.plainly); });
-                json.attribute("onlyScalesAndAdds", trace.onlyScalesAndAdds);
-              });
-          });
-          json.attributeArray("slots", [&] {
-            for (const continuation::FrameSlot &slot : function.frame.slots)
-              json.object([&] {
-                json.attribute("name", slot.name);
-                json.attribute("offset", slot.offset);
-                json.attribute("size", slot.size);
-                if (slot.bit >= 0)
-                  json.attribute("bit", slot.bit);
-                if (slot.isObject)
-                  json.attribute("object", true);
-              });
-          });
-        });
-    });
-  });
-  out << "\n";
   return text;
 }
 

@@ -107,7 +107,7 @@ struct SplitReport {
 
 /// For people: a block of lines a function.
 std::string toText(const SplitReport &report);
-/// For programs: {"version": 1, "frameSize": ..., "functions": [...]}.
+/// For programs: the text of describe() (ReportJson.h).
 std::string toJson(const SplitReport &report);
 
 } // namespace rtsl

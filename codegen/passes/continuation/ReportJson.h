@@ -1,0 +1,13 @@
+//===- ReportJson.h - what splitting cost and saved, as JSON --------------===//
+#pragma once
+
+#include "codegen/passes/continuation/Report.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace rtsl {
+
+/// For programs: {"version": 1, "frameSize": ..., "functions": [...]}.
+nlohmann::ordered_json describe(const SplitReport &report);
+
+} // namespace rtsl
