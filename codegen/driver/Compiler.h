@@ -6,7 +6,7 @@
 #pragma once
 
 #include "codegen/emit/FloatingPoint.h"
-#include "codegen/link/Items.h"
+#include "codegen/link/LinkRequest.h"
 #include "frontend/Diagnostics.h"
 #include "runtime/Program.h"
 #include "runtime/package/Package.h"
@@ -16,9 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace rtsl {
@@ -54,46 +52,6 @@ struct CompileOptions {
   std::string gpu = "sm_75";
   /// RTSL_FEATURE_UNDEFINED_*: what nobody has written is filled with a pattern. For tests.
   std::uint32_t undefined = 0;
-};
-
-/// A part of a scene that may refer to others: an object that has a name, or a place in a list.
-struct ScenePart {
-  enum class Role : std::uint8_t {
-    Root,
-    Light,
-    Named
-  }; // named materials and textures are there for others alone
-  Role role = Role::Root;
-  std::string name; // for people: "material clay"
-  std::vector<std::string>
-      classes; // of the object, and of those that are written in place inside of it
-  std::vector<std::size_t> refersTo; // indices of parts
-  ir::SourcePlace place;
-};
-
-/// What a scene tells the linker.
-struct LinkRequest {
-  /// The classes that the scene has objects of; only these are kept. Empty: all classes of the module.
-  std::vector<std::string> classes;
-  /// The objects of the scene and what they refer to: the code of classes whose objects no ray can
-  /// come to is left out. Empty: all are used.
-  std::vector<ScenePart> parts = {};
-  /// Which material meets which primitive, as (primitive class, material class); the primitive class is empty for a
-  /// triangle mesh. Attributes are matched along these.
-  std::vector<std::pair<std::string, std::string>> surfaces;
-  /// The members that the scene sets in some object of a class, by class. An optional one that is not among them is empty
-  /// in all objects; a class that is not there is one of which nothing is known.
-  std::map<std::string, std::set<std::string>> givenMembers = {};
-  runtime::Engine engine = runtime::Engine::Classic;
-  std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints
-  bool isSampled = false;     // the host calls SamplingSlots.def; the program has them then
-  /// What stays in the program although the scene does not need it.
-  ItemSet keep = {};
-  /// What is left out although the scene needs it, by Finding::subject: for tests, which require
-  /// that the program changes then.
-  std::set<std::pair<Item, std::string>> without = {};
-  /// Where the scene first mentions a class.
-  std::map<std::string, ir::SourcePlace> places = {};
 };
 
 /// Makes objects of a scene by a program that has what this takes, constructors, defaults and bounds, and nothing else.

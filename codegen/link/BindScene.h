@@ -1,7 +1,7 @@
 //===- BindScene.h - what the objects of a scene say of a program ---------===//
 #pragma once
 
-#include "codegen/driver/Compiler.h"
+#include "codegen/link/LinkRequest.h"
 #include "mlir/IR/BuiltinOps.h"
 #include "runtime/Program.h"
 

@@ -25,7 +25,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/driver/Compiler.h"
+#include "codegen/emit/FloatingPoint.h"
+#include "codegen/link/LinkRequest.h"
+#include "frontend/Diagnostics.h"
+#include "sema/TypedAst.h"
+
 #include "mlir/IR/BuiltinOps.h"
 
 #include <string>
