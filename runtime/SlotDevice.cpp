@@ -68,16 +68,16 @@ int32_t rtsl_calls(RtslState *state) {
   return slotsOf(state).states.calledMethods != 0;
 }
 void *rtsl_call(RtslState *state, const void *end, int32_t resume, RtslRef object) {
-  auto &level = *reinterpret_cast<device::Level *>(state);
-  char *frame = static_cast<char *>(device::frameOf(&level));
+  const device::CurrentRay &ray = device::currentRay(state);
+  char *frame = static_cast<char *>(device::frameOf(ray));
   const uint64_t size = end ? uint64_t(static_cast<const char *>(end) - frame) : 0;
   const auto below = uint32_t((size + 7) / 8 * 8); // it may hold addresses
-  new (frame + below) CallHeader{resume, level.object, below};
+  new (frame + below) CallHeader{resume, ray.object, below};
   rtsl_move_frame(state, int32_t(below), object);
   return frame + below + RTSL_CALL_HEADER;
 }
 int32_t rtsl_return(RtslState *state) {
-  const CallHeader call = *static_cast<CallHeader *>(device::frameOf(reinterpret_cast<device::Level *>(state)));
+  const CallHeader call = *static_cast<CallHeader *>(device::frameOf(device::currentRay(state)));
   rtsl_move_frame(state, -int32_t(call.below), call.object);
   return -call.resume;
 }
@@ -97,6 +97,13 @@ int32_t rtsl_rays_sent(RtslState *, int32_t) {
 int32_t rtsl_rays_sent_last(RtslState *, int32_t) {
   return 1;
 }
+// And it may read all of its ray's state when they are back.
+int32_t rtsl_rays_kept(RtslState *, int32_t part) {
+  return part == device::keptRayKinds ? 3 : -1;
+}
+int32_t rtsl_rays_wait_once(RtslState *) {
+  return 0;
+}
 int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *state) {
   return slotsOf(state).states.closestHitFirst;
 }
@@ -114,7 +121,9 @@ void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_
   if (!slotsOf(launch).states.run)
     return launch->rayGeneration ? rtsl_generate(launch, x, y, sample, color) : rtsl_sample(launch, x, y, sample, color);
   const uint64_t levels = uint64_t(launch->maxDepth) + (launch->rayGeneration ? 2 : 1);
-  void *stack = rtsl_machine_stack(levels * device::levelSize(frameBytes(launch)));
+  RtslState none;
+  none.launch = launch;
+  void *stack = rtsl_machine_stack(levels * device::levelSize(frameBytes(launch), device::keptWords(&none)));
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);
   else

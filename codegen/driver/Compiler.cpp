@@ -327,12 +327,12 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
   if (stage == Stage::Ptx) {
     LlvmCode code = translate(*ir, gpuOptions(options));
     defineFacts(code, program);
-    linkDeviceCode(code, megakernelCode(/*forGpu=*/true), {"rtsl_render"});
+    linkMegakernel(code, /*forGpu=*/true, {"rtsl_render"});
     return toPtx(std::move(code));
   }
   LlvmCode code = translate(*ir, machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, program);
-  linkDeviceCode(code, megakernelCode(/*forGpu=*/false), {"rtsl_lane_bytes", "rtsl_run_lane"});
+  linkMegakernel(code, /*forGpu=*/false, {"rtsl_lane_bytes", "rtsl_run_lane"});
   codegen::optimize(*code.module, *code.machine, code.options);
   return codegen::printLlvm(*code.module);
 }
@@ -393,7 +393,7 @@ llvm::stable_hash fingerprint(mlir::ModuleOp ir, const CompileOptions &options,
   LlvmCode code =
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, program);
-  linkDeviceCode(code, megakernelCode(forGpu),
+  linkMegakernel(code, forGpu,
                  forGpu ? std::vector<std::string>{"rtsl_render"}
                         : std::vector<std::string>{"rtsl_lane_bytes", "rtsl_run_lane"});
   codegen::optimize(*code.module, *code.machine, code.options);
@@ -428,7 +428,7 @@ ProgramSize measure(mlir::ModuleOp ir, const CompileOptions &options, const runt
     size.states += static_cast<std::uint32_t>(function.states.size());
   LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, program);
-  linkDeviceCode(code, megakernelCode(/*forGpu=*/false), {"rtsl_lane_bytes", "rtsl_run_lane"});
+  linkMegakernel(code, /*forGpu=*/false, {"rtsl_lane_bytes", "rtsl_run_lane"});
   codegen::optimize(*code.module, *code.machine, code.options);
   for (const llvm::Function &function : *code.module)
     size.instructions += function.getInstructionCount();
@@ -540,7 +540,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
   const mlir::OwningOpRef<mlir::ModuleOp> forGpu = ir->clone();
   LlvmCode gpu = translate(*forGpu, gpuOptions(options));
   defineFacts(gpu, program);
-  linkDeviceCode(gpu, megakernelCode(/*forGpu=*/true), {"rtsl_render"});
+  linkMegakernel(gpu, /*forGpu=*/true, {"rtsl_render"});
   package.ptx = toPtx(std::move(gpu));
 
   LlvmCode host = translate(*ir, machineOptions(options, /*hostCpu=*/false));
@@ -551,6 +551,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request, con
   std::vector<std::string_view> bitcodes = megakernelCode(/*forGpu=*/false);
   bitcodes.push_back(runtime::hostMemoryBitcode());
   linkDeviceCode(host, bitcodes, kept);
+  host.options.isMegakernel = true;
   codegen::optimize(*host.module, *host.machine, host.options);
   codegen::NativeImage image = take(codegen::makeNativeImage(*host.module, *host.machine, entries));
   package.host = {std::move(image.bytes), image.entries[0], image.entries[1],

@@ -148,6 +148,7 @@ LlvmCode PartCompiler::rest() {
                             options.checksNumbers ? &program.numberPlaces : nullptr);
   defineFacts(code, program);
   linkDeviceCode(code, bitcodes, exports);
+  code.options.isMegakernel = options.target == Target::HostMegakernel;
   return code;
 }
 

@@ -154,6 +154,11 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu) {
   return forGpu ? gpu : host;
 }
 
+void linkMegakernel(LlvmCode &code, bool forGpu, std::vector<std::string> exports) {
+  linkDeviceCode(code, megakernelCode(forGpu), std::move(exports));
+  code.options.isMegakernel = true;
+}
+
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports) {
   exports.insert(exports.end(), code.kept.begin(), code.kept.end());
   if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))

@@ -85,6 +85,9 @@ void defineFacts(LlvmCode &code, const runtime::Program &program);
 /// What a GPU's program needs of runtime/device, for one or for the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
+/// Makes a program that refers to nothing outside (runtime/device/Megakernel.h).
+void linkMegakernel(LlvmCode &code, bool forGpu, std::vector<std::string> exports);
+
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports);
 
 codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu);

@@ -1,6 +1,9 @@
 //===- LlvmModule.cpp - LLVM IR and what is done with it ------------------===//
 #include "codegen/emit/LlvmModule.h"
 
+#include "codegen/emit/JoinCalls.h"
+#include "codegen/emit/UniteAddresses.h"
+
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/Target/LLVMIR/Dialect/Builtin/BuiltinToLLVMIRTranslation.h"
 #include "mlir/Target/LLVMIR/Dialect/LLVMIR/LLVMToLLVMIRTranslation.h"
@@ -19,8 +22,13 @@
 #include "llvm/Target/TargetMachine.h"
 #include "llvm/TargetParser/Host.h"
 #include "llvm/TargetParser/SubtargetFeature.h"
+#include "llvm/Transforms/IPO/AlwaysInliner.h"
 #include "llvm/Transforms/IPO/Internalize.h"
+#include "llvm/Transforms/InstCombine/InstCombine.h"
+#include "llvm/Transforms/Scalar/EarlyCSE.h"
+#include "llvm/Transforms/Scalar/SROA.h"
 #include "llvm/Transforms/Scalar/Scalarizer.h"
+#include "llvm/Transforms/Scalar/SimplifyCFG.h"
 
 #include <mutex>
 
@@ -234,6 +242,26 @@ static void keepLoadsNarrow(llvm::PassInstrumentationCallbacks &callbacks) {
       [](llvm::StringRef pass, llvm::Any) { return pass != "VectorCombinePass"; });
 }
 
+/// Calls that take addresses disappear, and the variables whose addresses they took become values.
+/// Twice, for functions that are passed to others are called directly once these are inlined, and
+/// addresses lie in variables themselves.
+static void addJoining(llvm::PassBuilder &builder) {
+  builder.registerPipelineStartEPCallback([](llvm::ModulePassManager &passes,
+                                             llvm::OptimizationLevel) {
+    for (int round = 0; round < 2; ++round) {
+      passes.addPass(llvm::AlwaysInlinerPass(/*InsertLifetime=*/false));
+      llvm::FunctionPassManager functions;
+      functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
+      functions.addPass(llvm::EarlyCSEPass());
+      functions.addPass(llvm::InstCombinePass());
+      functions.addPass(llvm::SimplifyCFGPass());
+      functions.addPass(UniteAddressesPass());
+      functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
+      passes.addPass(llvm::createModuleToFunctionPassAdaptor(std::move(functions)));
+    }
+  });
+}
+
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
   llvm::PipelineTuningOptions tuning;
   tuning.LoopVectorization = options.optimization > 1;
@@ -255,6 +283,10 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   builder.crossRegisterProxies(loops, functions, components, modules);
 
   addScalarization(builder);
+  if (module.getFunction("rtsl_run_state"))
+    readLaunchAsVariable(module);
+  if (options.isMegakernel && options.optimization > 0 && joinCalls(module))
+    addJoining(builder);
 
   static constexpr const llvm::OptimizationLevel *levels[] = {
       &llvm::OptimizationLevel::O0, &llvm::OptimizationLevel::O1, &llvm::OptimizationLevel::O2,

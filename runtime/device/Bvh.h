@@ -65,12 +65,6 @@ inline float enterBox(const float lower[3], const float upper[3], Vec3 origin, V
 template <typename Limit, typename Test>
 bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin, Limit tMax,
                  Test test) {
-  if (launch.rootIsLeaf) {
-    for (uint32_t i = 0; i < launch.nodeCount; ++i)
-      if (test(launch.leafItems[i]))
-        return true;
-    return false;
-  }
   tMin *= 1.0f - 2 * rangeShare;
   struct Entry {
     int32_t child;
@@ -80,6 +74,8 @@ bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin
   Entry stack[maxBvhDepth];
   int top = 0;
   Entry current = {0, 0, tMin};
+  if (launch.rootIsLeaf)
+    current = {~0, launch.nodeCount, tMin}; // all items; `test` is inlined once
   for (;;) {
     if (current.child >= 0) {
       const RtslBvhNode &node = launch.nodes[current.child];

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "runtime/device/Abi.h"
+#include "runtime/device/Color.h"
 #include "runtime/device/Events.h"
 #include "runtime/device/Random.h"
 #include "runtime/device/Spawn.h"
@@ -17,34 +18,6 @@
 #include "runtime/device/Vector.h"
 
 namespace rtsl::device {
-
-// Loops over a few components become calls of memset and memcpy, which cost more than they do; so
-// the usual number of components is written out.
-inline void setColor(float *color, uint32_t components, float value) {
-  if (components == 3) {
-    color[0] = color[1] = color[2] = value;
-    return;
-  }
-  for (uint32_t i = 0; i < components; ++i)
-    color[i] = value;
-}
-
-inline void copyColor(float *to, const float *from, uint32_t components) {
-  if (components == 3) {
-    float r = from[0], g = from[1], b = from[2];
-    to[0] = r, to[1] = g, to[2] = b;
-    return;
-  }
-  for (uint32_t i = 0; i < components; ++i)
-    to[i] = from[i];
-}
-
-inline bool isBlack(const float *color, uint32_t components) {
-  for (uint32_t i = 0; i < components; ++i)
-    if (color[i] != 0)
-      return false;
-  return true;
-}
 
 /// Makes state's ray start: nothing hit yet, seen up to `distance` in units of the direction.
 inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart &start,
@@ -116,12 +89,9 @@ inline Arrival arriveAtBackground(RtslState &state) {
   return {Arrival::Background, state.launch->background};
 }
 
-/// Finds what state's ray meets and describes it.
-inline Arrival arrive(RtslState &state) {
+/// Describes what the traversal of state's ray has found.
+inline Arrival arriveAt(RtslState &state, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
-  uint32_t components = rtsl_color_components(&launch);
-  setDefaults(state, components);
-  uint32_t found = rtsl_traverse(&state, 0);
   if (found == RTSL_HIT) {
     describeHit(state);
     return {Arrival::Surface, launch.instances[state.instance].material};
@@ -129,11 +99,17 @@ inline Arrival arrive(RtslState &state) {
   if (found == RTSL_MISS) {
     if (launch.background)
       return arriveAtBackground(state);
-    copyColor(state.SampleColor, launch.backgroundColor, components);
+    copyColor(state.SampleColor, launch.backgroundColor, rtsl_color_components(&launch));
   }
   if (found == RTSL_BAD_RAY)
     raise(state, RTSL_EXCEPTION_BAD_RAY);
   return {Arrival::Nothing, 0};
+}
+
+/// Finds what state's ray meets and describes it.
+inline Arrival arrive(RtslState &state) {
+  setDefaults(state, rtsl_color_components(state.launch));
+  return arriveAt(state, rtsl_traverse(&state, 0));
 }
 
 /// Follows state's ray and puts the color that arrives into SampleColor.
@@ -191,29 +167,74 @@ inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) 
   copyColor(color, state.SampleColor, components);
 }
 
+/// What decides whether light arrives.
+struct ShadowRay {
+  const RtslLaunch *launch;
+  RtslEvents *events;
+  Vec3 origin, direction;
+  RayStart start;
+  float distance; // of the light
+  float time, timeSeed;
+  uint32_t launchIndex[2], launchSize[2];
+  uint32_t mask;
+  int32_t root, depth;
+  uint32_t randomKey[2];
+};
+
+/// What the traversal of a shadow ray returns. It takes values, so that the state of the ray that
+/// sends it stays in registers. On a GPU it is a function of its own.
+#ifdef __NVPTX__
+__attribute__((noinline))
+#endif
+inline uint32_t traverseShadow(ShadowRay ray) {
+  RtslState state;
+  beginState(state, ray.launch);
+  state.events = ray.events;
+  state.TimeSeed = ray.timeSeed;
+  state.Time = ray.time;
+  for (int i = 0; i < 2; ++i) {
+    state.LaunchIndex[i] = ray.launchIndex[i];
+    state.LaunchSize[i] = ray.launchSize[i];
+    state.randomKey[i] = ray.randomKey[i];
+  }
+  state.rayMask = ray.mask;
+  state.rayRoot = ray.root;
+  state.Depth = ray.depth;
+  state.dimension = 0;
+  setRay(state, ray.origin, ray.direction, ray.start, ray.distance);
+  return rtsl_traverse(&state, RTSL_FIRST_HIT);
+}
+
 /// Is anything between `point` and the light that `shading` has just asked?
 inline bool inShadow(const RtslState &shading, Vec3 point) {
-  Vec3 direction = load(shading.LightDirection);
-  RtslState state;
-  beginState(state, shading.launch);
-  inherit(state, shading);
-  state.Depth = shading.Depth + 1;
-  const RayStart start = startOf(shading, point, direction);
+  ShadowRay ray;
+  ray.launch = shading.launch;
+  ray.events = shading.events;
+  ray.origin = point;
+  ray.direction = load(shading.LightDirection);
+  ray.start = startOf(shading, point, ray.direction);
   // The light's own surface, if it has one, lies at the end: keep as clear of it as of where the
   // ray starts.
-  float distance = shading.LightDistance;
-  if (distance < infinity)
-    distance -= minimum(start.epsilon, distance * 0x1p-10f);
-  // Draws are hashed; a key that no other ray has is enough.
-  state.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
-  state.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
-  state.dimension = 0;
-  setRay(state, point, direction, start, distance);
-  if (!(start.epsilon < distance))
+  ray.distance = shading.LightDistance;
+  if (ray.distance < infinity)
+    ray.distance -= minimum(ray.start.epsilon, ray.distance * 0x1p-10f);
+  if (!(ray.start.epsilon < ray.distance))
     return false;
-  uint32_t found = rtsl_traverse(&state, RTSL_FIRST_HIT);
+  ray.time = shading.Time;
+  ray.timeSeed = shading.TimeSeed;
+  for (int i = 0; i < 2; ++i) {
+    ray.launchIndex[i] = shading.LaunchIndex[i];
+    ray.launchSize[i] = shading.LaunchSize[i];
+  }
+  ray.mask = shading.rayMask;
+  ray.root = shading.rayRoot;
+  ray.depth = shading.Depth + 1;
+  // Draws are hashed; a key that no other ray has is enough.
+  ray.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
+  ray.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
+  uint32_t found = traverseShadow(ray);
   if (found == RTSL_BAD_RAY)
-    raise(state, RTSL_EXCEPTION_BAD_RAY);
+    raise(shading, RTSL_EXCEPTION_BAD_RAY);
   return found != RTSL_MISS; // along a bad ray no light comes
 }
 

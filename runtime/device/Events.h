@@ -9,6 +9,7 @@
 #pragma once
 
 #include "runtime/device/Abi.h"
+#include "runtime/device/Color.h"
 #include "runtime/device/Warp.h"
 
 namespace rtsl::device {
@@ -29,7 +30,7 @@ inline void startEvents(RtslState &state, RtslEvents &events, uint32_t x, uint32
   state.events = &events;
 }
 
-inline void raise(RtslState &state, uint32_t exception) {
+inline void raise(const RtslState &state, uint32_t exception) {
   if (hasExceptions(state) && state.events && state.events->exception == RTSL_EXCEPTION_NONE)
     state.events->exception = exception;
 }
@@ -43,8 +44,7 @@ inline bool isAbandoned(const RtslState &state) {
 /// The color of a sample that met an exception which no program answers: red, yellow or magenta;
 /// white where colors are not RGB.
 inline void exceptionColor(uint32_t exception, float *color, uint32_t components) {
-  for (uint32_t i = 0; i < components; ++i)
-    color[i] = 1;
+  forEachComponent(components, [&](uint32_t i) { color[i] = 1; });
   if (components != 3)
     return;
   color[1] = exception == RTSL_EXCEPTION_BAD_RAY ? 1.0f : 0.0f;
@@ -59,10 +59,10 @@ inline void endEvents(RtslState &state) {
   uint32_t exception = state.events->exception;
   if (launch.status)
     countUp(&launch.status->exceptions[exception]);
-  exceptionColor(exception, state.SampleColor, launch.colorComponents);
+  const uint32_t components = rtsl_color_components(&launch);
+  exceptionColor(exception, state.SampleColor, components);
   if (launch.exception) {
-    for (uint32_t i = 0; i < launch.colorComponents; ++i)
-      state.SampleColor[i] = 0;
+    forEachComponent(components, [&](uint32_t i) { state.SampleColor[i] = 0; });
     state.ExceptionCode = int32_t(exception);
     rtsl_rt_Exception_exception(&state, launch.exception);
   }

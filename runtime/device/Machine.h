@@ -1,20 +1,22 @@
 //===- Machine.h - the classic engine without recursion -------------------===//
 //
 // Shaders that were split at their traces do not call: a state returns what comes next. The machine
-// runs states and traces rays on a stack of its own, one level a ray:
+// runs states and traces rays. There is one ray whose turn it is; its state is a local variable of
+// whoever runs the machine, so that a compiler that sees the whole program may keep it in
+// registers. The rays that wait for it lie on a stack of the machine's own, one level a ray:
 //
-//   level 0: the camera ray      state | color, resume, object | frame
-//   level 1: a ray it sent       state | ...
+//   level 0: the camera ray      resume, object | frame | what it reads later of its state
+//   level 1: a ray it sent       resume, object | ...
 //   ...
+//   the ray whose turn it is                    | frame
 //
 // What a ray's method calls with a frame of its own has it above that of the caller, on the same
 // level: it is the same ray.
 //
-// A ray behind whose last trace nothing happens gives its level to the ray that it sends: such
-// recursion is a loop. Other rays stay until theirs are back, so a ray of depth d lies at level d
-// at most, one higher above `generate`; how many levels a program needs for a limit of depth is
-// exactly what StackBound.h says. A payload lies in the frame of who sent the ray. All levels are
-// equally large, so a shader finds the ray that it sends one level up.
+// A ray behind whose last trace nothing happens gives its turn, and its level, to the ray that it
+// sends: such recursion is a loop. Other rays stay until theirs are back, so a ray of depth d lies
+// at level d at most, one higher above `generate`; how many levels a program needs for a limit of
+// depth is exactly what StackBound.h says. A payload lies in the frame of who sent the ray.
 //
 // Rays start, meet surfaces and end by the functions of Classic.h and Programs.h, in the order of
 // the recursive engines. Therefore the colors are the same, bit for bit.
@@ -24,60 +26,43 @@
 
 #include "runtime/device/Abi.h"
 #include "runtime/device/Classic.h"
+#include "runtime/device/KeptState.h"
 #include "runtime/device/Programs.h"
 #include "runtime/device/StackBound.h"
 
 namespace rtsl::device {
 
-/// One ray on the stack; its frame follows.
-struct Level {
-  RtslState state;             // first: shaders know their level by their state
-  float color[RTSL_MAX_COLOR]; // what the last trace brought back
-  int32_t resume;              // the state that runs then
-  RtslRef object;              // whose method runs
-  uint16_t isSpawned;          // the ray one level up, or the one in this level's place, is to be traced
-  uint16_t how;                // rtsl_traverse searches for a ray with a payload
-  uint32_t frame;              // of programs with calls: where the frame of what runs begins
+/// A ray that waits. Its frame follows, then the words of its state that are kept.
+struct alignas(16) Level {
+  int32_t resume; // the state that runs when the ray that it sent is back
+  RtslRef object; // whose method runs
+  uint32_t frame; // of programs with calls: where the frame of what runs begins
 };
 
-/// Bytes of a level with its frame.
-inline uint64_t levelSize(uint64_t frame) {
-  uint64_t size = sizeof(Level) + (frame > 4 ? frame : 4);
-  return (size + 15) / 16 * 16;
+inline uint64_t inGroups(uint64_t bytes) {
+  return (bytes + 15) / 16 * 16;
+}
+
+/// Bytes of a level with such a frame and so many kept words. Groups of four words stay together.
+inline uint64_t levelSize(uint64_t frame, uint64_t keptWords) {
+  return sizeof(Level) + inGroups(frame > 4 ? frame : 4) + inGroups(4 * keptWords);
 }
 
 inline uint64_t levelSize(RtslState *state, uint32_t referenceChain) {
-  return levelSize(uint64_t(uint32_t(rtsl_frame_size(state, int32_t(referenceChain)))));
+  return levelSize(uint64_t(uint32_t(rtsl_frame_size(state, int32_t(referenceChain)))),
+                   keptWords(state));
 }
 
 inline uint64_t levelSize(RtslState *state) {
   return levelSize(state, state->launch->referenceChain);
 }
 
-inline Level *above(Level *level, uint64_t size) {
-  return reinterpret_cast<Level *>(reinterpret_cast<char *>(level) + size);
-}
-
-inline Level *below(Level *level, uint64_t size) {
-  return reinterpret_cast<Level *>(reinterpret_cast<char *>(level) - size);
-}
-
-inline void *frameOf(Level *level) {
-  char *frames = reinterpret_cast<char *>(level + 1);
-  return rtsl_calls(&level->state) ? frames + level->frame : frames;
-}
-
-/// The method of this object begins, on the level's first frame.
-inline void beginOn(Level &level, RtslRef object) {
-  makeUndefined(level.state, &level.color, above(&level, levelSize(&level.state)));
-  level.object = object;
-  if (rtsl_calls(&level.state))
-    level.frame = 0;
-}
-
 /// Bytes for the rays of a sample, and for `generate` below them.
-inline uint64_t stackSize(uint32_t maxDepth, uint32_t referenceChain) {
+inline uint64_t stackSize(const RtslLaunch *launch, uint32_t maxDepth, uint32_t referenceChain) {
   RtslState none; // each function of a program takes one
+  none.launch = launch;
+  if (rtsl_rays_wait_once(&none))
+    return levelSize(&none, referenceChain);
   bool hasGenerate = rtsl_rt_RayGeneration_generate_first(&none) != 0;
   auto sent = [&](uint32_t kind) { return uint32_t(rtsl_rays_sent(&none, int32_t(kind))); };
   auto sentLast = [&](uint32_t kind) {
@@ -87,141 +72,224 @@ inline uint64_t stackSize(uint32_t maxDepth, uint32_t referenceChain) {
          levelSize(&none, referenceChain);
 }
 
-inline void spawnAbove(Level &parent, Vec3 origin, Vec3 direction) {
-  uint32_t dimension;
-  parent.isSpawned = maySpawn(parent.state, &dimension);
-  if (parent.isSpawned)
-    spawn(above(&parent, levelSize(&parent.state))->state, parent.state, dimension, origin,
-          direction);
-  else
-    setColor(parent.color, rtsl_color_components(parent.state.launch), 0);
+/// The ray whose turn it is.
+struct CurrentRay {
+  RtslState state;             // first: shaders know their ray by its state
+  float color[RTSL_MAX_COLOR]; // what the last trace brought back
+  RtslRef object;              // whose method runs
+  uint32_t how;                // rtsl_traverse searches for a ray with a payload
+  uint32_t frame;              // of programs with calls: where the frame of what runs begins
+  char *level;                 // where its frame lies, and what is kept when it waits
+
+  // The ray that the state which runs sends. It is traced when the state is over.
+  PayloadRay sent; // rayType 0: without a payload, and only its origin and direction count
+  uint32_t sentHow;
+  uint32_t sentDimension; // what its random numbers come from
+  bool isSent;            // false: it is deeper than the launch allows
+};
+
+inline CurrentRay &currentRay(RtslState *state) {
+  return *reinterpret_cast<CurrentRay *>(state);
 }
 
-/// The same for a ray with a payload.
-inline void spawnAbove(Level &parent, const PayloadRay &ray, uint32_t how) {
-  uint32_t dimension;
-  parent.isSpawned = maySpawn(parent.state, &dimension);
-  if (!parent.isSpawned)
-    return;
-  Level &child = *above(&parent, levelSize(&parent.state));
-  spawn(child.state, parent.state, dimension, ray);
-  child.how = uint16_t(how);
-}
-
-/// The ray that `level`'s sends takes its place. Where it may not be sent, what it would have
-/// brought back is what the launch's limit of depth says: no color, and the payload as it is.
-inline void spawnInPlace(Level &level, Vec3 origin, Vec3 direction) {
-  uint32_t dimension;
-  level.isSpawned = maySpawn(level.state, &dimension);
-  if (level.isSpawned)
-    spawn(level.state, level.state, dimension, origin, direction);
-  else
-    setColor(level.state.SampleColor, rtsl_color_components(level.state.launch), 0);
-}
-
-inline void spawnInPlace(Level &level, const PayloadRay &ray, uint32_t how) {
-  uint32_t dimension;
-  level.isSpawned = maySpawn(level.state, &dimension);
-  if (!level.isSpawned)
-    return;
-  spawn(level.state, level.state, dimension, ray);
-  level.how = uint16_t(how);
-}
-
-/// `begin` for a ray with a payload.
-inline int32_t beginWithPayload(Level &level) {
-  Arrival arrival = arriveWithPayload(level.state, level.how);
-  beginOn(level, arrival.object);
-  if (arrival.kind == Arrival::Surface)
-    return rtsl_rt_Material_closestHit_payload_first(&level.state);
-  if (arrival.kind == Arrival::Background)
-    return rtsl_rt_Miss_miss_payload_first(&level.state);
-  return 0;
-}
-
-/// Finds what the level's ray meets. Returns the state in which its method begins; 0 if the ray is
-/// over.
-inline int32_t begin(Level &level) {
-  if (level.state.rayType != 0)
-    return beginWithPayload(level);
-  Arrival arrival = arrive(level.state);
-  beginOn(level, arrival.object);
-  if (arrival.kind == Arrival::Surface)
-    return rtsl_rt_Material_shade_first(&level.state);
-  if (arrival.kind == Arrival::Background)
-    return rtsl_rt_Miss_miss_first(&level.state);
-  return 0;
+inline void *frameOf(const CurrentRay &ray) {
+  char *frames = ray.level + sizeof(Level);
+  return rtsl_calls(const_cast<RtslState *>(&ray.state)) ? frames + ray.frame : frames;
 }
 
 /// The rays of one sample between two steps of the machine.
 struct Rays {
-  Level *bottom; // the camera ray, or `generate`
-  Level *top;    // the ray whose turn it is
+  CurrentRay ray;
+  char *bottom;     // the stack, aligned to 16 bytes
+  uint32_t waiting; // rays on it
   RtslEvents events;
-  int32_t next;  // n > 0: its state n is to be run; or one of these:
+  int32_t next; // n > 0: its state n is to be run; or one of these:
 
   static constexpr int32_t none = 0;   // the sample is over
   static constexpr int32_t trace = -1; // what it meets is to be found
 };
 
+/// The method of this object begins, on the ray's first frame.
+inline void beginOn(Rays &rays, RtslRef object) {
+  CurrentRay &ray = rays.ray;
+  if (undefinedWord(ray.state)) {
+    makeUndefined(ray.state, ray.color, ray.color + RTSL_MAX_COLOR);
+    if (rays.waiting == 0 || !rtsl_rays_wait_once(&ray.state))
+      makeUndefined(ray.state, ray.level, ray.level + levelSize(&ray.state));
+  }
+  ray.object = object;
+  if (rtsl_calls(&ray.state))
+    ray.frame = 0;
+}
+
+//===----------------------------------------------------------------------===//
+// Sending
+//===----------------------------------------------------------------------===//
+
+/// The state that runs sends a ray, which brings back a color.
+inline void send(CurrentRay &ray, Vec3 origin, Vec3 direction, float *color) {
+  ray.isSent = maySpawn(ray.state, &ray.sentDimension);
+  ray.sent.origin = origin;
+  ray.sent.direction = direction;
+  ray.sent.rayType = 0;
+  if (!ray.isSent)
+    setColor(color, rtsl_color_components(ray.state.launch), 0);
+}
+
+/// The same for a ray with a payload, which stays as it is if the ray may not be sent.
+inline void send(CurrentRay &ray, const PayloadRay &sent, uint32_t how) {
+  ray.isSent = maySpawn(ray.state, &ray.sentDimension);
+  ray.sent = sent;
+  ray.sentHow = how;
+}
+
+/// It is the turn of the ray that was sent.
+inline void takeTurn(CurrentRay &ray) {
+  RtslState &state = ray.state;
+  if (hasPayload(state, ray.sent.rayType)) {
+    spawn(state, state, ray.sentDimension, ray.sent);
+    ray.how = ray.sentHow;
+  } else {
+    spawn(state, state, ray.sentDimension, ray.sent.origin, ray.sent.direction);
+  }
+}
+
+/// Where the kept words of the ray's state lie.
+inline char *keptPart(const CurrentRay &ray) {
+  auto *state = const_cast<RtslState *>(&ray.state);
+  const auto frame =
+      uint64_t(uint32_t(rtsl_frame_size(state, int32_t(state->launch->referenceChain))));
+  return ray.level + sizeof(Level) + inGroups(frame > 4 ? frame : 4);
+}
+
+/// The ray waits on the stack until the one that it has sent is back; then state `resume` runs.
+inline void wait(Rays &rays, int32_t resume) {
+  CurrentRay &ray = rays.ray;
+  auto &level = *static_cast<Level *>(__builtin_assume_aligned(ray.level, 16));
+  level.resume = resume;
+  level.object = ray.object;
+  if (rtsl_calls(&ray.state))
+    level.frame = ray.frame;
+  auto *kept = static_cast<char *>(__builtin_assume_aligned(keptPart(ray), 16));
+  forEachKeptWord(ray.state, rays.bottom, [&](uint32_t *word) {
+    __builtin_memcpy(kept, word, sizeof *word);
+    kept += sizeof *word;
+  });
+  ++rays.waiting;
+  if (!rtsl_rays_wait_once(&ray.state))
+    ray.level += levelSize(&ray.state);
+}
+
+/// The last ray that waits goes on.
+inline void goOn(Rays &rays) {
+  CurrentRay &ray = rays.ray;
+  if (undefinedWord(ray.state)) { // what is not kept must not be read
+    const RtslState before = ray.state;
+    beginState(ray.state, before.launch);
+    takeFromSample(ray.state, before);
+  }
+  --rays.waiting;
+  if (!rtsl_rays_wait_once(&ray.state))
+    ray.level -= levelSize(&ray.state);
+  const auto &level = *static_cast<const Level *>(__builtin_assume_aligned(ray.level, 16));
+  rays.next = level.resume;
+  ray.object = level.object;
+  if (rtsl_calls(&ray.state))
+    ray.frame = level.frame;
+  const auto *kept = static_cast<const char *>(__builtin_assume_aligned(keptPart(ray), 16));
+  forEachKeptWord(ray.state, rays.bottom, [&](uint32_t *word) {
+    __builtin_memcpy(word, kept, sizeof *word);
+    kept += sizeof *word;
+  });
+}
+
+//===----------------------------------------------------------------------===//
+// Steps
+//===----------------------------------------------------------------------===//
+
+/// The state in which the method begins that answers what the ray meets; 0 if the ray is over.
+inline int32_t firstState(RtslState *state, bool carries, Arrival::Kind kind) {
+  if (kind == Arrival::Surface)
+    return carries ? rtsl_rt_Material_closestHit_payload_first(state)
+                   : rtsl_rt_Material_shade_first(state);
+  if (kind == Arrival::Background)
+    return carries ? rtsl_rt_Miss_miss_payload_first(state) : rtsl_rt_Miss_miss_first(state);
+  return 0;
+}
+
+/// Finds what the ray meets, and what comes next. Traversal is there once, whatever the ray
+/// carries.
+inline int32_t begin(Rays &rays) {
+  CurrentRay &ray = rays.ray;
+  RtslState &state = ray.state;
+  const bool carries = hasPayload(state, state.rayType);
+  setDefaults(state, rtsl_color_components(state.launch));
+  const uint32_t how = carries ? ray.how : 0;
+  const uint32_t found = rtsl_traverse(&state, how);
+  const Arrival arrival = carries ? arriveWithPayloadAt(state, how, found) : arriveAt(state, found);
+  beginOn(rays, arrival.object);
+  return firstState(&state, carries, arrival.kind);
+}
+
 /// Starts a sample, on a stack of stackSize(...) bytes: with `generate` if the program has it,
 /// or else with the camera's ray.
 inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
                       uint32_t index) {
-  rays.top = rays.bottom;
+  CurrentRay &ray = rays.ray;
+  ray.level = rays.bottom;
+  rays.waiting = 0;
   if (launch.rayGeneration) {
-    startGenerate(rays.bottom->state, launch, x, y, index, rays.events);
-    rays.next = rtsl_rt_RayGeneration_generate_first(&rays.bottom->state);
-    beginOn(*rays.bottom, launch.rayGeneration);
+    startGenerate(ray.state, launch, x, y, index, rays.events);
+    rays.next = rtsl_rt_RayGeneration_generate_first(&ray.state);
+    beginOn(rays, launch.rayGeneration);
     return;
   }
-  startSample(rays.bottom->state, launch, x, y, index, rays.events);
+  startSample(ray.state, launch, x, y, index, rays.events);
   rays.next = Rays::trace;
 }
 
-/// The ray on top is over: its color goes to the one that sent it.
+/// The ray is over: its color goes to the one that sent it.
 inline void endRay(Rays &rays) {
   rays.next = Rays::none;
-  if (rays.top == rays.bottom)
+  if (rays.waiting == 0)
     return;
-  const RtslState &state = rays.top->state;
-  rays.top = below(rays.top, levelSize(&rays.top->state));
-  if (state.rayType == 0) // a payload is where it was all the time
-    copyColor(rays.top->color, state.SampleColor, rtsl_color_components(state.launch));
-  rays.next = rays.top->resume;
+  CurrentRay &ray = rays.ray;
+  if (!hasPayload(ray.state, ray.state.rayType)) // a payload is where it was all the time
+    copyColor(ray.color, ray.state.SampleColor, rtsl_color_components(ray.state.launch));
+  goOn(rays);
 }
 
 /// The step for Rays::trace.
 inline void traceRay(Rays &rays) {
-  rays.next = begin(*rays.top);
+  rays.next = begin(rays);
   if (rays.next == 0)
     endRay(rays);
 }
 
-/// Runs state `number` of the ray on top, which is rays.next.
+/// Runs state `number` of the ray, which is rays.next.
 inline void runState(Rays &rays, int32_t number) {
-  Level &level = *rays.top;
-  int32_t after = rtsl_run_state(&level.state, number, level.object, frameOf(&level));
-  if (after == 0) {
-    endRay(rays);
-  } else if (after == RTSL_NEXT_LAST) {
-    rays.next = Rays::trace;
-    if (!level.isSpawned)
-      endRay(rays);
-  } else if (after < 0) {
+  CurrentRay &ray = rays.ray;
+  int32_t after = rtsl_run_state(&ray.state, number, ray.object, frameOf(ray));
+  if (after < 0 && after != RTSL_NEXT_LAST) {
     rays.next = -after;
-  } else {
-    rays.next = level.resume = after;
-    if (level.isSpawned) {
-      rays.top = above(&level, levelSize(&level.state));
-      rays.next = Rays::trace;
-    }
+    return;
   }
+  const bool sends = after != 0 && ray.isSent;
+  if (!sends) {
+    rays.next = after;
+    if (after <= 0)
+      endRay(rays);
+    return;
+  }
+  if (after != RTSL_NEXT_LAST)
+    wait(rays, after);
+  takeTurn(ray);
+  rays.next = Rays::trace;
 }
 
 /// What follows the last state of a sample.
 inline void endSample(Rays &rays) {
-  RtslState &state = rays.bottom->state;
+  RtslState &state = rays.ray.state;
   state.Depth = state.launch->rayGeneration ? -1 : 0; // if a ray has taken its place
   endEvents(state);
 }
@@ -230,7 +298,7 @@ inline void endSample(Rays &rays) {
 inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index,
                        void *stack, float *color) {
   Rays rays;
-  rays.bottom = static_cast<Level *>(stack);
+  rays.bottom = static_cast<char *>(stack);
   startRays(rays, launch, x, y, index);
   while (rays.next != Rays::none) {
     if (rays.next == Rays::trace)
@@ -239,7 +307,7 @@ inline void runMachine(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_
       runState(rays, rays.next);
   }
   endSample(rays);
-  copyColor(color, rays.bottom->state.SampleColor, rtsl_color_components(&launch));
+  copyColor(color, rays.ray.state.SampleColor, rtsl_color_components(&launch));
 }
 
 } // namespace rtsl::device

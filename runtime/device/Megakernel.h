@@ -14,8 +14,9 @@
 
 namespace rtsl::device {
 
-/// A lane's memory begins with this; its stack of rays follows.
-struct alignas(16) Lane {
+/// The pixel that a lane renders. A local variable of the lane, as its rays are; what lies in
+/// memory is the stack of rays that wait.
+struct Lane {
   double sum[RTSL_MAX_COLOR]; // of the pixel's samples, in their order
   uint64_t pixel;
   uint32_t sample;    // the next one of the pixel
@@ -25,8 +26,25 @@ struct alignas(16) Lane {
 /// What a lane wants that has found no pixel. Beside the values of Rays::next.
 constexpr int32_t nothingLeft = -2;
 
+/// Stacks of so many bytes are local variables of the lane, where nothing else decides how large
+/// they are.
+constexpr uint64_t localStackBytes = 2048;
+
+/// Whether the lane's stack is a local variable. Of one level that is a fact of the program, so
+/// that its words may stay in registers. On a GPU the words of a local variable lie beside those of
+/// the neighbouring lanes.
+inline bool hasLocalStack(const RtslLaunch *launch, uint32_t maxDepth, uint32_t referenceChain) {
+#ifdef __NVPTX__
+  return stackSize(launch, maxDepth, referenceChain) <= localStackBytes;
+#else
+  RtslState none;
+  return rtsl_rays_wait_once(&none) && !rtsl_calls(&none) &&
+         stackSize(launch, maxDepth, referenceChain) <= localStackBytes;
+#endif
+}
+
 inline uint64_t laneBytes(uint32_t maxDepth, uint32_t referenceChain) {
-  return sizeof(Lane) + stackSize(maxDepth, referenceChain);
+  return stackSize(nullptr, maxDepth, referenceChain);
 }
 
 /// Puts a sample among the first that are not finite, whoever else does the same: each place keeps
@@ -48,18 +66,17 @@ inline void noteNotFinite(RtslStatus &status, uint64_t sample) {
 /// Adds the color of a sample that is over to its pixel. One that is not finite is left out of the
 /// pixel's mean, for it would take the whole pixel with it.
 inline void addSample(const RtslJob &job, Lane &lane, const float *color) {
-  uint32_t components = rtsl_color_components(job.launch);
   bool isNotFinite = false;
-  for (uint32_t i = 0; i < components; ++i)
-    isNotFinite |= !(absolute(color[i]) < infinity);
+  forEachComponent(rtsl_color_components(job.launch),
+                   [&](uint32_t i) { isNotFinite |= !(absolute(color[i]) < infinity); });
   if (isNotFinite) {
     ++lane.notFinite;
     countUp(&job.status->samplesNotFinite);
     noteNotFinite(*job.status, lane.pixel * job.samplesPerPixel + lane.sample);
     return;
   }
-  for (uint32_t i = 0; i < components; ++i)
-    lane.sum[i] += double(color[i]);
+  forEachComponent(rtsl_color_components(job.launch),
+                   [&](uint32_t i) { lane.sum[i] += double(color[i]); });
 }
 
 /// The mean of the samples so far; black without any.
@@ -69,8 +86,9 @@ inline void writePixel(const RtslJob &job, const Lane &lane) {
   uint32_t count = lane.sample - lane.notFinite;
   if (count == 0)
     countUp(&job.status->pixelsWithoutSample);
-  for (uint32_t i = 0; i < components; ++i)
+  forEachComponent(rtsl_color_components(job.launch), [&](uint32_t i) {
     pixel[i] = count ? float(lane.sum[i] / double(count)) : 0.0f;
+  });
 }
 
 inline bool isToStop(const RtslJob &job) {
@@ -91,8 +109,7 @@ inline bool takePixel(const RtslJob &job, Lane &lane) {
     return false;
   lane.pixel = countUp(&job.status->nextPixel);
   lane.sample = lane.notFinite = 0;
-  for (uint32_t i = 0; i < rtsl_color_components(job.launch); ++i)
-    lane.sum[i] = 0;
+  forEachComponent(rtsl_color_components(job.launch), [&](uint32_t i) { lane.sum[i] = 0; });
   return lane.pixel < uint64_t(job.launch->width) * job.launch->height;
 }
 
@@ -113,7 +130,7 @@ inline void nextSample(const RtslJob &job, Lane &lane, Rays &rays) {
 
 inline void endSample(const RtslJob &job, Lane &lane, Rays &rays) {
   endSample(rays);
-  addSample(job, lane, rays.bottom->state.SampleColor);
+  addSample(job, lane, rays.ray.state.SampleColor);
   if (++lane.sample == job.samplesPerPixel)
     writePixel(job, lane);
 }
@@ -124,11 +141,15 @@ inline void runLane(const RtslJob &job, uint32_t number) {
     __atomic_store_n(&job.status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
     return;
   }
-  Lane &lane = *reinterpret_cast<Lane *>(job.lanes + number * job.laneBytes);
-  lane.sample = job.samplesPerPixel; // of no pixel
+  alignas(16) char local[localStackBytes];
   Rays rays;
-  rays.bottom = reinterpret_cast<Level *>(&lane + 1);
-  nextSample(job, lane, rays);
+  rays.bottom = hasLocalStack(job.launch, job.launch->maxDepth, job.launch->referenceChain)
+                    ? local
+                    : reinterpret_cast<char *>(job.lanes + number * job.laneBytes);
+  Lane lane;
+  lane.sample = job.samplesPerPixel; // of no pixel
+  bool hasPixel = false;
+  rays.next = Rays::none;
   for (;;) {
     int32_t choice = vote(rays.next, nothingLeft);
     if (choice == nothingLeft)
@@ -138,7 +159,9 @@ inline void runLane(const RtslJob &job, uint32_t number) {
     if (choice == Rays::trace) {
       traceRay(rays);
     } else if (choice == Rays::none) {
-      endSample(job, lane, rays);
+      if (hasPixel)
+        endSample(job, lane, rays);
+      hasPixel = true;
       nextSample(job, lane, rays);
     } else {
       runState(rays, choice);

@@ -45,11 +45,9 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
   });
 }
 
-/// Finds what state's ray meets and describes it, for its payload's programs.
-inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
+/// Describes what the traversal of state's ray has found, for its payload's programs.
+inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
-  setDefaults(state, rtsl_color_components(&launch));
-  uint32_t found = rtsl_traverse(&state, how);
   if (found == RTSL_HIT) {
     RtslRef material = launch.instances[state.instance].material;
     if (!(how & RTSL_FIRST_HIT)) // otherwise no program reads of it
@@ -61,6 +59,12 @@ inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
   if (found == RTSL_MISS && launch.background)
     return arriveAtBackground(state);
   return {Arrival::Nothing, 0};
+}
+
+/// Finds what state's ray meets and describes it, for its payload's programs.
+inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
+  setDefaults(state, rtsl_color_components(state.launch));
+  return arriveWithPayloadAt(state, how, rtsl_traverse(&state, how));
 }
 
 /// `trace` with a payload. Deeper than the launch allows the payload stays as it is.

@@ -85,9 +85,9 @@ inline float floatOfFraction(const uint32_t words[5]) {
 }
 
 /// randomNumber() where the first word does not hold 24 significant bits, as happens once in 512 draws.
-__attribute__((cold, noinline)) inline float smallRandomNumber(const uint32_t key[2], uint32_t dimension,
-                                                               uint32_t first) {
-  const Words4 more = hash4(key[0], key[1], dimension, 0x5bd1e995u);
+__attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, uint32_t keyY,
+                                                               uint32_t dimension, uint32_t first) {
+  const Words4 more = hash4(keyX, keyY, dimension, 0x5bd1e995u);
   const uint32_t words[5] = {first, more.x, more.y, more.z, more.w};
   return floatOfFraction(words);
 }
@@ -98,7 +98,7 @@ __attribute__((cold, noinline)) inline float smallRandomNumber(const uint32_t ke
 inline float randomNumber(const uint32_t key[2], uint32_t dimension) {
   const uint32_t first = hash3(key[0], key[1], dimension).x;
   if (first < 1u << 23)
-    return smallRandomNumber(key, dimension, first);
+    return smallRandomNumber(key[0], key[1], dimension, first);
   return float(first & ~(0xffu >> __builtin_clz(first))) * 0x1p-32f; // exact, so that it does not become 1
 }
 

@@ -102,8 +102,21 @@ struct RayStart {
   uint32_t leaves; // RtslState::leaves
 };
 
-/// startOf for origins that are not the hit point.
-__attribute__((cold, noinline)) inline RayStart startElsewhere(const RtslState &parent, Vec3 origin,
+/// What decides how rays start that leave a hit.
+struct LeftHit {
+  uint32_t instance; // RTSL_NO_HIT: there is none
+  Vec3 point, normal;
+  float error; // bound of the distance of the point from the surface
+};
+
+inline LeftHit leftHit(const RtslState &parent) {
+  return {parent.instance, load(parent.HitPoint), load(parent.GeometricNormal),
+          parent.hitPointError};
+}
+
+/// startOf for origins that are not the hit point. It takes values, so that a state in registers
+/// stays there.
+__attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3 origin,
                                                                Vec3 direction) {
   RayStart start = {0, 0, RTSL_NO_HIT};
   float foreign = foreignPointUnits * roundingUnit * largest(origin);
@@ -111,18 +124,18 @@ __attribute__((cold, noinline)) inline RayStart startElsewhere(const RtslState &
   if (!(length > 0 && length < infinity))
     return start;
   start.epsilon = foreign / length;
-  if (parent.instance == RTSL_NO_HIT)
+  if (hit.instance == RTSL_NO_HIT)
     return start;
   // Only near the hit point are the surface and the angle to it known.
-  float error = parent.hitPointError, away = largest(origin - load(parent.HitPoint));
+  float error = hit.error, away = largest(origin - hit.point);
   if (!(away <= 64 * maximum(foreign, error))) {
     start.epsilon = maximum(foreign, error) / length;
     return start;
   }
   if (away != 0) // it was moved, which rounded it again
     error += trianglePointUnits * roundingUnit * largest(origin);
-  start.epsilon = epsilonAtSurface(error, load(parent.GeometricNormal), direction);
-  start.leaves = parent.instance;
+  start.epsilon = epsilonAtSurface(error, hit.normal, direction);
+  start.leaves = hit.instance;
   return start;
 }
 
@@ -134,7 +147,7 @@ __attribute__((always_inline)) inline RayStart startOf(const RtslState &parent, 
   if (isEasySpawn(parent, origin, direction))
     return {epsilonAtSurface(parent.hitPointError, load(parent.GeometricNormal), direction), 1,
             parent.instance};
-  return startElsewhere(parent, origin, direction);
+  return startElsewhere(leftHit(parent), origin, direction);
 }
 
 inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {

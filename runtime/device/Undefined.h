@@ -33,6 +33,18 @@ inline void beginState(RtslState &state, const RtslLaunch *launch) {
   state.launch = launch;
 }
 
+/// Takes over what is the same for all rays of a sample, from one of them.
+inline void takeFromSample(RtslState &state, const RtslState &other) {
+  state.events = other.events;
+  state.TimeSeed = other.TimeSeed;
+  for (int i = 0; i < 2; ++i) {
+    state.ScreenCoord[i] = other.ScreenCoord[i];
+    state.LensCoord[i] = other.LensCoord[i];
+    state.LaunchIndex[i] = other.LaunchIndex[i];
+    state.LaunchSize[i] = other.LaunchSize[i];
+  }
+}
+
 /// Makes `child` a new state and calls make(parent), where `parent` is what it was even if the two
 /// are the same.
 template <typename Make>
@@ -43,6 +55,8 @@ inline void beginChild(RtslState &child, const RtslState &parent, Make make) {
   }
   const RtslState before = parent;
   beginState(child, before.launch);
+  if (&child == &parent) // the machine's only state, which the parent still needs
+    takeFromSample(child, before);
   make(before);
 }
 

@@ -17,6 +17,10 @@ using Clock = std::chrono::steady_clock;
 /// Four warps: few enough that the last lanes of a block do not hold many others up.
 constexpr unsigned threadsPerBlock = 128;
 
+/// Registers a thread, if nobody says otherwise. More lanes that run at once are worth more than what does not fit into
+/// these; docs/gpu.md has the figures.
+constexpr unsigned defaultRegisters = 80;
+
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -48,7 +52,7 @@ Image renderOnGpu(const Package &package, const RenderOptions &options, unsigned
   CudaDevice device;
   gpu.device = device.name();
   Clock::time_point start = Clock::now();
-  device.load(package.ptx, maxRegisters);
+  device.load(package.ptx, maxRegisters ? maxRegisters : defaultRegisters);
   const CudaDevice::Kernel kernel = device.kernel("rtsl_render");
   gpu.loadSeconds = secondsSince(start);
   gpu.registers = kernel.registers;

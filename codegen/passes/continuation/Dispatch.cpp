@@ -7,11 +7,13 @@
 //   func @rtsl_calls() -> i32                                   whether some state calls on a frame of its own
 //   func @rtsl_rt_Material_shade_first() -> i32                 the state in which an entry begins
 //   func @rtsl_rays_sent(%kind: i32) -> i32                     what bounds the stack (RayGraph.h)
+//   func @rtsl_rays_kept(%part: i32) -> i32                     what of their state waiting rays read (KeptState.h)
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/Dispatch.h"
 
 #include "codegen/ir/Separate.h"
+#include "codegen/passes/continuation/KeptState.h"
 #include "codegen/passes/continuation/RayGraph.h"
 #include "codegen/passes/continuation/Steps.h"
 #include "runtime/device/Abi.h"
@@ -28,6 +30,17 @@ namespace rtsl::continuation {
 namespace arith = mlir::arith;
 
 namespace {
+
+/// Whether rays carry a payload: 1, some do not; 2, some do (runtime/device/KeptState.h).
+std::uint32_t payloadsOf(const RayGraph &rays) {
+  const std::size_t generate = rays.hasGenerate ? rays.kinds.size() - 1 : rays.kinds.size();
+  std::uint32_t sent = rays.hasGenerate ? 0 : 1; // the camera's
+  for (const RayGraph::Kind &kind : rays.kinds)
+    sent |= kind.sent | kind.sentLast;
+  if (rays.kinds.size() == 1 || generate == 0) // of colors alone, or any
+    return rays.kinds.front().name == "color" ? 1 : 3;
+  return (sent & 1 ? 1u : 0u) | (sent & ~1u ? 2u : 0u);
+}
 
 class Dispatcher {
 public:
@@ -360,6 +373,7 @@ void Dispatcher::dropUncalled() {
 mlir::LogicalResult Dispatcher::run() {
   dropUncalled();
   const RayGraph rays = findRays(module);
+  const KeptState kept = findKeptState(module);
   std::map<std::string, std::int32_t> entries;
   for (llvm::StringRef name : machineEntries())
     entries[name.str() + "_first"] = 0;
@@ -403,6 +417,9 @@ mlir::LogicalResult Dispatcher::run() {
   tellOfScene(makeConstant("rtsl_ray_kinds", static_cast<std::int32_t>(rays.kinds.size())));
   tellOfScene(makeTable("rtsl_rays_sent", sent));
   tellOfScene(makeTable("rtsl_rays_sent_last", sentLast));
+  const auto low = static_cast<std::uint32_t>(kept.fields), high = static_cast<std::uint32_t>(kept.fields >> 32);
+  tellOfScene(makeTable("rtsl_rays_kept", {low, high, kept.attributes, payloadsOf(rays)}));
+  tellOfScene(makeConstant("rtsl_rays_wait_once", rays.waitsOnce));
   return mlir::success();
 }
 

@@ -26,6 +26,7 @@ private:
   std::uint32_t kindsOf(mlir::func::FuncOp state) const;
   void findCallers();
   void addRays(mlir::func::FuncOp state);
+  bool waitsOnce();
 
   mlir::ModuleOp module;
   RayGraph graph;
@@ -97,14 +98,12 @@ std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
   }
   if (base == "shade" || base == "miss")
     return 1;
-  if (base == "generate")
+  if (isOfGenerate(state))
     return 1u << (graph.kinds.size() - 1);
   // A method that has become part of its entry.
   llvm::StringRef name = state.getSymName();
   if (name.starts_with("rtsl_rt_Material_shade.") || name.starts_with("rtsl_rt_Miss_miss."))
     return 1;
-  if (name.starts_with("rtsl_rt_RayGeneration_generate."))
-    return 1u << (graph.kinds.size() - 1);
   return name.starts_with("rtsl_") || name.starts_with("dispatch.") ? allPayloads() : 0;
 }
 
@@ -125,14 +124,29 @@ void Finder::addRays(mlir::func::FuncOp state) {
     }
 }
 
+bool Finder::waitsOnce() {
+  const std::size_t generate = graph.hasGenerate ? graph.kinds.size() - 1 : graph.kinds.size();
+  for (std::size_t kind = 0; kind < graph.kinds.size(); ++kind)
+    if (graph.kinds[kind].sent != 0 && kind != generate)
+      return false;
+  const bool noneWaits = llvm::all_of(graph.kinds, [](const RayGraph::Kind &kind) { return kind.sent == 0; });
+  for (mlir::func::FuncOp state : module.getOps<mlir::func::FuncOp>()) {
+    bool hasCalls = false, hasFrame = false;
+    if (isState(state))
+      state.walk([&](mlir::Operation *op) {
+        hasCalls |= llvm::isa<ir::EnterOp, ir::LeaveOp>(op);
+        hasFrame |= llvm::isa<ir::FrameLoadOp, ir::FrameStoreOp, ir::FrameObjectOp>(op);
+      });
+    if (hasCalls || (hasFrame && !noneWaits && !isOfGenerate(state)))
+      return false;
+  }
+  return true;
+}
+
 RayGraph Finder::run() {
   numberPayloads();
-  for (auto state : module.getOps<mlir::func::FuncOp>()) {
-    auto method = state->getAttrOfType<mlir::StringAttr>("rtsl.method");
-    graph.hasGenerate |= isState(state) &&
-                         ((method && method.getValue() == "generate") ||
-                          state.getSymName().starts_with("rtsl_rt_RayGeneration_generate."));
-  }
+  for (auto state : module.getOps<mlir::func::FuncOp>())
+    graph.hasGenerate |= isState(state) && isOfGenerate(state);
   if (graph.hasGenerate)
     graph.kinds.push_back({"generate"});
   if (graph.kinds.size() > RTSL_MAX_RAY_KINDS) { // as if each could send each
@@ -143,6 +157,7 @@ RayGraph Finder::run() {
   for (auto state : module.getOps<mlir::func::FuncOp>())
     if (isState(state))
       addRays(state);
+  graph.waitsOnce = waitsOnce();
   return graph;
 }
 
@@ -157,6 +172,8 @@ std::vector<std::string> RayGraph::names(std::uint32_t set) const {
 }
 
 std::uint32_t RayGraph::levels(std::uint32_t maxDepth) const {
+  if (waitsOnce)
+    return 1;
   return device::mostLevels(
       kinds.size(), hasGenerate, maxDepth, [&](std::uint32_t kind) { return kinds[kind].sent; },
       [&](std::uint32_t kind) { return kinds[kind].sentLast; });
@@ -166,6 +183,12 @@ bool RayGraph::grows() const {
   // In so many steps a way that comes round has come round.
   constexpr std::uint32_t far = 2 * RTSL_MAX_RAY_KINDS;
   return levels(2 * far) != levels(far);
+}
+
+bool isOfGenerate(mlir::func::FuncOp state) {
+  auto method = state->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  return (method && method.getValue() == "generate") ||
+         state.getSymName().starts_with("rtsl_rt_RayGeneration_generate.");
 }
 
 RayGraph findRays(mlir::ModuleOp module) {

@@ -7,6 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/BuiltinOps.h"
 
 #include <cstdint>
@@ -23,6 +24,8 @@ struct RayGraph {
   };
   std::vector<Kind> kinds; // as rtsl_ray_kinds numbers them
   bool hasGenerate = false;
+  /// No ray waits but `generate`, or none does, and no other method has a frame: one level serves all.
+  bool waitsOnce = false;
 
   /// Levels that any sample needs at most, exactly.
   std::uint32_t levels(std::uint32_t maxDepth) const;
@@ -31,6 +34,9 @@ struct RayGraph {
   /// Of a set of kinds, given as bits.
   std::vector<std::string> names(std::uint32_t set) const;
 };
+
+/// Whether a state is one of `generate`.
+bool isOfGenerate(mlir::func::FuncOp state);
 
 /// The graph of a module whose functions have been split.
 RayGraph findRays(mlir::ModuleOp module);

@@ -23,7 +23,7 @@ std::uint32_t SplitReport::frameGrowth() const {
 }
 
 std::uint64_t SplitReport::levelBytes() const {
-  return device::levelSize(std::uint64_t(frameSize()));
+  return device::levelSize(std::uint64_t(frameSize()), keptWords);
 }
 
 /// "rays: P waits for P, Shadow" and the like, and how large a stack follows from it.

@@ -94,6 +94,7 @@ struct SplitReport {
   std::vector<FunctionReport> functions;
   RayGraph rays;
   std::vector<std::uint32_t> frameAreas; // frameAreas() of Steps.h
+  std::uint32_t keptWords = 0;           // of the state of a ray that waits (KeptState.h)
   std::vector<continuation::TrimmedPayload> trimmed;
   /// The limit of depth for which the stack is shown; that of scenes that name none.
   std::uint32_t maxDepth = 8;

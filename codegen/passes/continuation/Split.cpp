@@ -6,6 +6,7 @@
 #include "codegen/passes/continuation/CostTable.h"
 #include "codegen/passes/continuation/CutJoins.h"
 #include "codegen/passes/continuation/FrameTraffic.h"
+#include "codegen/passes/continuation/KeptState.h"
 #include "codegen/passes/continuation/Names.h"
 #include "codegen/passes/continuation/Recompute.h"
 
@@ -338,6 +339,7 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
   }
   report.rays = findRays(module);
   report.frameAreas = frameAreas(module);
+  report.keptWords = findKeptState(module).words(colorComponentsOf(module));
   if (options.dispatch && mlir::failed(makeDispatch(module)))
     return false;
   return !options.verifyEach || mlir::succeeded(mlir::verify(module));

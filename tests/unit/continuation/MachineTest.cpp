@@ -307,8 +307,8 @@ TEST(Machine, RandomShadersGiveTheSameBitsSplitAndRecursively) {
   EXPECT_GT(saved, 0u);
 }
 
-/// The stack has exactly the levels that samples use: one fewer, and memory behind it would be
-/// written (and the last test here see it, as would AddressSanitizer); one more, and none is.
+/// The stack has exactly the levels that samples use: each ray that waits has one, and the ray whose turn it is has
+/// room for its frame. So the last level but one is written, and nothing behind the stack (as AddressSanitizer would see).
 TEST(Machine, TheStackIsAsLargeAsSamplesNeed) {
   struct Case {
     const char *name;
@@ -338,7 +338,9 @@ TEST(Machine, TheStackIsAsLargeAsSamplesNeed) {
       const uint64_t level = split.report.levelBytes();
       EXPECT_EQ(stack.bytes, one.levels(depth) * level) << depth;
       EXPECT_EQ(split.report.rays.levels(depth), one.levels(depth)) << depth;
-      EXPECT_GT(stack.written, (one.levels(depth) - 1) * level) << depth;
+      if (one.levels(depth) > 1) {
+        EXPECT_GT(stack.written, (one.levels(depth) - 2) * level) << depth;
+      }
     }
   }
 }

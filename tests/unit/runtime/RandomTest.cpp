@@ -165,7 +165,7 @@ TEST(Random, IsAsUniformNearZeroAsElsewhere) {
   // What follows when the first word is 0: uniform again, below 2^-32.
   std::vector<double> tail;
   for (std::uint32_t i = 0; i < 200000; ++i)
-    tail.push_back(std::ldexp(double(smallRandomNumber(key, i, 0)), 32));
+    tail.push_back(std::ldexp(double(smallRandomNumber(key[0], key[1], i, 0)), 32));
   EXPECT_LT(std::fabs(chiSquaredDeviations(tail, 1000)), 5);
 }
 
@@ -186,7 +186,7 @@ TEST(Random, FreePathsHaveTheirDistribution) {
   double sum = 0;
   constexpr std::uint32_t rare = 1u << 18;
   for (std::uint32_t i = 0; i < rare; ++i)
-    sum += -std::log(double(smallRandomNumber(key, i, 0))) - 32 * std::log(2.0);
+    sum += -std::log(double(smallRandomNumber(key[0], key[1], i, 0))) - 32 * std::log(2.0);
   EXPECT_NEAR(sum / rare, 1, 5 / std::sqrt(double(rare)));
 }
 

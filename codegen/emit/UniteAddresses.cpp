@@ -1,0 +1,79 @@
+//===- UniteAddresses.cpp - the same address on all paths -----------------===//
+#include "codegen/emit/UniteAddresses.h"
+
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/IR/DataLayout.h"
+#include "llvm/IR/IRBuilder.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/Instructions.h"
+#include "llvm/IR/Module.h"
+
+#include <optional>
+
+namespace rtsl::codegen {
+
+namespace {
+
+/// A place in a local variable.
+struct Place {
+  llvm::AllocaInst *variable = nullptr;
+  std::int64_t offset = 0;
+};
+
+std::optional<Place> placeOf(llvm::Value *address, const llvm::DataLayout &layout) {
+  llvm::APInt offset(layout.getIndexTypeSizeInBits(address->getType()), 0);
+  auto *variable = llvm::dyn_cast<llvm::AllocaInst>(
+      address->stripAndAccumulateConstantOffsets(layout, offset, /*AllowNonInbounds=*/true));
+  if (!variable || !variable->isStaticAlloca())
+    return std::nullopt;
+  return Place{variable, offset.getSExtValue()};
+}
+
+/// The one place that a phi node may bring, through whatever other phi nodes and selects.
+std::optional<Place> onlyPlace(llvm::PHINode &phi, const llvm::DataLayout &layout) {
+  std::optional<Place> place;
+  llvm::SmallPtrSet<llvm::Value *, 16> seen;
+  llvm::SmallVector<llvm::Value *> pending = {&phi};
+  while (!pending.empty()) {
+    llvm::Value *value = pending.pop_back_val();
+    if (!seen.insert(value).second || llvm::isa<llvm::UndefValue>(value))
+      continue;
+    if (auto *other = llvm::dyn_cast<llvm::PHINode>(value)) {
+      llvm::append_range(pending, other->incoming_values());
+    } else if (auto *select = llvm::dyn_cast<llvm::SelectInst>(value)) {
+      pending.push_back(select->getTrueValue());
+      pending.push_back(select->getFalseValue());
+    } else {
+      const auto found = placeOf(value, layout);
+      if (!found ||
+          (place && (place->variable != found->variable || place->offset != found->offset)))
+        return std::nullopt;
+      place = found;
+    }
+  }
+  return place;
+}
+
+} // namespace
+
+llvm::PreservedAnalyses UniteAddressesPass::run(llvm::Function &function,
+                                                llvm::FunctionAnalysisManager &) {
+  const llvm::DataLayout &layout = function.getParent()->getDataLayout();
+  llvm::SmallVector<llvm::PHINode *> phis;
+  for (llvm::Instruction &instruction : llvm::instructions(function))
+    if (auto *phi = llvm::dyn_cast<llvm::PHINode>(&instruction);
+        phi && phi->getType()->isPointerTy())
+      phis.push_back(phi);
+  bool changed = false;
+  for (llvm::PHINode *phi : phis)
+    if (const auto place = onlyPlace(*phi, layout)) {
+      llvm::IRBuilder<> builder(place->variable->getNextNode());
+      phi->replaceAllUsesWith(
+          builder.CreatePtrAdd(place->variable, builder.getInt64(place->offset)));
+      phi->eraseFromParent();
+      changed = true;
+    }
+  return changed ? llvm::PreservedAnalyses::none() : llvm::PreservedAnalyses::all();
+}
+
+} // namespace rtsl::codegen

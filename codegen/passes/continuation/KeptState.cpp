@@ -1,0 +1,340 @@
+//===- KeptState.cpp - what of a waiting ray's state is kept --------------===//
+#include "codegen/passes/continuation/KeptState.h"
+
+#include "codegen/ir/Layout.h"
+#include "codegen/ir/Rtsl.h"
+#include "codegen/passes/continuation/Steps.h"
+#include "runtime/device/KeptState.h"
+
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "llvm/ADT/StringMap.h"
+#include "llvm/ADT/StringSet.h"
+#include "llvm/ADT/StringSwitch.h"
+#include "llvm/ADT/TypeSwitch.h"
+
+namespace rtsl {
+
+namespace {
+
+using device::KeptField;
+using mlir::func::FuncOp;
+
+/// A set of fields of the state.
+struct Fields {
+  std::uint64_t fields = 0;
+  std::uint32_t attributes = 0;
+
+  static Fields all() { return {(std::uint64_t(1) << device::keptFieldCount) - 1, ~0u}; }
+  static Fields of(std::initializer_list<KeptField> list) {
+    Fields result;
+    for (KeptField field : list)
+      result.fields |= std::uint64_t(1) << field;
+    return result;
+  }
+  /// True if there was anything new.
+  bool add(const Fields &other) {
+    const Fields before = *this;
+    fields |= other.fields;
+    attributes |= other.attributes;
+    return fields != before.fields || attributes != before.attributes;
+  }
+  void remove(const Fields &other) {
+    fields &= ~other.fields;
+    attributes &= ~other.attributes;
+  }
+};
+
+KeptField fieldOf(llvm::StringRef variable) {
+  return llvm::StringSwitch<KeptField>(variable)
+#define RTSL_STATE_VARIABLE(name, type) .Case(#name, device::kept##name)
+#include "runtime/device/StateVariables.def"
+      .Default(device::keptFieldCount);
+}
+
+/// What is the same for all rays of a sample: it stays in the state (takeFromSample in
+/// runtime/device/Undefined.h).
+Fields sharedByRays() {
+  return Fields::of({device::keptScreenCoord, device::keptLensCoord, device::keptTimeSeed,
+                     device::keptLaunchIndex, device::keptLaunchSize, device::keptExceptionCode});
+}
+
+/// The operation that an address comes from, without its path through fields and elements.
+mlir::Operation *baseOf(mlir::Value address) {
+  while (mlir::Operation *op = address.getDefiningOp()) {
+    if (auto field = llvm::dyn_cast<ir::FieldOp>(op))
+      address = field.getBase();
+    else if (auto element = llvm::dyn_cast<ir::ElementOp>(op))
+      address = element.getBase();
+    else
+      return op;
+  }
+  return nullptr;
+}
+
+/// What of the state an address points into.
+Fields fieldsAt(mlir::Value address) {
+  mlir::Operation *base = baseOf(address);
+  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
+    if (const KeptField field = fieldOf(state.getName()); field != device::keptFieldCount)
+      return Fields::of({field});
+  if (auto attribute = llvm::dyn_cast_or_null<ir::AttributeOp>(base)) {
+    if (!attribute.getOffset())
+      return Fields::all();
+    const auto first = static_cast<std::uint32_t>(*attribute.getOffset());
+    const std::uint32_t bytes =
+        ir::sizeInBytes(llvm::cast<ir::PtrType>(attribute.getType()).getPointee());
+    Fields fields;
+    for (std::uint32_t word = first;
+         word < first + (bytes + 3) / 4 && word < RTSL_MAX_ATTRIBUTE_WORDS; ++word)
+      fields.attributes |= 1u << word;
+    return fields;
+  }
+  return {};
+}
+
+/// What the runtime reads of a ray that sends another one: Classic.h, Programs.h and Spawn.h.
+Fields readsOfSending() {
+  return Fields::of({device::keptRandomKey, device::keptDimension, device::keptDepth,
+                     device::keptInstance, device::keptHitPointError, device::keptHitPoint,
+                     device::keptGeometricNormal});
+}
+
+class Finder {
+public:
+  explicit Finder(mlir::ModuleOp module);
+  Fields run();
+
+private:
+  Fields implicitReads(mlir::Operation *op) const;
+  Fields reads(mlir::Operation *op) const;
+  Fields ofFunction(llvm::StringRef name) const;
+  void summarise();
+  Fields after(ir::NextOp next) const;
+  Fields atEnd(FuncOp state, ir::EndOp end) const;
+  bool update(FuncOp state);
+
+  mlir::ModuleOp module;
+  bool sendsPayloads = false, hasOpenCalls = false;
+  llvm::StringSet<> callers;         // states in which calls with frames of their own return
+  llvm::StringMap<Fields> functions; // what they read, with all that they call
+  llvm::StringMap<Fields> live;      // where states begin
+};
+
+Finder::Finder(mlir::ModuleOp module) : module(module) {
+  module.walk([&](mlir::Operation *op) {
+    sendsPayloads |= llvm::isa<ir::SpawnPayloadOp>(op);
+    hasOpenCalls |= llvm::isa<ir::EvaluateOp, ir::CallMethodOp>(op);
+    if (auto call = llvm::dyn_cast<ir::EnterOp>(op); call && call.getResume())
+      callers.insert(*call.getResume());
+  });
+}
+
+/// What the runtime reads on behalf of an operation.
+Fields Finder::implicitReads(mlir::Operation *op) const {
+  Fields inherited; // by a ray that is sent; without payloads all rays have the same
+  if (sendsPayloads)
+    inherited = Fields::of({device::keptTime, device::keptRayMask, device::keptRayRoot});
+  Fields fields;
+  llvm::TypeSwitch<mlir::Operation *>(op)
+      .Case([&](ir::SpawnOp) {
+        fields = readsOfSending();
+        fields.add(inherited);
+      })
+      .Case([&](ir::SpawnPayloadOp spawn) {
+        fields = readsOfSending();
+        if (!spawn.getTime())
+          fields.add(Fields::of({device::keptTime}));
+        if (!spawn.getMask())
+          fields.add(Fields::of({device::keptRayMask}));
+        if (!spawn.getRoot())
+          fields.add(Fields::of({device::keptRayRoot}));
+      })
+      .Case([&](ir::RandOp) {
+        fields = Fields::of({device::keptRandomKey, device::keptDimension});
+      })
+      .Case([&](ir::IlluminateOp) {
+        fields = readsOfSending();
+        fields.add(inherited);
+        fields.add(ofFunction("rtsl_rt_Light_illumination"));
+      })
+      .Case([&](ir::PayloadOp) { fields = Fields::of({device::keptPayload}); })
+      .Case([&](ir::RayTypeOp) { fields = Fields::of({device::keptRayType}); })
+      .Case([&](mlir::func::CallOp call) { fields = ofFunction(call.getCallee()); });
+  return fields;
+}
+
+/// What an operation reads itself, or by what it calls.
+Fields Finder::reads(mlir::Operation *op) const {
+  Fields fields = implicitReads(op);
+  if (llvm::isa<ir::FieldOp, ir::ElementOp>(op))
+    return fields; // an address is computed
+  for (mlir::OpOperand &operand : op->getOpOperands()) {
+    if (!llvm::isa<ir::PtrType>(operand.get().getType()))
+      continue;
+    auto store = llvm::dyn_cast<ir::StoreOp>(op);
+    auto copy = llvm::dyn_cast<ir::CopyOp>(op);
+    const bool isTarget =
+        llvm::isa<ir::ClearOp>(op) || (store && operand.get() == store.getAddress()) ||
+        (copy && operand.get() == copy.getTarget() && copy.getTarget() != copy.getSource());
+    if (!isTarget)
+      fields.add(fieldsAt(operand.get()));
+  }
+  return fields;
+}
+
+/// What an operation writes whole.
+Fields written(mlir::Operation *op) {
+  mlir::Value address;
+  if (auto store = llvm::dyn_cast<ir::StoreOp>(op))
+    address = store.getAddress();
+  else if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
+    address = clear.getAddress();
+  if (!address || !llvm::isa_and_nonnull<ir::StateOp>(address.getDefiningOp()))
+    return {};
+  return fieldsAt(address);
+}
+
+Fields Finder::ofFunction(llvm::StringRef name) const {
+  const auto known = functions.find(name);
+  return known == functions.end() ? Fields::all() : known->second;
+}
+
+/// What functions read; those that are only declared may read all.
+void Finder::summarise() {
+  for (FuncOp function : module.getOps<FuncOp>())
+    functions[function.getSymName()] = function.isExternal() ? Fields::all() : Fields();
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (FuncOp function : module.getOps<FuncOp>()) {
+      Fields &fields = functions[function.getSymName()];
+      function.walk([&](mlir::Operation *op) { changed |= fields.add(reads(op)); });
+    }
+  }
+}
+
+/// Whether rays of the state's kind bring back a color, or the sample's color is theirs.
+bool bringsColor(FuncOp state) {
+  const auto method = state->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  const llvm::StringRef name = state.getSymName();
+  return !(method && method.getValue().contains('.')) &&
+         !name.starts_with("rtsl_rt_Material_closestHit_payload.") &&
+         !name.starts_with("rtsl_rt_Miss_miss_payload.");
+}
+
+/// What is live behind a state that ends so.
+Fields Finder::after(ir::NextOp next) const {
+  Fields fields;
+  if (sendsPayloads) // whether a color goes to the one that sent the ray
+    fields.add(Fields::of({device::keptRayType}));
+  switch (next.getTransition()) {
+  case ir::Transition::Trace:
+  case ir::Transition::Jump:
+    fields.add(next.getState() ? live.lookup(*next.getState()) : Fields::all());
+    break;
+  case ir::Transition::Done:
+    if (bringsColor(next->getParentOfType<FuncOp>()))
+      fields.add(Fields::of({device::keptSampleColor}));
+    if (const auto exception = functions.find("rtsl_rt_Exception_exception");
+        exception != functions.end())
+      fields.add(exception->second);
+    break;
+  case ir::Transition::Last:
+    break;
+  case ir::Transition::Return:
+    for (const auto &caller : callers)
+      fields.add(live.lookup(caller.getKey()));
+    break;
+  }
+  return fields;
+}
+
+Fields Finder::atEnd(FuncOp state, ir::EndOp end) const {
+  if (auto next = end.getNext().getDefiningOp<ir::NextOp>())
+    return after(next);
+  Fields fields; // one of several
+  state.walk([&](ir::NextOp next) { fields.add(after(next)); });
+  return fields;
+}
+
+/// Liveness within a state. True if more is live at its beginning than was known.
+bool Finder::update(FuncOp state) {
+  llvm::DenseMap<mlir::Block *, Fields> liveIn;
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (mlir::Block &block : llvm::reverse(state.getBody())) {
+      Fields fields;
+      for (mlir::Block *successor : block.getSuccessors())
+        fields.add(liveIn.lookup(successor));
+      for (mlir::Operation &op : llvm::reverse(block)) {
+        if (auto end = llvm::dyn_cast<ir::EndOp>(op))
+          fields.add(atEnd(state, end));
+        fields.remove(written(&op));
+        fields.add(reads(&op));
+      }
+      changed |= liveIn[&block].add(fields);
+    }
+  }
+  return live[state.getSymName()].add(liveIn.lookup(&state.getBody().front()));
+}
+
+Fields Finder::run() {
+  Fields kept;
+  if (hasOpenCalls) {
+    kept = Fields::all();
+  } else {
+    summarise();
+    llvm::SmallVector<FuncOp> states;
+    for (FuncOp function : module.getOps<FuncOp>())
+      if (function->hasAttr("rtsl.state"))
+        states.push_back(function);
+    bool changed = true;
+    while (changed) {
+      changed = false;
+      for (FuncOp state : llvm::reverse(states))
+        changed |= update(state);
+    }
+    module.walk([&](ir::NextOp next) {
+      if (next.getTransition() == ir::Transition::Trace && next.getState())
+        kept.add(live.lookup(*next.getState()));
+    });
+  }
+  kept.remove(sharedByRays());
+  return kept;
+}
+
+} // namespace
+
+std::uint32_t KeptState::words(std::uint32_t colorComponents) const {
+  std::uint32_t count = 0;
+  for (std::uint32_t field = 0; field < device::keptFieldCount; ++field)
+    if (fields >> field & 1)
+      count += device::wordsOf(static_cast<KeptField>(field), colorComponents);
+  return count + static_cast<std::uint32_t>(llvm::popcount(attributes));
+}
+
+KeptState findKeptState(mlir::ModuleOp module) {
+  const Fields fields = Finder(module).run();
+  return {fields.fields, fields.attributes};
+}
+
+std::uint32_t colorComponentsOf(mlir::ModuleOp module) {
+  std::uint32_t components = 3;
+  module.walk([&](mlir::Operation *op) {
+    mlir::Type type;
+    if (auto result = llvm::dyn_cast<ir::TraceResultOp>(op))
+      type = result.getType();
+    else if (auto state = llvm::dyn_cast<ir::StateOp>(op);
+             state && state.getName().ends_with("Color"))
+      type = llvm::cast<ir::PtrType>(state.getType()).getPointee();
+    auto vector = llvm::dyn_cast_or_null<mlir::VectorType>(type);
+    if (!vector)
+      return mlir::WalkResult::advance();
+    components = static_cast<std::uint32_t>(vector.getNumElements());
+    return mlir::WalkResult::interrupt();
+  });
+  return components;
+}
+
+} // namespace rtsl

@@ -1,0 +1,135 @@
+//===- KeptState.h - what of a waiting ray's state is kept ----------------===//
+//
+// The machine (Machine.h) has one state, that of the ray whose turn it is. While a ray waits for one
+// that it has sent, the state is the other's. What the waiting ray reads later is kept on its level;
+// the compiled program defines which fields these are (codegen/passes/continuation/KeptState.h). The
+// rest is never stored. State that is the same for all rays of a sample is not kept either.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/Abi.h"
+
+namespace rtsl::device {
+
+/// Numbers of what can be kept: the state variables, and what shaders do not see by name.
+enum KeptField : uint32_t {
+#define RTSL_STATE_VARIABLE(name, type) kept##name,
+#include "runtime/device/StateVariables.def"
+  keptInstance,
+  keptHitPointError,
+  keptPayload,
+  keptRayType,
+  keptRayMask,
+  keptRayRoot,
+  keptRandomKey,
+  keptDimension,
+  keptFieldCount
+};
+static_assert(keptFieldCount <= 64, "rtsl_rays_kept has two words for them");
+
+// What rtsl_rays_kept returns for a number.
+constexpr int32_t keptFieldsLow = 0;  // bits: the fields 0 to 31
+constexpr int32_t keptFieldsHigh = 1; // the fields from 32 on
+constexpr int32_t keptAttributes = 2; // words of RtslState::attributes
+constexpr int32_t keptRayKinds = 3;   // 1: some rays have no payload, 2: some have one; 3: both
+
+extern "C" {
+/// Defined by the compiled program, constants: what is kept of the state of rays that wait.
+int32_t rtsl_rays_kept(RtslState *state, int32_t part);
+/// Defined by the compiled program, a constant: whether no ray waits but the first one of a sample,
+/// and only the first one has a frame. Then there is one level.
+int32_t rtsl_rays_wait_once(RtslState *state);
+}
+
+/// Does a ray of this type have a payload? Where all rays of the program have one, or none has,
+/// that is a constant.
+inline bool hasPayload(const RtslState &state, uint32_t rayType) {
+  const auto kinds = rtsl_rays_kept(const_cast<RtslState *>(&state), keptRayKinds);
+  return kinds == 3 ? rayType != 0 : kinds == 2;
+}
+
+/// Calls visit(word) for the first `count` of the `most` words at `begin`. Unrolled, so that each
+/// word has a constant address.
+template <uint32_t most, typename Visit>
+inline void forEachWord(void *begin, uint32_t count, Visit visit) {
+#ifdef __clang__
+#pragma clang loop unroll(full)
+#endif
+  for (uint32_t i = 0; i < most; ++i)
+    if (i < count)
+      visit(static_cast<uint32_t *>(begin) + i);
+}
+
+/// Words of a field, with colors of so many components.
+inline uint32_t wordsOf(KeptField field, uint32_t components) {
+#define RTSL_WORDS_float 1
+#define RTSL_WORDS_int 1
+#define RTSL_WORDS_vec2 2
+#define RTSL_WORDS_uint2 2
+#define RTSL_WORDS_vec3 3
+#define RTSL_WORDS_mat4 16
+#define RTSL_WORDS_color components
+  switch (field) {
+#define RTSL_STATE_VARIABLE(name, type)                                                            \
+  case kept##name:                                                                                 \
+    return RTSL_WORDS_##type;
+#include "runtime/device/StateVariables.def"
+  case keptRandomKey:
+    return 2;
+  default:
+    return 1;
+  }
+}
+
+/// Calls visit(word) for each word of the state that is kept, always in the same order. A payload
+/// goes as its distance from `base`.
+template <typename Visit>
+inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
+  const auto low = uint32_t(rtsl_rays_kept(&state, keptFieldsLow));
+  const auto high = uint32_t(rtsl_rays_kept(&state, keptFieldsHigh));
+  const auto attributes = uint32_t(rtsl_rays_kept(&state, keptAttributes));
+  const auto isKept = [&](KeptField field) {
+    return (field < 32 ? low >> (field & 31) : high >> (field & 31)) & 1;
+  };
+  const uint32_t components = rtsl_color_components(state.launch);
+#define RTSL_STATE_VARIABLE(name, type)                                                            \
+  if (isKept(kept##name))                                                                          \
+    forEachWord<sizeof(state.name) / sizeof(uint32_t)>(&state.name,                                \
+                                                       wordsOf(kept##name, components), visit);
+#include "runtime/device/StateVariables.def"
+  if (isKept(keptInstance))
+    visit(&state.instance);
+  if (isKept(keptHitPointError))
+    forEachWord<1>(&state.hitPointError, 1, visit);
+  if (isKept(keptPayload)) {
+    auto distance =
+        uint32_t(reinterpret_cast<uintptr_t>(state.payload) - reinterpret_cast<uintptr_t>(base));
+    visit(&distance);
+    state.payload = base + distance;
+  }
+  if (isKept(keptRayType))
+    visit(&state.rayType);
+  if (isKept(keptRayMask))
+    visit(&state.rayMask);
+  if (isKept(keptRayRoot))
+    forEachWord<1>(&state.rayRoot, 1, visit);
+  if (isKept(keptRandomKey))
+    forEachWord<2>(state.randomKey, 2, visit);
+  if (isKept(keptDimension))
+    visit(&state.dimension);
+  forEachWord<RTSL_MAX_ATTRIBUTE_WORDS>(state.attributes, RTSL_MAX_ATTRIBUTE_WORDS,
+                                        [&](uint32_t *word) {
+                                          if (attributes >> (word - state.attributes) & 1)
+                                            visit(word);
+                                        });
+}
+
+/// How many words that is.
+inline uint32_t keptWords(RtslState *state) {
+  uint32_t count = 0;
+  forEachKeptWord(*state, nullptr, [&](uint32_t *) { ++count; });
+  return count;
+}
+
+} // namespace rtsl::device
