@@ -83,7 +83,7 @@ inline uint32_t wordsOf(KeptField field, uint32_t components) {
 }
 
 /// Calls visit(word) for each word of the state that is kept, always in the same order. A payload
-/// goes as its distance from `base`.
+/// goes as its distance from `base`; without a base the words are only counted.
 template <typename Visit>
 inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
   const auto low = uint32_t(rtsl_rays_kept(&state, keptFieldsLow));
@@ -106,7 +106,8 @@ inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
     auto distance =
         uint32_t(reinterpret_cast<uintptr_t>(state.payload) - reinterpret_cast<uintptr_t>(base));
     visit(&distance);
-    state.payload = base + distance;
+    if (base)
+      state.payload = base + distance;
   }
   if (isKept(keptRayType))
     visit(&state.rayType);

@@ -187,6 +187,11 @@ inline void goOn(Rays &rays) {
     const RtslState before = ray.state;
     beginState(ray.state, before.launch);
     takeFromSample(ray.state, before);
+    if (rtsl_rays_kept(&ray.state, keptRayKinds) == 1) { // without payloads all rays have the same
+      ray.state.Time = before.Time;
+      ray.state.rayMask = before.rayMask;
+      ray.state.rayRoot = before.rayRoot;
+    }
   }
   --rays.waiting;
   if (!rtsl_rays_wait_once(&ray.state))

@@ -54,11 +54,12 @@ static Error timesBoth(Error a, Error b) {
 }
 static Value valueOf(Error error) { return error ? Value(*error) : Value(); }
 
-/// Half a unit of a literal that was rounded to single precision; 0 of whole numbers and of those
-/// with few digits in binary, such as 0.375.
+/// Half a unit of a literal that was rounded to single precision; 0 of whole numbers, 1e30 among
+/// them, which only stands for what is far away, and of those with few digits in binary, such as
+/// 0.375.
 static double roundingOf(const llvm::APFloat &literal) {
   const double value = literal.convertToDouble();
-  const bool isWhole = std::abs(value) < 0x1p24 && value == std::trunc(value);
+  const bool isWhole = value == std::trunc(value);
   const bool isShort = (literal.bitcastToAPInt().getZExtValue() & 0xff) == 0;
   return isWhole || isShort || !literal.isFinite() ? 0 : std::abs(value) * 0x1p-24;
 }
@@ -177,6 +178,8 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
     const Unrounded incoming = unrounded(operands()[argument.getArgNumber()]);
     if (obstacle)
       return {};
+    if (incoming.error && !made.error) // no float that isIterated has followed leads here
+      return fail(argument.getLoc(), "it goes through a whole number, which may jump");
     operands().getMutableForwardedOperands().slice(index, 1).assign(incoming.value);
     if (incoming.error)
       operands().getMutableForwardedOperands().slice(index + 1, 1).assign(incoming.error);

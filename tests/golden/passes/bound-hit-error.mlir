@@ -1,9 +1,9 @@
 // Beside each operation that t depends on stands the same in double; what is read is exact. At the end `hitError` has how far the hit
-// at HitDistance is off, or -1.
+// at HitDistance is off, -2 if there is no such hit any more, or -1 if one of them has no bound.
 // RUN: rtsl-opt %s --rtsl-bound-hit-error --mem2reg --rtsl-simplify | FileCheck %s
 
 // CHECK-LABEL: func.func @Plane.intersect(
-// CHECK-DAG: %[[NONE:.*]] = arith.constant -1.000000e+00 : f32
+// CHECK-DAG: %[[NONE:.*]] = arith.constant -2.000000e+00 : f32
 // CHECK-DAG: arith.extf %{{.*}} : f32 to f64
 // CHECK: arith.subf %{{.*}}, %{{.*}} : f64
 // CHECK: arith.divf %{{.*}}, %{{.*}} : f64
@@ -22,6 +22,8 @@ func.func @Plane.intersect(%height: f32, %y: f32, %slope: f32) {
 
 // What an author states is left to him.
 // CHECK-LABEL: func.func @Stated.intersect(
+// CHECK-NOT: f64
+// CHECK: arith.constant -1.000000e+00 : f32
 // CHECK-NOT: f64
 // CHECK: return
 func.func @Stated.intersect(%x: f32, %e: f32) {
@@ -50,5 +52,21 @@ func.func @Least.intersect(%x: f32, %n: i32) {
   cf.br ^loop(%next, %newer : i32, f32)
 ^end:
   %h = rtsl.hit %least
+  return
+}
+
+// A literal with many digits is off by half a unit, 2^-24 of it; 0.5 is what it is.
+// CHECK-LABEL: func.func @Literal.intersect(
+// CHECK: %[[ROUNDING:.*]] = arith.constant 1.98{{[0-9]*}}E-8 : f64
+// CHECK: %[[X:.*]] = arith.extf %{{.*}} : f32 to f64
+// CHECK: %[[SIZE:.*]] = math.absf %[[X]] : f64
+// CHECK: %[[ERROR:.*]] = arith.mulf %[[SIZE]], %[[ROUNDING]] : f64
+// CHECK: arith.addf %{{.*}}, %[[ERROR]] : f64
+func.func @Literal.intersect(%x: f32) {
+  %third = arith.constant 0.33333334 : f32
+  %half = arith.constant 0.5 : f32
+  %part = arith.mulf %x, %third : f32
+  %t = arith.addf %part, %half : f32
+  %h = rtsl.hit %t
   return
 }
