@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/StateWriter.h"
 
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/passes/continuation/Names.h"
 
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -44,9 +45,7 @@ bool StateWriter::meet(const Touches &a, const Touches &b) {
 
 StateWriter::Location StateWriter::locationOf(mlir::Value address) {
   using Kind = Location::Kind;
-  mlir::Operation *op = address.getDefiningOp();
-  while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(op))
-    op = op->getOperand(0).getDefiningOp();
+  mlir::Operation *op = ir::baseOperation(address);
   if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
     return {Kind::Object, object.getName().str()};
   if (auto argument = llvm::dyn_cast_or_null<ir::CallArgumentOp>(op))

@@ -140,7 +140,7 @@ void emptyReferences(LinkContext &context) {
     bool found = false;
     for (ir::MemberOp member : members) {
       found |= emptyLoads(member);
-      if (member->use_empty()) // nobody reads it
+      if (member->use_empty()) // its value is never read
         member.erase();
     }
     if (!found)

@@ -1,6 +1,7 @@
 //===- ExpandCopies.cpp - small copies, value by value --------------------===//
 #include "codegen/passes/ExpandCopies.h"
 
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/RtslOps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -35,8 +36,7 @@ bool isSmall(mlir::Type type) {
 
 /// With expressions kept whole, for people to read, so are variables; but for what rays carry, whose fields the passes look at.
 bool staysWhole(Value address) {
-  while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(address.getDefiningOp()))
-    address = address.getDefiningOp()->getOperand(0);
+  address = ir::baseAddress(address);
   if (llvm::isa_and_nonnull<ir::PayloadOp>(address.getDefiningOp()))
     return false;
   return llvm::none_of(address.getUsers(), llvm::IsaPred<ir::TracePayloadOp>);

@@ -214,7 +214,7 @@ private:
 
 /// A property of a vertex: where its value goes.
 struct Target {
-  std::vector<float> *to = nullptr; // null: nobody needs it
+  std::vector<float> *to = nullptr; // null: the column is skipped
   std::size_t component = 0;
 };
 

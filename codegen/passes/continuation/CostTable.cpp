@@ -1,6 +1,7 @@
 //===- CostTable.cpp - what saving and recomputing cost -------------------===//
 #include "codegen/passes/continuation/CostTable.h"
 
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
 
@@ -24,19 +25,10 @@ static std::int64_t components(mlir::Type type) {
 
 /// What a load costs a word, by where it loads from.
 static std::int64_t loadCost(mlir::Value address) {
-  while (mlir::Operation *op = address.getDefiningOp()) {
-    if (llvm::isa<ir::MemberOp, ir::TableOp>(op))
-      return 2;
-    if (llvm::isa<ir::BufferElementOp>(op))
-      return 16;
-    if (auto field = llvm::dyn_cast<ir::FieldOp>(op))
-      address = field.getBase();
-    else if (auto element = llvm::dyn_cast<ir::ElementOp>(op))
-      address = element.getBase();
-    else
-      break;
-  }
-  return 4;
+  mlir::Operation *base = ir::baseOperation(address);
+  if (llvm::isa_and_nonnull<ir::MemberOp, ir::TableOp>(base))
+    return 2;
+  return llvm::isa_and_nonnull<ir::BufferElementOp>(base) ? 16 : 4;
 }
 
 std::int64_t recomputeCost(mlir::Operation *op) {

@@ -8,6 +8,7 @@
 // what the printer for C++ makes of it, a clear says that somebody wants the zeros.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/passes/continuation/Steps.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
@@ -16,16 +17,9 @@ namespace rtsl::continuation {
 
 namespace {
 
-/// The variable, object or argument that an address is part of.
-mlir::Value rootOf(mlir::Value address) {
-  while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(address.getDefiningOp()))
-    address = address.getDefiningOp()->getOperand(0);
-  return address;
-}
-
 bool mentions(mlir::Operation *op, mlir::Value root) {
   return llvm::any_of(op->getOperands(), [&](mlir::Value operand) {
-    return llvm::isa<ir::PtrType>(operand.getType()) && rootOf(operand) == root;
+    return llvm::isa<ir::PtrType>(operand.getType()) && ir::baseAddress(operand) == root;
   });
 }
 
@@ -34,11 +28,11 @@ bool overwrites(mlir::Operation *op, mlir::Value root) {
   if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
     return clear.getAddress() == root;
   if (auto copy = llvm::dyn_cast<ir::CopyOp>(op))
-    return copy.getTarget() == root && rootOf(copy.getSource()) != root;
+    return copy.getTarget() == root && ir::baseAddress(copy.getSource()) != root;
   if (auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op))
     return evaluation->hasAttr("rtsl.into") && evaluation.getOperand(0) == root &&
            llvm::none_of(evaluation.getOperands().drop_front(), [&](mlir::Value operand) {
-             return llvm::isa<ir::PtrType>(operand.getType()) && rootOf(operand) == root;
+             return llvm::isa<ir::PtrType>(operand.getType()) && ir::baseAddress(operand) == root;
            });
   return false;
 }

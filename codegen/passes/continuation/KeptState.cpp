@@ -1,6 +1,7 @@
 //===- KeptState.cpp - what of a waiting ray's state is kept --------------===//
 #include "codegen/passes/continuation/KeptState.h"
 
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/continuation/Steps.h"
@@ -58,22 +59,9 @@ Fields sharedByRays() {
                      device::keptLaunchIndex, device::keptLaunchSize, device::keptExceptionCode});
 }
 
-/// The operation that an address comes from, without its path through fields and elements.
-mlir::Operation *baseOf(mlir::Value address) {
-  while (mlir::Operation *op = address.getDefiningOp()) {
-    if (auto field = llvm::dyn_cast<ir::FieldOp>(op))
-      address = field.getBase();
-    else if (auto element = llvm::dyn_cast<ir::ElementOp>(op))
-      address = element.getBase();
-    else
-      return op;
-  }
-  return nullptr;
-}
-
 /// What of the state an address points into.
 Fields fieldsAt(mlir::Value address) {
-  mlir::Operation *base = baseOf(address);
+  mlir::Operation *base = ir::baseOperation(address);
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
     if (const KeptField field = fieldOf(state.getName()); field != device::keptFieldCount)
       return Fields::of({field});

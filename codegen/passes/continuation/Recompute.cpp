@@ -1,6 +1,8 @@
 //===- Recompute.cpp - what gives the same value again behind a trace -----===//
 #include "codegen/passes/continuation/Recompute.h"
 
+#include "codegen/ir/BaseAddress.h"
+
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 #include "llvm/ADT/SmallPtrSet.h"
 
@@ -23,22 +25,9 @@ bool StateWrites::add(const StateWrites &other) {
 /// Under this name, which no state variable has, goes what the ray carries.
 static constexpr llvm::StringLiteral payloadName = "payload";
 
-/// The operation that an address comes from, without its path through fields and elements.
-static mlir::Value baseOf(mlir::Value address) {
-  while (mlir::Operation *op = address.getDefiningOp()) {
-    if (auto field = llvm::dyn_cast<ir::FieldOp>(op))
-      address = field.getBase();
-    else if (auto element = llvm::dyn_cast<ir::ElementOp>(op))
-      address = element.getBase();
-    else
-      break;
-  }
-  return address;
-}
-
 static StateWrites writesThrough(mlir::Value address) {
   StateWrites writes;
-  mlir::Operation *base = baseOf(address).getDefiningOp();
+  mlir::Operation *base = ir::baseOperation(address);
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
     writes.names.insert(state.getName());
   else if (llvm::isa_and_nonnull<ir::PayloadOp>(base))
@@ -191,12 +180,12 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
       llvm::isa<ir::FrameLoadOp>(op))
     return false;
   auto isConstantForLaunch = [&](mlir::Value address) {
-    mlir::Operation *base = baseOf(address).getDefiningOp();
+    mlir::Operation *base = ir::baseOperation(address);
     return llvm::isa_and_nonnull<ir::TableOp>(base) ||
            (llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(base) && !function->hasAttr("rtsl.constructor"));
   };
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
-    mlir::Operation *base = baseOf(load.getAddress()).getDefiningOp();
+    mlir::Operation *base = ir::baseOperation(load.getAddress());
     if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
       return isUnchanged(load, state.getName(), suspend);
     if (llvm::isa_and_nonnull<ir::PayloadOp>(base)) // rays that this one sends have others

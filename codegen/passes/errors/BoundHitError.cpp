@@ -1,5 +1,6 @@
 #include "codegen/passes/errors/BoundHitError.h"
 
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/lower/Emitter.h"
 #include "codegen/lower/Library.h"
@@ -23,9 +24,7 @@ static void dropEffects(mlir::func::FuncOp function) {
     auto store = llvm::dyn_cast<ir::StoreOp>(op);
     auto copy = llvm::dyn_cast<ir::CopyOp>(op);
     const Value target = store ? store.getAddress() : copy ? copy.getTarget() : Value();
-    mlir::Operation *into = target ? target.getDefiningOp() : nullptr;
-    while (llvm::isa_and_nonnull<ir::FieldOp, ir::ElementOp>(into))
-      into = into->getOperand(0).getDefiningOp();
+    mlir::Operation *into = target ? ir::baseOperation(target) : nullptr;
     if (llvm::isa<ir::PrintOp, ir::RaiseOp>(op) || llvm::isa_and_nonnull<ir::AttributeOp>(into))
       op->erase();
   });

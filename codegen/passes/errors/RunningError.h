@@ -65,7 +65,7 @@ private:
   double unit;
   lowering::Emitter emitter;
   llvm::DenseMap<mlir::Value, Unrounded> known;
-  bool hasErrors = false; // what is asked for depends on elementary functions or rounded literals, so that errors travel
+  bool hasErrors = false; // the value depends on an elementary function or a rounded literal: block arguments carry errors
   std::optional<ErrorUnknown> obstacle;
 };
 

@@ -392,7 +392,7 @@ TEST_F(Meshes, APipeIsReadOnce) {
 
 namespace {
 
-/// The grid of quadrilaterals again, with numbers that nobody needs, in one of PLY's formats.
+/// The grid of quadrilaterals again, with properties that no mesh has, in one of PLY's formats.
 std::string plyGrid(const char *format, bool normals, bool uvs) {
   const bool isText = std::string(format) == "ascii", isBig = std::string(format) == "binary_big_endian";
   std::string body;
