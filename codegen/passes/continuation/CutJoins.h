@@ -14,7 +14,7 @@ struct JoinOptions {
   /// Operations between two cuts, at least.
   std::size_t shortest = 16;
 
-  static JoinOptions forPeople() { return {10000, 8, 64}; }
+  static JoinOptions forPeople() { return {1500, 4, 32}; }
 };
 
 /// On suspends that send no ray: the state goes on in the next at once.
