@@ -179,7 +179,7 @@ mlir::OwningOpRef<mlir::ModuleOp> deriveHitErrors(const typed::Module &module, c
   mlir::SymbolTable symbols(*ir);
   if (functionsThatSendRays(*ir, symbols).empty())
     return {};
-  warnOfUnboundHits(rtsl::deriveHitErrors(*ir, symbols, primitives, roundingUnitOf(options.floatingPoint)), module, diagnostics);
+  warnOfUnboundHits(rtsl::deriveHitErrors(*ir, symbols, primitives, elementaryErrorsOf(options.floatingPoint)), module, diagnostics);
   for (auto function : llvm::make_early_inc_range(ir->getOps<mlir::func::FuncOp>()))
     if (!function->hasAttr(hitErrorAttribute))
       function.erase();

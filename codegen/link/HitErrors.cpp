@@ -94,7 +94,7 @@ void deriveHitErrors(LinkContext &context) {
     if ((isLeft && !context.isWithout(Item::Outputs, subject)) || context.request.keep.has(Item::Outputs))
       left.push_back(name);
   }
-  std::vector<DerivedHitError> derived = rtsl::deriveHitErrors(context.ir, context.symbols, left, context.roundingUnit);
+  std::vector<DerivedHitError> derived = rtsl::deriveHitErrors(context.ir, context.symbols, left, context.elementaryErrors);
   for (const DerivedHitError &one : derived)
     if (!one.hasFunction && findings[one.className].isNeeded) {
       findings[one.className].isNeeded = false;

@@ -13,15 +13,15 @@ std::string initializeSymbol(const std::string &className) { return className + 
 std::string constructSymbol(const std::string &className) { return className + ".construct"; }
 std::string intersectSymbol(const std::string &className) { return className + ".intersect"; }
 
-double roundingUnitOf(FloatingPoint floatingPoint) {
-  return floatingPoint == FloatingPoint::Fast ? fastUnit : strictUnit;
+ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint) {
+  return floatingPoint == FloatingPoint::Fast ? fastErrors : strictErrors;
 }
 
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
           Diagnostics &diagnostics, runtime::Program &program, Findings *findings, FloatingPoint floatingPoint) {
   Findings unasked;
   linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked,
-                               roundingUnitOf(floatingPoint)};
+                               elementaryErrorsOf(floatingPoint)};
   linking::dropUnusedClasses(context);
   linking::emptyReferences(context);
   linking::findUsedObjects(context);

@@ -27,6 +27,7 @@
 
 #include "codegen/emit/FloatingPoint.h"
 #include "codegen/link/LinkRequest.h"
+#include "codegen/passes/errors/ElementaryErrors.h"
 #include "frontend/Diagnostics.h"
 #include "sema/TypedAst.h"
 
@@ -47,9 +48,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
 struct DerivedHitError;
 /// Tells the author which hits of primitives that rays leave have no bound of their error.
 void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module, Diagnostics &diagnostics);
-/// What one operation of a program is off by at most, relatively. Not less for double: what both have in memory is single, and
-/// they are to trace the same rays.
-double roundingUnitOf(FloatingPoint floatingPoint);
+/// How far the elementary functions of a program are off.
+ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint);
 
 /// The functions of a linked program that nothing runs and that were to be kept.
 std::vector<std::string> keptFunctions(mlir::ModuleOp ir);

@@ -40,7 +40,7 @@ struct LinkContext {
   const LinkRequest &request;
   Diagnostics &diagnostics;
   Findings &findings; // what the steps leave out, and what not
-  double roundingUnit; // of an elementary function of the program
+  ElementaryErrors elementaryErrors;
   std::vector<LinkedClass> classes = {};
   std::map<std::string, Finding>
       dispatches = {}; // of the functions of this name, to be noted if something runs them

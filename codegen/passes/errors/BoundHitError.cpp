@@ -4,7 +4,6 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/lower/Emitter.h"
 #include "codegen/lower/Library.h"
-#include "codegen/passes/errors/Wide.h"
 #include "runtime/device/HitError.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
@@ -17,6 +16,7 @@
 namespace rtsl {
 
 using namespace lowering;
+namespace arith = mlir::arith;
 
 /// What `intersect` does beside computing t.
 static void dropEffects(mlir::func::FuncOp function) {
@@ -48,13 +48,69 @@ static Num stateOf(Emitter &emitter, llvm::StringRef name) {
   return {emitter, emitter.load(emitter.make<ir::StateOp>(name, emitter.getF32Type()))};
 }
 
-bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<UnboundHit> &unbound) {
+/// Floats are compared as they are without roundings, so that the branches are the right ones and not those that roundings have led
+/// `intersect` into. Which one is right may be in doubt, because elementary functions are off; then `otherwise` says whether the
+/// opposite is tried. True if that can be.
+static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningError &errors, Value otherwise) {
+  bool mayBeInDoubt = false;
+  for (arith::CmpFOp comparison : comparisons) {
+    const std::optional<Unrounded> left = errors.of(comparison.getLhs()), right = errors.of(comparison.getRhs());
+    if (!left || !right)
+      continue;
+    Emitter emitter(comparison.getContext());
+    emitter.setLoc(comparison.getLoc());
+    emitter.setInsertionPointAfter(comparison);
+    const Wide a(emitter, left->value), b(emitter, right->value);
+    Num answer(emitter, emitter.fold<arith::CmpFOp>(comparison.getPredicate(), a, b));
+    if (left->error || right->error) {
+      const Wide none = a.like(0);
+      const Wide error = (left->error ? Wide(emitter, left->error) : none) + (right->error ? Wide(emitter, right->error) : none);
+      const Num isInDoubt(emitter, isAtMost(abs(a - b), error));
+      answer = answer ^ (isInDoubt & Num(emitter, emitter.load(otherwise)));
+      mayBeInDoubt = true;
+    }
+    comparison.replaceAllUsesWith(Value(answer));
+  }
+  return mayBeInDoubt;
+}
+
+/// Everything from `start` on is run once more if it has not found the hit, with `otherwise`. `bound` is what it has found then.
+static void tryOtherwise(mlir::Block *start, Value bound, Value otherwise) {
+  mlir::Region &body = *start->getParent();
+  llvm::SmallVector<mlir::Operation *> returns;
+  for (mlir::Block &block : body)
+    if (auto end = llvm::dyn_cast<mlir::func::ReturnOp>(block.getTerminator()))
+      returns.push_back(end);
+  mlir::Block *finish = new mlir::Block, *again = new mlir::Block, *done = new mlir::Block;
+  for (mlir::Block *block : {finish, again, done})
+    body.push_back(block);
+
+  Emitter emitter(start->getParentOp()->getContext());
+  emitter.setLoc(start->getParentOp()->getLoc());
+  for (mlir::Operation *end : returns) {
+    emitter.setInsertionPoint(end);
+    emitter.make<mlir::cf::BranchOp>(finish);
+    end->erase();
+  }
+  emitter.setInsertionPointToStart(finish);
+  const Num isFound = !equal({emitter, emitter.load(bound)}, {emitter, emitter.floatConstant(device::hitNotFound)});
+  emitter.make<mlir::cf::CondBranchOp>(isFound | Num(emitter, emitter.load(otherwise)), done, again);
+  emitter.setInsertionPointToStart(again);
+  emitter.store(emitter.boolConstant(true), otherwise);
+  emitter.make<mlir::cf::BranchOp>(start);
+  emitter.setInsertionPointToStart(done);
+  emitter.make<mlir::func::ReturnOp>();
+}
+
+bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary, std::vector<UnboundHit> &unbound) {
   llvm::SmallVector<ir::HitOp> hits;
   intersect.walk([&](ir::HitOp hit) { hits.push_back(hit); });
+  llvm::SmallVector<arith::CmpFOp> comparisons;
+  intersect.walk([&](arith::CmpFOp comparison) { comparisons.push_back(comparison); });
   dropEffects(intersect);
   forgetOtherHits(intersect);
 
-  RunningError errors(intersect, unit);
+  RunningError errors(intersect, elementary);
   Emitter emitter(intersect.getContext());
   emitter.setLoc(intersect.getLoc());
   emitter.setInsertionPointToStart(&intersect.getBody().front());
@@ -62,8 +118,14 @@ bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<Unboun
   const Value bound = emitter.variable("bound", emitter.getF32Type());
   const Value atFirst = emitter.floatConstant(device::errorNotStated);
   emitter.store(atFirst, bound);
+  const Wide found = widened(emitter, distance);
   const Value nearest = emitter.variable("nearest", emitter.getF32Type());
   emitter.store(emitter.floatConstant(std::numeric_limits<float>::infinity()), nearest);
+  const Value otherwise = emitter.variable("otherwise", emitter.getI1Type());
+  emitter.store(emitter.boolConstant(false), otherwise);
+  mlir::Block *start = intersect.getBody().front().splitBlock(emitter.getInsertionPoint());
+  emitter.setInsertionPointToEnd(&intersect.getBody().front());
+  emitter.make<mlir::cf::BranchOp>(start);
   bool hasBound = false, allHaveBounds = true;
   for (ir::HitOp hit : hits) {
     const std::optional<Unrounded> exact = hit.getError() ? std::nullopt : errors.of(hit.getT());
@@ -73,12 +135,11 @@ bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<Unboun
     emitter.setInsertionPoint(hit);
     const Num t(emitter, hit.getT());
     if (exact) {
-      // The hit that is nearest to T; where arithmetic is not strict, its t is not the very same again.
+      // The hit that is nearest to T.
       const Num before(emitter, emitter.load(bound)), least(emitter, emitter.load(nearest));
-      const Num away = abs(t - distance), isThis = less(away, least) & lessEqual(away, abs(distance) * 0x1p-6);
-      Wide error = abs(widened(emitter, distance) - Wide(emitter, exact->value));
-      if (exact->error)
-        error = error + Wide(emitter, exact->error);
+      const Wide difference = abs(found - Wide(emitter, exact->value));
+      const Wide error = exact->error ? difference + Wide(emitter, exact->error) : difference;
+      const Num away(emitter, narrowed(difference)), isThis = less(away, least) & lessEqual(away, abs(distance) * 0x1p-6);
       emitter.store(select(isThis, {emitter, narrowed(error)}, before), bound);
       emitter.store(select(isThis, away, least), nearest);
       hasBound = true;
@@ -89,8 +150,10 @@ bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<Unboun
     hit.replaceAllUsesWith(Value(less(distance, t)));
     hit.erase();
   }
+  if (hasBound && compareUnrounded(comparisons, errors, otherwise))
+    tryOtherwise(start, bound, otherwise);
   if (allHaveBounds) // a hit that none of them is was there by rounding alone
-    llvm::cast<mlir::arith::ConstantOp>(atFirst.getDefiningOp())
+    llvm::cast<arith::ConstantOp>(atFirst.getDefiningOp())
         .setValueAttr(emitter.getF32FloatAttr(device::hitNotFound));
   for (mlir::Block &block : intersect.getBody())
     if (llvm::isa<mlir::func::ReturnOp>(block.getTerminator())) {
@@ -115,7 +178,7 @@ struct BoundHitErrorPass : mlir::PassWrapper<BoundHitErrorPass, mlir::OperationP
   }
   void runOnOperation() override {
     std::vector<UnboundHit> unbound;
-    boundHitError(getOperation(), strictUnit, unbound);
+    boundHitError(getOperation(), strictErrors, unbound);
     for (const UnboundHit &hit : unbound)
       mlir::emitRemark(hit.place) << "no bound: " << hit.reason;
   }

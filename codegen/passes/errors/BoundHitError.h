@@ -4,14 +4,18 @@
 //     ...                                         %T = HitDistance
 //     %h = rtsl.hit %t                   ==>      ... with t in double beside it, %t64 (RunningError.h)
 //     ...                                         %h = T < t
-//                                                 bound = t is nearest to T ? |T - t64| : bound
+//                                                 bound = t64 is nearest to T ? |T - t64| : bound
 //                                                 ...
 //                                                 hitError = bound
 //
-// The new function computes again what `intersect` has computed when it reported the hit at T, and
-// how far that is from exact arithmetic; -1 if that is not known, and -2 if there is no such hit
+// The new function computes in double what `intersect` has computed when it reported the hit at T:
+// the difference is the error. -1 if that is not known, and -2 if there is no such hit
 // (runtime/device/HitError.h). So nothing is lost where no ray leaves the hit. It writes no scratch
 // members, prints nothing, and draws no random numbers.
+//
+// It takes the branches that double takes, which are the right ones, but for comparisons that
+// elementary functions leave in doubt, because they are exact to single precision only. If the hit is
+// not found, these are decided the other way, all of them, and everything is run once more.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -38,10 +42,7 @@ struct UnboundHit {
 /// Turns an `intersect` of level 2 into the function above, in place; false if none of its hits has a
 /// bound that is to be derived, and then the function is not to be used. Hits for which the author
 /// states an error are left to him.
-bool boundHitError(mlir::func::FuncOp intersect, double unit, std::vector<UnboundHit> &unbound);
-
-/// The largest relative error of an elementary function: correctly rounded, or by --fp=fast.
-constexpr double strictUnit = 0x1p-24, fastUnit = 0x1p-21;
+bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary, std::vector<UnboundHit> &unbound);
 
 /// `rtsl-bound-hit-error`, on a function.
 void registerBoundHitErrorPass();

@@ -98,7 +98,7 @@ static void run(mlir::ModuleOp module, llvm::function_ref<void(mlir::OpPassManag
 }
 
 std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTable &symbols, const std::vector<std::string> &classes,
-                                             double unit) {
+                                             ElementaryErrors elementary) {
   llvm::SmallVector<FuncOp> originals, methods;
   for (const std::string &name : classes)
     if (auto intersect = symbols.lookup<FuncOp>(name + ".intersect"); intersect && !intersect.isExternal())
@@ -121,7 +121,7 @@ std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTabl
   for (FuncOp method : methods) {
     DerivedHitError &one = derived.emplace_back();
     one.className = method->getAttrOfType<mlir::StringAttr>("rtsl.class").str();
-    one.hasFunction = boundHitError(method, unit, one.unbound);
+    one.hasFunction = boundHitError(method, elementary, one.unbound);
     method->removeAttr("rtsl.method");
     method->setAttr(hitErrorAttribute, mlir::UnitAttr::get(method.getContext()));
     method.setName(one.className + "." + hitErrorMethod.str());

@@ -32,7 +32,7 @@ struct DerivedHitError {
 
 /// For each of these classes that has an `intersect`. `symbols` is the table of `ir`.
 std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTable &symbols, const std::vector<std::string> &classes,
-                                             double unit);
+                                             ElementaryErrors elementary);
 
 /// Functions that send rays, or call some that do. A call through a reference may, if anything does.
 llvm::SetVector<mlir::Operation *> functionsThatSendRays(mlir::ModuleOp ir, const mlir::SymbolTable &symbols);

@@ -2,7 +2,6 @@
 
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/Components.h"
-#include "codegen/passes/errors/Wide.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -108,8 +107,8 @@ static void forEachSource(Value value, llvm::function_ref<void(Value)> visit) {
       visit(operand);
 }
 
-RunningError::RunningError(mlir::func::FuncOp function, double unit)
-    : function(function), unit(unit), emitter(function.getContext()) {}
+RunningError::RunningError(mlir::func::FuncOp function, ElementaryErrors elementary)
+    : function(function), elementary(elementary), emitter(function.getContext()) {}
 
 std::optional<Unrounded> RunningError::of(Value value) {
   obstacle.reset();
@@ -313,7 +312,7 @@ Unrounded RunningError::ofParts(mlir::Operation &op) {
   return made;
 }
 
-/// Of `min` and `max` it is known what they choose without roundings; any other choice is taken to be the right one.
+/// Of `min` and `max` it is known what they choose without roundings; of others the condition decides (compareUnrounded).
 Unrounded RunningError::ofChoice(mlir::Operation &op) {
   auto choice = llvm::cast<arith::SelectOp>(op);
   const Unrounded a = unrounded(choice.getTrueValue()), b = unrounded(choice.getFalseValue());
@@ -336,29 +335,48 @@ Unrounded RunningError::ofChoice(mlir::Operation &op) {
           hasError ? Value(choose(choice.getCondition(), errorOf(a), errorOf(b))) : Value(), a.isExact && b.isExact};
 }
 
-/// The single result f(x), moved by the slope there times the error of x. Where that error is not small beside the distance of x from
-/// where the function bends, f(x) is left as it is, with a bound of how far it may change.
+/// How far a result is off from the function of the very argument. The bounds are relative to the smallest normal number where
+/// the result is smaller.
+Wide RunningError::ownError(ir::Elementary function, Wide result) {
+  const Wide size = abs(result);
+  if (function != ir::Elementary::Pow || !elementary.powGrows)
+    return size * elementary.unit;
+  const Wide normal = greater(size, size.like(std::numeric_limits<float>::min()));
+  return normal * (1.0 + abs(single(ir::Elementary::Log2, normal))) * elementary.unit;
+}
+
+/// The function in single precision, of arguments rounded to it.
+Wide RunningError::single(ir::Elementary function, llvm::ArrayRef<Wide> arguments) {
+  llvm::SmallVector<Value> rounded;
+  for (Wide argument : arguments)
+    rounded.push_back(narrowed(argument));
+  return widened(emitter, emitter.make<ir::ElementaryOp>(rounded.front().getType(), function, rounded).getResult());
+}
+
+/// The single result f(x), x rounded, moved by the slope there times what the rounding took. Where that is not small beside the
+/// distance of x from where the function bends, f(x) is left as it is, with a bound of how far it may change.
 Unrounded RunningError::ofFunction(mlir::Operation &op) {
   using F = ir::Elementary;
   auto call = llvm::cast<ir::ElementaryOp>(op);
   const F function = call.getFunction();
-  const Value argument = call.getOperands().front();
-  const Wide result = widened(emitter, call.getResult());
-  Wide own = abs(result) * result.like(unit);
-  const auto hasNoError = [&](Value operand) {
-    return unrounded(operand).isExact && !unrounded(operand).error;
-  };
-  if (llvm::all_of(call.getOperands(), hasNoError))
+  llvm::SmallVector<Wide> arguments;
+  bool isExact = true;
+  for (Value operand : call.getOperands()) {
+    const Unrounded one = unrounded(operand);
+    arguments.push_back({emitter, one.value});
+    isExact &= one.isExact && !one.error;
+  }
+  const Wide result = single(function, arguments);
+  Wide own = ownError(function, result);
+  if (isExact)
     return {result, own};
 
-  const Wide x = widened(emitter, argument), one = x.like(1);
-  const Wide moved = Wide(emitter, unrounded(argument).value) - x;
-  const Value found = unrounded(argument).error;
+  const Wide x = widened(emitter, narrowed(arguments.front())), one = x.like(1);
+  const Wide moved = arguments.front() - x;
+  const Value found = unrounded(call.getOperands().front()).error;
   const Wide spread = found ? abs(moved) + Wide(emitter, found) : abs(moved); // that x may be off by
   const Wide none = x.like(0), infinite = x.like(std::numeric_limits<double>::infinity());
-  const auto same = [&](F other) { // another function of the same argument
-    return widened(emitter, emitter.make<ir::ElementaryOp>(call.getType(), other, mlir::ValueRange{argument}).getResult());
-  };
+  const auto same = [&](F other) { return single(other, x); }; // of the same argument
   /// `room`: within half of this the tangent is off by at most twice the share of it that x is off by. `otherwise`: how far f may be off
   /// beyond.
   const auto alongTangent = [&](Wide slope, Wide room, Wide otherwise) -> Unrounded {
@@ -417,20 +435,19 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
     if (!unrounded(exponent).isExact)
       return fail(op.getLoc(), "it depends on an exponent that is not exact");
     // Beyond: |x^p - y^p| <= |x - y|^p for 0 <= p <= 1.
-    const Wide p = widened(emitter, exponent);
+    const Wide p = arguments[1];
     if (const Value rounding = unrounded(exponent).error) { // of x^p along p: x^p log x
-      const Value log = emitter.make<ir::ElementaryOp>(call.getType(), F::Log, mlir::ValueRange{argument});
-      const Wide slope = choose(isAtMost(x, none), none, abs(result * widened(emitter, log)));
+      const Wide slope = choose(isAtMost(x, none), none, abs(result * same(F::Log)));
       own = own + slope * Wide(emitter, rounding);
     }
-    const Wide root = widened(emitter, emitter.make<ir::ElementaryOp>(call.getType(), F::Pow, mlir::ValueRange{narrowed(spread), exponent}).getResult());
+    const Wide root = single(F::Pow, {spread, p});
     const Wide far = choose(isAtMost(none, p), choose(isAtMost(p, one), 1.0000005 * root, infinite), infinite);
     return alongTangent(p * result / x, abs(x) / (one + abs(p)), far);
   }
   case F::Atan2: {
-    const Wide y = x, across = widened(emitter, call.getOperands()[1]);
+    const Wide y = x, across = widened(emitter, narrowed(arguments[1]));
     const Unrounded other = unrounded(call.getOperands()[1]);
-    const Wide movedAcross = Wide(emitter, other.value) - across;
+    const Wide movedAcross = arguments[1] - across;
     const Wide all = other.error ? spread + abs(movedAcross) + Wide(emitter, other.error) : spread + abs(movedAcross);
     const Wide size = abs(y) + abs(across), square = y * y + across * across;
     const Value isNear = isAtMost(4.0 * all, size), isStill = isAtMost(all, none);

@@ -4,16 +4,18 @@
 // Stability of Numerical Algorithms", 2nd edition, 2002, 3.3) in double precision. Beside each
 // operation that a value depends on stands the same in double: what single precision has lost is then
 // known, not bounded, and does not grow along the way as sums of worst cases do. Elementary functions
-// have no double form on a GPU. Theirs is the single result, moved along the tangent by the error of
-// the argument, and a bound of what that leaves out travels on: |a| eb + |b| ea + ea eb for a
-// product, and so on. Members of objects and the ray are exact, for they are what they are; a
-// literal such as 0.33333333 is not, and stands for what an author may have meant within half a unit.
-// All of this holds for the branches that were taken.
+// have no double form on a GPU. Theirs is the single result for the rounded argument, moved along the
+// tangent by what that rounding took, and a bound of what that leaves out travels on: |a| eb + |b| ea
+// + ea eb for a product, and so on. Members of objects and the ray are exact, for they are what they
+// are; a literal such as 0.33333333 is not, and stands for what an author may have meant within half
+// a unit. All of this holds for the branches that are taken (BoundHitError.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/lower/Emitter.h"
+#include "codegen/ir/RtslOps.h"
+#include "codegen/passes/errors/ElementaryErrors.h"
+#include "codegen/passes/errors/Wide.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "llvm/ADT/DenseMap.h"
@@ -39,8 +41,8 @@ struct Unrounded {
 
 class RunningError {
 public:
-  /// Of values in a function of level 2. `unit` bounds the relative error of an elementary function.
-  RunningError(mlir::func::FuncOp function, double unit);
+  /// Of values in a function of level 2.
+  RunningError(mlir::func::FuncOp function, ElementaryErrors elementary);
 
   /// Where the value is defined. Nothing if it is not known: then `whyUnknown` says why.
   std::optional<Unrounded> of(mlir::Value value);
@@ -54,6 +56,8 @@ private:
   Unrounded ofParts(mlir::Operation &op);
   Unrounded ofChoice(mlir::Operation &op);
   Unrounded ofFunction(mlir::Operation &op);
+  Wide ownError(ir::Elementary function, Wide result);
+  Wide single(ir::Elementary function, llvm::ArrayRef<Wide> arguments);
   Unrounded ofLoad(mlir::Operation &op);
   Unrounded exact(mlir::Value value);
   Unrounded fail(mlir::Location place, std::string reason);
@@ -62,7 +66,7 @@ private:
   bool isExactWhole(mlir::Value value, llvm::DenseMap<mlir::Value, bool> &seen);
 
   mlir::func::FuncOp function;
-  double unit;
+  ElementaryErrors elementary;
   lowering::Emitter emitter;
   llvm::DenseMap<mlir::Value, Unrounded> known;
   bool hasErrors = false; // the value depends on an elementary function or a rounded literal: block arguments carry errors

@@ -46,6 +46,7 @@ inline Wide operator+(Wide a, double b) { return a + a.like(b); }
 inline Wide operator+(double a, Wide b) { return b.like(a) + b; }
 inline Wide operator-(double a, Wide b) { return b.like(a) - b; }
 inline Wide operator*(double a, Wide b) { return b.like(a) * b; }
+inline Wide operator*(Wide a, double b) { return a * a.like(b); }
 inline Wide operator/(double a, Wide b) { return b.like(a) / b; }
 inline Wide sqrt(Wide a) { return a.apply<mlir::math::SqrtOp>(); }
 inline Wide abs(Wide a) { return a.apply<mlir::math::AbsFOp>(); }

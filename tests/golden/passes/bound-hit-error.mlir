@@ -31,10 +31,10 @@ func.func @Stated.intersect(%x: f32, %e: f32) {
   return
 }
 
-// The least of several: what flows in brings its double along.
+// The least of several: what flows in is double.
 // CHECK-LABEL: func.func @Least.intersect(
-// CHECK: cf.br ^[[LOOP:.*]](%{{.*}} : i32, f32, f64)
-// CHECK: ^[[LOOP]](%{{.*}}: i32, %{{.*}}: f32, %{{.*}}: f64)
+// CHECK: cf.br ^[[LOOP:.*]](%{{.*}} : i32, f64)
+// CHECK: ^[[LOOP]](%{{.*}}: i32, %{{.*}}: f64)
 func.func @Least.intersect(%x: f32, %n: i32) {
   %zero = arith.constant 0 : i32
   %one = arith.constant 1 : i32
@@ -68,5 +68,46 @@ func.func @Literal.intersect(%x: f32) {
   %part = arith.mulf %x, %third : f32
   %t = arith.addf %part, %half : f32
   %h = rtsl.hit %t
+  return
+}
+
+// What is compared is double.
+// CHECK-LABEL: func.func @Branch.intersect(
+// CHECK: %[[SQUARE:.*]] = arith.mulf %{{.*}}, %{{.*}} : f64
+// CHECK: %[[BELOW:.*]] = arith.cmpf olt, %[[SQUARE]], %{{.*}} : f64
+// CHECK: cf.cond_br %[[BELOW]]
+func.func @Branch.intersect(%x: f32) {
+  %one = arith.constant 1.0 : f32
+  %square = arith.mulf %x, %x : f32
+  %below = arith.cmpf olt, %square, %one : f32
+  cf.cond_br %below, ^near, ^far
+^near:
+  %h = rtsl.hit %square
+  return
+^far:
+  return
+}
+
+// A cosine is off by half a unit, so that a comparison of it may be in doubt. If the hit is not found, it is decided the other way.
+// CHECK-LABEL: func.func @Doubt.intersect(
+// CHECK-DAG: %[[FALSE:.*]] = arith.constant false
+// CHECK-DAG: %[[TRUE:.*]] = arith.constant true
+// CHECK: cf.br ^[[START:.*]](%{{.*}}, %[[FALSE]] : f32, f32, i1)
+// CHECK: ^[[START]](%{{.*}}, %[[OTHERWISE:.*]]: i1)
+// CHECK: %[[BELOW:.*]] = arith.cmpf olt, %{{.*}}, %{{.*}} : f64
+// CHECK: %[[IN_DOUBT:.*]] = arith.cmpf ole, %{{.*}}, %{{.*}} : f64
+// CHECK: %[[FLIP:.*]] = arith.andi %[[IN_DOUBT]], %[[OTHERWISE]]
+// CHECK: %[[TAKEN:.*]] = arith.xori %[[BELOW]], %[[FLIP]]
+// CHECK: cf.cond_br %[[TAKEN]]
+// CHECK: cf.cond_br %{{.*}}, ^{{.*}}, ^[[START]](%{{.*}}, %[[TRUE]] : f32, f32, i1)
+func.func @Doubt.intersect(%x: f32) {
+  %half = arith.constant 0.5 : f32
+  %cosine = rtsl.elementary <cos> %x : f32
+  %below = arith.cmpf olt, %cosine, %half : f32
+  cf.cond_br %below, ^near, ^far
+^near:
+  %h = rtsl.hit %cosine
+  return
+^far:
   return
 }

@@ -62,6 +62,13 @@ public:
     return next != 0 ? std::optional(int(std::lround(next)) - 1) : std::nullopt;
   }
   bool meetsAgain(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const { return meetsNext(origin, direction, onwards).has_value(); }
+  /// The same: does it meet anything within `distance`, in units of `onwards`?
+  bool meetsWithin(float distance, device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
+    shaders.set(reader, "asks", {4});
+    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
+    const float t = look(origin, direction)[2];
+    return t > 0 && t <= distance;
+  }
   /// The same: how far it sees nothing, in units of `onwards`; nothing if it meets nothing.
   std::optional<float> startOfNext(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
     shaders.set(reader, "asks", {3});

@@ -139,7 +139,8 @@ Ray placeAndAim(Random &random, Torus &target) {
   return aimedFrom(random, target.center, target.size(), target.size() * powerOfTen(random, 0.3f, 1), target.size() * random.between(0, 1));
 }
 
-/// Rays that leave outwards and meet the torus nowhere further on: those that are told otherwise have met what they leave.
+/// Rays that leave outwards and meet the torus nowhere further on: those that meet it near where they start have met what they leave.
+/// Far away they may graze it by a rounding.
 Outcome judgeSelfHits(Torus &target, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -153,7 +154,7 @@ Outcome judgeSelfHits(Torus &target, std::uint64_t cases, std::uint32_t seed) {
       continue; // inwards, or where the bound is given up (runtime/device/Spawn.h)
     const Precise size = target.size(), speed = length(precise(onwards));
     if (target.along(point, onwards).rootsBetween(size / 1000 / speed, 100 * size / speed) == 0)
-      worst.count(target.meetsAgain(ray.origin, ray.direction, onwards), [&] { return target.text() + ", " + ray.text() + ", onwards " + show(onwards); });
+      worst.count(target.meetsWithin(static_cast<float>(size / 10 / speed), ray.origin, ray.direction, onwards), [&] { return target.text() + ", " + ray.text() + ", onwards " + show(onwards); });
   }
   return worst.outcome();
 }
@@ -191,11 +192,11 @@ std::vector<Row> torusRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAMeeting);
   const char *units = "rounding units of the largest coordinate";
   return {
-      row("tori.selfHits", "a torus by steps, which states its error: rays that leave it outwards for good: those that meet it again", "hits", 100'000,
+      row("tori.selfHits", "a torus by steps, which states its error: rays that leave it outwards for good: those that meet it again within a tenth of its size", "hits", 100'000,
           [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeSelfHits(stepped(on), cases, seed); }),
       row("tori.gaps", "the same: what a ray skips that leaves straight inwards, where the torus was met at a cosine above 1/8", units, 100'000,
           [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeGaps(stepped(on), cases, seed, 0.125); }),
-      row("tori.ferrariSelfHits", "a torus by Ferrari's quartic, whose error the compiler derives: rays that leave it outwards for good: those that meet it again", "hits", 100'000,
+      row("tori.ferrariSelfHits", "a torus by Ferrari's quartic, whose error the compiler derives: rays that leave it outwards for good: those that meet it again within a tenth of its size", "hits", 100'000,
           [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeSelfHits(ferrari(on), cases, seed); }),
       row("tori.ferrariGaps", "the same: what a ray skips that leaves straight inwards, where the torus was met at a cosine above 1/8", units, 100'000,
           [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeGaps(ferrari(on), cases, seed, 0.125); }),
