@@ -1,12 +1,14 @@
 """How the time of the compiler grows with the program, in each direction in which programs grow."""
 
 import tempfile
-from math import log
+from math import hypot, log, sqrt
 from pathlib import Path
 
 from . import growing, process
 
 LIMIT = 1.2  # of exponents
+SPREAD = 0.03  # of a time from run to run, relatively
+RESOLUTION = 0.005  # of a time, in seconds
 
 # What grows, and to what sizes. The largest takes some seconds at most, the smallest several times what a program of
 # size 1 takes where that is possible.
@@ -47,14 +49,22 @@ def processor_time(arguments, runs):
 
 
 def fit(points, constant):
-    """The exponent of the power of the size with which the time beyond `constant` grows: the slope of a line through the
-    logarithms, by least squares. None where the largest program takes hardly more than the smallest possible one."""
-    grown = [(log(size), log(time - constant)) for size, time in points if time > 1.1 * constant]
+    """The exponent of the power of the size with which the time beyond `constant` grows, and its standard error: the slope
+    of a line through the logarithms, by least squares. Points count by how well the growth is known, which is badly where it
+    is a small part of a time. None where the largest program takes hardly more than the smallest possible one."""
+    def spread(time):
+        return hypot(SPREAD, RESOLUTION / time) * time
+
+    grown = [(log(size), log(time - constant), ((time - constant) / hypot(spread(time), spread(constant))) ** 2)
+             for size, time in points if time > 1.1 * constant]
     if len(grown) < 2 or points[-1][1] < 1.5 * constant:
         return None
-    x_mean = sum(x for x, _ in grown) / len(grown)
-    y_mean = sum(y for _, y in grown) / len(grown)
-    return sum((x - x_mean) * (y - y_mean) for x, y in grown) / sum((x - x_mean) ** 2 for x, _ in grown)
+    total = sum(weight for _, _, weight in grown)
+    x_mean = sum(weight * x for x, _, weight in grown) / total
+    y_mean = sum(weight * y for _, y, weight in grown) / total
+    across = sum(weight * (x - x_mean) ** 2 for x, _, weight in grown)
+    slope = sum(weight * (x - x_mean) * (y - y_mean) for x, y, weight in grown) / across
+    return {"exponent": slope, "error": 1 / sqrt(across)}
 
 
 def measure_one(rtslc, make, sizes, job, runs):
@@ -69,7 +79,7 @@ def measure_one(rtslc, make, sizes, job, runs):
     constant = times[0][1]
     points = [(size, processor) for size, processor, _ in times[1:]]
     return {"constant": constant, "sizes": list(sizes), "processor": [time for _, time in points],
-            "wall": [wall for _, _, wall in times[1:]], "exponent": fit(points, constant)}
+            "wall": [wall for _, _, wall in times[1:]], "growth": fit(points, constant)}
 
 
 def measure(build, names, jobs, runs):
@@ -79,20 +89,22 @@ def measure(build, names, jobs, runs):
         make, sizes = SERIES[name]
         measured = {job: measure_one(rtslc, make, sizes, job, runs) for job in jobs}
         series[name] = {job: one for job, one in measured.items() if one}
-    return {"limit": LIMIT, "runs": runs, "series": series}
+    return {"limit": LIMIT, "spread": SPREAD, "resolution": RESOLUTION, "runs": runs, "series": series}
 
 
 def show(report):
     print("processor time in seconds, beside that of a program of size 1, and the exponent of the size with which it grows")
-    print(f"{'':24}{'':8}{'sizes':>20}{'of size 1':>11}{'seconds':>26}{'exponent':>10}")
+    print(f"{'':24}{'':8}{'sizes':>20}{'of size 1':>11}{'seconds':>26}{'exponent':>14}")
     for name, jobs in report["series"].items():
         for job, one in jobs.items():
             sizes = " ".join(str(size) for size in one["sizes"])
             times = " ".join(f"{time:.2f}" for time in one["processor"])
-            exponent = "" if one["exponent"] is None else f"{one['exponent']:.2f}"
-            mark = " above the limit" if one["exponent"] is not None and one["exponent"] > report["limit"] else ""
-            print(f"{name:24}{job:8}{sizes:>20}{one['constant']:>11.2f}{times:>26}{exponent:>10}{mark}")
-    print(f"the limit of exponents is {report['limit']}; none is given where time hardly grows")
+            growth = one["growth"]
+            exponent = f"{growth['exponent']:.2f} +- {growth['error']:.2f}" if growth else ""
+            mark = " above the limit" if growth and growth["exponent"] - growth["error"] > report["limit"] else ""
+            print(f"{name:24}{job:8}{sizes:>20}{one['constant']:>11.2f}{times:>26}{exponent:>14}{mark}")
+    print(f"the limit of exponents is {report['limit']}; none is given where time hardly grows; +-: one standard error, if times "
+          f"vary by {report['spread']:.0%} and {report['resolution'] * 1000:.0f} ms")
 
 
 def add(subcommands, common):

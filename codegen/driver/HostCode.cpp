@@ -207,6 +207,9 @@ void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Pr
   load(compiler.run(), std::move(symbols), options, program);
 }
 
+/// Constructors run once: those of so many classes take longer to optimise than to run.
+constexpr std::size_t manyClasses = 100;
+
 void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
   std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
   for (const runtime::ClassInfo &info : program.classes) {
@@ -218,7 +221,7 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runti
     codegen::buildSsaPipeline(passes);
   });
   codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
-  machine.optimization = std::min(machine.optimization, 1u);
+  machine.optimization = program.classes.size() > manyClasses ? 0 : std::min(machine.optimization, 1u);
   LlvmCode code = translate(ir, machine);
   defineFacts(code, program);
   linkDeviceCode(code, runtime::deviceBitcode(), names);
