@@ -108,20 +108,14 @@ inline Quadrant reduce(float a) {
   return {int(q), fma(-q, third, rest)};
 }
 
-inline float sineSeries(float r) {
+/// sin(r) or cos(r) for |r| <= pi/4, by Taylor's series up to r^9 or r^8. The coefficients are
+/// chosen, and not the series: a branch on the quadrant could not be predicted.
+inline float series(float r, bool isCosine) {
   float z = r * r;
-  float q = fma(z, 1.0f / 362880, -1.0f / 5040);
-  q = fma(z, q, 1.0f / 120);
-  q = fma(z, q, -1.0f / 6);
-  return fma(r * z, q, r);
-}
-
-inline float cosineSeries(float r) {
-  float z = r * r;
-  float q = fma(z, 1.0f / 40320, -1.0f / 720);
-  q = fma(z, q, 1.0f / 24);
-  q = fma(z, q, -0.5f);
-  return fma(z, q, 1.0f);
+  float q = fma(z, isCosine ? 1.0f / 40320 : 1.0f / 362880, isCosine ? -1.0f / 720 : -1.0f / 5040);
+  q = fma(z, q, isCosine ? 1.0f / 24 : 1.0f / 120);
+  q = fma(z, q, isCosine ? -0.5f : -1.0f / 6);
+  return fma(isCosine ? z : r * z, q, isCosine ? 1.0f : r);
 }
 
 inline float withFlippedSign(float x, bool flip) {
@@ -218,7 +212,7 @@ inline float sin(float x) {
   if (!(a < infinity()))
     return canonicalNaN();
   Quadrant reduced = reduce(a);
-  float y = (reduced.quadrant & 1) != 0 ? cosineSeries(reduced.rest) : sineSeries(reduced.rest);
+  float y = series(reduced.rest, (reduced.quadrant & 1) != 0);
   return withFlippedSign(y, ((reduced.quadrant & 2) != 0) != (bitsOf(x) >= floatSignBit));
 }
 
@@ -229,7 +223,7 @@ inline float cos(float x) {
   if (!(a < infinity()))
     return canonicalNaN();
   Quadrant reduced = reduce(a);
-  float y = (reduced.quadrant & 1) != 0 ? sineSeries(reduced.rest) : cosineSeries(reduced.rest);
+  float y = series(reduced.rest, (reduced.quadrant & 1) == 0);
   return withFlippedSign(y, ((reduced.quadrant + 1) & 2) != 0);
 }
 
@@ -240,7 +234,7 @@ inline float tan(float x) {
   if (!(a < infinity()))
     return canonicalNaN();
   Quadrant reduced = reduce(a);
-  float sine = sineSeries(reduced.rest), cosine = cosineSeries(reduced.rest);
+  float sine = series(reduced.rest, false), cosine = series(reduced.rest, true);
   float y = (reduced.quadrant & 1) != 0 ? -cosine / sine : sine / cosine;
   return withFlippedSign(y, bitsOf(x) >= floatSignBit);
 }
