@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/EmbreeScene.h"
+#include "runtime/LastOccluders.h"
 #include "runtime/TriangleBlocks.h"
 #include "runtime/device/Hit.h"
 #include "runtime/device/Traverse.h"
@@ -31,6 +32,9 @@ struct EmbreeContext {
   const EmbreeScene::Implementation *scene;
   const EmbreeVisitor *visitor; // null: what is found is tested, and committed if it wins
   float toEmbree;         // a power of two that turns our t into Embree's
+  mutable std::uint32_t occluder; // the block in which a hit was found, where any will do
+
+  static constexpr std::uint32_t noBlock = ~0u;
 
   /// Where Embree need not look any further, once hits beyond t do not matter.
   float end(float t) const { return t * toEmbree * device::cullSlack; }
@@ -52,6 +56,7 @@ struct EmbreeLevel {
 };
 
 struct EmbreeScene::Implementation {
+  std::uint64_t number = 0; // no other scene of the process has it; from 1
   RTCDevice device = nullptr;
   const RtslInstance *instances = nullptr;
   LargeArray<TriangleBlock> blocks;
@@ -104,11 +109,18 @@ struct EmbreeScene::Implementation {
     context.scene = this;
     context.visitor = nullptr;
     context.toEmbree = toEmbree;
+    context.occluder = EmbreeContext::noBlock;
     const RTCScene tree = treeFor(state.RayOrigin);
     if (anyHit) {
+      LastOccluders &last = LastOccluders::towards(state.RayDirection);
+      const auto meets = [&](std::uint32_t block) { return testBlock(state, triangleRay, blocks[block], true); };
+      if (last.isMet(number, meets))
+        return device::endSearch(state);
       RTCRay ray;
       fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
       rtcOccluded1(tree, &context.embree, &ray);
+      if (context.occluder != EmbreeContext::noBlock)
+        last.learn(number, context.occluder);
     } else {
       RTCRayHit rayHit;
       fill(rayHit.ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));

@@ -306,6 +306,32 @@ TEST(EmbreeTraversal, MaskedRaysNeedNoSecondTree) {
   EXPECT_FALSE(embree.hasOwnTree());
 }
 
+// Bundles of shadow rays, as lights get them, in two scenes in turns: what was in the way of a ray before is tested first
+// (LastOccluders.h), and of the larger scene there are blocks that the smaller one does not have.
+TEST(EmbreeTraversal, OccludersOfOtherRaysChangeNoAnswer) {
+  Scene large = tiedScene(7), small = randomScene(8, 200, 3);
+  HostScene embree[] = {{large, true, 1}, {small, true, 1}}, own[] = {{large, false, 1}, {small, false, 1}};
+  const RtslLaunch launches[] = {large.launch(), small.launch()};
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> near(-0.05f, 0.05f), share(0.2f, 1.5f);
+  int answers[2] = {};
+  for (int bundle = 0; bundle < 2000; ++bundle) {
+    const int which = bundle % 2;
+    const Ray first = bundle % 3 ? rayAtTriangle(random, launches[which], randomRay(random, 1).o) : randomRay(random, 1);
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 o = first.o + Vec3{near(random), near(random), near(random)};
+      const Vec3 d = first.d + Vec3{near(random), near(random), near(random)};
+      const float end = share(random);
+      RtslState a = makeState(launches[which], o, d, 1e-4f, end), b = makeState(own[which].deviceLaunch(), o, d, 1e-4f, end);
+      const std::uint32_t found = embree[which].traverse(a, RTSL_FIRST_HIT);
+      ASSERT_EQ(found, own[which].traverse(b, RTSL_FIRST_HIT)) << bundle << ", " << i;
+      ++answers[found == RTSL_HIT];
+    }
+  }
+  EXPECT_GT(answers[0], 5000);
+  EXPECT_GT(answers[1], 5000);
+}
+
 TEST(HostTraversal, ExtremeDirections) {
   Scene scene(fakeProgram());
   scene.setCamera(scene.addObject(

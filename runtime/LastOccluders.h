@@ -1,0 +1,80 @@
+//===- LastOccluders.h - what was in the way of shadow rays before --------===//
+//
+// Shadow rays of one sample and the next go to the same lights from places that lie together: what
+// was in the way of one is likely to be in the way of the other, and then one test does instead of a
+// search (Pearce and Jevans, "Exploiting shadow coherence in ray tracing", Graphics Interface 1991).
+// Whether there is a hit at all does not depend on where it was looked for first.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace rtsl::runtime {
+
+/// The blocks that the last occluded rays in about one direction have met, the latest one first.
+class LastOccluders {
+public:
+  /// Of this thread, by the signs of the ray's direction: lights lie on different sides.
+  static LastOccluders &towards(const float direction[3]) {
+    static thread_local std::array<LastOccluders, 8> all;
+    return all[unsigned(direction[0] < 0) | unsigned(direction[1] < 0) << 1 | unsigned(direction[2] < 0) << 2];
+  }
+
+  /// Does a ray meet one of them? `test` says it of a block of the scene with this number, which is
+  /// not 0. What has not been worth the test of late is not tested.
+  template <typename Test>
+  bool isMet(std::uint64_t ofScene, Test test) {
+    if (scene != ofScene)
+      return false;
+    for (unsigned i = 0; i < count && credit[i] != 0; ++i) {
+      if (test(blocks[i])) {
+        pay(i);
+        moveToFront(i, blocks[i]);
+        return true;
+      }
+      --credit[i];
+    }
+    return false;
+  }
+
+  /// A search has found this block.
+  void learn(std::uint64_t ofScene, std::uint32_t found) {
+    if (scene != ofScene) {
+      scene = ofScene;
+      count = 0;
+      credit.fill(0);
+    }
+    unsigned i = 0;
+    while (i < count && blocks[i] != found)
+      ++i;
+    if (i < count)
+      pay(i); // it would have been met
+    else if (count < length)
+      ++count;
+    else
+      i = length - 1;
+    moveToFront(i, found);
+  }
+
+private:
+  static constexpr unsigned length = 8;
+  /// Tests that a search is worth, about; so many a place may fail for one that does not.
+  static constexpr unsigned searchCost = 8, mostCredit = 64;
+
+  void pay(unsigned place) { credit[place] = std::min(credit[place] + searchCost, mostCredit); }
+  void moveToFront(unsigned from, std::uint32_t block) {
+    for (; from > 0; --from)
+      blocks[from] = blocks[from - 1];
+    blocks[0] = block;
+  }
+
+  std::uint64_t scene = 0; // whose blocks they are
+  std::array<std::uint32_t, length> blocks{};
+  std::array<unsigned, length> credit{}; // of a place, not of the block that is there
+  unsigned count = 0;
+};
+
+} // namespace rtsl::runtime
