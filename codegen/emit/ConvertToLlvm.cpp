@@ -8,6 +8,7 @@
 #include "codegen/ir/RtslDialect.h"
 #include "codegen/ir/RtslOps.h"
 #include "codegen/ir/Separate.h"
+#include "codegen/passes/ShareExpressions.h"
 #include "runtime/device/Abi.h"
 
 #include "mlir/Conversion/ArithToLLVM/ArithToLLVM.h"
@@ -337,7 +338,7 @@ std::unique_ptr<mlir::Pass> createConvertToLlvmPass() {
 
 void buildLlvmPipeline(mlir::OpPassManager &module) {
   module.addPass(createConvertToLlvmPass());
-  module.addPass(mlir::createCSEPass());
+  module.addPass(createShareExpressionsPass());
 }
 
 void registerLlvmPasses() {

@@ -6,8 +6,9 @@
 #include "codegen/passes/ExpandCopies.h"
 #include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/InlineFunctions.h"
-#include "codegen/passes/PromoteLocalVariables.h"
+#include "codegen/passes/PromoteVariables.h"
 #include "codegen/passes/PropagateConstants.h"
+#include "codegen/passes/ShareExpressions.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/ToControlFlow.h"
 
@@ -25,7 +26,7 @@ static void addPromotion(mlir::OpPassManager &function) {
   function.addPass(createHoistVariablesPass());
   for (int round = 0; round < 2; ++round) {
     function.addPass(mlir::createSROA());
-    function.addPass(createPromoteLocalVariablesPass());
+    function.addPass(createPromoteVariablesPass());
     function.addPass(mlir::createMem2Reg());
     function.addPass(createSimplifyPass());
   }
@@ -73,7 +74,8 @@ void registerPasses() {
   mlir::registerPass(createHoistVariablesPass);
   mlir::registerPass(createExpandCopiesPass);
   mlir::registerPass([] { return createInlineFunctionsPass(); });
-  mlir::registerPass([] { return createPromoteLocalVariablesPass(/*fewest=*/0); });
+  mlir::registerPass(createShareExpressionsPass);
+  mlir::registerPass([] { return createPromoteVariablesPass(/*fewest=*/0); });
   mlir::registerPass(createPropagateConstantsPass);
   mlir::registerPass(createSimplifyPass);
   mlir::PassPipelineRegistration<>("rtsl-ssa", "level 1 to level 2, optimised", buildSsaPipeline);

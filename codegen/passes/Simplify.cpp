@@ -2,13 +2,13 @@
 #include "codegen/passes/Simplify.h"
 
 #include "codegen/passes/FoldFma.h"
+#include "codegen/passes/ShareExpressions.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/IR/Dominance.h"
 #include "mlir/IR/Matchers.h"
 #include "mlir/IR/PatternMatch.h"
 #include "mlir/Pass/Pass.h"
-#include "mlir/Transforms/CSE.h"
 #include "mlir/Transforms/GreedyPatternRewriteDriver.h"
 #include "mlir/Transforms/RegionUtils.h"
 #include "llvm/ADT/SetVector.h"
@@ -182,9 +182,7 @@ void Simplify::run(mlir::func::FuncOp function) const {
     if (round > 0 && !changed)
       break; // what was unified in the round before is unified still
     mlir::DominanceInfo dominance(function);
-    bool unified = false;
-    mlir::eliminateCommonSubExpressions(rewriter, dominance, function, &unified);
-    changed |= unified;
+    changed |= shareExpressions(function, dominance);
   }
 }
 
