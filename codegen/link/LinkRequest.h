@@ -39,7 +39,7 @@ struct LinkRequest {
   std::vector<ScenePart> parts = {};
   /// Which material meets which primitive, as (primitive class, material class); the primitive class is empty for a
   /// triangle mesh. Attributes are matched along these.
-  std::vector<std::pair<std::string, std::string>> surfaces;
+  std::vector<std::pair<std::string, std::string>> surfaces = {};
   /// The members that the scene sets in some object of a class, by class. An optional one that is not among them is empty
   /// in all objects; a class that is not there is one of which nothing is known.
   std::map<std::string, std::set<std::string>> givenMembers = {};
