@@ -32,7 +32,7 @@ struct EmbreeContext {
   const EmbreeScene::Implementation *scene;
   const EmbreeVisitor *visitor; // null: what is found is tested, and committed if it wins
   float toEmbree;         // a power of two that turns our t into Embree's
-  mutable std::uint32_t occluder; // the block in which a hit was found, where any will do
+  mutable std::uint32_t occluder; // of a ray for which any hit will do: the block in which one was found
 
   static constexpr std::uint32_t noBlock = ~0u;
 
@@ -109,13 +109,13 @@ struct EmbreeScene::Implementation {
     context.scene = this;
     context.visitor = nullptr;
     context.toEmbree = toEmbree;
-    context.occluder = EmbreeContext::noBlock;
     const RTCScene tree = treeFor(state.RayOrigin);
     if (anyHit) {
       LastOccluders &last = LastOccluders::towards(state.RayDirection);
       const auto meets = [&](std::uint32_t block) { return testBlock(state, triangleRay, blocks[block], true); };
       if (last.isMet(number, meets))
         return device::endSearch(state);
+      context.occluder = EmbreeContext::noBlock;
       RTCRay ray;
       fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
       rtcOccluded1(tree, &context.embree, &ray);

@@ -53,7 +53,7 @@ def fit(points, constant):
     of a line through the logarithms, by least squares. Points count by how well the growth is known, which is badly where it
     is a small part of a time. None where the largest program takes hardly more than the smallest possible one."""
     def spread(time):
-        return hypot(SPREAD, RESOLUTION / time) * time
+        return hypot(SPREAD * time, RESOLUTION)
 
     grown = [(log(size), log(time - constant), ((time - constant) / hypot(spread(time), spread(constant))) ** 2)
              for size, time in points if time > 1.1 * constant]

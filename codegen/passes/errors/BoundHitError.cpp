@@ -63,9 +63,8 @@ static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningE
     const Wide a(emitter, left->value), b(emitter, right->value);
     Num answer(emitter, emitter.fold<arith::CmpFOp>(comparison.getPredicate(), a, b));
     if (left->error || right->error) {
-      const Wide none = a.like(0);
-      const Wide error = (left->error ? Wide(emitter, left->error) : none) + (right->error ? Wide(emitter, right->error) : none);
-      const Num isInDoubt(emitter, isAtMost(abs(a - b), error));
+      const auto errorOf = [&](const Unrounded &one) { return one.error ? Wide(emitter, one.error) : a.like(0); };
+      const Num isInDoubt(emitter, isAtMost(abs(a - b), errorOf(*left) + errorOf(*right)));
       answer = answer ^ (isInDoubt & Num(emitter, emitter.load(otherwise)));
       mayBeInDoubt = true;
     }

@@ -56,28 +56,29 @@ public:
   }
   /// The ray meets it; does one that is sent on from there meet it again? The triangle that it meets, or 0 of what is no mesh.
   std::optional<int> meetsNext(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
-    shaders.set(reader, "asks", {1});
-    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
-    const float next = look(origin, direction)[2];
+    const float next = askOnwards(1, origin, direction, onwards);
     return next != 0 ? std::optional(int(std::lround(next)) - 1) : std::nullopt;
   }
   bool meetsAgain(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const { return meetsNext(origin, direction, onwards).has_value(); }
   /// The same: does it meet anything within `distance`, in units of `onwards`?
   bool meetsWithin(float distance, device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
-    shaders.set(reader, "asks", {4});
-    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
-    const float t = look(origin, direction)[2];
+    const float t = askOnwards(4, origin, direction, onwards);
     return t > 0 && t <= distance;
   }
   /// The same: how far it sees nothing, in units of `onwards`; nothing if it meets nothing.
   std::optional<float> startOfNext(device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
-    shaders.set(reader, "asks", {3});
-    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
-    const float epsilon = look(origin, direction)[2];
+    const float epsilon = askOnwards(3, origin, direction, onwards);
     return epsilon != 0 ? std::optional(epsilon) : std::nullopt;
   }
 
 private:
+  /// What Reader.rtsl says of the ray that is sent on, if it is asked for this.
+  float askOnwards(float what, device::Vec3 origin, device::Vec3 direction, device::Vec3 onwards) const {
+    shaders.set(reader, "asks", {what});
+    shaders.set(reader, "onwards", {onwards.x, onwards.y, onwards.z});
+    return look(origin, direction)[2];
+  }
+
   std::array<float, 3> look(device::Vec3 origin, device::Vec3 direction) const {
     shaders.set(camera, "origin", {origin.x, origin.y, origin.z});
     shaders.set(camera, "direction", {direction.x, direction.y, direction.z});
