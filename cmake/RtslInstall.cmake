@@ -5,9 +5,10 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS rtsl LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(DIRECTORY include/rtsl DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-install(DIRECTORY runtime/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/rtsl/runtime"
-  FILES_MATCHING PATTERN "*.h" PATTERN "*.def" PATTERN "c" EXCLUDE PATTERN "tools" EXCLUDE PATTERN "tables" EXCLUDE
-  PATTERN "math" EXCLUDE)
+foreach(part support language runtime)
+  install(DIRECTORY ${part}/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/rtsl/${part}"
+    FILES_MATCHING PATTERN "*.h" PATTERN "*.def" PATTERN "c" EXCLUDE)
+endforeach()
 
 set(rtslPackage "${CMAKE_INSTALL_LIBDIR}/cmake/rtsl")
 configure_package_config_file(cmake/rtslConfig.cmake.in "${PROJECT_BINARY_DIR}/rtslConfig.cmake.in"

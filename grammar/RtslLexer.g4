@@ -3,7 +3,7 @@
  *
  * The lexer reads bytes, not Unicode characters: only comments and strings may hold anything but ASCII, and so a
  * token's start and end are offsets into the file. It never fails: what it cannot read becomes one of the tokens
- * under "mistakes" at the end, and the parser never sees those; the message is written by frontend/Tokenizer.cpp.
+ * under "mistakes" at the end, and the parser never sees those; the message is written by frontend/lex/Tokenizer.cpp.
  *
  * Names of types (`float`, `vec3`, `color`, `rt_Material`) and of built-in functions are ordinary identifiers. The
  * words below are all that cannot be a name.
@@ -12,7 +12,7 @@ lexer grammar RtslLexer;
 
 tokens {
     // `illuminance` in front of `(` where a statement begins; everywhere else it is an ordinary identifier
-    // (frontend/TokenCheck.cpp tells them apart).
+    // (frontend/syntax/TokenCheck.cpp tells them apart).
     ILLUMINANCE
 }
 

@@ -8,7 +8,7 @@
  * Every decision but one (does a statement that begins with a name declare something?) is made on the next token, and
  * that one mostly on two: parsing is fast, and mistakes are found where they are.
  *
- * Before the parser sees the tokens, frontend/TokenCheck.cpp has balanced the brackets and refused what is nested too
+ * Before the parser sees the tokens, frontend/syntax/TokenCheck.cpp has balanced the brackets and refused what is nested too
  * deep, so that rules may call themselves without fear for the stack.
  */
 parser grammar RtslParser;

@@ -4,8 +4,8 @@
 // the rounding, the angle is computed again in double-double.
 #pragma once
 
-#include "runtime/device/math/DoubleDoubleFunctions.h"
-#include "runtime/device/math/Rounding.h"
+#include "math/DoubleDoubleFunctions.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

@@ -7,9 +7,9 @@
 // angles of the points (sqrt(1 - x^2), x) and (x, sqrt(1 - x^2)).
 #pragma once
 
-#include "runtime/device/math/DoubleDouble.h"
-#include "runtime/device/math/tables/ArcTangentTable.h"
-#include "runtime/device/math/tables/Constants.h"
+#include "math/DoubleDouble.h"
+#include "math/tables/ArcTangentTable.h"
+#include "math/tables/Constants.h"
 
 namespace rtsl::device::detail {
 

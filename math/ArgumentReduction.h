@@ -1,8 +1,8 @@
 // x = q pi/2 + r, |r| <= pi/4, for every float x >= 0: the first half of sin, cos and tan.
 #pragma once
 
-#include "runtime/device/math/DoubleDouble.h"
-#include "runtime/device/math/tables/Constants.h"
+#include "math/DoubleDouble.h"
+#include "math/tables/Constants.h"
 
 namespace rtsl::device::detail {
 

@@ -2,9 +2,9 @@
 // calls. Short, not fast.
 #pragma once
 
-#include "runtime/device/math/ArcTangentKernel.h"
-#include "runtime/device/math/ExponentialKernel.h"
-#include "runtime/device/math/LogarithmKernel.h"
+#include "math/ArcTangentKernel.h"
+#include "math/ExponentialKernel.h"
+#include "math/LogarithmKernel.h"
 
 namespace rtsl::device::detail {
 

@@ -1,9 +1,9 @@
 // The elementary functions and `refract` under C names, for compiled shaders to call.
-#include "runtime/device/math/Elementary.h"
-#include "runtime/device/math/Refraction.h"
+#include "math/Elementary.h"
+#include "math/Refraction.h"
 
 #if defined(__AVX2__) && defined(__FMA__)
-#include "runtime/device/math/PowerLanes.h"
+#include "math/PowerLanes.h"
 #endif
 
 #define RTSL_EXPORT_UNARY(name)                                                                    \

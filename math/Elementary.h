@@ -24,13 +24,13 @@
 // Fast.h has approximations for --fp=fast.
 #pragma once
 
-#include "runtime/device/math/ArcTangent2.h"
-#include "runtime/device/math/Exponential.h"
-#include "runtime/device/math/Hyperbolic.h"
-#include "runtime/device/math/InverseHyperbolic.h"
-#include "runtime/device/math/InverseSquareRoot.h"
-#include "runtime/device/math/InverseTrigonometric.h"
-#include "runtime/device/math/Logarithm.h"
-#include "runtime/device/math/Power.h"
-#include "runtime/device/math/Trigonometric.h"
-#include "runtime/device/math/TrigonometricOfPi.h"
+#include "math/ArcTangent2.h"
+#include "math/Exponential.h"
+#include "math/Hyperbolic.h"
+#include "math/InverseHyperbolic.h"
+#include "math/InverseSquareRoot.h"
+#include "math/InverseTrigonometric.h"
+#include "math/Logarithm.h"
+#include "math/Power.h"
+#include "math/Trigonometric.h"
+#include "math/TrigonometricOfPi.h"

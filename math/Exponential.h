@@ -1,8 +1,8 @@
 // exp, exp2 and expm1.
 #pragma once
 
-#include "runtime/device/math/ExponentialKernel.h"
-#include "runtime/device/math/Rounding.h"
+#include "math/ExponentialKernel.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

@@ -6,9 +6,9 @@
 //     x = (64 k + j) ln(2)/64 + r,  |r| <= ln(2)/128,      e^x = 2^k * 2^(j/64) * e^r.
 #pragma once
 
-#include "runtime/device/math/DoubleDouble.h"
-#include "runtime/device/math/tables/Constants.h"
-#include "runtime/device/math/tables/ExponentialTable.h"
+#include "math/DoubleDouble.h"
+#include "math/tables/Constants.h"
+#include "math/tables/ExponentialTable.h"
 
 namespace rtsl::device::detail {
 

@@ -1,5 +1,5 @@
 // The approximations of Fast.h under C names, for compiled shaders to call.
-#include "runtime/device/math/Fast.h"
+#include "math/Fast.h"
 
 extern "C" {
 
@@ -11,6 +11,6 @@ extern "C" {
   float rtsl_fast_##name(float x, float y) {                                                       \
     return rtsl::device::fast::name(x, y);                                                         \
   }
-#include "runtime/device/math/FastFunctions.def"
+#include "math/FastFunctions.def"
 
 } // extern "C"

@@ -7,10 +7,10 @@
 // result. Functions that are missing here are those of Elementary.h.
 #pragma once
 
-#include "runtime/device/math/ArcTangent2.h"
-#include "runtime/device/math/ArgumentReduction.h"
-#include "runtime/device/math/Power.h"
-#include "runtime/device/math/tables/ArcTangentTable.h"
+#include "math/ArcTangent2.h"
+#include "math/ArgumentReduction.h"
+#include "math/Power.h"
+#include "math/tables/ArcTangentTable.h"
 
 namespace rtsl::device::fast {
 

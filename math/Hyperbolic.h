@@ -1,7 +1,7 @@
 // sinh, cosh and tanh.
 #pragma once
 
-#include "runtime/device/math/Exponential.h"
+#include "math/Exponential.h"
 
 namespace rtsl::device {
 

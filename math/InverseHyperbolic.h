@@ -2,8 +2,8 @@
 // for complex elementary functions", in: The State of the Art in Numerical Analysis, 1987).
 #pragma once
 
-#include "runtime/device/math/LogarithmKernel.h"
-#include "runtime/device/math/Rounding.h"
+#include "math/LogarithmKernel.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

@@ -1,7 +1,7 @@
 // sqrt and inversesqrt.
 #pragma once
 
-#include "runtime/device/math/Rounding.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

@@ -1,8 +1,8 @@
 // asin, acos and atan.
 #pragma once
 
-#include "runtime/device/math/ArcTangentKernel.h"
-#include "runtime/device/math/Rounding.h"
+#include "math/ArcTangentKernel.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

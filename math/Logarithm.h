@@ -1,8 +1,8 @@
 // log, log2 and log1p.
 #pragma once
 
-#include "runtime/device/math/LogarithmKernel.h"
-#include "runtime/device/math/Rounding.h"
+#include "math/LogarithmKernel.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

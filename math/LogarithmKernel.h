@@ -7,9 +7,9 @@
 //     ln(inverse) + ln(1 + r).
 #pragma once
 
-#include "runtime/device/math/DoubleDouble.h"
-#include "runtime/device/math/tables/Constants.h"
-#include "runtime/device/math/tables/LogarithmTable.h"
+#include "math/DoubleDouble.h"
+#include "math/tables/Constants.h"
+#include "math/tables/LogarithmTable.h"
 
 namespace rtsl::device::detail {
 

@@ -8,10 +8,10 @@
 // exactPower() finds out, or it is computed again in double-double.
 #pragma once
 
-#include "runtime/device/math/DoubleDoubleFunctions.h"
-#include "runtime/device/math/ExponentialKernel.h"
-#include "runtime/device/math/LogarithmKernel.h"
-#include "runtime/device/math/Rounding.h"
+#include "math/DoubleDoubleFunctions.h"
+#include "math/ExponentialKernel.h"
+#include "math/LogarithmKernel.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

@@ -2,8 +2,8 @@
 // each component. For the host.
 #pragma once
 
-#include "runtime/device/math/DoubleLanes.h"
-#include "runtime/device/math/Power.h"
+#include "math/DoubleLanes.h"
+#include "math/Power.h"
 
 namespace rtsl::device {
 

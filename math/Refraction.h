@@ -7,7 +7,7 @@
 // rounded once at the end; where double cannot tell whether k is negative, k is computed again, in double-double.
 #pragma once
 
-#include "runtime/device/math/DoubleDouble.h"
+#include "math/DoubleDouble.h"
 
 namespace rtsl::device {
 

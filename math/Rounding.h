@@ -1,7 +1,7 @@
 // The last step of every function: from a double, or a sum of two, to the nearest float.
 #pragma once
 
-#include "runtime/device/math/DoubleDouble.h"
+#include "math/DoubleDouble.h"
 
 namespace rtsl::device::detail {
 

@@ -1,8 +1,8 @@
 // sin, cos and tan.
 #pragma once
 
-#include "runtime/device/math/ArgumentReduction.h"
-#include "runtime/device/math/Rounding.h"
+#include "math/ArgumentReduction.h"
+#include "math/Rounding.h"
 
 namespace rtsl::device {
 

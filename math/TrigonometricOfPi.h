@@ -1,7 +1,7 @@
 // sinpi and cospi: sine and cosine of pi x.
 #pragma once
 
-#include "runtime/device/math/Trigonometric.h"
+#include "math/Trigonometric.h"
 
 namespace rtsl::device {
 

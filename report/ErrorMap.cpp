@@ -1,7 +1,7 @@
 //===- ErrorMap.cpp -------------------------------------------------------===//
 #include "report/ErrorMap.h"
 
-#include "runtime/ImageFormats.h"
+#include "runtime/image/ImageFormats.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "report/Flip.h"
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <string>
 

@@ -13,7 +13,7 @@ namespace {
 
 void requireSameShape(const runtime::Image &reference, const runtime::Image &test) {
   if (reference.width != test.width || reference.height != test.height || reference.channels != test.channels)
-    throw runtime::Error(runtime::ErrorCode::BadImage,
+    throw Error(ErrorCode::BadImage,
                          fmt::format("the reference has {}x{} pixels of {} channels, the picture {}x{} of {}", reference.width,
                                      reference.height, reference.channels, test.width, test.height, test.channels));
 }

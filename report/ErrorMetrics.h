@@ -1,7 +1,7 @@
 //===- ErrorMetrics.h - how far a picture is from a reference -------------===//
 #pragma once
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <cstddef>
 

@@ -1,7 +1,7 @@
 //===- Exposure.h - how bright pictures are shown -------------------------===//
 #pragma once
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 namespace rtsl::report {
 

@@ -288,11 +288,11 @@ template <typename OnScreen> Plane<Color> opponentPlane(const runtime::Image &im
 
 void requireComparable(const runtime::Image &reference, const runtime::Image &test) {
   if (reference.channels != 3 || test.channels != 3)
-    throw runtime::Error(runtime::ErrorCode::BadImage, "FLIP compares pictures in RGB");
+    throw Error(ErrorCode::BadImage, "FLIP compares pictures in RGB");
   if (reference.width != test.width || reference.height != test.height)
-    throw runtime::Error(runtime::ErrorCode::BadImage, "FLIP compares pictures of one size");
+    throw Error(ErrorCode::BadImage, "FLIP compares pictures of one size");
   if (reference.pixels.empty())
-    throw runtime::Error(runtime::ErrorCode::BadImage, "an empty picture has no error");
+    throw Error(ErrorCode::BadImage, "an empty picture has no error");
 }
 
 //===-- tone mapping ------------------------------------------------------===//

@@ -10,7 +10,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 //===- Measurement.cpp - tables of measurements as CSV --------------------===//
 #include "report/Measurement.h"
 
-#include "runtime/AtomicFile.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 
@@ -101,12 +101,12 @@ std::vector<std::string> split(const std::string &text, char separator) {
 template <typename Row> std::vector<Row> readTable(const std::string &path) {
   if (::access(path.c_str(), F_OK) != 0)
     return {};
-  std::vector<std::string> lines = split(runtime::readFile(path), '\n');
+  std::vector<std::string> lines = split(readFile(path), '\n');
   lines.pop_back(); // what follows the last line end: nothing, or a line that was cut off
   if (lines.empty())
     return {};
   const auto refuse = [&](std::size_t line, const char *why) {
-    throw runtime::Error(runtime::ErrorCode::BadImage, why, runtime::Place{path, std::uint32_t(line + 1), 1, 1});
+    throw Error(ErrorCode::BadImage, why, Place{path, std::uint32_t(line + 1), 1, 1});
   };
   if (lines.front() + "\n" != headerOf<Row>())
     refuse(0, "this is no table of this version's report; choose another folder, or pass `--fresh`");
@@ -127,9 +127,9 @@ template <typename Row> std::vector<Row> readTable(const std::string &path) {
 
 /// Appends `line`, after the header if the file is new. A line that an earlier run left half written is cut away.
 void appendLine(const std::string &path, const std::string &header, const std::string &line) {
-  std::string bytes = ::access(path.c_str(), F_OK) == 0 ? runtime::readFile(path) : std::string();
+  std::string bytes = ::access(path.c_str(), F_OK) == 0 ? readFile(path) : std::string();
   bytes.resize(bytes.rfind('\n') == std::string::npos ? 0 : bytes.rfind('\n') + 1);
-  runtime::writeFileAtomically(path, (bytes.empty() ? header : bytes) + line);
+  writeFileAtomically(path, (bytes.empty() ? header : bytes) + line);
 }
 
 } // namespace
@@ -142,7 +142,7 @@ void writeLevels(const std::string &path, const std::vector<LevelVariance> &leve
   std::string table = headerOf<LevelVariance>();
   for (const LevelVariance &level : levels)
     table += lineOf(level);
-  runtime::writeFileAtomically(path, table);
+  writeFileAtomically(path, table);
 }
 
 std::uint64_t hashOf(std::string_view bytes) {

@@ -1,7 +1,7 @@
 //===- Measurement.h - what one picture cost and how wrong it is ----------===//
 #pragma once
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "report/ErrorMetrics.h"
 #include "report/RunningVariance.h"
-#include "runtime/AtomicFile.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -72,7 +72,7 @@ Reference readReference(const std::string &path, std::uint32_t width, std::uint3
 std::optional<Reference> findReference(const std::string &subject, const std::string &folder) {
   if (::access(picturePath(folder).c_str(), R_OK) != 0 || ::access(factsPath(folder).c_str(), R_OK) != 0)
     return std::nullopt;
-  const nlohmann::json facts = nlohmann::json::parse(runtime::readFile(factsPath(folder)), nullptr, false);
+  const nlohmann::json facts = nlohmann::json::parse(readFile(factsPath(folder)), nullptr, false);
   if (facts.is_discarded() || facts.value("version", 0) != factsVersion ||
       facts.value("subject", "") != subject)
     return std::nullopt;
@@ -130,7 +130,7 @@ Reference makeReference(const Subject &subject, const Subject &single, const std
                                         {"heavyTails", own.tail.isHeavy()},
                                         {"maximumShare", own.tail.maximumShare},
                                         {"tailIndex", own.tail.tailIndex}};
-  runtime::writeFileAtomically(factsPath(folder), facts.dump(2) + "\n");
+  writeFileAtomically(factsPath(folder), facts.dump(2) + "\n");
   return reference;
 }
 

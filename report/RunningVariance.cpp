@@ -18,7 +18,7 @@ void RunningVariance::add(const runtime::Image &picture) {
     smallest.assign(picture.pixels.size(), std::numeric_limits<float>::infinity());
     largest.assign(picture.pixels.size(), -std::numeric_limits<float>::infinity());
   } else if (picture.pixels.size() != means.size()) {
-    throw runtime::Error(runtime::ErrorCode::BadImage, "pictures of two shapes have no common variance");
+    throw Error(ErrorCode::BadImage, "pictures of two shapes have no common variance");
   }
   ++count;
   for (std::size_t i = 0; i < means.size(); ++i) {

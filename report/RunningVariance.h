@@ -1,7 +1,7 @@
 //===- RunningVariance.h - mean and variance of a picture over runs -------===//
 #pragma once
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <functional>
 #include <vector>

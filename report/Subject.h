@@ -1,8 +1,8 @@
 //===- Subject.h - what a study compares ----------------------------------===//
 #pragma once
 
-#include "runtime/Image.h"
-#include "runtime/Renderer.h"
+#include "runtime/image/Image.h"
+#include "runtime/render/Renderer.h"
 
 #include <functional>
 #include <string>

@@ -1,7 +1,7 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
-#include "runtime/ErrorCollector.h"
-#include "scene/MeshFiles.h"
-#include "scene/SceneFile.h"
+#include "support/ErrorCollector.h"
+#include "scenefile/MeshFiles.h"
+#include "scenefile/SceneFile.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>
@@ -12,8 +12,8 @@
 namespace rtsl::scene {
 
 using runtime::ClassInfo;
-using runtime::Error;
-using runtime::ErrorCode;
+using Error;
+using ErrorCode;
 using runtime::MemberInfo;
 using runtime::NamedValue;
 using runtime::ObjectValues;
@@ -108,7 +108,7 @@ private:
              value.fromOverride ? value.place() : object.constructor->place(key)});
       values.constructor = std::move(arguments);
     }
-    runtime::ErrorCollector ofMembers;
+    ErrorCollector ofMembers;
     for (const auto &[key, value] : object.members)
       ofMembers.attempt([&, &key = key, &value = value] {
         const MemberInfo *member = classInfo ? find(classInfo->members, key.text) : nullptr;
@@ -308,7 +308,7 @@ private:
   Scene scene;
   std::map<std::string, RtslRef> made; // 0: on the way
   std::set<std::string> refused;
-  runtime::ErrorCollector errors;
+  ErrorCollector errors;
   MeshFiles files;
   std::map<std::size_t, std::uint32_t> meshes; // by their number in `files`
 };

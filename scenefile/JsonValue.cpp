@@ -6,7 +6,7 @@
 // well-formed.
 //
 //===----------------------------------------------------------------------===//
-#include "scene/JsonValue.h"
+#include "scenefile/JsonValue.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,9 +17,9 @@
 
 namespace rtsl::scene {
 
-using runtime::Error;
-using runtime::ErrorCode;
-using runtime::Place;
+using Error;
+using ErrorCode;
+using Place;
 
 namespace {
 

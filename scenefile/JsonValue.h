@@ -1,7 +1,7 @@
 //===- JsonValue.h - JSON of which every value knows its place ------------===//
 #pragma once
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <cstdint>
 #include <memory>
@@ -37,8 +37,8 @@ struct JsonValue {
   std::uint32_t line = 0, column = 0, length = 0;
   bool fromOverride = false; // came from --set
 
-  runtime::Place place() const { return {*file, line, column, length}; }
-  runtime::Place place(const JsonKey &key) const {
+  Place place() const { return {*file, line, column, length}; }
+  Place place(const JsonKey &key) const {
     return {*file, key.line, key.column, key.length};
   }
   const JsonValue *find(const std::string &key) const;
@@ -48,7 +48,7 @@ struct JsonValue {
 /// "a number", "an object": for messages.
 const char *describe(JsonValue::Kind kind);
 
-/// Parses a whole text. Throws runtime::Error with JsonSyntax, or DuplicateKey. Nesting deeper than
+/// Parses a whole text. Throws Error with JsonSyntax, or DuplicateKey. Nesting deeper than
 /// 256 is refused.
 JsonValue parseJson(const std::string &text, const std::string &file);
 

@@ -1,6 +1,6 @@
-#include "scene/MeshFiles.h"
+#include "scenefile/MeshFiles.h"
 
-#include "runtime/WorkerThreads.h"
+#include "support/WorkerThreads.h"
 
 namespace rtsl::scene {
 
@@ -38,7 +38,7 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
   }
 
   std::vector<Result> files(paths.size());
-  runtime::forEachOnThreads(0, files.size(), [&](std::size_t i) {
+  forEachOnThreads(0, files.size(), [&](std::size_t i) {
     try {
       files[i].mesh = runtime::loadMesh(*paths[i]);
     } catch (...) {
@@ -46,7 +46,7 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
     }
   });
   results.resize(placements.size());
-  runtime::forEachOnThreads(0, results.size(), [&](std::size_t i) {
+  forEachOnThreads(0, results.size(), [&](std::size_t i) {
     Result &file = files[placements[i].file], &result = results[i];
     try {
       result.failure = file.failure;

@@ -1,8 +1,8 @@
 //===- MeshFiles.h - the meshes that a scene takes from files -------------===//
 #pragma once
 
-#include "runtime/Mesh.h"
-#include "scene/SceneFile.h"
+#include "runtime/geometry/Mesh.h"
+#include "scenefile/SceneFile.h"
 
 #include <cstddef>
 #include <exception>

@@ -1,6 +1,6 @@
 //===- Override.cpp - values given on the command line --------------------===//
-#include "runtime/Scene.h"
-#include "scene/JsonValue.h"
+#include "runtime/scene/Scene.h"
+#include "scenefile/JsonValue.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>
@@ -9,9 +9,9 @@
 
 namespace rtsl::scene {
 
-using runtime::Error;
-using runtime::ErrorCode;
-using runtime::Place;
+using Error;
+using ErrorCode;
+using Place;
 
 namespace {
 

@@ -1,7 +1,7 @@
-#include "scene/Reader.h"
+#include "scenefile/Reader.h"
 
-#include "runtime/ErrorCollector.h"
-#include "runtime/Scene.h"
+#include "support/ErrorCollector.h"
+#include "runtime/scene/Scene.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>
@@ -11,8 +11,8 @@
 
 namespace rtsl::scene {
 
-using runtime::Error;
-using runtime::ErrorCode;
+using Error;
+using ErrorCode;
 
 const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what) {
   if (value.kind != kind)
@@ -25,7 +25,7 @@ const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std:
 void checkKeys(const JsonValue &object, std::initializer_list<const char *> known,
                const std::string &what) {
   const std::vector<std::string> names(known.begin(), known.end());
-  runtime::ErrorCollector errors;
+  ErrorCollector errors;
   for (const auto &member : object.members) {
     const std::string &key = member.first.text;
     if (std::find(names.begin(), names.end(), key) != names.end())

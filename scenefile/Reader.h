@@ -1,7 +1,7 @@
 //===- Reader.h - picking JSON apart, with messages -----------------------===//
 #pragma once
 
-#include "scene/JsonValue.h"
+#include "scenefile/JsonValue.h"
 
 #include <initializer_list>
 #include <string>

@@ -1,10 +1,10 @@
 //===- SceneFile.cpp - from JSON to a description -------------------------===//
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 
-#include "runtime/AtomicFile.h"
-#include "runtime/ErrorCollector.h"
-#include "scene/Reader.h"
-#include "scene/TransformReader.h"
+#include "support/AtomicFile.h"
+#include "support/ErrorCollector.h"
+#include "scenefile/Reader.h"
+#include "scenefile/TransformReader.h"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@
 
 namespace rtsl::scene {
 
-using runtime::Error;
-using runtime::ErrorCode;
+using Error;
+using ErrorCode;
 
 namespace {
 
@@ -305,7 +305,7 @@ private:
 
   const JsonValue &root;
   SceneDescription &scene;
-  runtime::ErrorCollector errors;
+  ErrorCollector errors;
 };
 
 /// An object of the scene, wherever it is written: its class, and its members.
@@ -382,7 +382,7 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
 }
 
 SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides) {
-  return parseScene(runtime::readFile(path), path, overrides);
+  return parseScene(readFile(path), path, overrides);
 }
 
 std::vector<LocatedName> classMentions(const SceneDescription &description) {

@@ -7,15 +7,15 @@
 //   runtime::Scene built = scene::buildScene(description, program);
 //
 // docs/scene-format.md describes the format, docs/scene-schema.json is its schema. All errors are
-// runtime::Error with file, line, column and length; the one
+// Error with file, line, column and length; the one
 // that is thrown carries the others that the same scene has.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/RenderOptions.h"
-#include "runtime/Scene.h"
-#include "scene/JsonValue.h"
+#include "runtime/render/RenderOptions.h"
+#include "runtime/scene/Scene.h"
+#include "scenefile/JsonValue.h"
 
 #include <array>
 #include <cstdint>
@@ -29,7 +29,7 @@
 
 namespace rtsl::scene {
 
-using runtime::Place;
+using Place;
 
 /// A text with its place.
 struct LocatedName {

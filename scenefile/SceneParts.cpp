@@ -1,4 +1,4 @@
-#include "scene/SceneParts.h"
+#include "scenefile/SceneParts.h"
 
 #include <fmt/format.h>
 

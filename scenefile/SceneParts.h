@@ -1,7 +1,7 @@
 //===- SceneParts.h - what refers to what in a scene ----------------------===//
 #pragma once
 
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 
 #include <cstddef>
 #include <string>

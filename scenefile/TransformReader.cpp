@@ -1,13 +1,13 @@
-#include "scene/TransformReader.h"
+#include "scenefile/TransformReader.h"
 
-#include "scene/Reader.h"
+#include "scenefile/Reader.h"
 
 #include <fmt/format.h>
 
 namespace rtsl::scene {
 
-using runtime::Error;
-using runtime::ErrorCode;
+using Error;
+using ErrorCode;
 using runtime::Transform;
 
 namespace {

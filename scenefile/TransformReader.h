@@ -1,8 +1,8 @@
 //===- TransformReader.h - "transform" of a scene file --------------------===//
 #pragma once
 
-#include "runtime/Mesh.h"
-#include "scene/JsonValue.h"
+#include "runtime/geometry/Mesh.h"
+#include "scenefile/JsonValue.h"
 
 namespace rtsl::scene {
 

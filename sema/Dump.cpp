@@ -4,10 +4,10 @@
 // source alone.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/Casting.h"
-#include "sema/ConstantFold.h"
+#include "sema/typed/Casting.h"
+#include "sema/fold/ConstantFold.h"
 #include "sema/Sema.h"
-#include "sema/TypeProperties.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 //===- Sema.cpp - checking: syntax trees to one typed module --------------===//
 #include "sema/Sema.h"
 
-#include "sema/Program.h"
+#include "sema/check/Program.h"
 
 namespace rtsl {
 

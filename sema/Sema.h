@@ -1,20 +1,15 @@
 //===- Sema.h - checking: syntax trees to one typed module ----------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
-#include "sema/TypedAst.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "sema/check/ImportResolver.h"
+#include "sema/typed/TypedAst.h"
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace rtsl {
-
-/// Finds the text of an import and parses it; null if it cannot (then it has reported why at `import.range`). The same
-/// file asked for twice gives the same pointer. `importer` is the file that holds the import.
-using ImportResolver =
-    std::function<const ast::TranslationUnit *(const ast::ImportDecl &import, FileId importer)>;
 
 /// Checks all `units` and what they import, once each. Reports through `diagnostics`. Returns a module even if there
 /// were errors (what was broken is left out), so that tools may look at the rest.

@@ -1,4 +1,4 @@
-#include "runtime/AtomicFile.h"
+#include "support/AtomicFile.h"
 
 #include "support/EndlessInput.h"
 
@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 namespace {
 
@@ -232,4 +232,4 @@ std::string readFile(const std::string &path) {
   }
 }
 
-} // namespace rtsl::runtime
+} // namespace rtsl

@@ -1,13 +1,13 @@
 //===- AtomicFile.h - files that appear whole or not at all ---------------===//
 #pragma once
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 /// Writes `bytes` to a temporary file beside `path`, makes sure that they reached the disk, and
 /// renames it. A path that is no regular file (a pipe, /dev/stdout) is written directly; "-" is
@@ -25,4 +25,4 @@ void refuseToOverwrite(const std::string &output, const std::vector<std::string>
 /// be read, for it may never end.
 std::string readFile(const std::string &path);
 
-} // namespace rtsl::runtime
+} // namespace rtsl

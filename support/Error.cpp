@@ -1,6 +1,6 @@
-#include "runtime/Error.h"
+#include "support/Error.h"
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 const char *name(ErrorCode code) {
   switch (code) {
@@ -72,4 +72,4 @@ const char *name(ErrorCode code) {
   return "internal";
 }
 
-} // namespace rtsl::runtime
+} // namespace rtsl

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 enum class ErrorCode : std::uint8_t {
   // Files.
@@ -105,4 +105,4 @@ struct Warning {
   std::optional<Place> place;
 };
 
-} // namespace rtsl::runtime
+} // namespace rtsl

@@ -8,13 +8,13 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 /// Lets a reader go on behind an error in its input. Faults that are not the input's (memory,
 /// cancellation, our own) pass through at once.
@@ -64,4 +64,4 @@ private:
   std::vector<Error> errors;
 };
 
-} // namespace rtsl::runtime
+} // namespace rtsl

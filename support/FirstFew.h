@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 /// Keeps those `most` items that come first by `Less`, and counts all.
 template <typename Item, typename Less> class FirstFew {
@@ -52,4 +52,4 @@ private:
   std::uint64_t count = 0;
 };
 
-} // namespace rtsl::runtime
+} // namespace rtsl

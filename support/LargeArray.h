@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 /// An array of a fixed size, in pages of 2 MiB where the system has them: there are fewer to be
 /// made when it is filled, and to be looked up when it is read. Elements are zero.
@@ -57,4 +57,4 @@ private:
   std::size_t count = 0;
 };
 
-} // namespace rtsl::runtime
+} // namespace rtsl

@@ -1,7 +1,7 @@
 //===- WorkerThreads.cpp - threads with the stack that they need ------------===//
-#include "runtime/WorkerThreads.h"
+#include "support/WorkerThreads.h"
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 namespace {
 
@@ -119,4 +119,4 @@ void forEachOnThreads(unsigned threads, std::size_t count,
   });
 }
 
-} // namespace rtsl::runtime
+} // namespace rtsl

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace rtsl::runtime {
+namespace rtsl {
 
 /// What our own code and Embree take of a stack beside the frames of shaders, generously.
 constexpr std::uint64_t stackMargin = std::uint64_t(1) << 20;
@@ -22,4 +22,4 @@ void runOnThreads(unsigned count, std::uint64_t stackBytes,
 void forEachOnThreads(unsigned threads, std::size_t count,
                       const std::function<void(std::size_t)> &work);
 
-} // namespace rtsl::runtime
+} // namespace rtsl

@@ -8,7 +8,7 @@
 #include "Radiance.h"
 #include "Scene.h"
 
-#include "runtime/Mesh.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <memory>
 

@@ -7,8 +7,8 @@
 //===----------------------------------------------------------------------===//
 #include "Program.h"
 
-#include "runtime/Mesh.h"
-#include "runtime/device/Random.h"
+#include "runtime/geometry/Mesh.h"
+#include "runtime/device/ray/Random.h"
 
 #include <embree3/rtcore.h>
 

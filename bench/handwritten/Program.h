@@ -8,7 +8,7 @@
 
 #include "Picture.h"
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #include "Radiance.h"
 
-#include "runtime/device/Random.h"
+#include "runtime/device/ray/Random.h"
 
 #include <cmath>
 #include <limits>

@@ -8,7 +8,7 @@
 
 #include "Picture.h"
 
-#include "runtime/Mesh.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <embree3/rtcore.h>
 

@@ -9,7 +9,7 @@
 #include "ByHand.h"
 
 #include "rtsl/program.h"
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "Surroundings.h"
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 //
 // A shader asks its surroundings for rays, light and random numbers. Here they answer cheaply and always the same, so
 // that what is timed is the shader. The two sides see them through their own interface: the generated code through
-// the functions of runtime/device/Abi.h, the code by hand through those of this header; both end in the same few lines.
+// the functions of runtime/device/ray/Abi.h, the code by hand through those of this header; both end in the same few lines.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

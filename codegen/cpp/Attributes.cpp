@@ -8,9 +8,9 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
-#include "runtime/device/Abi.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "runtime/device/ray/Abi.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 //===- Builtins.cpp - built-in functions ----------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 
@@ -133,7 +133,7 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
     return integer(0);
   default:
     if (typed::info(expr.builtin).effect == typed::BuiltinEffect::Outputs)
-      return withOutputs(callee, expr, lowering::outputsOf(expr.builtin).first);
+      return withOutputs(callee, expr, typed::outputsOf(expr.builtin).first);
     return with({});
   }
 }

@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ bool FunctionPrinter::canBind(const typed::Expr &place) const {
 
 /// What an assignment to the place would write: what it is part of.
 static std::set<const void *> writesOf(EffectsOf &effects, const typed::Expr &place) {
-  return effects.expression(lowering::wholeOf(place)).reads;
+  return effects.expression(typed::wholeOf(place)).reads;
 }
 
 static bool meet(const std::set<const void *> &a, const std::set<const void *> &b) {

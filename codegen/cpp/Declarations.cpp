@@ -2,8 +2,8 @@
 #include "codegen/cpp/Printer.h"
 
 #include "codegen/cpp/Format.h"
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 
@@ -17,8 +17,8 @@ ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options
     : module(module), options(options), names(module),
       effects(module, options.prints, options.exceptions && options.checkIndices),
       hitAnswers(module), notes(diagnostics.sources()), tracing(module),
-      mayReferToNothing(lowering::mayReferToNothing(module)),
-      lookupsNest(lowering::lookupsNest(module)), states(states),
+      mayReferToNothing(typed::mayReferToNothing(module)),
+      lookupsNest(typed::lookupsNest(module)), states(states),
       diagnostics(diagnostics) {
   if (!states)
     return;
@@ -161,7 +161,7 @@ bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed:
   return std::none_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
     return definition->derivesFrom(top.owner) &&
            std::any_of(definition->functions.begin(), definition->functions.end(), [&](const auto &method) {
-             return method->name == top.name && lowering::sameParameters(*method, top) && assigns(*method);
+             return method->name == top.name && typed::sameParameters(*method, top) && assigns(*method);
            });
   });
 }
@@ -268,7 +268,7 @@ bool ModulePrinter::overrides(const typed::Function &function) const {
     return false;
   for (const typed::Class *base = function.owner->base; base; base = base->base)
     for (const auto &method : base->functions)
-      if (method->name == function.name && lowering::sameParameters(*method, function) && !isPartOfStates(*method))
+      if (method->name == function.name && typed::sameParameters(*method, function) && !isPartOfStates(*method))
         return isOverridden(*method);
   return false;
 }
@@ -281,7 +281,7 @@ bool ModulePrinter::isOverridden(const typed::Function &function) const {
   for (const auto &definition : module.classes)
     if (definition.get() != function.owner && definition->derivesFrom(function.owner))
       for (const auto &method : definition->functions)
-        if (method->name == function.name && lowering::sameParameters(*method, function) && !isPartOfStates(*method))
+        if (method->name == function.name && typed::sameParameters(*method, function) && !isPartOfStates(*method))
           return true;
   return false;
 }
@@ -442,7 +442,7 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
       for (const auto &method : at->functions)
         if (method->name == function->name && !method->isConstructor && !isPartOfStates(*method) && !isPartOfStates(*function) &&
             (!isSplit(*at, *method) || nameOfMachine(*at, *method) == names.of(method.get())) &&
-            !lowering::sameParameters(*method, *function) && shown.insert(method->name).second)
+            !typed::sameParameters(*method, *function) && shown.insert(method->name).second)
           parts.push_back("using " + names.of(at) + "::" + names.of(method.get()) + ";\n");
   for (const auto &function : definition.functions) {
     const bool isMachine = function->body && isSplit(definition, *function);

@@ -1,7 +1,7 @@
 #include "codegen/cpp/Effects.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 #include <algorithm>
 
@@ -70,7 +70,7 @@ const typed::Function &overridden(const typed::Function &function) {
   if (function.owner && !function.isConstructor && !function.isStateMethod)
     for (const typed::Class *base = function.owner->base; base; base = base->base)
       for (const auto &method : base->functions)
-        if (method->name == function.name && lowering::sameParameters(*method, function))
+        if (method->name == function.name && typed::sameParameters(*method, function))
           top = method.get();
   return *top;
 }
@@ -92,7 +92,7 @@ Effects EffectsOf::ofBodies(const typed::Function &function) {
     for (const auto &other : module.classes)
       if (other.get() != function.owner && other->derivesFrom(function.owner))
         for (const auto &method : other->functions)
-          if (method->name == function.name && lowering::sameParameters(*method, function))
+          if (method->name == function.name && typed::sameParameters(*method, function))
             addBody(*method);
   // What is local to them does not show.
   for (const void *local : locals) {
@@ -130,7 +130,7 @@ void EffectsOf::collectAll(const Tree &tree, Effects &effects) {
   std::set<const typed::Expr *> onlyWritten; // outer expressions come first
   forEachEvaluated(tree, [&](const typed::Expr &inner) {
     if (auto *assign = dynCast<typed::AssignExpr>(&inner); assign && !assign->compound)
-      onlyWritten.insert(&lowering::wholeOf(*assign->target));
+      onlyWritten.insert(&typed::wholeOf(*assign->target));
     if (!onlyWritten.count(&inner))
       collect(inner, effects);
   });
@@ -186,7 +186,7 @@ Effects EffectsOf::statement(const typed::Stmt &stmt) {
 }
 
 void EffectsOf::collectWrite(const typed::Expr &target, Effects &effects) {
-  const typed::Expr *root = &lowering::wholeOf(target);
+  const typed::Expr *root = &typed::wholeOf(target);
   if (auto *variable = dynCast<typed::VariableExpr>(root)) {
     effects.writes.insert(variable->variable);
   } else if (auto *member = dynCast<typed::MemberExpr>(root)) {

@@ -7,8 +7,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
-#include "sema/Walk.h"
+#include "sema/typed/TypedAst.h"
+#include "sema/typed/Walk.h"
 
 #include <map>
 #include <set>

@@ -8,8 +8,8 @@
 #pragma once
 
 #include "codegen/cpp/Names.h"
-#include "frontend/Diagnostics.h"
-#include "sema/TypedAst.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "sema/typed/TypedAst.h"
 
 #include <optional>
 #include <string>

@@ -1,11 +1,11 @@
 //===- Entries.cpp - how the runtime and references reach the classes -----===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/link/Members.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
-#include "runtime/device/Abi.h"
-#include "sema/Casting.h"
+#include "runtime/device/ray/Abi.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ std::vector<const typed::Class *> ModulePrinter::classesBelow(const std::string 
 const typed::Function *ModulePrinter::findMethod(const typed::Class &definition, const typed::Function &like) const {
   for (const typed::Class *at = &definition; at; at = at->base)
     for (const auto &function : at->functions)
-      if (function->name == like.name && lowering::sameParameters(*function, like))
+      if (function->name == like.name && typed::sameParameters(*function, like))
         return function.get();
   return nullptr;
 }
@@ -192,9 +192,9 @@ struct Slot {
 };
 constexpr Slot allSlots[] = {
 #define RTSL_SLOT(base, method) {#base, #method},
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 #define RTSL_SAMPLING_SLOT(base, method) {#base, #method},
-#include "runtime/device/SamplingSlots.def"
+#include "language/SamplingSlots.def"
 };
 } // namespace
 
@@ -399,7 +399,7 @@ std::string ModulePrinter::description() {
     std::set<std::string> methods;
     for (const typed::Class *at = definition.get(); at; at = at->base)
       for (const auto &function : at->functions)
-        methods.insert(lowering::takesPayload(*function)
+        methods.insert(typed::takesPayload(*function)
                            ? fmt::format("\"{}({})\"", function->name, toString(function->parameters.front()->type))
                            : "\"" + function->name + "\"");
     if (!methods.empty())

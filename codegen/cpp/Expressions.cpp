@@ -1,8 +1,8 @@
 //===- Expressions.cpp - expressions, conversions, constructors -----------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 
@@ -52,7 +52,7 @@ Code FunctionPrinter::hoist(const Type *type, const std::string &hint, Code valu
 static std::string hintFor(const typed::Expr &expr) {
   std::string hint;
   forEachExpr(expr, [&](const typed::Expr &inner) {
-    if (!hint.empty() || !lowering::hasSideEffects(inner))
+    if (!hint.empty() || !typed::hasSideEffects(inner))
       return;
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
       hint = typed::name(builtin->builtin);

@@ -3,7 +3,7 @@
 #include "codegen/cpp/Printer.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
-#include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"

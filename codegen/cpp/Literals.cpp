@@ -1,7 +1,7 @@
 //===- Literals.cpp - numbers, constants and the names that authors gave them //
 #include "codegen/cpp/Printer.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 

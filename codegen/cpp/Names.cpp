@@ -1,7 +1,7 @@
 #include "codegen/cpp/Names.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 #include <algorithm>
 #include <cctype>
@@ -47,9 +47,9 @@ bool isReserved(const std::string &word) {
 static const std::set<std::string> &besideTypes() {
   static const std::set<std::string> words = {
 #define RTSL_SLOT(base, method) #method,
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 #define RTSL_PAYLOAD_SLOT(base, method) #method "WithPayload",
-#include "runtime/device/PayloadSlots.def"
+#include "language/PayloadSlots.def"
       "runState", "ray", "object", "step", "frame", "call", "fields"};
   return words;
 }

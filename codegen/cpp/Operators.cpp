@@ -7,8 +7,8 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 

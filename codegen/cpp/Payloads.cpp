@@ -9,8 +9,8 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ using typed::Builtin;
 //===----------------------------------------------------------------------===//
 
 static bool isPayloadMethod(const typed::Function &function) {
-  return lowering::takesPayload(function);
+  return typed::takesPayload(function);
 }
 
 static const typed::Struct *payloadOf(const typed::Function &method) { return method.parameters.front()->type->structure; }
@@ -133,7 +133,7 @@ struct PayloadSlot {
 };
 constexpr PayloadSlot payloadSlotTable[] = {
 #define RTSL_PAYLOAD_SLOT(base, method) {#base, #method},
-#include "runtime/device/PayloadSlots.def"
+#include "language/PayloadSlots.def"
 };
 } // namespace
 
@@ -210,7 +210,7 @@ static Code answerIn(const typed::Expr &expr) {
 }
 
 Statements FunctionPrinter::hitAnswer(const typed::Expr &expr) {
-  if (!lowering::isHitAnswer(expr))
+  if (!typed::isHitAnswer(expr))
     return {};
   if (function->returnType->is(TypeKind::Void))
     return {returning(answerIn(expr))};

@@ -1,9 +1,9 @@
 //===- Places.cpp - variables, members, elements, parts of vectors --------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
-#include "sema/ConstantFold.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
+#include "sema/fold/ConstantFold.h"
 
 #include <fmt/format.h>
 
@@ -91,7 +91,7 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
   case ExprKind::Field: {
     const auto &field = cast<typed::FieldExpr>(expr);
     const Code base =
-        lowering::isPlace(*field.base) ? place(*field.base, storeIndices) : operand(*field.base, Binding::Primary);
+        typed::isPlace(*field.base) ? place(*field.base, storeIndices) : operand(*field.base, Binding::Primary);
     return member(base, module.names.of(&field.base->type->structure->fields[field.field]));
   }
   case ExprKind::Swizzle: {
@@ -121,7 +121,7 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
     }
     // An outer index comes first.
     const bool changes = isNested && conflicts(module.effects.expression(*index.base), module.effects.expression(*index.index));
-    const Code base = lowering::isPlace(*index.base) ? place(*index.base, storeIndices || changes)
+    const Code base = typed::isPlace(*index.base) ? place(*index.base, storeIndices || changes)
                       : changes                      ? hoist(index.base->type, "value", argument(*index.base))
                                                      : operand(*index.base, Binding::Primary);
     return element(index, base, storeIndices);

@@ -12,7 +12,7 @@
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
 #include "codegen/cpp/Tracing.h"
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/cpp/tree/Print.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -98,7 +98,7 @@ public:
   const Options &options;
   Names names;
   EffectsOf effects;
-  lowering::HitAnswers hitAnswers;
+  typed::HitAnswers hitAnswers;
   SourceNotes notes;
   bool failed = false;
   std::set<const Type *> comparedStructs; // that need an operator ==

@@ -1,7 +1,7 @@
 //===- RunState.cpp - all states of a program, by number ------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ static bool isThere(const std::vector<const typed::Class *> &classes, const Begi
     for (const typed::Class *at = definition; at; at = at->base)
       for (const auto &method : at->functions)
         if (method->isStateMethod && method->body && method->name == one.method &&
-            lowering::takesPayload(*method) == one.hasPayload)
+            typed::takesPayload(*method) == one.hasPayload)
           return true;
   return false;
 }
@@ -69,14 +69,14 @@ std::string ModulePrinter::runState() {
       for (const typed::Class *at = &definition; at && !method; at = at->base)
         for (const auto &function : at->functions)
           if (function->isStateMethod && function->body && function->name == one.method &&
-              (payload ? lowering::takesPayload(*function) && function->parameters.front()->type->structure == payload
+              (payload ? typed::takesPayload(*function) && function->parameters.front()->type->structure == payload
                        : function->parameters.empty()))
             method = function.get();
       if (!method)
         return {};
       // States of its own class, or of one between it and the method's: a base has others.
       for (const typed::Class *at = &definition; at != method->owner->base; at = at->base)
-        if (auto first = firstCalls.find({at, lowering::slotName(module, *method)}); first != firstCalls.end())
+        if (auto first = firstCalls.find({at, typed::slotName(module, *method)}); first != firstCalls.end())
           return {returning(first->second.on(objectOf(definition)))};
       std::vector<Code> arguments = {cpp::name("rt")};
       if (takesScratch(*method))

@@ -1,6 +1,6 @@
 #include "codegen/cpp/SourceNotes.h"
 
-#include "frontend/Expansion.h"
+#include "frontend/source/Expansion.h"
 
 #include <algorithm>
 #include <cctype>

@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Source.h"
+#include "frontend/source/Source.h"
 
 #include <string>
 

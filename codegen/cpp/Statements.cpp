@@ -1,9 +1,9 @@
 //===- Statements.cpp - statements ----------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/lower/Analysis.h"
-#include "runtime/device/math/Elementary.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "math/Elementary.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 

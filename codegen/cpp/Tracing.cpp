@@ -1,7 +1,7 @@
 #include "codegen/cpp/Tracing.h"
 
-#include "codegen/lower/Analysis.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
 
 namespace rtsl::cpp {
 
@@ -10,7 +10,7 @@ bool TracingFunctions::mayBeCalled(const typed::Function &callee) const {
     return true;
   for (const typed::Function *other : functions) // one that overrides it
     if (callee.owner && other->owner && other->owner->derivesFrom(callee.owner) && other->name == callee.name &&
-        lowering::sameParameters(*other, callee))
+        typed::sameParameters(*other, callee))
       return true;
   return false;
 }

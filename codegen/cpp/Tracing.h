@@ -1,7 +1,7 @@
 //===- Tracing.h - which functions trace ----------------------------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <set>
 

@@ -3,8 +3,8 @@
 
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/HitErrors.h"
-#include "codegen/cpp/States.h"
-#include "codegen/driver/Graphviz.h"
+#include "codegen/cpp/states/States.h"
+#include "codegen/explain/Graphviz.h"
 #include "codegen/driver/HostCode.h"
 #include "codegen/driver/Stages.h"
 #include "codegen/emit/NativeImage.h"
@@ -16,15 +16,17 @@
 #include "codegen/lower/KnownConditions.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/Dispatch.h"
-#include "codegen/passes/continuation/StateGraph.h"
+#include "codegen/passes/continuation/states/Dispatch.h"
+#include "codegen/explain/ReportJson.h"
+#include "codegen/explain/ReportText.h"
+#include "codegen/explain/StateGraph.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 #include "codegen/passes/restructure/Restructure.h"
-#include "frontend/Expansion.h"
-#include "runtime/DeviceBitcode.h"
-#include "runtime/WorkerThreads.h"
-#include "sema/Casting.h"
-#include "sema/Walk.h"
+#include "frontend/source/Expansion.h"
+#include "runtime/program/DeviceBitcode.h"
+#include "support/WorkerThreads.h"
+#include "sema/typed/Casting.h"
+#include "sema/typed/Walk.h"
 
 #include "mlir/Dialect/LLVMIR/LLVMDialect.h"
 #include "llvm/IR/Module.h"
@@ -297,7 +299,7 @@ void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOpt
   compileConstructors(*copy, options, *constructors);
   // Constructors and bounds may have large local variables.
   runtime::SceneFacts facts;
-  runtime::runOnThreads(1, constructors->stackBytes(0, 0), [&](unsigned) { facts = makeObjects(constructors); });
+  runOnThreads(1, constructors->stackBytes(0, 0), [&](unsigned) { facts = makeObjects(constructors); });
   bindScene(ir, facts, whenBound(request, options), findings);
 }
 

@@ -5,12 +5,12 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/emit/FloatingPoint.h"
+#include "codegen/ir/FloatingPoint.h"
 #include "codegen/link/LinkRequest.h"
-#include "frontend/Diagnostics.h"
-#include "runtime/Program.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "runtime/program/Program.h"
 #include "runtime/package/Package.h"
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <functional>
 #include <map>
@@ -43,7 +43,7 @@ struct CompileOptions {
   bool savesAllThatIsLive = false;
   /// What -Wlive-state calls much, in bytes: half of the registers that a GPU thread of a ray tracer has, 32 of 64.
   std::uint32_t largeLiveState = 128;
-  /// Numbers go through checks, to find where they stop being finite (runtime/NumberCheck.h). The bits are the same.
+  /// Numbers go through checks, to find where they stop being finite (runtime/program/NumberCheck.h). The bits are the same.
   bool checksNumbers = false;
   /// Bring everything back to level 1 and down again, with TraceMode::Split: for tests, which ask that this changes nothing.
   bool restructure = false;
@@ -66,7 +66,7 @@ std::optional<std::string> emit(const typed::Module &module, Stage stage, const 
                                 Diagnostics &diagnostics);
 
 /// The same for the linked program of a scene. From Split on it is what GPUs run: without recursion, with the traversal of
-/// runtime/device. Its PTX has one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/Abi.h); its LLVM IR is that
+/// runtime/device. Its PTX has one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h); its LLVM IR is that
 /// of Target::HostMegakernel. With `makeObjects` it is bound to the scene that this makes, as a package is.
 std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
                                      const CompileOptions &options, Diagnostics &diagnostics,

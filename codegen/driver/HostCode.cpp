@@ -8,8 +8,8 @@
 #include "codegen/link/Link.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/restructure/Restructure.h"
-#include "runtime/DeviceBitcode.h"
-#include "runtime/NumberCheck.h"
+#include "runtime/program/DeviceBitcode.h"
+#include "runtime/program/NumberCheck.h"
 
 #include "mlir/IR/Threading.h"
 #include "mlir/IR/Verifier.h"
@@ -42,9 +42,9 @@ std::vector<std::string> entries(const runtime::Program &program, const CompileO
   std::vector<std::string> names = sampleSymbols(program, options);
   names.push_back("rtsl_rt_Material_anyHit_payload");
 #define RTSL_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 #define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
-#include "runtime/device/SamplingSlots.def"
+#include "language/SamplingSlots.def"
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
@@ -73,9 +73,9 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
   };
   find(jit, "rtsl_rt_Material_anyHit_payload", program.slots.rt_Material_anyHit_payload);
 #define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 #define RTSL_SAMPLING_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
-#include "runtime/device/SamplingSlots.def"
+#include "language/SamplingSlots.def"
   for (runtime::ClassInfo &info : program.classes) {
     find(jit, initializeSymbol(info.name), info.initialize);
     find(jit, constructSymbol(info.name), info.construct);

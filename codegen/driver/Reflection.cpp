@@ -8,8 +8,8 @@
 #include "codegen/link/Members.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/lower/Lowering.h"
-#include "codegen/passes/continuation/ReportJson.h"
-#include "sema/ConstantFold.h"
+#include "codegen/explain/ReportJson.h"
+#include "sema/fold/ConstantFold.h"
 
 #include "mlir/IR/MLIRContext.h"
 
@@ -168,7 +168,7 @@ private:
         writes.push_back(name);
     };
 #define RTSL_STATE_VARIABLE(name, type) note(typed::StateVariable::name);
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
     json["stateRead"] = std::move(reads);
     json["stateWritten"] = std::move(writes);
     json["traces"] = function.mayTrace;

@@ -1,12 +1,12 @@
 //===- SceneProgram.h - a scene, and the program that renders it ----------===//
 //
-// For programs that have scenes: the compiler itself knows of them only what runtime/Program.h says.
+// For programs that have scenes: the compiler itself knows of them only what runtime/program/Program.h says.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "codegen/driver/Compiler.h"
-#include "runtime/Scene.h"
+#include "runtime/scene/Scene.h"
 
 #include <functional>
 #include <memory>

@@ -1,9 +1,9 @@
 //===- SourceLoader.cpp - files and their imports -------------------------===//
 #include "codegen/driver/SourceLoader.h"
 
-#include "frontend/Expansion.h"
-#include "frontend/FileSearch.h"
-#include "frontend/Parser.h"
+#include "frontend/source/Expansion.h"
+#include "frontend/preprocessor/FileSearch.h"
+#include "frontend/syntax/Parser.h"
 
 #include <algorithm>
 #include <filesystem>

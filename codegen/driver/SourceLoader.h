@@ -1,12 +1,12 @@
 //===- SourceLoader.h - files and their imports ---------------------------===//
 //
-// Reads RTSL files, each once however often it is imported, and finds what an import names (frontend/FileSearch.h).
+// Reads RTSL files, each once however often it is imported, and finds what an import names (frontend/preprocessor/FileSearch.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Ast.h"
-#include "frontend/Diagnostics.h"
+#include "frontend/syntax/Ast.h"
+#include "frontend/diagnostics/Diagnostics.h"
 #include "frontend/preprocessor/Preprocessor.h"
 
 #include <map>

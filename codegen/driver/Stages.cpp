@@ -10,7 +10,7 @@
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
-#include "runtime/DeviceBitcode.h"
+#include "runtime/program/DeviceBitcode.h"
 
 #include "llvm/Support/raw_ostream.h"
 
@@ -127,7 +127,7 @@ std::string print(mlir::ModuleOp ir) {
 }
 
 LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
-                   std::vector<runtime::Place> *numberPlaces) {
+                   std::vector<Place> *numberPlaces) {
   LlvmCode code;
   code.kept = keptFunctions(ir);
   run(ir, codegen::buildLlvmPipeline);

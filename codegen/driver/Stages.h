@@ -77,7 +77,7 @@ struct LlvmCode {
 /// Level 2 as LLVM IR that is not linked with device code yet.
 /// With `numberPlaces`, numbers are checked, and their places are added there (CheckNumbers.h).
 LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
-                   std::vector<runtime::Place> *numberPlaces = nullptr);
+                   std::vector<Place> *numberPlaces = nullptr);
 
 /// Tells the device code what it may leave out.
 void defineFacts(LlvmCode &code, const runtime::Program &program);
@@ -85,7 +85,7 @@ void defineFacts(LlvmCode &code, const runtime::Program &program);
 /// What a GPU's program needs of runtime/device, for one or for the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
-/// Makes a program that refers to nothing outside (runtime/device/Megakernel.h).
+/// Makes a program that refers to nothing outside (runtime/device/engines/Megakernel.h).
 void linkMegakernel(LlvmCode &code, bool forGpu, std::vector<std::string> exports);
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports);

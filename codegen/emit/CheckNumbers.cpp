@@ -32,7 +32,7 @@ bool computes(mlir::Operation *op) {
 
 class Checks {
 public:
-  Checks(mlir::ModuleOp module, std::vector<runtime::Place> &places)
+  Checks(mlir::ModuleOp module, std::vector<Place> &places)
       : module(module), places(places), builder(module.getContext()) {}
 
   void run() {
@@ -127,14 +127,14 @@ private:
   }
 
   mlir::ModuleOp module;
-  std::vector<runtime::Place> &places;
+  std::vector<Place> &places;
   mlir::OpBuilder builder;
   std::map<std::tuple<std::string, std::uint32_t, std::uint32_t>, std::size_t> numbers;
 };
 
 } // namespace
 
-void checkNumbers(mlir::ModuleOp module, std::vector<runtime::Place> &places) {
+void checkNumbers(mlir::ModuleOp module, std::vector<Place> &places) {
   Checks(module, places).run();
 }
 

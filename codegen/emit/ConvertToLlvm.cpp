@@ -9,7 +9,7 @@
 #include "codegen/ir/RtslOps.h"
 #include "codegen/ir/Separate.h"
 #include "codegen/passes/ShareExpressions.h"
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "mlir/Conversion/ArithToLLVM/ArithToLLVM.h"
 #include "mlir/Conversion/ControlFlowToLLVM/ControlFlowToLLVM.h"

@@ -1,7 +1,7 @@
 //===- ConvertToLlvm.h - level 2 to MLIR's LLVM dialect -------------------===//
 //
 // Here the state of the ray becomes a parameter, the first of every function, and every address an
-// offset: of RtslState and RtslLaunch by offsetof (runtime/device/Abi.h), of records and aggregates
+// offset: of RtslState and RtslLaunch by offsetof (runtime/device/ray/Abi.h), of records and aggregates
 // by codegen/ir/Layout.h.
 //
 //   - a reference is an i32, an address an !llvm.ptr, a bool in memory an i32;

@@ -1,8 +1,8 @@
 //===- DoublePrecision.cpp - what --fp=double changes ---------------------===//
 #include "codegen/emit/DoublePrecision.h"
 
-#include "runtime/NumberCheck.h"
-#include "runtime/device/math/Refraction.h"
+#include "runtime/program/NumberCheck.h"
+#include "math/Refraction.h"
 
 #include "llvm/Analysis/ConstantFolding.h"
 #include "llvm/IR/IRBuilder.h"

@@ -10,7 +10,7 @@ namespace rtsl::codegen {
 static constexpr const char *fastFunctions[] = {
 #define RTSL_FAST_UNARY(name) #name,
 #define RTSL_FAST_BINARY(name) #name,
-#include "runtime/device/math/FastFunctions.def"
+#include "math/FastFunctions.def"
 };
 
 void relaxArithmetic(llvm::Module &module) {

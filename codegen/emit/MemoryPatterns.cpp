@@ -3,7 +3,7 @@
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslOps.h"
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"
 #include "mlir/Interfaces/FunctionInterfaces.h"
@@ -184,7 +184,7 @@ uint32_t stateOffset(llvm::StringRef name) {
 #define RTSL_STATE_VARIABLE(variable, type)                                                        \
   if (name == #variable)                                                                           \
     return offsetof(RtslState, variable);
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   if (name == "hitError")
     return offsetof(RtslState, hitError);
   llvm_unreachable("the verifier knows the names");

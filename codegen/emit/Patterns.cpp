@@ -2,7 +2,7 @@
 #include "codegen/emit/Patterns.h"
 
 #include "codegen/ir/Layout.h"
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "mlir/Interfaces/FunctionInterfaces.h"
 

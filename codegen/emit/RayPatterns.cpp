@@ -2,7 +2,7 @@
 #include "codegen/emit/Patterns.h"
 #include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/ir/RtslOps.h"
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"
 

@@ -35,7 +35,7 @@ std::string runtimeFunction(mlir::Operation *op) {
       .Default([](mlir::Operation *) { return ""; });
 }
 
-/// The signatures are those of runtime/device/Abi.h.
+/// The signatures are those of runtime/device/ray/Abi.h.
 static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
   mlir::MLIRContext *context = op->getContext();
   mlir::Type pointer = LLVM::LLVMPointerType::get(context);

@@ -1,7 +1,7 @@
 //===- Graphviz.cpp - graphs as pictures ----------------------------------===//
-#include "codegen/driver/Graphviz.h"
+#include "codegen/explain/Graphviz.h"
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include "llvm/ADT/SmallString.h"
 #include "llvm/Support/FileSystem.h"
@@ -15,8 +15,8 @@
 
 namespace rtsl {
 
-using runtime::Error;
-using runtime::ErrorCode;
+using Error;
+using ErrorCode;
 
 namespace {
 

@@ -1,5 +1,5 @@
 //===- ReportJson.cpp - what splitting cost and saved, as JSON ------------===//
-#include "codegen/passes/continuation/ReportJson.h"
+#include "codegen/explain/ReportJson.h"
 
 #include <nlohmann/json.hpp>
 

@@ -10,4 +10,7 @@ namespace rtsl {
 /// For programs: {"version": 1, "frameSize": ..., "functions": [...]}.
 nlohmann::ordered_json describe(const SplitReport &report);
 
+/// That as text.
+std::string toJson(const SplitReport &report);
+
 } // namespace rtsl

@@ -1,30 +1,10 @@
-//===- Report.cpp - what splitting cost and saved -------------------------===//
-#include "codegen/passes/continuation/Report.h"
-
-#include "runtime/device/Machine.h"
+//===- ReportText.cpp - what splitting cost and saved, as text ------------===//
+#include "codegen/explain/ReportText.h"
 
 #include "llvm/ADT/StringExtras.h"
-#include "llvm/Support/Path.h"
 #include "llvm/Support/raw_ostream.h"
 
-#include <algorithm>
-
 namespace rtsl {
-
-std::uint32_t SplitReport::frameSize() const {
-  std::uint32_t size = 0;
-  for (const FunctionReport &function : functions)
-    size = std::max(size, function.frame.size);
-  return frameAreas.empty() ? size : std::max(size, frameAreas.front());
-}
-
-std::uint32_t SplitReport::frameGrowth() const {
-  return frameAreas.size() < 2 ? 0 : frameAreas.back() - frameAreas[frameAreas.size() - 2];
-}
-
-std::uint64_t SplitReport::levelBytes() const {
-  return device::levelSize(std::uint64_t(frameSize()), keptWords);
-}
 
 /// "rays: P waits for P, Shadow" and the like, and how large a stack follows from it.
 static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {

@@ -1,5 +1,7 @@
 //===- StateGraph.cpp - the states of a program as a picture --------------===//
-#include "codegen/passes/continuation/StateGraph.h"
+#include "codegen/explain/StateGraph.h"
+
+#include "codegen/explain/ReportText.h"
 
 #include "llvm/Support/raw_ostream.h"
 

@@ -10,7 +10,7 @@
 
 namespace rtsl {
 
-/// In the language of Graphviz, which lays it out (codegen/driver/Graphviz.h).
+/// In the language of Graphviz, which lays it out (codegen/explain/Graphviz.h).
 std::string toDot(const SplitReport &report);
 
 } // namespace rtsl

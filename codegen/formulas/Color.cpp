@@ -1,7 +1,7 @@
 //===- Color.cpp - colors of as many components as the target chooses -----===//
-#include "codegen/lower/Color.h"
+#include "codegen/formulas/Color.h"
 
-#include "runtime/ColorBasis.h"
+#include "language/ColorBasis.h"
 
 namespace rtsl::lowering {
 

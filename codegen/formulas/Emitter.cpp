@@ -1,5 +1,5 @@
 //===- Emitter.cpp - building IR in few words -----------------------------===//
-#include "codegen/lower/Emitter.h"
+#include "codegen/formulas/Emitter.h"
 
 #include "codegen/ir/Rtsl.h"
 

@@ -1,5 +1,5 @@
 //===- Library.cpp - helper functions made on demand ----------------------===//
-#include "codegen/lower/Library.h"
+#include "codegen/formulas/Library.h"
 
 #include "codegen/ir/Rtsl.h"
 

@@ -1,5 +1,5 @@
 //===- LibraryCommon.cpp - min, mix, mod, frexp and the like --------------===//
-#include "codegen/lower/Library.h"
+#include "codegen/formulas/Library.h"
 
 #include "mlir/IR/Matchers.h"
 

@@ -1,5 +1,5 @@
 //===- LibraryGeometry.cpp - dot, length, normalize, ... -------------------===//
-#include "codegen/lower/Library.h"
+#include "codegen/formulas/Library.h"
 
 #include <cfloat>
 

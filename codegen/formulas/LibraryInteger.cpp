@@ -4,7 +4,7 @@
 // into instructions.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Library.h"
+#include "codegen/formulas/Library.h"
 
 namespace rtsl::lowering {
 

@@ -1,5 +1,5 @@
 //===- LibraryMatrix.cpp - products, determinant, inverse -----------------===//
-#include "codegen/lower/Library.h"
+#include "codegen/formulas/Library.h"
 
 namespace rtsl::lowering {
 

@@ -3,7 +3,7 @@
 // In integers, so that every target and the printed C++ give the same bits, NaN included.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Library.h"
+#include "codegen/formulas/Library.h"
 
 namespace rtsl::lowering {
 

@@ -2,7 +2,7 @@
 #include "codegen/ir/Layout.h"
 
 #include "codegen/ir/RtslOps.h"
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "llvm/ADT/TypeSwitch.h"
 

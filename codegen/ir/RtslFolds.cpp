@@ -5,8 +5,8 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/RtslOps.h"
-#include "runtime/device/math/Elementary.h"
-#include "runtime/device/math/Refraction.h"
+#include "math/Elementary.h"
+#include "math/Refraction.h"
 
 #include "mlir/Dialect/CommonFolders.h"
 #include "mlir/IR/Matchers.h"

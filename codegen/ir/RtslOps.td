@@ -185,7 +185,7 @@ def Rtsl_MemberOp : Rtsl_Op<"member", [Pure, Rtsl_Named, Rtsl_SymbolUser]> {
 def Rtsl_StateOp : Rtsl_Op<"state", [Pure, Rtsl_Named]> {
   let summary = "address of a state variable of the ray";
   let description = [{
-    The names are those of runtime/device/StateVariables.def: `RayOrigin` is the source's `rt_RayOrigin`. And `hitError` is
+    The names are those of language/StateVariables.def: `RayOrigin` is the source's `rt_RayOrigin`. And `hitError` is
     that of RtslState, for which the source has no name.
 
     Example: `%o = rtsl.state "RayOrigin" : !rtsl.ptr<vector<3xf32>>`
@@ -334,7 +334,7 @@ def Rtsl_TracePayloadOp : Rtsl_Op<"trace_payload", [AttrSizedOperandSegments]> {
     Hits count from `tmin` to `tmax`. The programs that the ray meets read and write what lies at `payload`, whose type
     says which programs these are. What is left out of `root`, `mask` and `time` is as it is for this ray. Linking
     numbers the ray types of a scene and finds out how hits have to be searched for (RTSL_FIRST_HIT ... of
-    runtime/device/Abi.h): `ray_type` and `how`; without them there is no code for the op.
+    runtime/device/ray/Abi.h): `ray_type` and `how`; without them there is no code for the op.
 
     Example: `rtsl.trace_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
   }];
@@ -398,7 +398,7 @@ def Rtsl_HitAnsweredOp : Rtsl_Op<"hit_answered"> {
 def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
   let summary = "notes that the sample has met an exception";
   let description = [{
-    The number is one of RTSL_EXCEPTION_* (runtime/device/Abi.h). The shader goes on; what it computes is thrown away.
+    The number is one of RTSL_EXCEPTION_* (runtime/device/ray/Abi.h). The shader goes on; what it computes is thrown away.
 
     Example: `rtsl.raise 3`
   }];
@@ -515,7 +515,7 @@ def Rtsl_ElementaryOp : Rtsl_Op<"elementary", [Pure, SameOperandsAndResultType]>
 }
 
 def Rtsl_RefractOp : Rtsl_Op<"refract", [Pure, AllTypesMatch<["incident", "normal", "result"]>]> {
-  let summary = "refract(i, n, eta), with total reflection decided exactly (runtime/device/math/Refraction.h)";
+  let summary = "refract(i, n, eta), with total reflection decided exactly (math/Refraction.h)";
   let description = "Example: `%r = rtsl.refract %i, %n, %eta : vector<3xf32>`";
   let arguments = (ins Rtsl_FloatLike:$incident, Rtsl_FloatLike:$normal, F32:$eta);
   let results = (outs Rtsl_FloatLike:$result);

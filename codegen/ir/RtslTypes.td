@@ -76,7 +76,7 @@ def Rtsl_ArrayType : Rtsl_Type<"Array", "array", [
 def Rtsl_BufferType : Rtsl_Type<"Buffer", "buffer"> {
   let summary = "unsized array member";
   let description = [{
-    Address and sizes of elements that the scene supplies (`RtslBuffer` of runtime/device/Abi.h), with 1 to 3
+    Address and sizes of elements that the scene supplies (`RtslBuffer` of runtime/device/ray/Abi.h), with 1 to 3
     dimensions. The first index is the slowest.
 
     Example: `!rtsl.buffer<vector<3xf32>, 1>`

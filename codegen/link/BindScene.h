@@ -3,7 +3,7 @@
 
 #include "codegen/link/LinkRequest.h"
 #include "mlir/IR/BuiltinOps.h"
-#include "runtime/Program.h"
+#include "runtime/program/Program.h"
 
 namespace rtsl {
 

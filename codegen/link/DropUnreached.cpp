@@ -88,7 +88,7 @@ private:
       addMethods("rt_Exception", "exception", {"for samples that meet an exception", {}});
     if (context.request.isSampled) {
 #define RTSL_SAMPLING_SLOT(base, method) addMethods(#base, #method, {"called by the host", {}});
-#include "runtime/device/SamplingSlots.def"
+#include "language/SamplingSlots.def"
     }
   }
 

@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
 
-#include "frontend/Expansion.h"
+#include "frontend/source/Expansion.h"
 
 #include "llvm/ADT/StringSet.h"
 

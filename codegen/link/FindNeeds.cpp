@@ -54,7 +54,7 @@ bool isOfCandidate(llvm::StringRef state, const Reader &reader) {
 }
 
 /// Whether rays that the function sends may begin where something was hit. How far from there they begin to see rests
-/// on the normal and on how exact the hit is (runtime/device/Spawn.h).
+/// on the normal and on how exact the hit is (runtime/device/ray/Spawn.h).
 bool mayStartAtHits(const Reader &reader) {
   return reader.root.empty() || reader.root == "rt_Material" || reader.root == ir::helperRoot;
 }

@@ -1,16 +1,16 @@
 //===- HitErrors.cpp - how exact the hits of primitives are ---------------===//
 //
 // Where a ray leaves a primitive of the author's, the runtime has to know how far off t may be
-// (runtime/device/HitError.h). For the primitives with a material that sends rays it is derived here,
+// (runtime/device/ray/HitError.h). For the primitives with a material that sends rays it is derived here,
 // and where that cannot be done, the author is told to state it.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
 
 #include "codegen/passes/errors/DeriveHitErrors.h"
-#include "frontend/Expansion.h"
-#include "sema/Casting.h"
-#include "sema/Walk.h"
+#include "frontend/source/Expansion.h"
+#include "sema/typed/Casting.h"
+#include "sema/typed/Walk.h"
 
 #include <algorithm>
 

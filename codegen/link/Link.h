@@ -25,11 +25,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/emit/FloatingPoint.h"
+#include "codegen/ir/FloatingPoint.h"
 #include "codegen/link/LinkRequest.h"
 #include "codegen/passes/errors/ElementaryErrors.h"
-#include "frontend/Diagnostics.h"
-#include "sema/TypedAst.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "sema/typed/TypedAst.h"
 
 #include "mlir/IR/BuiltinOps.h"
 

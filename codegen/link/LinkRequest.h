@@ -3,7 +3,7 @@
 
 #include "codegen/ir/SourcePlace.h"
 #include "codegen/link/Items.h"
-#include "runtime/Program.h"
+#include "runtime/program/Program.h"
 
 #include <cstddef>
 #include <cstdint>

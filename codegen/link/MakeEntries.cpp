@@ -20,11 +20,11 @@ struct Slot {
 };
 constexpr Slot slots[] = {
 #define RTSL_SLOT(base, method) {#base, #method},
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 };
 constexpr Slot samplingSlots[] = {
 #define RTSL_SAMPLING_SLOT(base, method) {#base, #method},
-#include "runtime/device/SamplingSlots.def"
+#include "language/SamplingSlots.def"
 };
 
 void exportFunction(mlir::func::FuncOp function) {

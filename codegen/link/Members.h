@@ -1,7 +1,7 @@
 //===- Members.h - what an object of a class has --------------------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <vector>
 

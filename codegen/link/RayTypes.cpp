@@ -12,7 +12,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "mlir/IR/Matchers.h"
 #include "llvm/ADT/SetVector.h"
@@ -284,7 +284,7 @@ void resolveRayTypes(LinkContext &context) {
 
 void makePayloadSlots(LinkContext &context) {
 #define RTSL_PAYLOAD_SLOT(base, method) makePayloadSlot(context, #base, #method);
-#include "runtime/device/PayloadSlots.def"
+#include "language/PayloadSlots.def"
 }
 
 std::uint32_t anyHitTypes(const LinkContext &context, const LinkedClass &material) {

@@ -3,8 +3,8 @@
 
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Members.h"
-#include "runtime/Program.h"
-#include "sema/TypedAst.h"
+#include "runtime/program/Program.h"
+#include "sema/typed/TypedAst.h"
 
 namespace rtsl {
 

@@ -8,7 +8,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Separate.h"
 #include "codegen/link/Steps.h"
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 
 namespace rtsl::linking {
 
@@ -133,7 +133,7 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
 
 void resolveSlots(LinkContext &context) {
   const bool mayBeNone =
-      lowering::mayReferToNothing(context.module); // then nothing happens, and zero is returned
+      typed::mayReferToNothing(context.module); // then nothing happens, and zero is returned
   replaceSlots(context.ir, context.symbols, [&](const SlotCall &slot, mlir::func::FuncOp function) {
     std::vector<const LinkedClass *> classes;
     for (const LinkedClass &linked : context.classes) {

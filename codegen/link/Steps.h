@@ -125,7 +125,7 @@ void resolveRayTypes(LinkContext &context);
 /// EndlessRays.cpp: warns where every material that answers a kind of rays sends another, whatever it finds.
 void warnOfEndlessRays(LinkContext &context);
 
-/// Adds the entries of runtime/device/PayloadSlots.def.
+/// Adds the entries of language/PayloadSlots.def.
 void makePayloadSlots(LinkContext &context);
 
 /// RtslInstance::anyHit of a material.
@@ -137,7 +137,7 @@ void makeFeatures(LinkContext &context);
 /// Numbers the prints of the module and says what stands in them.
 std::vector<runtime::PrintFormat> numberPrints(mlir::ModuleOp ir);
 
-/// Adds the entries of runtime/device/Slots.def and those that make objects; everything else becomes private.
+/// Adds the entries of language/Slots.def and those that make objects; everything else becomes private.
 void makeEntries(LinkContext &context);
 
 /// A function, and the rt_ class below which its class is: empty for a function of no class.

@@ -8,7 +8,7 @@
 // A GPU has no room for recursion whose depth only the scene says; and what calls itself is inlined nowhere. Each time round
 // such a cycle a call goes through a reference, to an object that is further down a chain of references
 // (docs/language.md, func.recursion), and how long these chains are is known when the objects are made. What traces has
-// frames of its own (codegen/passes/continuation/CallFrames.cpp).
+// frames of its own (codegen/passes/continuation/calls/CallFrames.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/UnrollRecursion.h"

@@ -2,7 +2,7 @@
 #include "codegen/lower/KnownConditions.h"
 
 #include "codegen/ir/Rtsl.h"
-#include "sema/ConstantFold.h"
+#include "sema/fold/ConstantFold.h"
 
 #include "mlir/IR/Matchers.h"
 #include "llvm/ADT/DenseMap.h"

@@ -3,7 +3,7 @@
 
 #include "codegen/lower/HideConstants.h"
 #include "codegen/lower/Lowering.h"
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl {
 

@@ -8,8 +8,8 @@
 #pragma once
 
 #include "codegen/lower/SourceTable.h"
-#include "frontend/Diagnostics.h"
-#include "sema/TypedAst.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "sema/typed/TypedAst.h"
 
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/IR/OwningOpRef.h"

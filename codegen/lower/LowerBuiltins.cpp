@@ -5,7 +5,7 @@
 // it open).
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Color.h"
+#include "codegen/formulas/Color.h"
 #include "codegen/lower/Lowering.h"
 
 namespace rtsl::lowering {

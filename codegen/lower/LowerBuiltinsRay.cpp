@@ -1,9 +1,9 @@
 //===- LowerBuiltinsRay.cpp - trace, hit, rand and ambient ----------------===//
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
-#include "runtime/device/Abi.h"
-#include "sema/Casting.h"
+#include "runtime/device/ray/Abi.h"
+#include "sema/typed/Casting.h"
 
 namespace rtsl::lowering {
 

@@ -6,10 +6,10 @@
 // copied back, again from left to right. So what overlaps is harmless.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 //===- LowerConstruct.cpp - vec3(...), mat4(...), Ray(...), color(...) ----===//
-#include "codegen/lower/Color.h"
+#include "codegen/formulas/Color.h"
 #include "codegen/lower/Lowering.h"
 
 namespace rtsl::lowering {

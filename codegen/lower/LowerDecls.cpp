@@ -8,8 +8,8 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/lower/Lowering.h"
 
-#include "codegen/lower/Analysis.h"
-#include "frontend/Expansion.h"
+#include "sema/typed/Analysis.h"
+#include "frontend/source/Expansion.h"
 
 #include <algorithm>
 
@@ -38,7 +38,7 @@ void ModuleLowering::reportUnsupported(SourceRange range, const std::string &wha
 //===----------------------------------------------------------------------===//
 
 std::string ModuleLowering::slotName(const typed::Function &method) const {
-  return lowering::slotName(source, method);
+  return typed::slotName(source, method);
 }
 
 std::string ModuleLowering::symbolOf(const FunctionKey &key) {

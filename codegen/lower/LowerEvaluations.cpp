@@ -6,10 +6,10 @@
 // addresses. A number or a vector that is written so is a variable of its own for the time, under the same name.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 #include <algorithm>
 
@@ -187,7 +187,7 @@ static bool isOneStep(const typed::Expr &expr, const SourceTable &table) {
   if (callee && table.mayTrace(*callee))
     return false;
   if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-    return isPureBuiltin(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
+    return typed::isPure(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
            outputsOf(builtin->builtin).second != 0;
   return expr.kind != ExprKind::Comma && expr.kind != ExprKind::String;
 }
@@ -257,7 +257,7 @@ static bool isBetweenRays(const typed::Expr &expr, const SourceTable &table) {
   bool found = true;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
-      found = found && (isPureBuiltin(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
+      found = found && (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
                         builtin->builtin == typed::Builtin::Print || typed::drawsRandom(builtin->builtin));
     else if (auto *call = dynCast<typed::CallExpr>(&inner))
       found = found && !table.mayTrace(*call->function);
@@ -330,7 +330,7 @@ std::optional<Parts> FunctionLowering::lowerOneByOne(const typed::Expr &expr, Va
     parts = {convert->operand.get()};
   else if (auto *construct = dynCast<typed::ConstructExpr>(&expr))
     all(construct->args);
-  else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr); builtin && isPureBuiltin(builtin->builtin))
+  else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr); builtin && typed::isPure(builtin->builtin))
     all(builtin->args);
   else if (auto *call = dynCast<typed::CallExpr>(&expr); call && isKept(expr))
     all(call->args);

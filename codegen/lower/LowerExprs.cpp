@@ -4,14 +4,14 @@
 // value, then the store.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Analysis.h"
-#include "codegen/lower/Color.h"
+#include "sema/typed/Analysis.h"
+#include "codegen/formulas/Color.h"
 #include "codegen/lower/Lowering.h"
 
-#include "sema/Casting.h"
-#include "sema/ConstantFold.h"
-#include "sema/TypeProperties.h"
-#include "sema/Walk.h"
+#include "sema/typed/Casting.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/typed/TypeProperties.h"
+#include "sema/typed/Walk.h"
 
 #include "mlir/IR/Matchers.h"
 

@@ -4,7 +4,7 @@
 // candidate without a hit computes must not touch what the best hit so far has stored. Each `hit(t)`
 // that is accepted is remembered, and where `intersect` returns after one, the scratch members are
 // stored as attributes of the hit. If a hit that does not win has stored its own, traversal runs
-// `intersect` of the winner again (findLostAttributes in runtime/device/Traverse.h):
+// `intersect` of the winner again (findLostAttributes in runtime/device/traverse/Traverse.h):
 //
 //   %n = rtsl.var "n"                       a variable for each scratch member
 //   %accepted = rtsl.var "accepted"
@@ -19,7 +19,7 @@
 // that won.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
 namespace rtsl::lowering {

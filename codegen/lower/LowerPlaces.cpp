@@ -1,10 +1,10 @@
 //===- LowerPlaces.cpp - places in memory: what can be read and assigned --===//
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
-#include "runtime/device/Abi.h"
-#include "sema/Casting.h"
-#include "sema/ConstantFold.h"
+#include "runtime/device/ray/Abi.h"
+#include "sema/typed/Casting.h"
+#include "sema/fold/ConstantFold.h"
 
 namespace rtsl::lowering {
 

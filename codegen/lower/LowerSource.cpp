@@ -5,10 +5,10 @@
 // to right. Members and constants stay inside.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/lower/Analysis.h"
+#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 #include <algorithm>
 
@@ -31,7 +31,7 @@ bool FunctionLowering::isKept(const typed::Expr &expr) const {
   case ExprKind::String:
     return false;
   case ExprKind::Builtin:
-    return isPureBuiltin(cast<typed::BuiltinExpr>(expr).builtin);
+    return typed::isPure(cast<typed::BuiltinExpr>(expr).builtin);
   case ExprKind::Call: {
     const typed::Function &callee = *cast<typed::CallExpr>(expr).function;
     return hasNoOutputs(callee) && module.options.source->isPure(callee);

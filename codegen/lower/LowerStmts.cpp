@@ -1,7 +1,7 @@
 //===- LowerStmts.cpp - statements ----------------------------------------===//
 #include "codegen/lower/Lowering.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 namespace rtsl::lowering {
 

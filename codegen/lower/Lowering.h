@@ -8,8 +8,8 @@
 #pragma once
 
 #include "codegen/ir/Rtsl.h"
-#include "codegen/lower/Analysis.h"
-#include "codegen/lower/Library.h"
+#include "sema/typed/Analysis.h"
+#include "codegen/formulas/Library.h"
 #include "codegen/lower/Lower.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -79,7 +79,7 @@ public:
   mlir::MLIRContext *context() { return target.getContext(); }
   const LowerOptions &options;
   Library library;
-  HitAnswers hitAnswers;
+  typed::HitAnswers hitAnswers;
 
 private:
   void lowerClass(const typed::Class &definition);

@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <functional>
 #include <optional>

@@ -1,5 +1,5 @@
 //===- DiagnosticJson.cpp - messages for scripts --------------------------===//
-#include "frontend/Diagnostics.h"
+#include "frontend/diagnostics/Diagnostics.h"
 
 #include <nlohmann/json.hpp>
 

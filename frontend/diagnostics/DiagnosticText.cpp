@@ -19,8 +19,8 @@
 // sequences to the terminal), and of a very long line only the surroundings of the place are shown.
 //
 //===----------------------------------------------------------------------===//
-#include "frontend/Diagnostics.h"
-#include "frontend/Utf8.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "frontend/source/Utf8.h"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
 //===- Diagnostics.cpp - recording messages and applying their fixes ------===//
-#include "frontend/Diagnostics.h"
-#include "frontend/Expansion.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "frontend/source/Expansion.h"
 
 #include <algorithm>
 #include <deque>
@@ -12,7 +12,7 @@ const std::vector<CodeInfo> codeTable = {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) {#id, #number, Severity::severity, message},
 #define RTSL_WARNING(id, number, group, name, message)                                             \
   {#id, #number, Severity::Warning, message, name, WarningGroup::group},
-#include "frontend/DiagnosticCodes.def"
+#include "frontend/diagnostics/DiagnosticCodes.def"
 };
 
 const CodeInfo &info(Code code) {

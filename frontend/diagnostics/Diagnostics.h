@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Source.h"
+#include "frontend/source/Source.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ enum class Severity : std::uint8_t { Warning, Error };
 /// One enumerator a row of DiagnosticCodes.def.
 enum class Code : std::uint16_t {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) id,
-#include "frontend/DiagnosticCodes.def"
+#include "frontend/diagnostics/DiagnosticCodes.def"
 };
 
 /// What turns a warning on: nothing more, or `-Wperf`.

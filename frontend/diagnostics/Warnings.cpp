@@ -1,5 +1,5 @@
 //===- Warnings.cpp - which warnings are shown: -W ------------------------===//
-#include "frontend/Diagnostics.h"
+#include "frontend/diagnostics/Diagnostics.h"
 #include "support/ClosestName.h"
 
 namespace rtsl {

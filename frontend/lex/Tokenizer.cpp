@@ -1,7 +1,7 @@
 //===- Tokenizer.cpp - text to words --------------------------------------===//
-#include "frontend/Tokenizer.h"
-#include "frontend/ByteStream.h"
-#include "frontend/Utf8.h"
+#include "frontend/lex/Tokenizer.h"
+#include "frontend/lex/ByteStream.h"
+#include "frontend/source/Utf8.h"
 
 #include "grammar/RtslLexer.h"
 

@@ -1,8 +1,8 @@
 //===- Tokenizer.h - text to words ----------------------------------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
-#include "frontend/Token.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "frontend/lex/Token.h"
 
 namespace rtsl {
 

@@ -1,5 +1,5 @@
 //===- FileSearch.cpp - which file a name means ---------------------------===//
-#include "frontend/FileSearch.h"
+#include "frontend/preprocessor/FileSearch.h"
 
 #include "support/ClosestName.h"
 

@@ -1,7 +1,7 @@
 //===- Messages.cpp - what clang's preprocessor says, in our words --------===//
 #include "Messages.h"
 
-#include "frontend/FileSearch.h"
+#include "frontend/preprocessor/FileSearch.h"
 #include "support/ClosestName.h"
 
 #include <clang/Basic/DiagnosticLex.h>

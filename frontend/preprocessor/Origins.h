@@ -2,7 +2,7 @@
 #pragma once
 
 #include "SourceFileSystem.h"
-#include "frontend/Expansion.h"
+#include "frontend/source/Expansion.h"
 
 #include <clang/Basic/LangOptions.h>
 #include <clang/Basic/SourceManager.h>

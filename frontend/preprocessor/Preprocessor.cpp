@@ -4,8 +4,8 @@
 #include "Messages.h"
 #include "Session.h"
 #include "Watcher.h"
-#include "frontend/FileSearch.h"
-#include "frontend/Tokenizer.h"
+#include "frontend/preprocessor/FileSearch.h"
+#include "frontend/lex/Tokenizer.h"
 
 #include <clang/Basic/DiagnosticOptions.h>
 #include <clang/Basic/FileManager.h>

@@ -1,13 +1,13 @@
 //===- Preprocessor.h - directives and macros -----------------------------===//
 //
 // The preprocessor is clang's, which is made for compilers that have to say where every word came from. It runs on a file
-// and gives a text of its own (frontend/Expansion.h), which all later stages read. docs/preprocessor.md tells why, and what
+// and gives a text of its own (frontend/source/Expansion.h), which all later stages read. docs/preprocessor.md tells why, and what
 // is ours: what the language has and has not, all messages, the limits, and the way back to what the author wrote.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
+#include "frontend/diagnostics/Diagnostics.h"
 
 #include <string>
 #include <string_view>

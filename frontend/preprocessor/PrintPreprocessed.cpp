@@ -1,6 +1,6 @@
 //===- PrintPreprocessed.cpp - an expanded text, to look at ---------------===//
 #include "Preprocessor.h"
-#include "frontend/Expansion.h"
+#include "frontend/source/Expansion.h"
 
 namespace rtsl {
 

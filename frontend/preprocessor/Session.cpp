@@ -1,7 +1,7 @@
 //===- Session.cpp - one run of clang's preprocessor ----------------------===//
 #include "Session.h"
 
-#include "frontend/FileSearch.h"
+#include "frontend/preprocessor/FileSearch.h"
 
 #include <algorithm>
 

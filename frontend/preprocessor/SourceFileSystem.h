@@ -1,7 +1,7 @@
 //===- SourceFileSystem.h - the files that clang's preprocessor sees ------===//
 #pragma once
 
-#include "frontend/Source.h"
+#include "frontend/source/Source.h"
 
 #include <llvm/Support/VirtualFileSystem.h>
 

@@ -1,8 +1,8 @@
 //===- Watcher.cpp - what happens while the preprocessor runs -------------===//
 #include "Watcher.h"
 
-#include "frontend/FileSearch.h"
-#include "frontend/Tokenizer.h"
+#include "frontend/preprocessor/FileSearch.h"
+#include "frontend/lex/Tokenizer.h"
 
 #include <clang/Lex/Lexer.h>
 #include <clang/Lex/MacroArgs.h>

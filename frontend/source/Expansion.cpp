@@ -1,5 +1,5 @@
 //===- Expansion.cpp - from expanded texts to what the author wrote -------===//
-#include "frontend/Expansion.h"
+#include "frontend/source/Expansion.h"
 
 #include <algorithm>
 

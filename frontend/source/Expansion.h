@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Source.h"
+#include "frontend/source/Source.h"
 
 namespace rtsl {
 

@@ -1,6 +1,6 @@
 //===- Source.cpp - source texts and positions in them --------------------===//
-#include "frontend/Source.h"
-#include "frontend/Expansion.h"
+#include "frontend/source/Source.h"
+#include "frontend/source/Expansion.h"
 #include "support/EndlessInput.h"
 
 #include <algorithm>

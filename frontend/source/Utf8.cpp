@@ -1,5 +1,5 @@
 //===- Utf8.cpp - reading UTF-8 and showing it in a terminal --------------===//
-#include "frontend/Utf8.h"
+#include "frontend/source/Utf8.h"
 
 #include <algorithm>
 #include <iterator>

@@ -2,12 +2,12 @@
 //
 // What the author wrote, and nothing that was concluded from it: names are text, types are as spelled, parentheses
 // and comments above declarations are kept (the C++ printer shows them again). `sema` turns it into the typed tree of
-// sema/TypedAst.h.
+// sema/typed/TypedAst.h.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Source.h"
+#include "frontend/source/Source.h"
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 //===- AstBuilder.cpp - parse tree to syntax tree: places and comments ----===//
-#include "frontend/AstBuilder.h"
-#include "frontend/TokenStream.h"
+#include "frontend/syntax/AstBuilder.h"
+#include "frontend/lex/TokenStream.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 //===- AstDeclarations.cpp - parse tree to syntax tree: declarations ------===//
-#include "frontend/AstBuilder.h"
+#include "frontend/syntax/AstBuilder.h"
 
 namespace rtsl {
 

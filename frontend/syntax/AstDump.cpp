@@ -4,7 +4,7 @@
 // them; comments are shown as they are.
 //
 //===----------------------------------------------------------------------===//
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 //===- AstExpressions.cpp - parse tree to syntax tree: expressions --------===//
-#include "frontend/AstBuilder.h"
-#include "frontend/TokenCheck.h"
+#include "frontend/syntax/AstBuilder.h"
+#include "frontend/syntax/TokenCheck.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 //===- AstStatements.cpp - parse tree to syntax tree: statements ----------===//
-#include "frontend/AstBuilder.h"
+#include "frontend/syntax/AstBuilder.h"
 
 namespace rtsl {
 

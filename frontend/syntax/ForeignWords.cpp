@@ -1,5 +1,5 @@
 //===- ForeignWords.cpp - habits of other languages, seen before parsing -----===//
-#include "frontend/ForeignWords.h"
+#include "frontend/syntax/ForeignWords.h"
 
 #include "grammar/RtslLexer.h"
 

@@ -8,8 +8,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
-#include "frontend/Token.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "frontend/lex/Token.h"
 
 #include <algorithm>
 #include <string_view>

@@ -4,11 +4,11 @@
 //   --TokenCheck--> balanced tokens --RtslParser--> parse tree --AstBuilder--> syntax tree
 //
 //===----------------------------------------------------------------------===//
-#include "frontend/Parser.h"
-#include "frontend/AstBuilder.h"
-#include "frontend/SyntaxErrors.h"
-#include "frontend/TokenCheck.h"
-#include "frontend/Tokenizer.h"
+#include "frontend/syntax/Parser.h"
+#include "frontend/syntax/AstBuilder.h"
+#include "frontend/syntax/SyntaxErrors.h"
+#include "frontend/syntax/TokenCheck.h"
+#include "frontend/lex/Tokenizer.h"
 
 #include "grammar/RtslParser.h"
 

@@ -1,8 +1,8 @@
 //===- Parser.h - RTSL text to syntax tree --------------------------------===//
 #pragma once
 
-#include "frontend/Ast.h"
-#include "frontend/Diagnostics.h"
+#include "frontend/syntax/Ast.h"
+#include "frontend/diagnostics/Diagnostics.h"
 
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
 //===- SyntaxErrors.cpp - what the parser says and does about mistakes ----===//
-#include "frontend/SyntaxErrors.h"
+#include "frontend/syntax/SyntaxErrors.h"
 
 #include "grammar/RtslLexer.h"
 #include "grammar/RtslParser.h"

@@ -1,8 +1,8 @@
 //===- SyntaxErrors.h - what the parser says and does about mistakes ------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
-#include "frontend/TokenStream.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "frontend/lex/TokenStream.h"
 
 #include <ANTLRErrorStrategy.h>
 #include <misc/IntervalSet.h>

@@ -8,9 +8,9 @@
 // `if`, `for`, ... ) is as deep as it is long, plus the deepest bracket in it.
 //
 //===----------------------------------------------------------------------===//
-#include "frontend/TokenCheck.h"
+#include "frontend/syntax/TokenCheck.h"
 
-#include "frontend/ForeignWords.h"
+#include "frontend/syntax/ForeignWords.h"
 
 #include "grammar/RtslLexer.h"
 

@@ -1,8 +1,8 @@
 //===- TokenCheck.h - what is checked on words, before parsing ------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
-#include "frontend/Token.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "frontend/lex/Token.h"
 
 namespace rtsl {
 

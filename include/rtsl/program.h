@@ -1,7 +1,7 @@
 //===- program.h - what a generated file exports --------------------------===//
 #pragma once
 
-#include "runtime/Program.h"
+#include "runtime/program/Program.h"
 
 #include <memory>
 

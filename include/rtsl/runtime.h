@@ -7,9 +7,9 @@
 #pragma once
 
 #include "rtsl/program.h"
-#include "runtime/Error.h"
-#include "runtime/Image.h"
-#include "runtime/Mesh.h"
-#include "runtime/PrintLog.h"
-#include "runtime/Renderer.h"
-#include "runtime/Scene.h"
+#include "support/Error.h"
+#include "runtime/image/Image.h"
+#include "runtime/geometry/Mesh.h"
+#include "runtime/program/PrintLog.h"
+#include "runtime/render/Renderer.h"
+#include "runtime/scene/Scene.h"

@@ -1,6 +1,6 @@
-#include "runtime/BvhBuilder.h"
+#include "runtime/accel/BvhBuilder.h"
 
-#include "runtime/device/Bvh.h"
+#include "runtime/device/traverse/Bvh.h"
 
 #include <algorithm>
 #include <cmath>

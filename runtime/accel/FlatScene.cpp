@@ -1,7 +1,7 @@
-#include "runtime/FlatScene.h"
+#include "runtime/accel/FlatScene.h"
 
-#include "runtime/BvhBuilder.h"
-#include "runtime/Scene.h"
+#include "runtime/accel/BvhBuilder.h"
+#include "runtime/scene/Scene.h"
 
 #include <algorithm>
 

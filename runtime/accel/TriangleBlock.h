@@ -1,14 +1,14 @@
 //===- TriangleBlock.h - eight triangles, tested at once ------------------===//
 //
 // What lies in a leaf of the host's tree. All eight are tested by the operations of
-// runtime/device/Triangle.h and moveIntoBox (runtime/device/Traverse.h), in the same order, and so
+// runtime/device/traverse/Triangle.h and moveIntoBox (runtime/device/traverse/Traverse.h), in the same order, and so
 // with the same bits. Where those take another course for numbers of unusual size, or near the
 // ray's origin, the triangle is tested by their own functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Traverse.h"
+#include "runtime/device/traverse/Traverse.h"
 
 #include <immintrin.h>
 
@@ -51,7 +51,7 @@ inline Lanes all(float a) {
 inline Lanes absolute(Lanes a) {
   return _mm256_andnot_ps(all(-0.0f), a);
 }
-/// maximum and minimum of runtime/device/Vector.h.
+/// maximum and minimum of runtime/device/ray/Vector.h.
 inline Lanes maximum(Lanes a, Lanes b) {
   return _mm256_max_ps(a, b);
 }
@@ -65,7 +65,7 @@ inline Lanes minimum(Lanes a, Lanes b, Lanes c) {
   return minimum(minimum(a, b), c);
 }
 
-/// a b - c d as differenceOfProducts of runtime/device/Vector.h computes it.
+/// a b - c d as differenceOfProducts of runtime/device/ray/Vector.h computes it.
 inline Lanes differenceOfProducts(Lanes a, Lanes b, Lanes c, Lanes d) {
   const Lanes cd = c * d;
   const Lanes error = _mm256_fnmadd_ps(c, d, cd);

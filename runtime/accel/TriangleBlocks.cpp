@@ -1,6 +1,6 @@
-#include "runtime/TriangleBlocks.h"
+#include "runtime/accel/TriangleBlocks.h"
 
-#include "runtime/WorkerThreads.h"
+#include "support/WorkerThreads.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -77,7 +77,7 @@ const char *rtslError(void) { return lastError().c_str(); }
 RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   return guarded<RtslScene *>(nullptr, [&] {
     if (!shaders)
-      throw runtime::Error(runtime::ErrorCode::IncompleteScene, "there are no shaders");
+      throw Error(ErrorCode::IncompleteScene, "there are no shaders");
     return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}};
   });
 }

@@ -6,11 +6,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/EmbreeScene.h"
-#include "runtime/LastOccluders.h"
-#include "runtime/TriangleBlocks.h"
-#include "runtime/device/Hit.h"
-#include "runtime/device/Traverse.h"
+#include "runtime/embree/EmbreeScene.h"
+#include "runtime/embree/LastOccluders.h"
+#include "runtime/accel/TriangleBlocks.h"
+#include "runtime/device/ray/Hit.h"
+#include "runtime/device/traverse/Traverse.h"
 
 #include <embree3/rtcore.h>
 

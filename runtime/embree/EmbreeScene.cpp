@@ -1,7 +1,7 @@
-#include "runtime/EmbreeScene.h"
+#include "runtime/embree/EmbreeScene.h"
 
-#include "runtime/EmbreeRay.h"
-#include "runtime/HostScene.h"
+#include "runtime/embree/EmbreeRay.h"
+#include "runtime/embree/HostScene.h"
 
 #include <fmt/format.h>
 

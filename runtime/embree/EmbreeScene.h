@@ -17,9 +17,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/Scene.h"
-#include "runtime/device/Abi.h"
-#include "runtime/device/Triangle.h"
+#include "runtime/scene/Scene.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/traverse/Triangle.h"
 
 #include <cstdint>
 #include <memory>
@@ -81,7 +81,7 @@ private:
   std::unique_ptr<Implementation> self;
 };
 
-/// A tree for runtime/device/Traverse.h and AnyHit.h.
+/// A tree for runtime/device/traverse/Traverse.h and AnyHit.h.
 struct EmbreeTree {
   const EmbreeScene &scene;
 

@@ -1,9 +1,9 @@
 //===- HostScene.h - what rtsl_traverse of the host works on --------------===//
 #pragma once
 
-#include "runtime/BvhBuilder.h"
-#include "runtime/EmbreeScene.h"
-#include "runtime/ProgramHost.h"
+#include "runtime/accel/BvhBuilder.h"
+#include "runtime/embree/EmbreeScene.h"
+#include "runtime/program/ProgramHost.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,8 +1,8 @@
 //===- HostTraversal.cpp - rtsl_traverse on the host ----------------------===//
-#include "runtime/HostScene.h"
+#include "runtime/embree/HostScene.h"
 
-#include "runtime/EmbreeRay.h"
-#include "runtime/device/AnyHit.h"
+#include "runtime/embree/EmbreeRay.h"
+#include "runtime/device/traverse/AnyHit.h"
 
 namespace rtsl::runtime {
 

@@ -1,4 +1,4 @@
-#include "runtime/mesh/AssimpFile.h"
+#include "runtime/geometry/AssimpFile.h"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>

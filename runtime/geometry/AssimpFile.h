@@ -1,7 +1,7 @@
 //===- AssimpFile.h - meshes by assimp ------------------------------------===//
 #pragma once
 
-#include "runtime/Mesh.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <string>
 

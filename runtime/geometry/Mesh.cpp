@@ -1,4 +1,4 @@
-#include "runtime/Mesh.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 //===- Mesh.h - triangle meshes and where they come from ------------------===//
 #pragma once
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <array>
 #include <cstdint>

@@ -5,11 +5,11 @@
 // left: other formats, rare features, and whatever is damaged, which it describes.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/AtomicFile.h"
-#include "runtime/Mesh.h"
-#include "runtime/mesh/AssimpFile.h"
-#include "runtime/mesh/ObjFile.h"
-#include "runtime/mesh/PlyFile.h"
+#include "support/AtomicFile.h"
+#include "runtime/geometry/Mesh.h"
+#include "runtime/geometry/AssimpFile.h"
+#include "runtime/geometry/ObjFile.h"
+#include "runtime/geometry/PlyFile.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
-#include "runtime/mesh/ObjFile.h"
+#include "runtime/geometry/ObjFile.h"
 
-#include "runtime/mesh/Normals.h"
-#include "runtime/mesh/PolygonSplit.h"
+#include "runtime/geometry/Normals.h"
+#include "runtime/geometry/PolygonSplit.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 //===- ObjFile.h - Wavefront OBJ files of the usual kind ------------------===//
 #pragma once
 
-#include "runtime/Mesh.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <optional>
 #include <string_view>

@@ -1,7 +1,7 @@
-#include "runtime/mesh/PlyFile.h"
+#include "runtime/geometry/PlyFile.h"
 
-#include "runtime/mesh/Normals.h"
-#include "runtime/mesh/PolygonSplit.h"
+#include "runtime/geometry/Normals.h"
+#include "runtime/geometry/PolygonSplit.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 //===- PlyFile.h - Stanford PLY files -------------------------------------===//
 #pragma once
 
-#include "runtime/Mesh.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 #include "runtime/gpu/GpuRenderer.h"
 
-#include "runtime/HostMegakernel.h"
+#include "runtime/render/HostMegakernel.h"
 #include "runtime/gpu/CudaDriver.h"
 
 #include <fmt/format.h>

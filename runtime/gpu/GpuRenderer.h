@@ -1,7 +1,7 @@
 //===- GpuRenderer.h - a package on a CUDA device -------------------------===//
 #pragma once
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 #include "runtime/package/Package.h"
 
 #include <string>

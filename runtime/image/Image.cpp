@@ -1,8 +1,8 @@
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
-#include "runtime/AtomicFile.h"
-#include "runtime/ColorBasis.h"
-#include "runtime/ImageFormats.h"
+#include "support/AtomicFile.h"
+#include "language/ColorBasis.h"
+#include "runtime/image/ImageFormats.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 //===- Image.h - pictures in memory and in files --------------------------===//
 #pragma once
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +31,7 @@ struct Image {
 /// A black picture. Throws OutOfMemory.
 Image newImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 
-/// Red, green and blue of an image with N channels, by runtime/ColorBasis.h. 3: as they are. 1:
+/// Red, green and blue of an image with N channels, by language/ColorBasis.h. 3: as they are. 1:
 /// grey.
 Image toRgb(const Image &image);
 

@@ -4,7 +4,7 @@
 // a full disk goes unnoticed.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/ImageFormats.h"
+#include "runtime/image/ImageFormats.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>

@@ -1,7 +1,7 @@
 //===- ImageFormats.h - pictures as the bytes of a file -------------------===//
 #pragma once
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <string>
 

@@ -1,5 +1,5 @@
 //===- ImagePng.cpp - PNG by libpng ---------------------------------------===//
-#include "runtime/ImageFormats.h"
+#include "runtime/image/ImageFormats.h"
 
 #include <fmt/format.h>
 #include <png.h>

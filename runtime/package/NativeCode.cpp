@@ -1,6 +1,6 @@
 #include "runtime/package/NativeCode.h"
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 //===- NativeCode.h - machine code of a package in this process -----------===//
 #pragma once
 
-#include "runtime/Program.h"
+#include "runtime/program/Program.h"
 #include "runtime/package/Package.h"
 
 namespace rtsl::runtime {

@@ -1,8 +1,8 @@
 //===- Package.cpp - a scene and its compiled code in one file ------------===//
 #include "runtime/package/Package.h"
 
-#include "runtime/AtomicFile.h"
-#include "runtime/Error.h"
+#include "support/AtomicFile.h"
+#include "support/Error.h"
 
 #include <fmt/format.h>
 #include <lzma.h>

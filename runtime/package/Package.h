@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/FlatScene.h"
-#include "runtime/RenderOptions.h"
+#include "runtime/accel/FlatScene.h"
+#include "runtime/render/RenderOptions.h"
 
 #include <array>
 #include <cstdint>

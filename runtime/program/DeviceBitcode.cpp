@@ -1,4 +1,4 @@
-#include "runtime/DeviceBitcode.h"
+#include "runtime/program/DeviceBitcode.h"
 
 #include <cstddef>
 

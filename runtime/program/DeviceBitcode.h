@@ -16,7 +16,7 @@ std::string_view deviceBitcode();
 std::string_view gpuDeviceBitcode();
 
 /// rtsl_traverse and what runs lanes: for programs that need nobody else
-/// (runtime/device/Megakernel.h).
+/// (runtime/device/engines/Megakernel.h).
 std::string_view megakernelBitcode();
 std::string_view gpuMegakernelBitcode();
 

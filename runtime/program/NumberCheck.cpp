@@ -1,5 +1,5 @@
 //===- NumberCheck.cpp - where a sample stops being finite -----------------===//
-#include "runtime/NumberCheck.h"
+#include "runtime/program/NumberCheck.h"
 
 #include <cmath>
 #include <csetjmp>

@@ -1,4 +1,4 @@
-#include "runtime/PrintLog.h"
+#include "runtime/program/PrintLog.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/FirstFew.h"
-#include "runtime/Program.h"
+#include "support/FirstFew.h"
+#include "runtime/program/Program.h"
 
 #include <cstdint>
 #include <string>

@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/Error.h"
-#include "runtime/device/Abi.h"
+#include "support/Error.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <cstdint>
 #include <functional>
@@ -104,13 +104,13 @@ struct Program {
   /// Entries of Slots.def and SamplingSlots.def; a slot that no class of the scene fills may be null.
   struct Slots {
 #define RTSL_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 #define RTSL_PAYLOAD_SLOT(base, method) void (*base##_##method##_payload)(RtslState *, RtslRef) = nullptr;
-#include "runtime/device/PayloadSlots.def"
+#include "language/PayloadSlots.def"
 #define RTSL_SAMPLING_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
-#include "runtime/device/SamplingSlots.def"
+#include "language/SamplingSlots.def"
 
-    /// Of shaders in C++ that were split at their traces: what the machine asks for (runtime/device/Machine.h).
+    /// Of shaders in C++ that were split at their traces: what the machine asks for (runtime/device/engines/Machine.h).
     /// Without `run` traces are calls.
     struct States {
       std::int32_t (*run)(RtslState *, std::int32_t number, RtslRef object, void *frame) = nullptr;

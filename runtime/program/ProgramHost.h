@@ -1,7 +1,7 @@
 //===- ProgramHost.h - what programs find behind RtslLaunch::host ---------===//
 #pragma once
 
-#include "runtime/Program.h"
+#include "runtime/program/Program.h"
 
 namespace rtsl::runtime {
 
@@ -19,8 +19,8 @@ struct FilledSlots {
       slots.base##_##method(state, object);                                                        \
   }
 #define RTSL_PAYLOAD_SLOT(base, method) RTSL_SLOT(base, method##_payload)
-#include "runtime/device/PayloadSlots.def"
-#include "runtime/device/Slots.def"
+#include "language/PayloadSlots.def"
+#include "language/Slots.def"
 };
 
 } // namespace rtsl::runtime

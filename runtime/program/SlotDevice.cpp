@@ -6,12 +6,12 @@
 // several.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/ProgramHost.h"
+#include "runtime/program/ProgramHost.h"
 
 #define RTSL_DEVICE_OF_SLOTS
-#include "runtime/device/Device.cpp"
-#include "runtime/device/Machine.cpp"
-#include "runtime/device/Programs.cpp"
+#include "runtime/device/engines/Device.cpp"
+#include "runtime/device/engines/Machine.cpp"
+#include "runtime/device/engines/Programs.cpp"
 
 namespace {
 
@@ -51,8 +51,8 @@ uint64_t frameBytes(const RtslLaunch *launch) {
       code(state, object);                                                                         \
   }
 extern "C" {
-#include "runtime/device/PayloadSlots.def"
-#include "runtime/device/Slots.def"
+#include "language/PayloadSlots.def"
+#include "language/Slots.def"
 
 uint32_t rtsl_features(RtslState *state) {
   return state->launch->host ? slotsOf(state).features : 0; // while a scene is built there is no host

@@ -1,5 +1,5 @@
 //===- Versions.cpp -------------------------------------------------------===//
-#include "runtime/Versions.h"
+#include "runtime/program/Versions.h"
 
 #include <embree3/rtcore.h>
 

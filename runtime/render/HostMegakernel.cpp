@@ -1,6 +1,6 @@
-#include "runtime/HostMegakernel.h"
+#include "runtime/render/HostMegakernel.h"
 
-#include "runtime/WorkerThreads.h"
+#include "support/WorkerThreads.h"
 
 #include <fmt/format.h>
 

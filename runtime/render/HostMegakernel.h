@@ -6,10 +6,10 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/FlatScene.h"
-#include "runtime/Image.h"
-#include "runtime/Program.h"
-#include "runtime/RenderOptions.h"
+#include "runtime/accel/FlatScene.h"
+#include "runtime/image/Image.h"
+#include "runtime/program/Program.h"
+#include "runtime/render/RenderOptions.h"
 
 namespace rtsl::runtime {
 

@@ -1,7 +1,7 @@
 //===- MachineStack.cpp - memory for rays in flight -----------------------===//
-#include "runtime/MachineStack.h"
+#include "runtime/render/MachineStack.h"
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <atomic>
 #include <cstdlib>

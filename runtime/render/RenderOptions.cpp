@@ -1,6 +1,6 @@
-#include "runtime/RenderOptions.h"
+#include "runtime/render/RenderOptions.h"
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <fmt/format.h>
 

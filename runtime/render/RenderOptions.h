@@ -1,7 +1,7 @@
 //===- RenderOptions.h - what a rendering is asked for, and what it says --===//
 #pragma once
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <atomic>
 #include <cstdint>

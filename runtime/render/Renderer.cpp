@@ -1,8 +1,8 @@
-#include "runtime/Renderer.h"
+#include "runtime/render/Renderer.h"
 
-#include "runtime/FirstFew.h"
-#include "runtime/HostScene.h"
-#include "runtime/WorkerThreads.h"
+#include "support/FirstFew.h"
+#include "runtime/embree/HostScene.h"
+#include "support/WorkerThreads.h"
 
 #include <algorithm>
 #include <chrono>

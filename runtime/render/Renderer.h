@@ -1,9 +1,9 @@
 //===- Renderer.h - from a scene to an image ------------------------------===//
 #pragma once
 
-#include "runtime/Image.h"
-#include "runtime/RenderOptions.h"
-#include "runtime/Scene.h"
+#include "runtime/image/Image.h"
+#include "runtime/render/RenderOptions.h"
+#include "runtime/scene/Scene.h"
 
 #include <memory>
 

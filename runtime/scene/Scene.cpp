@@ -1,8 +1,8 @@
-#include "runtime/Scene.h"
+#include "runtime/scene/Scene.h"
 
-#include "runtime/ErrorCollector.h"
-#include "runtime/ValueStore.h"
-#include "runtime/device/Random.h"
+#include "support/ErrorCollector.h"
+#include "runtime/scene/ValueStore.h"
+#include "runtime/device/ray/Random.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>

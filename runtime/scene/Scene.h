@@ -6,9 +6,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/Mesh.h"
-#include "runtime/Program.h"
-#include "runtime/Value.h"
+#include "runtime/geometry/Mesh.h"
+#include "runtime/program/Program.h"
+#include "runtime/scene/Value.h"
 
 #include <memory>
 #include <optional>

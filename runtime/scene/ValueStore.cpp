@@ -1,6 +1,6 @@
-#include "runtime/ValueStore.h"
+#include "runtime/scene/ValueStore.h"
 
-#include "runtime/ColorBasis.h"
+#include "language/ColorBasis.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 //===- ValueStore.h - values of a scene as bytes of a record --------------===//
 #pragma once
 
-#include "runtime/Program.h"
-#include "runtime/Value.h"
+#include "runtime/program/Program.h"
+#include "runtime/scene/Value.h"
 
 #include <functional>
 #include <string>
@@ -19,7 +19,7 @@ struct StoreContext {
   std::function<const std::string *(RtslRef object, const std::string &className)> classMismatch;
 };
 
-/// The components of a color from as many numbers, from red, green and blue (runtime/ColorBasis.h),
+/// The components of a color from as many numbers, from red, green and blue (language/ColorBasis.h),
 /// or from one number for all. Empty if there is another number of numbers.
 std::vector<float> colorFromNumbers(const std::vector<float> &numbers, std::uint32_t components);
 

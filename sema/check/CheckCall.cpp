@@ -1,6 +1,6 @@
 //===- CheckCall.cpp - calls ----------------------------------------------===//
-#include "sema/FunctionChecker.h"
-#include "sema/Suggest.h"
+#include "sema/check/FunctionChecker.h"
+#include "sema/check/Suggest.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 //===- CheckName.cpp - names, fields, swizzles and indices ----------------===//
-#include "sema/ConstantFold.h"
-#include "sema/FunctionChecker.h"
-#include "sema/Suggest.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/check/FunctionChecker.h"
+#include "sema/check/Suggest.h"
 
 #include <algorithm>
 

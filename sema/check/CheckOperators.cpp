@@ -1,7 +1,7 @@
 //===- CheckOperators.cpp - operators and assignment ----------------------===//
-#include "sema/ConstantFold.h"
-#include "sema/FunctionChecker.h"
-#include "sema/TypeProperties.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/check/FunctionChecker.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <algorithm>
 

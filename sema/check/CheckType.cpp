@@ -1,8 +1,8 @@
 //===- CheckType.cpp - types as the author spells them --------------------===//
-#include "sema/ConstantFold.h"
-#include "sema/FunctionChecker.h"
-#include "sema/Suggest.h"
-#include "sema/TypeProperties.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/check/FunctionChecker.h"
+#include "sema/check/Suggest.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 //===- Classes.cpp - bases and members ------------------------------------===//
-#include "sema/FunctionChecker.h"
-#include "sema/Suggest.h"
+#include "sema/check/FunctionChecker.h"
+#include "sema/check/Suggest.h"
 
 #include <algorithm>
 

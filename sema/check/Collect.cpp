@@ -4,7 +4,7 @@
 // things are declared does not matter.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/Program.h"
+#include "sema/check/Program.h"
 
 #include <unordered_set>
 

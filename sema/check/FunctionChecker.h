@@ -10,9 +10,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "sema/Conversion.h"
-#include "sema/Program.h"
-#include "sema/Scope.h"
+#include "sema/model/Conversion.h"
+#include "sema/check/Program.h"
+#include "sema/check/Scope.h"
 
 #include <unordered_set>
 

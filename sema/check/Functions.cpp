@@ -1,5 +1,5 @@
 //===- Functions.cpp - the functions of classes and files -----------------===//
-#include "sema/FunctionChecker.h"
+#include "sema/check/FunctionChecker.h"
 
 #include <algorithm>
 

@@ -6,10 +6,10 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
-#include "sema/Builtins.h"
-#include "sema/ClassModel.h"
-#include "sema/Sema.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "sema/model/Builtins.h"
+#include "sema/model/ClassModel.h"
+#include "sema/check/ImportResolver.h"
 
 #include <string>
 #include <unordered_map>

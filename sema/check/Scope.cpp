@@ -1,5 +1,5 @@
 //===- Scope.cpp - the local names of a function --------------------------===//
-#include "sema/Scope.h"
+#include "sema/check/Scope.h"
 
 namespace rtsl {
 

@@ -1,7 +1,7 @@
 //===- Scope.h - the local names of a function ----------------------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <string>
 #include <unordered_map>

@@ -1,5 +1,5 @@
 //===- Suggest.cpp - what the author may have meant -----------------------===//
-#include "sema/Suggest.h"
+#include "sema/check/Suggest.h"
 
 #include <algorithm>
 #include <unordered_map>

@@ -1,7 +1,7 @@
 //===- Suggest.h - what the author may have meant -------------------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
+#include "frontend/diagnostics/Diagnostics.h"
 #include "support/ClosestName.h"
 
 #include <string>

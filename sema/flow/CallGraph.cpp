@@ -5,7 +5,7 @@
 // that lead to it may use. All walks are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/Program.h"
+#include "sema/check/Program.h"
 #include "support/ClosestName.h"
 
 #include <algorithm>

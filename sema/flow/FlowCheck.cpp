@@ -6,10 +6,10 @@
 // been written, for the walk does not come back.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/Casting.h"
-#include "sema/ConstantFold.h"
-#include "sema/Program.h"
-#include "sema/Walk.h"
+#include "sema/typed/Casting.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/check/Program.h"
+#include "sema/typed/Walk.h"
 
 #include <unordered_set>
 

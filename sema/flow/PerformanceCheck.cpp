@@ -4,11 +4,11 @@
 // replace. How much is saved over a `trace` shows only after splitting; codegen/driver says that.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/Casting.h"
-#include "sema/ConstantFold.h"
-#include "sema/Program.h"
-#include "sema/TypeProperties.h"
-#include "sema/Walk.h"
+#include "sema/typed/Casting.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/check/Program.h"
+#include "sema/typed/TypeProperties.h"
+#include "sema/typed/Walk.h"
 
 #include <unordered_set>
 

@@ -4,8 +4,8 @@
 // functions are left to the code generator, which calls the same implementation as the shaders do.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/math/Elementary.h"
-#include "sema/ConstantFold.h"
+#include "math/Elementary.h"
+#include "sema/fold/ConstantFold.h"
 
 #include <algorithm>
 #include <limits>

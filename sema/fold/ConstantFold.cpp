@@ -1,8 +1,8 @@
 //===- ConstantFold.cpp - the value of a constant expression --------------===//
-#include "sema/ConstantFold.h"
+#include "sema/fold/ConstantFold.h"
 
-#include "sema/Casting.h"
-#include "sema/TypeProperties.h"
+#include "sema/typed/Casting.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <algorithm>
 #include <limits>

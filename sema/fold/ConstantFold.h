@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <cmath>
 #include <map>

@@ -1,6 +1,6 @@
 //===- Builtins.cpp - the signatures of the built-in functions ------------===//
-#include "sema/Builtins.h"
-#include "sema/Walk.h"
+#include "sema/model/Builtins.h"
+#include "sema/typed/Walk.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -26,7 +26,7 @@ static const std::vector<Row> &allRows() {
         all.push_back({builtin, signature});
     };
 #define RTSL_BUILTIN(id, name, effect, cost, ...) add(Builtin::id, {__VA_ARGS__});
-#include "sema/Builtins.def"
+#include "language/Builtins.def"
     return all;
   }();
   return rows;

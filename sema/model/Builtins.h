@@ -1,7 +1,7 @@
 //===- Builtins.h - the signatures of the built-in functions --------------===//
 #pragma once
 
-#include "sema/Overload.h"
+#include "sema/model/Overload.h"
 
 #include <string>
 #include <unordered_map>

@@ -1,5 +1,5 @@
 //===- ClassModel.cpp - who may define, read, write and call what ---------===//
-#include "sema/ClassModel.h"
+#include "sema/model/ClassModel.h"
 
 #include <algorithm>
 
@@ -288,7 +288,7 @@ std::vector<std::string> classesWithMethod(const std::string &methodName) {
 bool findStateVariable(const std::string &name, typed::StateVariable &variable) {
   static const std::map<std::string, typed::StateVariable> all = {
 #define RTSL_STATE_VARIABLE(name, type) {#name, typed::StateVariable::name},
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   };
   auto found = all.find(name);
   if (found == all.end())
@@ -300,7 +300,7 @@ bool findStateVariable(const std::string &name, typed::StateVariable &variable) 
 const Type *typeOf(typed::StateVariable variable, TypeContext &types) {
   static const char *const keywords[] = {
 #define RTSL_STATE_VARIABLE(name, type) #type,
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   };
   const std::string keyword = keywords[static_cast<std::size_t>(variable)];
   return types.named(keyword == "uint2" ? "uvec2" : keyword);
@@ -309,7 +309,7 @@ const Type *typeOf(typed::StateVariable variable, TypeContext &types) {
 const std::vector<std::string> &stateVariableNames() {
   static const std::vector<std::string> names = {
 #define RTSL_STATE_VARIABLE(name, type) "rt_" #name,
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   };
   return names;
 }

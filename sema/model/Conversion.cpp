@@ -1,7 +1,7 @@
 //===- Conversion.cpp - implicit conversions ------------------------------===//
-#include "sema/Conversion.h"
+#include "sema/model/Conversion.h"
 
-#include "sema/ClassModel.h"
+#include "sema/model/ClassModel.h"
 
 namespace rtsl {
 

@@ -1,8 +1,8 @@
 //===- Conversion.h - implicit conversions and making nodes ---------------===//
 #pragma once
 
-#include "sema/Casting.h"
-#include "sema/TypedAst.h"
+#include "sema/typed/Casting.h"
+#include "sema/typed/TypedAst.h"
 
 namespace rtsl {
 

@@ -1,7 +1,7 @@
 //===- Overload.cpp - which of several functions a call means -------------===//
-#include "sema/Overload.h"
+#include "sema/model/Overload.h"
 
-#include "sema/Conversion.h"
+#include "sema/model/Conversion.h"
 
 namespace rtsl {
 

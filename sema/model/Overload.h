@@ -1,7 +1,7 @@
 //===- Overload.h - which of several functions a call means ---------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <string>
 #include <vector>

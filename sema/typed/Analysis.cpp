@@ -1,27 +1,22 @@
-//===- Analysis.cpp - what lowering asks about a typed tree ---------------===//
-#include "codegen/lower/Analysis.h"
+//===- Analysis.cpp - facts about typed trees -----------------------------===//
+#include "sema/typed/Analysis.h"
 
-#include "sema/Casting.h"
-#include "sema/TypeProperties.h"
+#include "sema/typed/Casting.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <algorithm>
 
-namespace rtsl::lowering {
+namespace rtsl::typed {
 
 using ast::StmtKind;
-using typed::ExprKind;
 
 //===----------------------------------------------------------------------===//
 // Questions
 //===----------------------------------------------------------------------===//
 
-bool isPureBuiltin(typed::Builtin builtin) {
-  return typed::isPure(builtin);
-}
-
-std::pair<std::size_t, std::size_t> outputsOf(typed::Builtin builtin) {
+std::pair<std::size_t, std::size_t> outputsOf(Builtin builtin) {
   constexpr std::size_t mostArguments = 4;
-  if (typed::info(builtin).effect != typed::BuiltinEffect::Outputs)
+  if (info(builtin).effect != BuiltinEffect::Outputs)
     return {0, 0};
   std::size_t first = 0, count = 0;
   while (first < mostArguments && !isOutArgument(builtin, first))
@@ -31,33 +26,33 @@ std::pair<std::size_t, std::size_t> outputsOf(typed::Builtin builtin) {
   return {first, count};
 }
 
-bool isLocal(const typed::Expr &expr) {
-  auto *variable = dynCast<typed::VariableExpr>(&expr);
-  return variable && variable->variable->kind != typed::Variable::Kind::Global;
+bool isLocal(const Expr &expr) {
+  auto *variable = dynCast<VariableExpr>(&expr);
+  return variable && variable->variable->kind != Variable::Kind::Global;
 }
 
-const typed::Expr &rootOf(const typed::Expr &expr) {
-  const typed::Expr *root = &expr;
+const Expr &rootOf(const Expr &expr) {
+  const Expr *root = &expr;
   for (;;) {
-    if (auto *field = dynCast<typed::FieldExpr>(root))
+    if (auto *field = dynCast<FieldExpr>(root))
       root = field->base.get();
-    else if (auto *index = dynCast<typed::IndexExpr>(root))
+    else if (auto *index = dynCast<IndexExpr>(root))
       root = index->base.get();
     else
       return *root;
   }
 }
 
-const typed::Expr &wholeOf(const typed::Expr &place) {
-  const typed::Expr *root = &rootOf(place);
-  while (auto *swizzle = dynCast<typed::SwizzleExpr>(root))
+const Expr &wholeOf(const Expr &place) {
+  const Expr *root = &rootOf(place);
+  while (auto *swizzle = dynCast<SwizzleExpr>(root))
     root = &rootOf(*swizzle->base);
   return *root;
 }
 
-bool hasSideEffects(const typed::Expr &expr) {
+bool hasSideEffects(const Expr &expr) {
   bool found = false;
-  forEachExpr(expr, [&](const typed::Expr &inner) {
+  forEachExpr(expr, [&](const Expr &inner) {
     switch (inner.kind) {
     case ExprKind::IncDec:
     case ExprKind::Assign:
@@ -66,7 +61,7 @@ bool hasSideEffects(const typed::Expr &expr) {
       found = true;
       break;
     case ExprKind::Builtin:
-      found = found || !isPureBuiltin(cast<typed::BuiltinExpr>(inner).builtin);
+      found = found || !isPure(cast<BuiltinExpr>(inner).builtin);
       break;
     default:
       break;
@@ -75,10 +70,10 @@ bool hasSideEffects(const typed::Expr &expr) {
   return found;
 }
 
-bool isCheap(const typed::Expr &expr) {
+bool isCheap(const Expr &expr) {
   constexpr unsigned limit = 12;
   unsigned cost = 0;
-  forEachExpr(expr, [&](const typed::Expr &inner) {
+  forEachExpr(expr, [&](const Expr &inner) {
     switch (inner.kind) {
     case ExprKind::Literal:
     case ExprKind::Variable:
@@ -91,14 +86,14 @@ bool isCheap(const typed::Expr &expr) {
       cost += 1;
       break;
     case ExprKind::Binary: {
-      const auto &binary = cast<typed::BinaryExpr>(inner);
+      const auto &binary = cast<BinaryExpr>(inner);
       bool isDivision = binary.op == ast::BinaryOp::Div || binary.op == ast::BinaryOp::Mod;
       bool isLarge = binary.left->type->isMatrix() || binary.right->type->isMatrix();
       cost += isDivision || isLarge ? limit + 1 : 2;
       break;
     }
     case ExprKind::Builtin:
-      cost += typed::info(cast<typed::BuiltinExpr>(inner).builtin).cost;
+      cost += info(cast<BuiltinExpr>(inner).builtin).cost;
       break;
     case ExprKind::Construct:
       cost += inner.type->isScalar() || inner.type->isVector() ? 1 : limit + 1;
@@ -113,19 +108,19 @@ bool isCheap(const typed::Expr &expr) {
   return cost <= limit;
 }
 
-bool isPlace(const typed::Expr &expr) {
+bool isPlace(const Expr &expr) {
   switch (expr.kind) {
   case ExprKind::Variable:
   case ExprKind::State:
     return true;
   case ExprKind::Member:
-    return !cast<typed::MemberExpr>(expr).member->isConst;
+    return !cast<MemberExpr>(expr).member->isConst;
   case ExprKind::Field:
-    return isPlace(*cast<typed::FieldExpr>(expr).base);
+    return isPlace(*cast<FieldExpr>(expr).base);
   case ExprKind::Swizzle:
-    return isPlace(*cast<typed::SwizzleExpr>(expr).base);
+    return isPlace(*cast<SwizzleExpr>(expr).base);
   case ExprKind::Index:
-    return isPlace(*cast<typed::IndexExpr>(expr).base);
+    return isPlace(*cast<IndexExpr>(expr).base);
   default:
     return false;
   }
@@ -135,7 +130,7 @@ bool isPlace(const typed::Expr &expr) {
 // Functions
 //===----------------------------------------------------------------------===//
 
-bool sameParameters(const typed::Function &a, const typed::Function &b) {
+bool sameParameters(const Function &a, const Function &b) {
   if (a.parameters.size() != b.parameters.size())
     return false;
   for (std::size_t i = 0; i < a.parameters.size(); ++i)
@@ -144,58 +139,58 @@ bool sameParameters(const typed::Function &a, const typed::Function &b) {
   return true;
 }
 
-const typed::Function &resolve(const typed::Function &callee, const typed::Class *concrete) {
+const Function &resolve(const Function &callee, const Class *concrete) {
   if (!callee.owner)
     return callee;
-  for (const typed::Class *type = concrete; type; type = type->base)
+  for (const Class *type = concrete; type; type = type->base)
     for (const auto &function : type->functions)
       if (function->name == callee.name && sameParameters(*function, callee))
         return *function;
   return callee;
 }
 
-const typed::Function &resolve(const typed::CallExpr &call, const typed::Class *concrete) {
+const Function &resolve(const CallExpr &call, const Class *concrete) {
   return call.isOfBase ? *call.function : resolve(*call.function, concrete);
 }
 
-static bool takesPart(const typed::Function &function, const typed::Class *concrete,
-                      std::set<const typed::Function *> &visited) {
+static bool takesPart(const Function &function, const Class *concrete,
+                      std::set<const Function *> &visited) {
   if (!function.body || !visited.insert(&function).second)
     return false;
   bool found = false;
-  forEachExpr(*function.body, [&](const typed::Expr &expr) {
-    if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-      found = found || builtin->builtin == typed::Builtin::Hit;
-    else if (auto *member = dynCast<typed::MemberExpr>(&expr))
+  forEachExpr(*function.body, [&](const Expr &expr) {
+    if (auto *builtin = dynCast<BuiltinExpr>(&expr))
+      found = found || builtin->builtin == Builtin::Hit;
+    else if (auto *member = dynCast<MemberExpr>(&expr))
       found = found || member->member->access == ast::Access::Scratch;
-    else if (auto *call = dynCast<typed::CallExpr>(&expr))
+    else if (auto *call = dynCast<CallExpr>(&expr))
       found = found || takesPart(resolve(*call, concrete), concrete, visited);
   });
   return found;
 }
 
-bool takesPartInIntersection(const typed::Function &function, const typed::Class *concrete) {
-  std::set<const typed::Function *> visited;
+bool takesPartInIntersection(const Function &function, const Class *concrete) {
+  std::set<const Function *> visited;
   return takesPart(function, concrete, visited);
 }
 
-bool takesPayload(const typed::Function &function) {
+bool takesPayload(const Function &function) {
   return function.isStateMethod && !function.parameters.empty();
 }
 
-bool isHitAnswer(const typed::Expr &expr) {
-  auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
-  return builtin && (builtin->builtin == typed::Builtin::IgnoreIntersection ||
-                     builtin->builtin == typed::Builtin::TerminateRay);
+bool isHitAnswer(const Expr &expr) {
+  auto *builtin = dynCast<BuiltinExpr>(&expr);
+  return builtin && (builtin->builtin == Builtin::IgnoreIntersection ||
+                     builtin->builtin == Builtin::TerminateRay);
 }
 
 /// Does some expression of a function of the module fulfil it? It takes both.
 template <typename Condition>
-static bool someExpression(const typed::Module &module, const Condition &condition) {
+static bool someExpression(const Module &module, const Condition &condition) {
   bool found = false;
-  const auto look = [&](const typed::Function &function) {
+  const auto look = [&](const Function &function) {
     if (function.body && !found)
-      forEachExpr(*function.body, [&](const typed::Expr &expr) { found = found || condition(function, expr); });
+      forEachExpr(*function.body, [&](const Expr &expr) { found = found || condition(function, expr); });
   };
   for (const auto &function : module.functions)
     look(*function);
@@ -205,34 +200,34 @@ static bool someExpression(const typed::Module &module, const Condition &conditi
   return found;
 }
 
-HitAnswers::HitAnswers(const typed::Module &module)
-    : module(module), hasAnswers(someExpression(module, [](const typed::Function &, const typed::Expr &expr) {
+HitAnswers::HitAnswers(const Module &module)
+    : module(module), hasAnswers(someExpression(module, [](const Function &, const Expr &expr) {
         return isHitAnswer(expr);
       })) {}
 
-bool lookupsNest(const typed::Module &module) {
-  return someExpression(module, [](const typed::Function &function, const typed::Expr &expr) {
-    auto *call = dynCast<typed::MethodCallExpr>(&expr);
+bool lookupsNest(const Module &module) {
+  return someExpression(module, [](const Function &function, const Expr &expr) {
+    auto *call = dynCast<MethodCallExpr>(&expr);
     return function.mayRunInLookup && call && !call->function;
   });
 }
 
-bool HitAnswers::isFoundIn(const typed::Function &function, const typed::Class *concrete) {
+bool HitAnswers::isFoundIn(const Function &function, const Class *concrete) {
   bool found = false;
-  forEachExpr(*function.body, [&](const typed::Expr &expr) {
+  forEachExpr(*function.body, [&](const Expr &expr) {
     if (found)
       return;
     found = isHitAnswer(expr);
-    if (auto *call = dynCast<typed::CallExpr>(&expr))
+    if (auto *call = dynCast<CallExpr>(&expr))
       found = call->onSelf ? mayAnswer(resolve(*call, concrete), concrete)
                            : mayAnswer(*call->function, nullptr);
-    else if (auto *method = dynCast<typed::MethodCallExpr>(&expr))
+    else if (auto *method = dynCast<MethodCallExpr>(&expr))
       found = method->function && mayAnswerOf(*method->function);
   });
   return found;
 }
 
-bool HitAnswers::mayAnswer(const typed::Function &function, const typed::Class *concrete) {
+bool HitAnswers::mayAnswer(const Function &function, const Class *concrete) {
   if (!hasAnswers || !function.body)
     return false;
   const Key key = {&function, concrete};
@@ -257,7 +252,7 @@ bool HitAnswers::mayAnswer(const typed::Function &function, const typed::Class *
   return found;
 }
 
-bool HitAnswers::mayAnswerOf(const typed::Function &function) {
+bool HitAnswers::mayAnswerOf(const Function &function) {
   return hasAnswers && std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
            return definition->derivesFrom(function.owner) &&
                   mayAnswer(resolve(function, definition.get()), definition.get());
@@ -265,7 +260,7 @@ bool HitAnswers::mayAnswerOf(const typed::Function &function) {
 }
 
 // Brackets have no place in a symbol: `float[4]` becomes `float_4`.
-std::string parameterWords(const typed::Function &function) {
+std::string parameterWords(const Function &function) {
   std::string words;
   for (const auto &parameter : function.parameters) {
     words += '.';
@@ -278,7 +273,7 @@ std::string parameterWords(const typed::Function &function) {
   return words;
 }
 
-std::string slotName(const typed::Module &module, const typed::Function &method) {
+std::string slotName(const Module &module, const Function &method) {
   if (takesPayload(method)) // beside others for other payloads, in this class or the next
     return method.name + parameterWords(method);
   for (const auto &definition : module.classes)
@@ -288,7 +283,7 @@ std::string slotName(const typed::Module &module, const typed::Function &method)
   return method.name;
 }
 
-bool mayReferToNothing(const typed::Module &module) {
+bool mayReferToNothing(const Module &module) {
   const auto refers = [](const Type *type) { return contains(type, TypeKind::Class); };
   const auto inFunction = [&](const auto &function) {
     return std::any_of(function->locals.begin(), function->locals.end(),
@@ -312,4 +307,4 @@ bool mayReferToNothing(const typed::Module &module) {
          });
 }
 
-} // namespace rtsl::lowering
+} // namespace rtsl::typed

@@ -1,7 +1,7 @@
 //===- Type.cpp - the types of RTSL ---------------------------------------===//
-#include "sema/Type.h"
+#include "sema/typed/Type.h"
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 namespace rtsl {
 

@@ -3,9 +3,9 @@
 // All of these recurse over the nesting of a type, which `maxTypeNesting` bounds.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/TypeProperties.h"
+#include "sema/typed/TypeProperties.h"
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <algorithm>
 

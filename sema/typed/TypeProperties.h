@@ -1,7 +1,7 @@
 //===- TypeProperties.h - questions about types ---------------------------===//
 #pragma once
 
-#include "sema/Type.h"
+#include "sema/typed/Type.h"
 
 #include <cstdint>
 

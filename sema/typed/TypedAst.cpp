@@ -1,12 +1,12 @@
 //===- TypedAst.cpp - names of built-ins and state, lookup in classes -----===//
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 namespace rtsl::typed {
 
 const BuiltinInfo &info(Builtin builtin) {
   static const BuiltinInfo table[] = {
 #define RTSL_BUILTIN(id, name, effect, cost, ...) {name, BuiltinEffect::effect, cost},
-#include "sema/Builtins.def"
+#include "language/Builtins.def"
   };
   return table[static_cast<std::size_t>(builtin)];
 }
@@ -18,7 +18,7 @@ const char *name(Builtin builtin) {
 const char *name(StateVariable variable) {
   static const char *const names[] = {
 #define RTSL_STATE_VARIABLE(name, type) #name,
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   };
   return names[static_cast<std::size_t>(variable)];
 }

@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/Ast.h"
-#include "sema/Type.h"
+#include "frontend/syntax/Ast.h"
+#include "sema/typed/Type.h"
 
 #include <memory>
 #include <string>
@@ -24,7 +24,7 @@ using StmtPtr = std::unique_ptr<Stmt>;
 
 enum class Builtin : std::uint8_t {
 #define RTSL_BUILTIN(id, name, effect, cost, ...) id,
-#include "sema/Builtins.def"
+#include "language/Builtins.def"
 };
 const char *name(Builtin builtin);
 
@@ -50,7 +50,7 @@ inline bool drawsRandom(Builtin builtin) { return builtin == Builtin::Rand || bu
 /// The rt_ variables; `RayOrigin` is rt_RayOrigin.
 enum class StateVariable : std::uint8_t {
 #define RTSL_STATE_VARIABLE(name, type) name,
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
 };
 const char *name(StateVariable variable); // without rt_
 

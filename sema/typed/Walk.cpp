@@ -1,7 +1,7 @@
 //===- Walk.cpp - over the parts of a typed tree --------------------------===//
-#include "sema/Walk.h"
+#include "sema/typed/Walk.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 namespace rtsl {
 

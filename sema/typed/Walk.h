@@ -1,7 +1,7 @@
 //===- Walk.h - over the parts of a typed tree ----------------------------===//
 #pragma once
 
-#include "sema/TypedAst.h"
+#include "sema/typed/TypedAst.h"
 
 #include <functional>
 #include <set>

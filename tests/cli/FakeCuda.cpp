@@ -1,7 +1,7 @@
 // Stands in for libcuda.so.1: a device whose memory is the process's, and whose one kernel paints a
 // pattern after having checked that it was launched as rtsl_render has to be. FAKE_CUDA makes it fail in
 // one of the ways in which drivers and devices do.
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -45,13 +45,13 @@ class Documents(Case):
     def test_limits_of_the_language(self):
         rows = table("docs/language.md", "`limit.all`")
         local = row(rows, "a local variable or parameter")
-        self.assertIn(f"{constant('sema/TypeProperties.h', 'maxLocalBytes') >> 20} MiB (error)", local)
-        self.assertIn(f"{constant('sema/TypeProperties.h', 'largeLocalBytes') >> 10} KiB (warning)", local)
-        self.assertEqual(str(constant("sema/TypeProperties.h", "maxTypeNesting")), row(rows, "structs and arrays"))
-        self.assertEqual(str(constant("sema/Program.h", "maxInheritanceDepth")), row(rows, "bases of a class"))
-        self.assertEqual(str(constant("frontend/TokenCheck.h", "maxBracketDepth")), row(rows, "brackets of any kind"))
-        self.assertEqual(str(constant("frontend/TokenCheck.h", "maxNesting")), row(rows, "expressions and statements"))
-        words = constant("runtime/device/Abi.h", "RTSL_MAX_ATTRIBUTE_WORDS")
+        self.assertIn(f"{constant('sema/typed/TypeProperties.h', 'maxLocalBytes') >> 20} MiB (error)", local)
+        self.assertIn(f"{constant('sema/typed/TypeProperties.h', 'largeLocalBytes') >> 10} KiB (warning)", local)
+        self.assertEqual(str(constant("sema/typed/TypeProperties.h", "maxTypeNesting")), row(rows, "structs and arrays"))
+        self.assertEqual(str(constant("sema/check/Program.h", "maxInheritanceDepth")), row(rows, "bases of a class"))
+        self.assertEqual(str(constant("frontend/syntax/TokenCheck.h", "maxBracketDepth")), row(rows, "brackets of any kind"))
+        self.assertEqual(str(constant("frontend/syntax/TokenCheck.h", "maxNesting")), row(rows, "expressions and statements"))
+        words = constant("runtime/device/ray/Abi.h", "RTSL_MAX_ATTRIBUTE_WORDS")
         self.assertEqual(f"{words} words", row(rows, "attributes of a hit"))
 
     def test_limits_of_the_preprocessor(self):
@@ -69,8 +69,8 @@ class Documents(Case):
         return "error[" not in self.run_rtslc("check", "deep.rtsl", status=None)[1]
 
     def test_what_is_within_the_limits_is_taken_and_what_is_not_is_refused(self):
-        nesting = constant("frontend/TokenCheck.h", "maxNesting")
-        brackets = constant("frontend/TokenCheck.h", "maxBracketDepth")
+        nesting = constant("frontend/syntax/TokenCheck.h", "maxNesting")
+        brackets = constant("frontend/syntax/TokenCheck.h", "maxBracketDepth")
         chain = lambda count: "float a = 1.0; a = a" + " + a" * count + ";"
         nested = lambda count: "float a = 1.0; a = " + "(" * count + "a" + ")" * count + ";"
         branches = lambda count: "int a = 1; " + "if (a == 0) " * count + "a = 2;"
@@ -81,7 +81,7 @@ class Documents(Case):
     def test_packages(self):
         page = read("docs/packages.md")
         self.assertIn(f"| version of the format: {constant('runtime/package/Package.cpp', 'formatVersion')} |", page)
-        depth = constant("runtime/RenderOptions.h", "maxRayDepth")
+        depth = constant("runtime/render/RenderOptions.h", "maxRayDepth")
         self.assertIn(f"| {depth + 1} numbers of 4 bytes: what `rtsl_lane_bytes` says for each limit of depth "
                       f"from 0 to {depth} |", page)
 

@@ -5,7 +5,7 @@
 //===----------------------------------------------------------------------===//
 #include "Target.h"
 
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 #include "frontend/preprocessor/Preprocessor.h"
 #include "sema/Sema.h"
 

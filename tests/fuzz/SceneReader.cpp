@@ -5,8 +5,8 @@
 //===----------------------------------------------------------------------===//
 #include "Target.h"
 
-#include "runtime/Error.h"
-#include "scene/SceneFile.h"
+#include "support/Error.h"
+#include "scenefile/SceneFile.h"
 
 #include <algorithm>
 #include <string>
@@ -30,7 +30,7 @@ std::vector<std::string> takeOverrides(std::string_view &input) {
 }
 
 /// A place counts lines and columns from 1; line 0 is a file as a whole.
-void checkPlace(const runtime::Place &place, std::string_view text) {
+void checkPlace(const Place &place, std::string_view text) {
   const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
   if (place.file == "scene.json")
     require(place.line <= lines && (place.line == 0 || place.column > 0), "a place lies in the scene file");
@@ -48,12 +48,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     for (const scene::LocatedName &mention : scene::classMentions(scene))
       checkPlace(mention.place, text);
     scene::renderOptions(scene.render);
-  } catch (const runtime::Error &error) {
-    require(error.code != runtime::ErrorCode::Internal, "an error is the author's");
+  } catch (const Error &error) {
+    require(error.code != ErrorCode::Internal, "an error is the author's");
     require(error.what()[0] != '\0', "an error says something");
     if (error.place)
       checkPlace(*error.place, text);
-    for (const runtime::RelatedPlace &related : error.relatedPlaces)
+    for (const RelatedPlace &related : error.relatedPlaces)
       checkPlace(related.place, text);
   }
   return 0;

@@ -1,7 +1,7 @@
 //===- Classes.cpp - the classes of a scene -------------------------------===//
 #include "Generator.h"
 
-#include "sema/TypeProperties.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ static void append(std::vector<Variable> &to, const std::vector<Variable> &more)
 static const std::vector<typed::StateVariable> &stateVariables() {
   static const std::vector<typed::StateVariable> all = {
 #define RTSL_STATE_VARIABLE(name, type) typed::StateVariable::name,
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   };
   return all;
 }

@@ -1,7 +1,7 @@
 //===- Declarations.cpp - constants and functions at file level -----------===//
 #include "Generator.h"
 
-#include "sema/TypeProperties.h"
+#include "sema/typed/TypeProperties.h"
 
 namespace rtsl::random {
 

@@ -10,7 +10,7 @@
 #include "Program.h"
 #include "Vocabulary.h"
 
-#include "sema/ClassModel.h"
+#include "sema/model/ClassModel.h"
 
 #include <random>
 #include <set>

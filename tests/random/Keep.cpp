@@ -11,7 +11,7 @@
 #include "World.h"
 
 #include "codegen/driver/Compiler.h"
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
 #include <CLI/CLI.hpp>

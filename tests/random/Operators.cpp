@@ -1,7 +1,7 @@
 //===- Operators.cpp - unary and binary operators by the type they give ---===//
 #include "Generator.h"
 
-#include "sema/TypeProperties.h"
+#include "sema/typed/TypeProperties.h"
 
 namespace rtsl::random {
 

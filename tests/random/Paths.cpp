@@ -4,7 +4,7 @@
 #include "World.h"
 
 #include "codegen/driver/Compiler.h"
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
 #include <algorithm>

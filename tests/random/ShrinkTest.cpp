@@ -1,7 +1,7 @@
 //===- ShrinkTest.cpp - programs, and what is left of them ----------------===//
 #include "Shrink.h"
 
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 //===- Statements.cpp - control flow that ends ----------------------------===//
 #include "Generator.h"
 
-#include "sema/TypeProperties.h"
+#include "sema/typed/TypeProperties.h"
 
 namespace rtsl::random {
 

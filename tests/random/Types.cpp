@@ -1,8 +1,8 @@
 //===- Types.cpp - which type the next thing has --------------------------===//
 #include "Generator.h"
 
-#include "sema/Conversion.h"
-#include "sema/TypeProperties.h"
+#include "sema/model/Conversion.h"
+#include "sema/typed/TypeProperties.h"
 
 namespace rtsl::random {
 

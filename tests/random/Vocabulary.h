@@ -1,8 +1,8 @@
 //===- Vocabulary.h - types and built-in functions to choose from ---------===//
 #pragma once
 
-#include "sema/Builtins.h"
-#include "sema/TypedAst.h"
+#include "sema/model/Builtins.h"
+#include "sema/typed/TypedAst.h"
 
 #include <map>
 #include <memory>

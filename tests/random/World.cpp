@@ -1,9 +1,9 @@
 //===- World.cpp - a small scene that a random program runs in ------------===//
 #include "World.h"
 
-#include "runtime/PrintLog.h"
-#include "runtime/device/AnyHit.h"
-#include "runtime/device/Traverse.h"
+#include "runtime/program/PrintLog.h"
+#include "runtime/device/traverse/AnyHit.h"
+#include "runtime/device/traverse/Traverse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -411,7 +411,7 @@ static RtslState someState(const RtslLaunch &launch, RtslEvents &events, std::ui
     }
   };
 #define RTSL_STATE_VARIABLE(name, type) fill(&state.name, sizeof state.name);
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   std::fill_n(state.attributes, RTSL_MAX_ATTRIBUTE_WORDS, 1u); // true, 1 or nearly 0, wherever the compiler put which
   return state;
 }

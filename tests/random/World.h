@@ -3,7 +3,7 @@
 
 #include "Program.h"
 
-#include "runtime/ProgramHost.h"
+#include "runtime/program/ProgramHost.h"
 
 #include <cstdint>
 #include <deque>

@@ -1,7 +1,7 @@
 //===- OutOfMemory.cpp - memory that runs out is named so ------------------===//
 #include "OutOfMemory.h"
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -38,8 +38,8 @@ const char *name = "";
 bool isOutOfMemory(const std::exception &error) {
   if (dynamic_cast<const std::bad_alloc *>(&error) || dynamic_cast<const std::length_error *>(&error))
     return true;
-  if (const auto *ours = dynamic_cast<const runtime::Error *>(&error))
-    return ours->code == runtime::ErrorCode::OutOfMemory;
+  if (const auto *ours = dynamic_cast<const Error *>(&error))
+    return ours->code == ErrorCode::OutOfMemory;
   const auto *system = dynamic_cast<const std::system_error *>(&error);
   return system && (system->code() == std::errc::not_enough_memory ||
                     system->code() == std::errc::resource_unavailable_try_again);

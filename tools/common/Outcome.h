@@ -1,7 +1,7 @@
 //===- Outcome.h - what a rendering met, in words --------------------------===//
 #pragma once
 
-#include "runtime/RenderOptions.h"
+#include "runtime/render/RenderOptions.h"
 
 #include <string>
 

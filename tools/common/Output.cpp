@@ -1,7 +1,7 @@
 //===- Output.cpp - what goes to standard output ---------------------------===//
 #include "Output.h"
 
-#include "runtime/AtomicFile.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 namespace rtsl::tool {
 
-void printOut(std::string_view text) { runtime::writeFileAtomically("-", text); }
+void printOut(std::string_view text) { writeFileAtomically("-", text); }
 
 bool finishOutput(const char *program) {
   errno = 0;

@@ -5,7 +5,7 @@
 
 namespace rtsl::tool {
 
-/// Writes all of `text` to standard output. Throws runtime::Error with FileUnwritable: a full disk
+/// Writes all of `text` to standard output. Throws Error with FileUnwritable: a full disk
 /// is said, whatever a command prints.
 void printOut(std::string_view text);
 

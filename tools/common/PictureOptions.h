@@ -1,7 +1,7 @@
 //===- PictureOptions.h - options of the picture that is rendered ----------===//
 #pragma once
 
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <CLI/CLI.hpp>
 

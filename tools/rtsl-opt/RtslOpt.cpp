@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/Passes.h"
+#include "tools/rtsl-opt/ContinuationPasses.h"
 #include "codegen/passes/errors/BoundHitError.h"
 #include "codegen/passes/restructure/Restructure.h"
 

@@ -6,17 +6,17 @@
 // if SIGINT or SIGTERM stopped it.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/AtomicFile.h"
-#include "runtime/HostMegakernel.h"
+#include "support/AtomicFile.h"
+#include "runtime/render/HostMegakernel.h"
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
-#include "tools/rtslc/Interruption.h"
-#include "tools/rtslc/OptionValues.h"
-#include "tools/rtslc/OutOfMemory.h"
-#include "tools/rtslc/Outcome.h"
-#include "tools/rtslc/Output.h"
-#include "tools/rtslc/PictureOptions.h"
+#include "tools/common/Interruption.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/OutOfMemory.h"
+#include "tools/common/Outcome.h"
+#include "tools/common/Output.h"
+#include "tools/common/PictureOptions.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -129,7 +129,7 @@ std::optional<runtime::Image> readReference(const Options &options, const runtim
   runtime::Image reference = runtime::readImage(options.reference);
   const std::uint32_t channels = package.scene.launch().colorComponents;
   if (reference.width != render.width || reference.height != render.height || reference.channels != channels)
-    throw runtime::Error(runtime::ErrorCode::BadImage,
+    throw Error(ErrorCode::BadImage,
                          fmt::format("`{}` has {}x{} pixels of {} channels, not {}x{} of {}", options.reference,
                                      reference.width, reference.height, reference.channels, render.width, render.height,
                                      channels));
@@ -151,9 +151,9 @@ bool compare(const runtime::Image &image, const runtime::Image &reference, const
 
 int render(const Options &options) {
   runtime::checkWritable(options.output, options.format);
-  runtime::refuseToOverwrite(options.output, {options.package});
+  refuseToOverwrite(options.output, {options.package});
   if (!options.reference.empty())
-    runtime::refuseToOverwrite(options.output, {options.reference});
+    refuseToOverwrite(options.output, {options.reference});
   const runtime::Package package = runtime::readPackage(options.package);
   const runtime::RenderOptions render = renderOptions(options, package);
   const std::optional<runtime::Image> reference = readReference(options, package, render);
@@ -167,7 +167,7 @@ int render(const Options &options) {
     image = runtime::renderOnHost(code.entries(), package.scene, render, &statistics);
   }
   if (statistics.samples == 0)
-    throw runtime::Error(runtime::ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
+    throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
   runtime::writeImage(options.output, image, options.format);
   report(options, package, render, statistics, gpu);
   return !reference || compare(image, *reference, options) ? Fine : Refused;
@@ -220,11 +220,11 @@ int main(int argc, char **argv) {
       tool::printOut(help.str());
     }
     return tool::finishOutput("rtsl-run") || status != Fine ? status : Refused;
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     fmt::print(stderr, "rtsl-run: {}\n", error.what());
-    if (error.code == runtime::ErrorCode::NoDevice)
+    if (error.code == ErrorCode::NoDevice)
       fmt::print(stderr, "`--target=host` renders on the CPU\n");
-    return tool::statusAfterInterruption(error.code == runtime::ErrorCode::Internal ? InternalError : Refused);
+    return tool::statusAfterInterruption(error.code == ErrorCode::Internal ? InternalError : Refused);
   } catch (const std::exception &error) {
     if (tool::isOutOfMemory(error)) {
       tool::sayOutOfMemory("rtsl-run");

@@ -3,7 +3,7 @@
 #include "Messages.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
-#include "runtime/AtomicFile.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 
@@ -32,10 +32,10 @@ void writeFixes(const Messages &messages) {
   const auto path = [&](FileId file) { return std::string(messages.sources.name(file)); };
   for (const FileId file : files)
     if (path(file) != "<stdin>")
-      runtime::checkFileWritable(path(file));
+      checkFileWritable(path(file));
   for (const FileId file : files) {
     const FixedText fixed = applyFixes(messages.diagnostics, file);
-    runtime::writeFileAtomically(path(file) == "<stdin>" ? "-" : path(file), fixed.text);
+    writeFileAtomically(path(file) == "<stdin>" ? "-" : path(file), fixed.text);
     fmt::print(stderr, "{}: {} fixed", path(file), count(fixed.applied, "mistake"));
     fmt::print(stderr, fixed.skipped ? ", {} left that overlap with these: run again\n" : "\n", fixed.skipped);
   }
@@ -56,7 +56,7 @@ void checkScene(const std::string &file, const CheckOptions &options, SceneBuild
               return scene->facts();
             });
   if (scene)
-    for (const runtime::Warning &warning : scene->warnings())
+    for (const Warning &warning : scene->warnings())
       messages.report(warning);
 }
 
@@ -71,7 +71,7 @@ std::vector<std::string> checkFiles(const CheckOptions &options, SceneBuilder bu
     std::vector<std::string> ofScene;
     try {
       checkScene(file, options, buildScene, messages, ofScene);
-    } catch (const runtime::Error &error) {
+    } catch (const Error &error) {
       messages.report(error);
     }
     filesRead.insert(filesRead.end(), ofScene.begin(), ofScene.end());
@@ -97,7 +97,7 @@ int check(const CheckOptions &options, SceneBuilder buildScene) {
       checkOutputs("", options.common.dependencies, options.files, filesRead);
       if (!messages.diagnostics.hasErrors())
         writeDependencies(options.common.dependencies, "", options.files, filesRead);
-    } catch (const runtime::Error &error) {
+    } catch (const Error &error) {
       fmt::print(stderr, "rtslc: {}\n", error.what());
       return Diagnosed;
     }

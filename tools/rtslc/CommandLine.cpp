@@ -1,12 +1,12 @@
 //===- CommandLine.cpp - what the commands of rtslc share -----------------===//
 #include "CommandLine.h"
 
-#include "OptionValues.h"
-#include "OutOfMemory.h"
-#include "Output.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/OutOfMemory.h"
+#include "tools/common/Output.h"
 #include "codegen/driver/LlvmErrors.h"
-#include "runtime/Error.h"
-#include "runtime/device/Abi.h"
+#include "support/Error.h"
+#include "runtime/device/ray/Abi.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>
@@ -203,9 +203,9 @@ int run(CLI::App &app, Action &action, int argc, char **argv, const std::functio
     first();
     const int status = runCommand(app, action, argc, argv);
     return finishOutput("rtslc") || status != Fine ? status : Diagnosed;
-  } catch (const runtime::Error &error) { // what no command has reported
+  } catch (const Error &error) { // what no command has reported
     fmt::print(stderr, "rtslc: {}\n", error.what());
-    if (error.code != runtime::ErrorCode::Internal)
+    if (error.code != ErrorCode::Internal)
       return Diagnosed;
   } catch (const std::exception &error) {
     if (isOutOfMemory(error)) {

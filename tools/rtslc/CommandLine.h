@@ -3,7 +3,7 @@
 
 #include "PreprocessorCommandLine.h"
 #include "codegen/driver/Compiler.h"
-#include "frontend/Diagnostics.h"
+#include "frontend/diagnostics/Diagnostics.h"
 
 #include <CLI/CLI.hpp>
 

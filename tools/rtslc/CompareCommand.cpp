@@ -1,11 +1,11 @@
 //===- CompareCommand.cpp - rtslc compare ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "OptionValues.h"
-#include "Output.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/Output.h"
 #include "report/ErrorMetrics.h"
 #include "report/Flip.h"
-#include "runtime/Image.h"
+#include "runtime/image/Image.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -127,7 +127,7 @@ int compare(const CompareOptions &options) {
     else
       printText(comparison);
     return comparison.isEqualEnough ? Fine : Diagnosed;
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     messages.report(error);
   }
   return messages.status();

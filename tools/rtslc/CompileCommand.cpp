@@ -1,14 +1,14 @@
 //===- CompileCommand.cpp - rtslc compile ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "OptionValues.h"
+#include "tools/common/OptionValues.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/driver/Compiler.h"
 #include "codegen/driver/Reflection.h"
-#include "frontend/Parser.h"
-#include "runtime/AtomicFile.h"
+#include "frontend/syntax/Parser.h"
+#include "support/AtomicFile.h"
 
 #include <algorithm>
 #include <memory>
@@ -59,7 +59,7 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options, 
         return scene->facts();
       });
   if (scene)
-    for (const runtime::Warning &warning : scene->warnings())
+    for (const Warning &warning : scene->warnings())
       messages.report(warning);
   return text;
 }
@@ -143,9 +143,9 @@ int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
       // First what names the output: where that cannot be written, the old output stays.
       writeDependencies(options.common.dependencies, options.output, options.files, filesRead);
-      runtime::writeFileAtomically(options.output, *text);
+      writeFileAtomically(options.output, *text);
     }
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     messages.report(error);
   }
   return messages.status();

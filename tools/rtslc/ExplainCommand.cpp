@@ -3,13 +3,13 @@
 #include "Explanation.h"
 #include "MeasureItems.h"
 #include "Messages.h"
-#include "OptionValues.h"
-#include "PictureOptions.h"
-#include "Progress.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/PictureOptions.h"
+#include "tools/common/Progress.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
-#include "runtime/AtomicFile.h"
-#include "scene/SceneFile.h"
+#include "support/AtomicFile.h"
+#include "scenefile/SceneFile.h"
 
 #include <algorithm>
 #include <memory>
@@ -99,7 +99,7 @@ std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedSce
       explainScene(*loaded.module, loaded.request, loaded.compile, messages.diagnostics, loaded.makeObjects);
   if (!explanation)
     return std::nullopt;
-  for (const runtime::Warning &warning : loaded.scene->warnings())
+  for (const Warning &warning : loaded.scene->warnings())
     messages.report(warning);
   loaded.scene->useProgram(explanation->program);
   Explanation whole(loaded.description.file, *explanation, loaded.scene->meshAttributes());
@@ -130,10 +130,10 @@ int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer
                                                 : explainFiles(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
-      runtime::writeFileAtomically(options.output, *text);
+      writeFileAtomically(options.output, *text);
       writeDependencies(options.common.dependencies, options.output, options.files, filesRead);
     }
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     messages.report(error);
   }
   return messages.status();

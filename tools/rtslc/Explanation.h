@@ -3,7 +3,7 @@
 
 #include "MeasureItems.h"
 #include "codegen/driver/Compiler.h"
-#include "runtime/Scene.h"
+#include "runtime/scene/Scene.h"
 
 #include <string>
 #include <vector>

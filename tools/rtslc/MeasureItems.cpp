@@ -1,6 +1,6 @@
 #include "MeasureItems.h"
 
-#include "runtime/Renderer.h"
+#include "runtime/render/Renderer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "codegen/driver/SceneProgram.h"
-#include "runtime/RenderOptions.h"
+#include "runtime/render/RenderOptions.h"
 
 #include <cstdint>
 #include <functional>

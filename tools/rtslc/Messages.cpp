@@ -9,8 +9,8 @@ namespace rtsl::tool {
 
 namespace {
 
-Code codeFor(runtime::ErrorCode code) {
-  using E = runtime::ErrorCode;
+Code codeFor(ErrorCode code) {
+  using E = ErrorCode;
   switch (code) {
   case E::FileNotFound: return Code::fileNotFound;
   case E::FileUnreadable: return Code::fileUnreadable;
@@ -63,7 +63,7 @@ Messages::Messages(const CommonOptions &options) : options(options) {
   diagnostics.warnings = options.warnings;
 }
 
-SourceRange Messages::rangeOf(const runtime::Place &place) {
+SourceRange Messages::rangeOf(const Place &place) {
   if (place.line == 0) // a file as a whole: the message names it, and it may be a device or a gigabyte
     return {};
   FileId file = sources.find(place.file);
@@ -76,22 +76,22 @@ SourceRange Messages::rangeOf(const runtime::Place &place) {
   return {file, begin, begin + place.length};
 }
 
-void Messages::report(const runtime::Error &error) {
-  if (error.code == runtime::ErrorCode::Internal)
+void Messages::report(const Error &error) {
+  if (error.code == ErrorCode::Internal)
     throw error;
   const SourceRange range = error.place ? rangeOf(*error.place) : SourceRange{};
   Diagnostic &diagnostic = diagnostics.report(codeFor(error.code), range, std::string(error.what()));
-  for (const runtime::RelatedPlace &related : error.relatedPlaces)
+  for (const RelatedPlace &related : error.relatedPlaces)
     diagnostic.label(rangeOf(related.place), related.text);
   for (const std::string &note : error.notes)
     diagnostic.note(note);
   if (error.replacement)
     diagnostic.fix(range, *error.replacement);
-  for (const runtime::Error &further : error.further)
+  for (const Error &further : error.further)
     report(further);
 }
 
-void Messages::report(const runtime::Warning &warning) {
+void Messages::report(const Warning &warning) {
   const SourceRange range = warning.place ? rangeOf(*warning.place) : SourceRange{};
   diagnostics.report(Code::sceneWarning, range, warning.message);
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "CommandLine.h"
-#include "frontend/Diagnostics.h"
-#include "runtime/Error.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "support/Error.h"
 
 namespace rtsl::tool {
 
@@ -17,11 +17,11 @@ public:
   Diagnostics diagnostics{sources};
 
   /// Records what the runtime or a scene file threw, with its place, and what else it found wrong.
-  void report(const runtime::Error &error);
-  void report(const runtime::Warning &warning);
+  void report(const Error &error);
+  void report(const Warning &warning);
 
   /// The range of a place in a file, which is read if no source has its name yet.
-  SourceRange rangeOf(const runtime::Place &place);
+  SourceRange rangeOf(const Place &place);
 
   /// Writes all messages to standard error.
   void print();

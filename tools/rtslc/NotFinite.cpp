@@ -1,9 +1,9 @@
 //===- NotFinite.cpp - samples that are infinite or not a number -----------===//
 #include "NotFinite.h"
 
-#include "runtime/NumberCheck.h"
-#include "runtime/PrintLog.h"
-#include "runtime/WorkerThreads.h"
+#include "runtime/program/NumberCheck.h"
+#include "runtime/program/PrintLog.h"
+#include "support/WorkerThreads.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &s
   }
   RtslLaunch launch = renderer.launch();
   const std::uint64_t stackBytes = program->stackBytes(render.maxDepth, launch.referenceChain);
-  runtime::runOnThreads(1, stackBytes, [&](unsigned) {
+  runOnThreads(1, stackBytes, [&](unsigned) {
     for (const runtime::SampleId &sample : samples)
       result.push_back(explain(sample, launch, *program));
   });

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "codegen/driver/Compiler.h"
-#include "runtime/Renderer.h"
+#include "runtime/render/Renderer.h"
 
 #include <optional>
 #include <vector>
@@ -14,11 +14,11 @@ struct SampleNotFinite {
   runtime::SampleId sample;
   std::vector<float> color;
   /// Where a shader made the number to which that goes back; nothing if that is not found.
-  std::optional<runtime::Place> place;
+  std::optional<Place> place;
 };
 
 /// Renders samples of a rendering that are not finite again, by a program that checks its numbers
-/// (runtime/NumberCheck.h), and finds out where each stopped being finite: RenderOptions::mostNotFinite
+/// (runtime/program/NumberCheck.h), and finds out where each stopped being finite: RenderOptions::mostNotFinite
 /// of them, where lanes have named fewer too. The scene gets that program.
 std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &statistics,
                                               const typed::Module &module,

@@ -2,11 +2,11 @@
 #include "CommandLine.h"
 #include "Messages.h"
 #include "SceneShaders.h"
-#include "runtime/AtomicFile.h"
-#include "runtime/FlatScene.h"
+#include "support/AtomicFile.h"
+#include "runtime/accel/FlatScene.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 
 #include <fmt/format.h>
 
@@ -47,7 +47,7 @@ void packScene(const PackOptions &options, Messages &messages) {
   };
   if (!compilePackage(*module, request, compile, messages.diagnostics, makeObjects, package))
     return;
-  for (const runtime::Warning &warning : scene->warnings())
+  for (const Warning &warning : scene->warnings())
     messages.report(warning);
   package.scene = runtime::flatten(*scene);
 
@@ -57,7 +57,7 @@ void packScene(const PackOptions &options, Messages &messages) {
     package.laneBytes[depth] = static_cast<std::uint32_t>(code.entries().laneBytes(depth, chain));
 
   const std::string bytes = runtime::serialize(package);
-  runtime::writeFileAtomically(options.output, bytes);
+  writeFileAtomically(options.output, bytes);
   writeDependencies(options.common.dependencies, options.output, {options.scene}, filesRead);
   if (!options.quiet && !options.common.jsonDiagnostics)
     fmt::print(stderr, "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB\n", options.output,
@@ -69,7 +69,7 @@ int pack(const PackOptions &options) {
   Messages messages(options.common);
   try {
     packScene(options, messages);
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     messages.report(error);
   }
   return messages.status();

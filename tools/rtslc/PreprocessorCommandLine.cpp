@@ -1,7 +1,7 @@
 //===- PreprocessorCommandLine.cpp - -I, -D, -U, -MD and what they ask for -===//
 #include "PreprocessorCommandLine.h"
 
-#include "runtime/AtomicFile.h"
+#include "support/AtomicFile.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -114,9 +114,9 @@ void checkOutputs(const std::string &output, const DependencyOptions &dependenci
   if (dependencies.isAsked)
     outputs.push_back(dependencyFile(dependencies, output, sources));
   for (const std::string &file : outputs) {
-    runtime::checkFileWritable(file);
-    runtime::refuseToOverwrite(file, sources);
-    runtime::refuseToOverwrite(file, filesRead);
+    checkFileWritable(file);
+    refuseToOverwrite(file, sources);
+    refuseToOverwrite(file, filesRead);
   }
 }
 
@@ -126,7 +126,7 @@ void writeDependencies(const DependencyOptions &options, const std::string &outp
     return;
   const std::string file = dependencyFile(options, output, sources);
   const std::string target = !options.target.empty() ? options.target : hasFile(output) ? output : file;
-  runtime::writeFileAtomically(file, dependencyRule(target, files));
+  writeFileAtomically(file, dependencyRule(target, files));
 }
 
 } // namespace rtsl::tool

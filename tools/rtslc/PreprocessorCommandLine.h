@@ -34,7 +34,7 @@ void checkOutputs(const std::string &output, const DependencyOptions &dependenci
                   const std::vector<std::string> &filesRead = {});
 
 /// Writes the dependency file if it is asked for: what `output` (empty or "-": no file) was made of. `sources` are the files
-/// of the command line, `files` all that were read. Throws runtime::Error with FileUnwritable.
+/// of the command line, `files` all that were read. Throws Error with FileUnwritable.
 void writeDependencies(const DependencyOptions &options, const std::string &output,
                        const std::vector<std::string> &sources, const std::vector<std::string> &files);
 

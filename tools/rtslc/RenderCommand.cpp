@@ -1,22 +1,22 @@
 //===- RenderCommand.cpp - rtslc render -----------------------------------===//
 #include "CommandLine.h"
-#include "Interruption.h"
+#include "tools/common/Interruption.h"
 #include "Messages.h"
 #include "NotFinite.h"
-#include "OptionValues.h"
-#include "OutOfMemory.h"
-#include "Outcome.h"
-#include "Output.h"
-#include "PictureOptions.h"
-#include "Progress.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/OutOfMemory.h"
+#include "tools/common/Outcome.h"
+#include "tools/common/Output.h"
+#include "tools/common/PictureOptions.h"
+#include "tools/common/Progress.h"
 #include "SceneShaders.h"
 #include "codegen/driver/SceneProgram.h"
-#include "runtime/FlatScene.h"
-#include "runtime/HostMegakernel.h"
-#include "runtime/MachineStack.h"
-#include "runtime/PrintLog.h"
-#include "runtime/Renderer.h"
-#include "scene/SceneFile.h"
+#include "runtime/accel/FlatScene.h"
+#include "runtime/render/HostMegakernel.h"
+#include "runtime/render/MachineStack.h"
+#include "runtime/program/PrintLog.h"
+#include "runtime/render/Renderer.h"
+#include "scenefile/SceneFile.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -232,7 +232,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   if (!scene)
     return;
   summary.times.compile = secondsSince(start) - summary.times.scene;
-  for (const runtime::Warning &warning : scene->warnings())
+  for (const Warning &warning : scene->warnings())
     messages.report(warning);
 
   runtime::RenderOptions &render = summary.render = renderOptions(options, description.render);
@@ -245,11 +245,11 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
                                    : runtime::render(*scene, render, &summary.statistics);
   progress.finish();
   if (summary.statistics.samples == 0)
-    throw runtime::Error(runtime::ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
+    throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
   summary.printed = runtime::takePrintLog().texts(scene->program().prints);
   std::uint64_t stackBytes = 0;
   if (runtime::failedMachineStacks(&stackBytes))
-    throw runtime::Error(runtime::ErrorCode::OutOfMemory,
+    throw Error(ErrorCode::OutOfMemory,
                          fmt::format("no memory for rays in flight: a thread needs {} bytes; ask for a smaller `--depth`",
                                      stackBytes));
 
@@ -277,7 +277,7 @@ int render(const RenderCommandOptions &options) {
   Messages messages(options.common);
   try {
     renderScene(options, messages);
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     messages.report(error);
   }
   return statusAfterInterruption(messages.status());

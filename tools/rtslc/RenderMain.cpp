@@ -5,7 +5,7 @@
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
 #include "MeasureItems.h"
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 
 using namespace rtsl;
 using namespace rtsl::tool;

@@ -4,12 +4,12 @@
 //
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
-#include "Interruption.h"
+#include "tools/common/Interruption.h"
 #include "Messages.h"
-#include "OptionValues.h"
-#include "Output.h"
-#include "PictureOptions.h"
-#include "Progress.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/Output.h"
+#include "tools/common/PictureOptions.h"
+#include "tools/common/Progress.h"
 #include "SceneShaders.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Versions.h"
@@ -19,11 +19,11 @@
 #include "report/Flip.h"
 #include "report/Machine.h"
 #include "report/Page.h"
-#include "runtime/AtomicFile.h"
-#include "runtime/MachineStack.h"
-#include "runtime/Renderer.h"
-#include "runtime/Versions.h"
-#include "scene/SceneFile.h"
+#include "support/AtomicFile.h"
+#include "runtime/render/MachineStack.h"
+#include "runtime/render/Renderer.h"
+#include "runtime/program/Versions.h"
+#include "scenefile/SceneFile.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -105,7 +105,7 @@ report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions o
   report::Picture picture;
   picture.image = runtime::render(scene, options, &picture.statistics);
   if (runtime::failedMachineStacks(nullptr))
-    throw runtime::Error(runtime::ErrorCode::OutOfMemory, "no memory for rays in flight; ask for a smaller `--depth`");
+    throw Error(ErrorCode::OutOfMemory, "no memory for rays in flight; ask for a smaller `--depth`");
   return picture;
 }
 
@@ -186,7 +186,7 @@ std::vector<Configuration> configurationsFor(const ReportOptions &options) {
           configurations.push_back(one);
       }
   if (configurations.empty())
-    throw runtime::Error(runtime::ErrorCode::UnknownName,
+    throw Error(ErrorCode::UnknownName,
                          "no configuration is left by `--only`; their names are made of strict or fast, embree or device, and recurse or split");
   return configurations;
 }
@@ -227,14 +227,14 @@ std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options,
   for (FileId file = 1; file <= messages.sources.count(); ++file)
     all += std::string(messages.sources.name(file)) + '\0' + std::string(messages.sources.text(file)) + '\0';
   if (options.scene != "-") // the text of standard input is among the sources
-    all += runtime::readFile(loaded.description.file);
+    all += readFile(loaded.description.file);
   for (const std::string &value : options.overrides)
     all += '\0' + value;
   for (const scene::GeometryDescription &geometry : loaded.description.objects)
     if (!geometry.meshPath.empty())
-      all += runtime::readFile(geometry.meshPath);
+      all += readFile(geometry.meshPath);
   if (!options.reference.empty())
-    all += runtime::readFile(options.reference);
+    all += readFile(options.reference);
   return fmt::format("{:016x}", report::hashOf(all));
 }
 
@@ -251,18 +251,18 @@ void checkFolder(const ReportOptions &options, const std::string &fingerprint, c
   for (const char *part : parts) {
     const fs::path path = fs::path(options.folder) / part;
     std::error_code error;
-    runtime::refuseToOverwrite(path.string(), inputs);
+    refuseToOverwrite(path.string(), inputs);
     for (const fs::directory_entry &entry : fs::directory_iterator(path, error)) // of folders: they are emptied
-      runtime::refuseToOverwrite(entry.path().string(), inputs);
+      refuseToOverwrite(entry.path().string(), inputs);
   }
   if (options.fresh || !fs::exists(identityOf(options)))
     return;
-  const nlohmann::json earlier = nlohmann::json::parse(runtime::readFile(identityOf(options)), nullptr, false);
+  const nlohmann::json earlier = nlohmann::json::parse(readFile(identityOf(options)), nullptr, false);
   if (earlier.is_discarded() || earlier.value("fingerprint", "") != fingerprint)
-    throw runtime::Error(runtime::ErrorCode::FileUnwritable,
+    throw Error(ErrorCode::FileUnwritable,
                          fmt::format("`{}` holds a report of another scene, shader, size or version; choose another `--out`, or pass `--fresh` to begin it anew",
                                      options.folder),
-                         runtime::Place{options.folder});
+                         Place{options.folder});
 }
 
 /// Makes the folder, or finds the same study in it.
@@ -270,16 +270,16 @@ void openFolder(const ReportOptions &options, const std::string &fingerprint) {
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error || !fs::is_directory(options.folder))
-    throw runtime::Error(runtime::ErrorCode::FileUnwritable,
+    throw Error(ErrorCode::FileUnwritable,
                          fmt::format("cannot make the folder `{}`: {}", options.folder, error ? error.message() : "there is a file of that name"),
-                         runtime::Place{options.folder});
+                         Place{options.folder});
   if (options.fresh)
     for (const char *part : parts)
       fs::remove_all(fs::path(options.folder) / part, error);
   if (fs::exists(identityOf(options)))
     return;
   const nlohmann::ordered_json document = {{"version", 1}, {"scene", options.scene}, {"fingerprint", fingerprint}};
-  runtime::writeFileAtomically(identityOf(options), document.dump(2) + "\n");
+  writeFileAtomically(identityOf(options), document.dump(2) + "\n");
 }
 
 /// The pictures of the page: the reference, and each different picture with its two maps. All have
@@ -419,8 +419,8 @@ void makeReport(const ReportOptions &options, Messages &messages) {
   context.versions.insert(context.versions.begin(), {{"rtslc", RTSL_VERSION}, {"LLVM", llvmVersion()}});
   context.machine = report::machineFacts();
   const std::string json = report::writeJson(context, summary, reference);
-  runtime::writeFileAtomically(options.folder + "/report.json", json);
-  runtime::writeFileAtomically(options.folder + "/index.html",
+  writeFileAtomically(options.folder + "/report.json", json);
+  writeFileAtomically(options.folder + "/index.html",
                                report::writePage(context, summary, reference, exhibitsFor(subjects, reference, options.folder)));
   printSummary(options, summary, json);
 }
@@ -429,8 +429,8 @@ int report(const ReportOptions &options) {
   Messages messages(options.common);
   try {
     makeReport(options, messages);
-  } catch (runtime::Error &error) {
-    if (error.code == runtime::ErrorCode::Cancelled)
+  } catch (Error &error) {
+    if (error.code == ErrorCode::Cancelled)
       error.note("the same command goes on from here");
     messages.report(error);
   }

@@ -2,10 +2,10 @@
 #include "SceneShaders.h"
 
 #include "Shaders.h"
-#include "frontend/FileSearch.h"
-#include "runtime/AtomicFile.h"
-#include "runtime/Scene.h"
-#include "scene/SceneParts.h"
+#include "frontend/preprocessor/FileSearch.h"
+#include "support/AtomicFile.h"
+#include "runtime/scene/Scene.h"
+#include "scenefile/SceneParts.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>
@@ -22,9 +22,9 @@ bool hasEnding(const std::string &file, const std::string &ending) {
 }
 
 [[noreturn]] void refuseShaders(const std::string &file, const char *command) {
-  runtime::Error error(runtime::ErrorCode::NotAScene,
+  Error error(ErrorCode::NotAScene,
                        fmt::format("`{}` holds shaders, and `rtslc {}` takes a scene, which imports them", file, command),
-                       runtime::Place{file});
+                       Place{file});
   error.note(fmt::format("a scene is a file such as {{\"rtsl\": 1, \"import\": [\"{}\"], \"camera\": {{\"class\": ...}}, "
                          "\"objects\": [{{\"mesh\": ..., \"material\": {{\"class\": ...}}}}]}}",
                          std::filesystem::path(file).filename().string()));
@@ -43,7 +43,7 @@ scene::SceneDescription readScene(const std::string &file, const std::vector<std
   if (file != "-")
     return scene::readSceneFile(file, overrides);
   const char *const name = "<stdin>";
-  const std::string text = runtime::readFile(file);
+  const std::string text = readFile(file);
   messages.sources.add(name, text); // messages show it
   return scene::parseScene(text, name, overrides);
 }

@@ -3,8 +3,8 @@
 
 #include "Messages.h"
 #include "codegen/driver/Compiler.h"
-#include "scene/SceneFile.h"
-#include "sema/TypedAst.h"
+#include "scenefile/SceneFile.h"
+#include "sema/typed/TypedAst.h"
 
 #include <memory>
 

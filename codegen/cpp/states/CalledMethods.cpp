@@ -6,14 +6,14 @@
 //   return rtsl::callThen(rt, frame, Step::Tint_shadeAfterCall1, inner, FilterRef::Follow{o, d});
 //
 // The caller's state ends there, and goes on in another when the method has returned. The method's frame begins with that
-// struct, whatever class has it (include/rtsl/shader/Calls.h, codegen/passes/continuation/OpenCalls.cpp).
+// struct, whatever class has it (include/rtsl/shader/Calls.h, codegen/passes/continuation/calls/OpenCalls.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
-#include "codegen/cpp/States.h"
+#include "codegen/cpp/states/States.h"
 
-#include "codegen/lower/Analysis.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "sema/typed/Analysis.h"
+#include "codegen/passes/continuation/calls/Steps.h"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ void ModulePrinter::findCalledMethods() {
     called.slot = slot.getValue().str();
     for (const auto &definition : module.classes)
       for (const auto &function : definition->functions)
-        if (definition->name == ofClass.getValue() && lowering::slotName(module, *function) == called.slot) {
+        if (definition->name == ofClass.getValue() && typed::slotName(module, *function) == called.slot) {
           called.definition = definition.get();
           called.function = function.get();
         }
@@ -93,7 +93,7 @@ const CalledMethod *ModulePrinter::calledMethod(const std::string &symbol) const
 const CalledMethod *ModulePrinter::calledMethod(const typed::Class &definition, const typed::Function &method) const {
   for (const CalledMethod &called : calledMethods)
     if ((&definition == called.definition || definition.derivesFrom(called.definition)) && !method.isStateMethod &&
-        lowering::slotName(module, method) == called.slot)
+        typed::slotName(module, method) == called.slot)
       return &called;
   return nullptr;
 }

@@ -3,9 +3,9 @@
 // An expression is the author's tree (codegen/lower/SourceTable.h), whose leaves are what the IR has computed.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/cpp/StateWriter.h"
+#include "codegen/cpp/states/StateWriter.h"
 
-#include "sema/Casting.h"
+#include "sema/typed/Casting.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/IR/Matchers.h"

@@ -1,8 +1,8 @@
 //===- StateNames.cpp - names and types of what a state computes ----------===//
-#include "codegen/cpp/StateWriter.h"
+#include "codegen/cpp/states/StateWriter.h"
 
-#include "codegen/passes/continuation/Names.h"
-#include "sema/Casting.h"
+#include "codegen/passes/continuation/common/Names.h"
+#include "sema/typed/Casting.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -41,7 +41,7 @@ static TypeContext &typesOf(const ModulePrinter &printer) { return const_cast<Ty
 static const Type *stateType(TypeContext &types, llvm::StringRef name) {
   static const std::map<std::string, std::string> words = {
 #define RTSL_STATE_VARIABLE(name, type) {#name, #type},
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   };
   const auto found = words.find(name.str());
   if (found == words.end())

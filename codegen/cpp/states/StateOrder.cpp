@@ -4,10 +4,10 @@
 // between would change it: then it gets a variable before.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/cpp/StateWriter.h"
+#include "codegen/cpp/states/StateWriter.h"
 
 #include "codegen/ir/BaseAddress.h"
-#include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/common/Names.h"
 
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 

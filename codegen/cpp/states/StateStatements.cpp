@@ -1,7 +1,7 @@
 //===- StateStatements.cpp - choices, loops and declarations of a state ---===//
-#include "codegen/cpp/StateWriter.h"
+#include "codegen/cpp/states/StateWriter.h"
 
-#include "sema/Walk.h"
+#include "sema/typed/Walk.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 

@@ -1,5 +1,5 @@
 //===- StateStores.cpp - what a state writes -------------------------------===//
-#include "codegen/cpp/StateWriter.h"
+#include "codegen/cpp/states/StateWriter.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "codegen/cpp/Printer.h"
-#include "codegen/cpp/States.h"
+#include "codegen/cpp/states/States.h"
 #include "codegen/ir/Rtsl.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"

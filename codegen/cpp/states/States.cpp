@@ -1,11 +1,11 @@
 //===- States.cpp - methods that trace, as their states -------------------===//
-#include "codegen/cpp/States.h"
+#include "codegen/cpp/states/States.h"
 
-#include "codegen/cpp/StateWriter.h"
+#include "codegen/cpp/states/StateWriter.h"
 #include "codegen/cpp/Tracing.h"
-#include "codegen/lower/Analysis.h"
-#include "codegen/passes/continuation/Steps.h"
-#include "sema/Casting.h"
+#include "sema/typed/Analysis.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
+#include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ using typed::StateVariable;
 static const std::vector<std::pair<StateVariable, const char *>> &stateVariables() {
   static const std::vector<std::pair<StateVariable, const char *>> all = {
 #define RTSL_STATE_VARIABLE(name, type) {StateVariable::name, #name},
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   };
   return all;
 }
@@ -71,7 +71,7 @@ void ModulePrinter::findStates() {
 
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
   return states && tracing.contains(method) && (method.isStateMethod || calledMethod(definition, method)) &&
-         statesOf.count({definition.name, lowering::slotName(module, method), !method.isStateMethod}) != 0;
+         statesOf.count({definition.name, typed::slotName(module, method), !method.isStateMethod}) != 0;
 }
 
 bool ModulePrinter::isPartOfStates(const typed::Function &function) const {
@@ -244,7 +244,7 @@ std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameF
 
 std::string ModulePrinter::nameOfMachine(const typed::Class &definition, const typed::Function &method) const {
   const bool isOneOfMany =
-      lowering::takesPayload(method) &&
+      typed::takesPayload(method) &&
       std::count_if(definition.functions.begin(), definition.functions.end(),
                     [&](const auto &other) { return other->name == method.name; }) > 1; // there is one for each
   return names.of(&method) + (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
@@ -256,10 +256,10 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   machine.method = &method;
   machine.file = notes.shownFile(method.range);
   machine.called = method.isStateMethod ? nullptr : calledMethod(definition, method);
-  const std::string slot = lowering::slotName(module, method);
+  const std::string slot = typed::slotName(module, method);
   machine.states = statesOf.at({definition.name, slot, machine.called != nullptr});
   std::string name = nameOfMachine(definition, method);
-  const typed::Variable *payload = lowering::takesPayload(method) ? method.parameters.front().get() : nullptr;
+  const typed::Variable *payload = typed::takesPayload(method) ? method.parameters.front().get() : nullptr;
   if (machine.called && machine.called->structure != capitalised(name)) // there are others of the name
     name = uncapitalised(machine.called->structure);
   for (mlir::func::FuncOp state : machine.states)
@@ -380,8 +380,8 @@ bool ModulePrinter::differsIn(const typed::Class &derived, const typed::Function
       auto *call = dynCast<typed::CallExpr>(&expr);
       if (!call || !call->onSelf)
         return;
-      const typed::Function &here = lowering::resolve(*call, &derived);
-      const typed::Function &above = lowering::resolve(*call, method.owner);
+      const typed::Function &here = typed::resolve(*call, &derived);
+      const typed::Function &above = typed::resolve(*call, method.owner);
       differs |= &here != &above && (isPartOfStates(here) || isPartOfStates(above));
       if (here.body && seen.insert(&here).second)
         open.push_back(&here);
@@ -396,10 +396,10 @@ std::vector<std::string> ModulePrinter::inheritedStateMachines(const typed::Clas
     return machines;
   std::set<std::string> known;
   for (const auto &own : definition.functions)
-    known.insert(lowering::slotName(module, *own));
+    known.insert(typed::slotName(module, *own));
   for (const typed::Class *at = definition.base; at; at = at->base)
     for (const auto &method : at->functions)
-      if (known.insert(lowering::slotName(module, *method)).second && isSplit(definition, *method) &&
+      if (known.insert(typed::slotName(module, *method)).second && isSplit(definition, *method) &&
           differsIn(definition, *method))
         machines.push_back(stateMachine(definition, *method));
   return machines;

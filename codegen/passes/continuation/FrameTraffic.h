@@ -2,7 +2,7 @@
 #pragma once
 
 #include "codegen/passes/continuation/Report.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
 
 #include "llvm/ADT/StringMap.h"
 

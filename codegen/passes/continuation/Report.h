@@ -1,9 +1,15 @@
 //===- Report.h - what splitting cost and saved ---------------------------===//
+//
+// What the steps note; codegen/explain makes text, JSON and pictures of it.
+//
+//===----------------------------------------------------------------------===//
 #pragma once
 
 #include "codegen/ir/SourcePlace.h"
-#include "codegen/passes/continuation/RayGraph.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/states/RayGraph.h"
+#include "codegen/passes/continuation/frame/Steps.h"
+#include "codegen/passes/continuation/save/Steps.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
 
 #include <cstdint>
 #include <string>
@@ -18,12 +24,6 @@ using TracePlace = ir::SourcePlace;
 struct BytesRange {
   std::uint32_t least = 0, most = 0;
 };
-
-/// ": 2 constants, normal, sum" of these names of values; "" if there are none.
-std::string listOf(const std::vector<std::string> &names);
-
-/// "4 bytes", "0 to 4 bytes".
-std::string toText(const BytesRange &range);
 
 /// What is moved between registers and frame at one trace.
 struct TraceTraffic {
@@ -93,7 +93,7 @@ struct FunctionReport {
 struct SplitReport {
   std::vector<FunctionReport> functions;
   RayGraph rays;
-  std::vector<std::uint32_t> frameAreas; // frameAreas() of Steps.h
+  std::vector<std::uint32_t> frameAreas; // frameAreas() of calls/Steps.h
   std::uint32_t keptWords = 0;           // of the state of a ray that waits (KeptState.h)
   std::vector<continuation::TrimmedPayload> trimmed;
   /// The limit of depth for which the stack is shown; that of scenes that name none.
@@ -105,10 +105,5 @@ struct SplitReport {
   /// Bytes that a ray takes on the stack, with a frame of that size.
   std::uint64_t levelBytes() const;
 };
-
-/// For people: a block of lines a function.
-std::string toText(const SplitReport &report);
-/// For programs: the text of describe() (ReportJson.h).
-std::string toJson(const SplitReport &report);
 
 } // namespace rtsl

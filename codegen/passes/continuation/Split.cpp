@@ -1,14 +1,16 @@
 //===- Split.cpp - shaders that trace become state machines ---------------===//
 #include "codegen/passes/continuation/Split.h"
+#include "codegen/passes/continuation/states/Steps.h"
+#include "codegen/passes/continuation/calls/Steps.h"
 
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/Simplify.h"
-#include "codegen/passes/continuation/CostTable.h"
-#include "codegen/passes/continuation/CutJoins.h"
+#include "codegen/passes/continuation/common/CostTable.h"
+#include "codegen/passes/continuation/suspend/CutJoins.h"
 #include "codegen/passes/continuation/FrameTraffic.h"
-#include "codegen/passes/continuation/KeptState.h"
-#include "codegen/passes/continuation/Names.h"
-#include "codegen/passes/continuation/Recompute.h"
+#include "codegen/passes/continuation/states/KeptState.h"
+#include "codegen/passes/continuation/common/Names.h"
+#include "codegen/passes/continuation/common/Recompute.h"
 
 #include "mlir/IR/Verifier.h"
 #include "llvm/ADT/StringSet.h"
@@ -293,9 +295,9 @@ bool isEmpty(FuncOp function) {
 void keepTracingMethods(mlir::ModuleOp module) {
   static constexpr llvm::StringLiteral startedByRuntime[] = {
 #define RTSL_SLOT(base, method) #method,
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 #define RTSL_PAYLOAD_SLOT(base, method) #method,
-#include "runtime/device/PayloadSlots.def"
+#include "language/PayloadSlots.def"
   };
   for (FuncOp function : tracingFunctions(module)) {
     auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");

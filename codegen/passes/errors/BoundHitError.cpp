@@ -2,9 +2,9 @@
 
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Rtsl.h"
-#include "codegen/lower/Emitter.h"
-#include "codegen/lower/Library.h"
-#include "runtime/device/HitError.h"
+#include "codegen/formulas/Emitter.h"
+#include "codegen/formulas/Library.h"
+#include "runtime/device/ray/HitError.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/Dialect/Math/IR/Math.h"

@@ -10,7 +10,7 @@
 //
 // The new function computes in double what `intersect` has computed when it reported the hit at T:
 // the difference is the error. -1 if that is not known, and -2 if there is no such hit
-// (runtime/device/HitError.h). So nothing is lost where no ray leaves the hit. It writes no scratch
+// (runtime/device/ray/HitError.h). So nothing is lost where no ray leaves the hit. It writes no scratch
 // members, prints nothing, and draws no random numbers.
 //
 // It takes the branches that double takes, which are the right ones, but for comparisons that

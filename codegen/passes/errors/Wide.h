@@ -1,12 +1,12 @@
 //===- Wide.h - double precision in few words -----------------------------===//
 //
-// What Num is for single precision (codegen/lower/Emitter.h): a value of f64, or a vector of them,
+// What Num is for single precision (codegen/formulas/Emitter.h): a value of f64, or a vector of them,
 // with operators.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/lower/Emitter.h"
+#include "codegen/formulas/Emitter.h"
 
 #include "mlir/Dialect/Math/IR/Math.h"
 

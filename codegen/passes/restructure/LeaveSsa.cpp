@@ -15,8 +15,8 @@
 // live-range identification", 2002).
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Liveness.h"
-#include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/common/Liveness.h"
+#include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/restructure/Steps.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"

@@ -1,7 +1,7 @@
 //===- Describe.h - generated classes as the runtime sees them ------------===//
 //
 // The runtime asks a program for its classes, their members and constructors, and for a function a
-// method slot (runtime/Program.h). Generated code answers with this: it names classes and members,
+// method slot (runtime/program/Program.h). Generated code answers with this: it names classes and members,
 // and offsets and sizes are the C++ compiler's own.
 //
 //===----------------------------------------------------------------------===//
@@ -299,7 +299,7 @@ inline void selfTest() {
       throw std::logic_error("generated shaders and the runtime lay out the state differently");
   };
 #define RTSL_STATE_VARIABLE(name, type) same(&raw.name, &rt.name);
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   same(raw.attributes, rt.attributes);
 
 #if !defined(RTSL_FAST)

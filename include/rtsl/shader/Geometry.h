@@ -131,7 +131,7 @@ template <typename T>
 inline T reflect(const T &i, const T &n) {
   return i - (2.0f * rtsl::dot(n, i)) * n;
 }
-/// Rounded once, with total reflection decided exactly (runtime/device/math/Refraction.h).
+/// Rounded once, with total reflection decided exactly (math/Refraction.h).
 template <typename T>
 inline T refract(const T &i, const T &n, float eta) {
   T refracted;

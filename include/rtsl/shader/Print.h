@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rtsl/shader/Describe.h"
-#include "runtime/PrintLog.h"
+#include "runtime/program/PrintLog.h"
 
 namespace rtsl {
 inline namespace RTSL_VARIANT {

@@ -33,7 +33,7 @@ inline constexpr int width<StateColor<N>> = N;
 template <int N>
 inline constexpr bool isColor<StateColor<N>> = true;
 
-/// RtslState (runtime/device/Abi.h), with vectors in place of arrays; `rt_RayOrigin` is
+/// RtslState (runtime/device/ray/Abi.h), with vectors in place of arrays; `rt_RayOrigin` is
 /// `rt.RayOrigin`. The two are the same memory, which compilers are told.
 template <int N>
 struct [[gnu::may_alias]] State {
@@ -48,7 +48,7 @@ struct [[gnu::may_alias]] State {
 #define RTSL_SHADER_mat4 glm::mat4
 #define RTSL_SHADER_color StateColor<N>
 #define RTSL_STATE_VARIABLE(name, type) RTSL_SHADER_##type name;
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
 
   std::uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
   unsigned char ofTheTraversal[sizeof(RtslState) - offsetof(RtslState, foundDistance)];

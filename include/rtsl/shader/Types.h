@@ -1,13 +1,13 @@
 //===- Types.h - what GLM has no type for ---------------------------------===//
 //
-// Everything that a scene can set is aligned to 4 bytes and packed, as runtime/device/Abi.h says.
+// Everything that a scene can set is aligned to 4 bytes and packed, as runtime/device/ray/Abi.h says.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "rtsl/shader/FloatingPoint.h"
-#include "runtime/ColorBasis.h"
-#include "runtime/device/Abi.h"
+#include "language/ColorBasis.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -229,7 +229,7 @@ constexpr Color<N> &operator/=(Color<N> &a, float b) {
   return a = a / b;
 }
 
-/// Red, green and blue in a color of N components (runtime/ColorBasis.h).
+/// Red, green and blue in a color of N components (language/ColorBasis.h).
 template <int N>
 inline Color<N> rgb(float red, float green, float blue) {
   if constexpr (N == 3) {

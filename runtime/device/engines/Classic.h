@@ -8,14 +8,14 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Color.h"
-#include "runtime/device/Events.h"
-#include "runtime/device/Random.h"
-#include "runtime/device/Spawn.h"
-#include "runtime/device/Surface.h"
-#include "runtime/device/Undefined.h"
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Color.h"
+#include "runtime/device/ray/Events.h"
+#include "runtime/device/ray/Random.h"
+#include "runtime/device/ray/Spawn.h"
+#include "runtime/device/traverse/Surface.h"
+#include "runtime/device/ray/Undefined.h"
+#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 

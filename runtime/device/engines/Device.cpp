@@ -5,9 +5,9 @@
 // rtsl_traverse are defined elsewhere.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/Abi.h"
-#include "runtime/device/Classic.h"
-#include "runtime/device/HitError.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/engines/Classic.h"
+#include "runtime/device/ray/HitError.h"
 
 using namespace rtsl;
 

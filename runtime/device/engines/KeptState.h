@@ -2,20 +2,20 @@
 //
 // The machine (Machine.h) has one state, that of the ray whose turn it is. While a ray waits for one
 // that it has sent, the state is the other's. What the waiting ray reads later is kept on its level;
-// the compiled program defines which fields these are (codegen/passes/continuation/KeptState.h). The
+// the compiled program defines which fields these are (codegen/passes/continuation/states/KeptState.h). The
 // rest is never stored. State that is the same for all rays of a sample is not kept either.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {
 
 /// Numbers of what can be kept: the state variables, and what shaders do not see by name.
 enum KeptField : uint32_t {
 #define RTSL_STATE_VARIABLE(name, type) kept##name,
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   keptInstance,
   keptHitPointError,
   keptPayload,
@@ -74,7 +74,7 @@ inline uint32_t wordsOf(KeptField field, uint32_t components) {
 #define RTSL_STATE_VARIABLE(name, type)                                                            \
   case kept##name:                                                                                 \
     return RTSL_WORDS_##type;
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   case keptRandomKey:
     return 2;
   default:
@@ -97,7 +97,7 @@ inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
   if (isKept(kept##name))                                                                          \
     forEachWord<sizeof(state.name) / sizeof(uint32_t)>(&state.name,                                \
                                                        wordsOf(kept##name, components), visit);
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
   if (isKept(keptInstance))
     visit(&state.instance);
   if (isKept(keptHitPointError))

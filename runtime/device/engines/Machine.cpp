@@ -3,7 +3,7 @@
 // Apart from Device.cpp, for they want what only such programs define.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/Machine.h"
+#include "runtime/device/engines/Machine.h"
 
 using namespace rtsl;
 

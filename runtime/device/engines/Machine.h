@@ -24,11 +24,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Classic.h"
-#include "runtime/device/KeptState.h"
-#include "runtime/device/Programs.h"
-#include "runtime/device/StackBound.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/engines/Classic.h"
+#include "runtime/device/engines/KeptState.h"
+#include "runtime/device/engines/Programs.h"
+#include "runtime/device/engines/StackBound.h"
 
 namespace rtsl::device {
 

@@ -4,9 +4,9 @@
 // memory functions, and the entries that run lanes.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/Megakernel.h"
+#include "runtime/device/engines/Megakernel.h"
 
-#include "runtime/device/AnyHit.h"
+#include "runtime/device/traverse/AnyHit.h"
 
 using namespace rtsl;
 

@@ -3,7 +3,7 @@
 // Apart from Device.cpp, for it wants the slots of methods with payloads.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/Programs.h"
+#include "runtime/device/engines/Programs.h"
 
 using namespace rtsl;
 

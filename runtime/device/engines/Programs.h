@@ -9,8 +9,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Classic.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/engines/Classic.h"
 
 namespace rtsl::device {
 

@@ -8,7 +8,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {
 

@@ -111,7 +111,7 @@ typedef struct RtslStatus {
 #define RTSL_PROBLEM_NONE 0u
 #define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane has begun
 
-/// A picture for the megakernel (runtime/device/Megakernel.h) to render.
+/// A picture for the megakernel (runtime/device/engines/Megakernel.h) to render.
 typedef struct RtslJob {
   const RtslLaunch *launch;
   RtslStatus *status;
@@ -161,7 +161,7 @@ typedef struct RtslState {
 #define RTSL_TYPE_mat4(n) float n[16]
 #define RTSL_TYPE_color(n) float n[RTSL_MAX_COLOR]
 #define RTSL_STATE_VARIABLE(name, type) RTSL_TYPE_##type(name);
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
 
   // What `intersect` wrote to scratch members for the hit so far.
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
@@ -219,10 +219,10 @@ extern "C" {
 // nothing there.
 //===----------------------------------------------------------------------===//
 #define RTSL_SLOT(base, method) void rtsl_##base##_##method(RtslState *state, RtslRef object);
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 /// The same for methods that take the payload of state's ray type.
 #define RTSL_PAYLOAD_SLOT(base, method) void rtsl_##base##_##method##_payload(RtslState *state, RtslRef object);
-#include "runtime/device/PayloadSlots.def"
+#include "language/PayloadSlots.def"
 
 // What programs can do if they were compiled so. The rest costs nothing.
 #define RTSL_FEATURE_EXCEPTIONS 1u
@@ -292,7 +292,7 @@ void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t samp
 void rtsl_generate(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 //===----------------------------------------------------------------------===//
-// Programs whose shaders were split at their traces (runtime/device/Machine.h). A state is a piece of a method between two
+// Programs whose shaders were split at their traces (runtime/device/engines/Machine.h). A state is a piece of a method between two
 // traces; numbers start at 1.
 //===----------------------------------------------------------------------===//
 
@@ -338,7 +338,7 @@ void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float
                              float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
                              uint32_t how);
 
-/// Defined by the compiled program, for the bound of the stack (runtime/device/StackBound.h): how many kinds of rays there
+/// Defined by the compiled program, for the bound of the stack (runtime/device/engines/StackBound.h): how many kinds of rays there
 /// are, at most RTSL_MAX_RAY_KINDS. Kind 0 are those without a payload, kind n those of payload type n; `generate`, if the
 /// program has it, is the last. And, as bits, the kinds that the programs of one may send and come back from, or send last.
 #define RTSL_MAX_RAY_KINDS 32

@@ -1,7 +1,7 @@
 //===- Color.h - a few components -----------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {
 

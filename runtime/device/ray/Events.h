@@ -8,9 +8,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Color.h"
-#include "runtime/device/Warp.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Color.h"
+#include "runtime/device/ray/Warp.h"
 
 namespace rtsl::device {
 

@@ -12,7 +12,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {
 

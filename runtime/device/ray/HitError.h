@@ -9,8 +9,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Hit.h"
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Hit.h"
+#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 

@@ -7,8 +7,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 
@@ -18,7 +18,7 @@ namespace rtsl::device {
 // units of the largest coordinate from the plane, whatever the weights.
 constexpr float trianglePointUnits = 2;
 // The next test of the triangle adds nothing to speak of: so near it computes in double
-// (depthNearOrigin in runtime/device/Triangle.h).
+// (depthNearOrigin in runtime/device/traverse/Triangle.h).
 // A point that an author made by arithmetic of his own, near coordinates of this size.
 constexpr float foreignPointUnits = 20;
 // A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t. Where

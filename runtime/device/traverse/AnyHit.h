@@ -14,10 +14,10 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Candidate.h"
-#include "runtime/device/Surface.h"
-#include "runtime/device/Traverse.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/traverse/Surface.h"
+#include "runtime/device/traverse/Traverse.h"
 
 namespace rtsl::device {
 
@@ -27,7 +27,7 @@ struct LinkedPayloadSlots : LinkedSlots {
   static void base##_##method##_payload(RtslState *state, RtslRef object) {                        \
     rtsl_##base##_##method##_payload(state, object);                                               \
   }
-#include "runtime/device/PayloadSlots.def"
+#include "language/PayloadSlots.def"
 };
 
 /// A hit that may come to count.

@@ -1,12 +1,12 @@
 //===- Bvh.h - traversal of the binary tree -------------------------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 
-/// No path from the root is longer; the builder sees to it (runtime/BvhBuilder.h). A step down
+/// No path from the root is longer; the builder sees to it (runtime/accel/BvhBuilder.h). A step down
 /// pushes one child at most.
 constexpr int maxBvhDepth = 64;
 

@@ -1,8 +1,8 @@
 //===- Candidate.h - what is known of a primitive before it was hit -------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 

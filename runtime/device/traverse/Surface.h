@@ -1,12 +1,12 @@
 //===- Surface.h - what is known of a surface where it was hit ------------===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Candidate.h"
-#include "runtime/device/HitError.h"
-#include "runtime/device/Spawn.h"
-#include "runtime/device/Traverse.h"
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/ray/HitError.h"
+#include "runtime/device/ray/Spawn.h"
+#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 
@@ -16,7 +16,7 @@ struct LinkedSlots {
   static void base##_##method(RtslState *state, RtslRef object) {                                  \
     rtsl_##base##_##method(state, object);                                                         \
   }
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
 };
 
 inline void setVector(float *p, float x, float y, float z) {

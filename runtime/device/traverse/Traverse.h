@@ -1,12 +1,12 @@
 //===- Traverse.h - the device traversal: tree, triangles, RTSL primitives ===//
 #pragma once
 
-#include "runtime/device/Abi.h"
-#include "runtime/device/Bvh.h"
-#include "runtime/device/Candidate.h"
-#include "runtime/device/Hit.h"
-#include "runtime/device/Triangle.h"
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/traverse/Bvh.h"
+#include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/ray/Hit.h"
+#include "runtime/device/traverse/Triangle.h"
+#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 

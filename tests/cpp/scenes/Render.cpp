@@ -1,6 +1,6 @@
 // Renders a scene file with shaders that were compiled to C++ ahead: cpp-render SHADERS.so SCENE.json PICTURE.exr. What they
 // print, and what samples met, goes to standard output as JSON.
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 
 #include <rtsl/runtime.h>
 
@@ -29,6 +29,6 @@ int main(int argc, char **argv) try {
     if (statistics.exceptions[i])
       said["exceptions"][names[i]] = statistics.exceptions[i];
   std::printf("%s\n", said.dump().c_str());
-} catch (const runtime::Error &error) {
+} catch (const Error &error) {
   return std::fprintf(stderr, "%s\n", error.what()), 1;
 }

@@ -6,9 +6,9 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/driver/Compiler.h"
 #include "codegen/driver/SourceLoader.h"
-#include "runtime/ColorBasis.h"
-#include "runtime/Renderer.h"
-#include "scene/SceneFile.h"
+#include "language/ColorBasis.h"
+#include "runtime/render/Renderer.h"
+#include "scenefile/SceneFile.h"
 #include "sema/Sema.h"
 
 #include <gtest/gtest.h>

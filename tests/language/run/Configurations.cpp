@@ -1,7 +1,7 @@
 //===- Configurations.cpp - every path that a program takes ---------------===//
 #include "Configurations.h"
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::test {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "codegen/driver/Compiler.h"
-#include "runtime/Renderer.h"
+#include "runtime/render/Renderer.h"
 
 #include <ostream>
 #include <string>

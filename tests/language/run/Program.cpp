@@ -2,11 +2,11 @@
 #include "Program.h"
 
 #include "codegen/driver/SceneProgram.h"
-#include "frontend/Parser.h"
-#include "runtime/Error.h"
-#include "runtime/HostMegakernel.h"
-#include "runtime/Scene.h"
-#include "scene/SceneFile.h"
+#include "frontend/syntax/Parser.h"
+#include "support/Error.h"
+#include "runtime/render/HostMegakernel.h"
+#include "runtime/scene/Scene.h"
+#include "scenefile/SceneFile.h"
 #include "sema/Sema.h"
 
 #include <fmt/format.h>
@@ -217,7 +217,7 @@ std::string Builder::run() {
     if (configuration.compile.target == Target::HostMegakernel)
       return judge(runtime::renderOnHost(scene.program().megakernel, runtime::flatten(scene), render));
     return judge(runtime::render(scene, render));
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     return std::string(error.what()) + "\n";
   }
 }

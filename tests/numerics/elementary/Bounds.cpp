@@ -2,7 +2,7 @@
 
 #include "Arguments.h"
 
-#include "runtime/device/math/Elementary.h"
+#include "math/Elementary.h"
 
 #include <mpfr.h>
 

@@ -1,6 +1,6 @@
 // One kernel a function for nvptx64: the functions on many arguments. Compiled by clang without
 // CUDA.
-#include "runtime/device/math/Elementary.h"
+#include "math/Elementary.h"
 
 namespace {
 

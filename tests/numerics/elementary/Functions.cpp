@@ -1,8 +1,8 @@
 #include "Functions.h"
 
-#include "runtime/device/math/Elementary.h"
-#include "runtime/device/math/Fast.h"
-#include "runtime/device/math/PowerLanes.h"
+#include "math/Elementary.h"
+#include "math/Fast.h"
+#include "math/PowerLanes.h"
 
 #include <cmath>
 #include <cstdint>

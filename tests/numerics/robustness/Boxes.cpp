@@ -4,8 +4,8 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/BvhBuilder.h"
-#include "runtime/device/Bvh.h"
+#include "runtime/accel/BvhBuilder.h"
+#include "runtime/device/traverse/Bvh.h"
 
 #include <string>
 #include <vector>

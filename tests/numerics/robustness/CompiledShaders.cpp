@@ -4,7 +4,7 @@
 #include "codegen/driver/Compiler.h"
 #include "codegen/driver/SourceLoader.h"
 #include "rtsl/program.h"
-#include "runtime/Error.h"
+#include "support/Error.h"
 #include "sema/Sema.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string
       compiled.ptx = emitScene(*module, request, Stage::Ptx, options, diagnostics).value_or("");
   }
   if (!compiled.program || diagnostics.hasErrors())
-    throw runtime::Error(runtime::ErrorCode::Internal, renderText(diagnostics, false));
+    throw Error(ErrorCode::Internal, renderText(diagnostics, false));
   return compiled;
 }
 
@@ -80,7 +80,7 @@ float *CompiledShaders::member(RtslRef object, const std::string &name) const {
   for (const runtime::MemberInfo &member : theScene.classOf(object).members)
     if (member.name == name)
       return reinterpret_cast<float *>(theScene.launch().records + object + member.offset);
-  throw runtime::Error(runtime::ErrorCode::UnknownMember, "there is no member `" + name + "`");
+  throw Error(ErrorCode::UnknownMember, "there is no member `" + name + "`");
 }
 
 void CompiledShaders::set(RtslRef object, const std::string &name, std::initializer_list<float> values) const {

@@ -18,7 +18,7 @@ extern std::string sourceRoot;
 /// RTSL files, compiled for one of the paths, and a scene of them that is still empty.
 class CompiledShaders {
 public:
-  /// Files are relative to sourceRoot; `surfaces` as in LinkRequest. Throws runtime::Error with the messages if the files have
+  /// Files are relative to sourceRoot; `surfaces` as in LinkRequest. Throws Error with the messages if the files have
   /// mistakes. `isSampled`: the program has SamplingSlots.def, for a host to call.
   CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
                   std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled = false);

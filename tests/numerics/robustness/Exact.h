@@ -1,7 +1,7 @@
 //===- Exact.h - arithmetic without rounding ------------------------------===//
 #pragma once
 
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Vector.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 

@@ -1,9 +1,9 @@
 //===- Eye.cpp ------------------------------------------------------------===//
 #include "Eye.h"
 
-#include "runtime/FlatScene.h"
-#include "runtime/HostMegakernel.h"
-#include "runtime/Renderer.h"
+#include "runtime/accel/FlatScene.h"
+#include "runtime/render/HostMegakernel.h"
+#include "runtime/render/Renderer.h"
 #include "runtime/gpu/CudaDriver.h"
 #include "runtime/gpu/GpuRenderer.h"
 

@@ -3,10 +3,10 @@
 
 #include "Path.h"
 
-#include "runtime/Image.h"
-#include "runtime/RenderOptions.h"
-#include "runtime/Scene.h"
-#include "runtime/device/Abi.h"
+#include "runtime/image/Image.h"
+#include "runtime/render/RenderOptions.h"
+#include "runtime/scene/Scene.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 //===- Generators.h - random inputs, the same on every machine ------------===//
 #pragma once
 
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Vector.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 //===- HighPrecision.h - numbers of 100 digits, by MPFR -------------------===//
 #pragma once
 
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Vector.h"
 
 #include <boost/multiprecision/mpfr.hpp>
 

@@ -3,7 +3,7 @@
 
 #include "TriangleCases.h"
 
-#include "runtime/Mesh.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <vector>
 

@@ -6,7 +6,7 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/device/Spawn.h"
+#include "runtime/device/ray/Spawn.h"
 
 #include <cmath>
 #include <optional>
@@ -27,7 +27,7 @@ Outcome runSelfHits(Path path, std::uint64_t cases, std::uint32_t seed) {
     const Ray ray = rayTowards(random, triangle, -8, 8);
     const Vec3 onwards = random.direction() * std::ldexp(1.0f, random.integer(-20, 20));
     if (std::fabs(Plane(triangle).cosine(onwards)) < 2 * device::smallestCosine)
-      continue; // where the bound is given up (runtime/device/Spawn.h)
+      continue; // where the bound is given up (runtime/device/ray/Spawn.h)
     target.replaceBy(meshOf({triangle}));
     if (target.meet(ray.origin, ray.direction))
       worst.count(target.meetsAgain(ray.origin, ray.direction, onwards), [&] { return ray.text() + ", " + triangle.text() + ", onwards " + show(onwards); });

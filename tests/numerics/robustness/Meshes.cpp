@@ -4,7 +4,7 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Vector.h"
 
 #include <array>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "RayTarget.h"
 #include "Worst.h"
 
-#include "runtime/device/Spawn.h"
+#include "runtime/device/ray/Spawn.h"
 
 #include <cmath>
 #include <limits>

@@ -3,7 +3,7 @@
 
 #include "TriangleCases.h"
 
-#include "runtime/device/Triangle.h"
+#include "runtime/device/traverse/Triangle.h"
 
 #include <optional>
 

@@ -6,9 +6,9 @@
 #include "Timing.h"
 #include "tests/unit/runtime/FakeProgram.h"
 
-#include "runtime/HostScene.h"
-#include "runtime/device/Spawn.h"
-#include "runtime/device/Surface.h"
+#include "runtime/embree/HostScene.h"
+#include "runtime/device/ray/Spawn.h"
+#include "runtime/device/traverse/Surface.h"
 
 #include <cmath>
 #include <optional>
@@ -61,7 +61,7 @@ Outcome runSelfHits(std::uint64_t cases, std::uint32_t seed) {
     const auto again = meet(target, point, direction);
     const bool isSelfHit = again && again->t > epsilon;
     const float cosine = std::fabs(device::dot(device::normalized(direction), device::load(state.GeometricNormal)));
-    if (cosine < 2 * device::smallestCosine) // where the bound is given up (runtime/device/Spawn.h)
+    if (cosine < 2 * device::smallestCosine) // where the bound is given up (runtime/device/ray/Spawn.h)
       return;
     worst.count(isSelfHit, [&] { return "point " + show(point) + ", direction " + show(direction); });
   });
@@ -155,7 +155,7 @@ Outcome runNeeds(std::uint64_t cases, std::uint32_t seed) {
 }
 
 /// How far the computed hit point lies from its triangle's plane, in rounding units of the largest coordinate: what the
-/// bound in runtime/device/Spawn.h has to cover.
+/// bound in runtime/device/ray/Spawn.h has to cover.
 Outcome runHitPoints(std::uint64_t cases, std::uint32_t seed) {
   return forHits(cases, seed, [](Random &, const Triangle &target, const RtslState &state, Worst &worst) {
     const Plane plane(target);

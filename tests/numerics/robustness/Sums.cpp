@@ -4,7 +4,7 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/device/Megakernel.h"
+#include "runtime/device/engines/Megakernel.h"
 
 #include <cmath>
 

@@ -8,7 +8,7 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/device/Spawn.h"
+#include "runtime/device/ray/Spawn.h"
 
 #include <fmt/format.h>
 
@@ -151,7 +151,7 @@ Outcome judgeSelfHits(Torus &target, std::uint64_t cases, std::uint32_t seed) {
       continue;
     const Vec3 point = target.hitPoint(ray.origin, ray.direction);
     if (target.cosine(point, onwards) < 2 * device::smallestCosine)
-      continue; // inwards, or where the bound is given up (runtime/device/Spawn.h)
+      continue; // inwards, or where the bound is given up (runtime/device/ray/Spawn.h)
     const Precise size = target.size(), speed = length(precise(onwards));
     if (target.along(point, onwards).rootsBetween(size / 1000 / speed, 100 * size / speed) == 0)
       worst.count(target.meetsWithin(static_cast<float>(size / 10 / speed), ray.origin, ray.direction, onwards), [&] { return target.text() + ", " + ray.text() + ", onwards " + show(onwards); });

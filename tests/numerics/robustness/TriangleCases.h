@@ -5,7 +5,7 @@
 #include "Generators.h"
 #include "Worst.h"
 
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Vector.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 //===- DiagnosticsTest.cpp - messages as they are recorded and shown ------===//
-#include "frontend/Diagnostics.h"
+#include "frontend/diagnostics/Diagnostics.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -37,7 +37,7 @@ TEST(CodeTable, IsInOrder) {
   std::set<std::string> numbers, names;
   const Code all[] = {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) Code::id,
-#include "frontend/DiagnosticCodes.def"
+#include "frontend/diagnostics/DiagnosticCodes.def"
   };
   for (const Code code : all) {
     const CodeInfo &row = info(code);

@@ -1,7 +1,7 @@
 //===- Parsed.h - a text and what the front end makes of it ---------------===//
 #pragma once
 
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 
 #include <string>
 

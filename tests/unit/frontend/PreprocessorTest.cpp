@@ -5,8 +5,8 @@
 //
 //===----------------------------------------------------------------------===//
 #include "frontend/preprocessor/Preprocessor.h"
-#include "frontend/Expansion.h"
-#include "frontend/Parser.h"
+#include "frontend/source/Expansion.h"
+#include "frontend/syntax/Parser.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 //===- SourceTest.cpp - texts and positions in them -----------------------===//
-#include "frontend/Source.h"
-#include "frontend/Utf8.h"
+#include "frontend/source/Source.h"
+#include "frontend/source/Utf8.h"
 
 #include <gtest/gtest.h>
 

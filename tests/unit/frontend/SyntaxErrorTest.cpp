@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "Parsed.h"
 
-#include "frontend/Tokenizer.h"
+#include "frontend/lex/Tokenizer.h"
 
 #include <gtest/gtest.h>
 

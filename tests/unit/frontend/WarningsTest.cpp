@@ -1,5 +1,5 @@
 //===- WarningsTest.cpp - which warnings are shown: -W --------------------===//
-#include "frontend/Diagnostics.h"
+#include "frontend/diagnostics/Diagnostics.h"
 
 #include <gtest/gtest.h>
 

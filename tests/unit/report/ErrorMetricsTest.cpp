@@ -52,7 +52,7 @@ TEST(ErrorMetrics, SayThatNothingCouldBeCompared) {
 }
 
 TEST(ErrorMetrics, RefuseTwoShapes) {
-  EXPECT_THROW(report::measureError(pixels({1, 1, 1}), pixels({1, 1, 1, 2, 2, 2})), runtime::Error);
+  EXPECT_THROW(report::measureError(pixels({1, 1, 1}), pixels({1, 1, 1, 2, 2, 2})), Error);
 }
 
 TEST(ErrorMetrics, MapsHaveTheMeanOfTheMetric) {

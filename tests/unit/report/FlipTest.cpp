@@ -77,6 +77,6 @@ TEST(Flip, FindsExposuresForBlackPictures) {
 }
 
 TEST(Flip, RefusesPicturesOfTwoSizes) {
-  EXPECT_THROW(report::flip(flat(0, 0, 0, 4), flat(0, 0, 0, 5)), runtime::Error);
-  EXPECT_THROW(report::flip(Image(4, 4, 1), Image(4, 4, 1)), runtime::Error);
+  EXPECT_THROW(report::flip(flat(0, 0, 0, 4), flat(0, 0, 0, 5)), Error);
+  EXPECT_THROW(report::flip(Image(4, 4, 1), Image(4, 4, 1)), Error);
 }

@@ -4,7 +4,7 @@
 #include "report/Study.h"
 #include "report/Summary.h"
 
-#include "runtime/AtomicFile.h"
+#include "support/AtomicFile.h"
 
 #include <gtest/gtest.h>
 
@@ -124,13 +124,13 @@ TEST_F(Studies, GoOnWhereTheyWereInterrupted) {
   Subject cutOff = subject;
   cutOff.render = [&](std::uint32_t samples, std::uint32_t seed) {
     if (calls == limit)
-      throw runtime::Error(runtime::ErrorCode::Cancelled, "interrupted");
+      throw Error(ErrorCode::Cancelled, "interrupted");
     return subject.render(samples, seed);
   };
-  EXPECT_THROW(runStudy({cutOff}, reference, options), runtime::Error);
+  EXPECT_THROW(runStudy({cutOff}, reference, options), Error);
   // As if the line after the last had been cut off while it was written.
-  const std::string table = runtime::readFile((folder / "measurements.csv").string());
-  runtime::writeFileAtomically((folder / "measurements.csv").string(), table + "strict,2,5,1");
+  const std::string table = readFile((folder / "measurements.csv").string());
+  writeFileAtomically((folder / "measurements.csv").string(), table + "strict,2,5,1");
 
   const Summary resumed = study({subject});
   const std::size_t measured = readMeasurements((folder / "measurements.csv").string()).size();
@@ -160,10 +160,10 @@ TEST_F(Studies, GoOnAfterAnInterruptionInALaterRound) {
   Subject cutOff = subject;
   cutOff.render = [&](std::uint32_t samples, std::uint32_t seed) {
     if (calls == 1 + 4 * 3 + 2) // in the fourth round
-      throw runtime::Error(runtime::ErrorCode::Cancelled, "interrupted");
+      throw Error(ErrorCode::Cancelled, "interrupted");
     return subject.render(samples, seed);
   };
-  EXPECT_THROW(runStudy({cutOff}, reference, options), runtime::Error);
+  EXPECT_THROW(runStudy({cutOff}, reference, options), Error);
   const Summary resumed = study({subject});
   EXPECT_EQ(calls, 2 + 4 * options.runs);
   EXPECT_FALSE(fs::exists(folder / "partial"));
@@ -337,8 +337,8 @@ TEST_F(Studies, MakeAReferenceWithItsOwnError) {
 }
 
 TEST_F(Studies, RefuseATableOfAnotherKind) {
-  runtime::writeFileAtomically((folder / "measurements.csv").string(), "some,other,table\n1,2,3\n");
-  EXPECT_THROW(study({noisy("strict", 0.2)}), runtime::Error);
+  writeFileAtomically((folder / "measurements.csv").string(), "some,other,table\n1,2,3\n");
+  EXPECT_THROW(study({noisy("strict", 0.2)}), Error);
 }
 
 TEST_F(Studies, PagesAreWholeAndAlone) {

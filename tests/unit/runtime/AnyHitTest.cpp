@@ -1,9 +1,9 @@
 // Materials that may refuse hits: our traversal against trying everything and sorting.
 #include "FakeProgram.h"
 
-#include "runtime/HostScene.h"
-#include "runtime/device/AnyHit.h"
-#include "runtime/device/Random.h"
+#include "runtime/embree/HostScene.h"
+#include "runtime/device/traverse/AnyHit.h"
+#include "runtime/device/ray/Random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "FakeProgram.h"
 
-#include "runtime/device/Vector.h"
+#include "runtime/device/ray/Vector.h"
 
 #include <cmath>
 #include <cstddef>
@@ -298,7 +298,7 @@ std::shared_ptr<Program> fakeProgram() {
                                       {"intersect", "computeBounds"}));
   program->classes.push_back(everything());
 #define RTSL_SLOT(base, method) program->slots.base##_##method = rtsl_##base##_##method;
-#include "runtime/device/Slots.def"
+#include "language/Slots.def"
   program->sample = rtsl_sample;
   return program;
 }

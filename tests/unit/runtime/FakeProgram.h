@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/Program.h"
-#include "runtime/Scene.h"
+#include "runtime/program/Program.h"
+#include "runtime/scene/Scene.h"
 
 #include <memory>
 

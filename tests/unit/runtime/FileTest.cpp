@@ -1,10 +1,10 @@
 #include "report/ErrorMetrics.h"
-#include "runtime/AtomicFile.h"
-#include "runtime/Image.h"
-#include "runtime/Mesh.h"
-#include "runtime/mesh/AssimpFile.h"
-#include "runtime/mesh/ObjFile.h"
-#include "runtime/mesh/PlyFile.h"
+#include "support/AtomicFile.h"
+#include "runtime/image/Image.h"
+#include "runtime/geometry/Mesh.h"
+#include "runtime/geometry/AssimpFile.h"
+#include "runtime/geometry/ObjFile.h"
+#include "runtime/geometry/PlyFile.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

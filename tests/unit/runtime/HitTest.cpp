@@ -1,4 +1,4 @@
-#include "runtime/device/Hit.h"
+#include "runtime/device/ray/Hit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runtime/LastOccluders.h"
+#include "runtime/embree/LastOccluders.h"
 
 #include <gtest/gtest.h>
 

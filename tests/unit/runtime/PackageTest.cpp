@@ -1,5 +1,5 @@
 // A package is read as it was written, or refused: whatever byte of it changes, and wherever it ends.
-#include "runtime/Error.h"
+#include "support/Error.h"
 #include "runtime/package/Package.h"
 
 #include <gtest/gtest.h>

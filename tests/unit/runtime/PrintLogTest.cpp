@@ -1,5 +1,5 @@
 // What shaders print, in the order of the launch.
-#include "runtime/PrintLog.h"
+#include "runtime/program/PrintLog.h"
 
 #include <gtest/gtest.h>
 

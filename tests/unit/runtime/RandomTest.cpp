@@ -1,4 +1,4 @@
-#include "runtime/device/Random.h"
+#include "runtime/device/ray/Random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "FakeProgram.h"
 
 #include "report/ErrorMetrics.h"
-#include "runtime/Renderer.h"
-#include "runtime/device/Megakernel.h"
+#include "runtime/render/Renderer.h"
+#include "runtime/device/engines/Megakernel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "FakeProgram.h"
 
-#include "runtime/BvhBuilder.h"
-#include "runtime/HostScene.h"
-#include "runtime/device/Bvh.h"
-#include "runtime/device/Traverse.h"
+#include "runtime/accel/BvhBuilder.h"
+#include "runtime/embree/HostScene.h"
+#include "runtime/device/traverse/Bvh.h"
+#include "runtime/device/traverse/Traverse.h"
 
 #include <gtest/gtest.h>
 

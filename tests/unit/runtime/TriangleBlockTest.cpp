@@ -1,5 +1,5 @@
 // Eight triangles at once, beside the same eight one by one: the same hit, to the bit.
-#include "runtime/TriangleBlock.h"
+#include "runtime/accel/TriangleBlock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runtime/device/Triangle.h"
+#include "runtime/device/traverse/Triangle.h"
 
 #include <gtest/gtest.h>
 

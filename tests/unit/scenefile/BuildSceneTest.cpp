@@ -1,7 +1,7 @@
 #include "ErrorText.h"
 #include "FakeProgram.h"
 
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 //===- ErrorText.h - an error as one line, for tests ----------------------===//
 #pragma once
 
-#include "runtime/Error.h"
+#include "support/Error.h"
 
 #include <string>
 
@@ -9,7 +9,7 @@ namespace rtsl::scene::test {
 
 /// "file:line:column+length: code: message (fix `...`) (note ...)", and a line for each further
 /// error.
-inline std::string textOf(const runtime::Error &error) {
+inline std::string textOf(const Error &error) {
   std::string text;
   if (error.place) {
     text = error.place->file;
@@ -21,12 +21,12 @@ inline std::string textOf(const runtime::Error &error) {
   text += std::string(runtime::name(error.code)) + ": " + error.what();
   if (error.replacement)
     text += " (fix `" + *error.replacement + "`)";
-  for (const runtime::RelatedPlace &related : error.relatedPlaces)
+  for (const RelatedPlace &related : error.relatedPlaces)
     text += " (" + std::to_string(related.place.line) + ":" + std::to_string(related.place.column) +
             " " + related.text + ")";
   for (const std::string &note : error.notes)
     text += " (note " + note + ")";
-  for (const runtime::Error &further : error.further)
+  for (const Error &further : error.further)
     text += "\n" + textOf(further);
   return text;
 }
@@ -36,7 +36,7 @@ template <typename Action>
 std::string errorOf(Action action) {
   try {
     action();
-  } catch (const runtime::Error &error) {
+  } catch (const Error &error) {
     return textOf(error);
   }
   return "no error";

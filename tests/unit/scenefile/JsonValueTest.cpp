@@ -1,6 +1,6 @@
 #include "ErrorText.h"
 
-#include "scene/JsonValue.h"
+#include "scenefile/JsonValue.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "ErrorText.h"
 
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 
 #include <gtest/gtest.h>
 

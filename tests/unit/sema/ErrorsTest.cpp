@@ -57,7 +57,7 @@ TEST(Errors, EveryMessageOfSemaAndThePreprocessorHasATest) {
     expectations += readFile(path);
   static const char *const numbers[] = {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) #number,
-#include "frontend/DiagnosticCodes.def"
+#include "frontend/diagnostics/DiagnosticCodes.def"
   };
   for (const char *number : numbers) {
     // E014x to E06xx, and the warnings that go with them or concern performance.

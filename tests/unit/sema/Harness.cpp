@@ -1,7 +1,7 @@
 //===- Harness.cpp - RTSL text in, messages and typed tree out ------------===//
 #include "Harness.h"
 
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 #include "frontend/preprocessor/Preprocessor.h"
 
 #include <algorithm>

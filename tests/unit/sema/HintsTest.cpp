@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #include "Harness.h"
 
-#include "sema/ClassModel.h"
-#include "sema/Suggest.h"
+#include "sema/model/ClassModel.h"
+#include "sema/check/Suggest.h"
 
 #include <gtest/gtest.h>
 

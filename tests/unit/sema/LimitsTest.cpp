@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #include "Harness.h"
 
-#include "sema/Program.h"
-#include "sema/TypeProperties.h"
+#include "sema/check/Program.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <gtest/gtest.h>
 

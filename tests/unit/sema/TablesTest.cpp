@@ -1,10 +1,10 @@
 //===- TablesTest.cpp - types, conversions, overloads, suggestions --------===//
-#include "sema/Builtins.h"
-#include "sema/ClassModel.h"
-#include "sema/ConstantFold.h"
-#include "sema/Conversion.h"
-#include "sema/Suggest.h"
-#include "sema/TypeProperties.h"
+#include "sema/model/Builtins.h"
+#include "sema/model/ClassModel.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/model/Conversion.h"
+#include "sema/check/Suggest.h"
+#include "sema/typed/TypeProperties.h"
 #include "support/ClosestName.h"
 
 #include <gtest/gtest.h>
@@ -133,7 +133,7 @@ TEST(Builtins, AllHaveASignature) {
 #define RTSL_BUILTIN(id, name, ...)                                                                \
   EXPECT_NE(std::find(builtinNames().begin(), builtinNames().end(), name), builtinNames().end())   \
       << name;
-#include "sema/Builtins.def"
+#include "language/Builtins.def"
 }
 
 TEST(ClassModel, EveryStateVariableBelongsToAClass) {

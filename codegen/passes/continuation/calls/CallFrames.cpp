@@ -14,9 +14,9 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
-#include "codegen/passes/continuation/Names.h"
-#include "codegen/passes/continuation/Steps.h"
-#include "runtime/device/Abi.h"
+#include "codegen/passes/continuation/common/Names.h"
+#include "codegen/passes/continuation/calls/Steps.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/SetVector.h"
@@ -24,10 +24,6 @@
 #include <algorithm>
 
 namespace rtsl::continuation {
-
-bool isFramed(mlir::Operation *op) {
-  return op->hasAttr("rtsl.framed");
-}
 
 //===----------------------------------------------------------------------===//
 // Arguments and results

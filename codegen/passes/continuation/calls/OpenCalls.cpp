@@ -9,8 +9,8 @@
 // may write, `rtsl.writes`, for they are cut before all that call them are.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Recompute.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/common/Recompute.h"
+#include "codegen/passes/continuation/calls/Steps.h"
 
 #include "mlir/IR/SymbolTable.h"
 #include "llvm/ADT/SetVector.h"

@@ -1,5 +1,5 @@
 //===- CostTable.cpp - what saving and recomputing cost -------------------===//
-#include "codegen/passes/continuation/CostTable.h"
+#include "codegen/passes/continuation/common/CostTable.h"
 
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"

@@ -1,5 +1,5 @@
 //===- Liveness.cpp - which values are needed where -----------------------===//
-#include "codegen/passes/continuation/Liveness.h"
+#include "codegen/passes/continuation/common/Liveness.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
 #include "llvm/ADT/PostOrderIterator.h"

@@ -1,5 +1,5 @@
 //===- Names.cpp - what values are called in the source -------------------===//
-#include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/common/Names.h"
 
 #include "codegen/ir/Rtsl.h"
 #include "codegen/ir/SourcePlace.h"

@@ -1,5 +1,5 @@
 //===- Recompute.cpp - what gives the same value again behind a trace -----===//
-#include "codegen/passes/continuation/Recompute.h"
+#include "codegen/passes/continuation/common/Recompute.h"
 
 #include "codegen/ir/BaseAddress.h"
 
@@ -141,7 +141,7 @@ bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendO
   bool fixed = llvm::is_contained(fixedState, state);
   auto writes = [&](mlir::Operation *op) {
     if (llvm::isa<ir::IlluminateOp>(op) && state == "HitPoint")
-      return false; // whatever lights do: it is put back (illuminate in runtime/device/Classic.h)
+      return false; // whatever lights do: it is put back (illuminate in runtime/device/engines/Classic.h)
     StateWrites found = summary.of(op);
     return found.names.contains(state) || (found.any && !fixed);
   };

@@ -10,7 +10,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/StringMap.h"
@@ -43,11 +43,7 @@ private:
   StateWrites illumination; // what lights write when a point is lit
 };
 
-/// As those of Steps.h, where the summary is known already: it takes a walk over the module.
-void insertSuspends(FuncOp function, const WriteSummary &summary);
-mlir::FailureOr<llvm::SmallVector<SuspendPlan>> planContinuations(FuncOp function, const RematerialiseOptions &options,
-                                                                 const WriteSummary &summary);
-
+/// Answers for one function.
 class Recompute {
 public:
   Recompute(FuncOp function, const WriteSummary &summary) : function(function), summary(summary) {}

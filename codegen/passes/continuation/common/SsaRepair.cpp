@@ -7,7 +7,7 @@
 // and Efficient Construction of Static Single Assignment Form", 2013).
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/SsaRepair.h"
+#include "codegen/passes/continuation/common/SsaRepair.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
 #include "mlir/Interfaces/ControlFlowInterfaces.h"

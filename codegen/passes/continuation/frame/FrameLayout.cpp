@@ -12,8 +12,8 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
-#include "codegen/passes/continuation/ObjectLifetimes.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/frame/ObjectLifetimes.h"
+#include "codegen/passes/continuation/frame/Steps.h"
 
 #include "llvm/ADT/BitVector.h"
 #include "llvm/ADT/StringMap.h"

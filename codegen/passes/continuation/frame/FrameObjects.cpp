@@ -9,8 +9,9 @@
 // that of a place in the frame, on both sides of a trace.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Liveness.h"
-#include "codegen/passes/continuation/Names.h"
+#include "codegen/passes/continuation/common/Liveness.h"
+#include "codegen/passes/continuation/frame/Steps.h"
+#include "codegen/passes/continuation/common/Names.h"
 
 namespace rtsl::continuation {
 

@@ -9,7 +9,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/BaseAddress.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/frame/Steps.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 

@@ -1,5 +1,5 @@
 //===- ObjectLifetimes.cpp - when what an object holds is wanted ----------===//
-#include "codegen/passes/continuation/ObjectLifetimes.h"
+#include "codegen/passes/continuation/frame/ObjectLifetimes.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
 #include "llvm/ADT/PostOrderIterator.h"

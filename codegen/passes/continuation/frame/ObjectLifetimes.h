@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
 
 #include "llvm/ADT/BitVector.h"
 

@@ -6,7 +6,7 @@
 // which would be as many as the longest chain of operands.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/MinimumCut.h"
+#include "codegen/passes/continuation/save/MinimumCut.h"
 
 #include <algorithm>
 

@@ -29,12 +29,13 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
-#include "codegen/passes/continuation/CostTable.h"
-#include "codegen/passes/continuation/Liveness.h"
-#include "codegen/passes/continuation/MinimumCut.h"
-#include "codegen/passes/continuation/Names.h"
-#include "codegen/passes/continuation/Recompute.h"
-#include "codegen/passes/continuation/SsaRepair.h"
+#include "codegen/passes/continuation/save/Steps.h"
+#include "codegen/passes/continuation/common/CostTable.h"
+#include "codegen/passes/continuation/common/Liveness.h"
+#include "codegen/passes/continuation/save/MinimumCut.h"
+#include "codegen/passes/continuation/common/Names.h"
+#include "codegen/passes/continuation/common/Recompute.h"
+#include "codegen/passes/continuation/common/SsaRepair.h"
 
 #include "mlir/Analysis/CFGLoopInfo.h"
 #include "mlir/IR/Dominance.h"

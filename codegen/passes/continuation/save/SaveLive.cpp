@@ -8,9 +8,10 @@
 // method, and each state can be cut out.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Liveness.h"
-#include "codegen/passes/continuation/Names.h"
-#include "codegen/passes/continuation/SsaRepair.h"
+#include "codegen/passes/continuation/common/Liveness.h"
+#include "codegen/passes/continuation/save/Steps.h"
+#include "codegen/passes/continuation/common/Names.h"
+#include "codegen/passes/continuation/common/SsaRepair.h"
 
 namespace rtsl::continuation {
 

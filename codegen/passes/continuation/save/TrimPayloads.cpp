@@ -16,7 +16,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/save/Steps.h"
 
 #include "mlir/IR/Dominance.h"
 #include "mlir/Interfaces/DataLayoutInterfaces.h"

@@ -11,7 +11,8 @@
 // some components are read is first done on those alone.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Liveness.h"
+#include "codegen/passes/continuation/common/Liveness.h"
+#include "codegen/passes/continuation/save/Steps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"

@@ -9,7 +9,7 @@
 // through arguments of blocks.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/states/Steps.h"
 
 #include "mlir/IR/PatternMatch.h"
 #include "mlir/Interfaces/ControlFlowInterfaces.h"

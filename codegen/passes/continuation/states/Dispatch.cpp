@@ -1,6 +1,6 @@
 //===- Dispatch.cpp - from states to a machine ----------------------------===//
 //
-// Makes the frame a parameter and numbers the states, and adds what runtime/device/Machine.h calls:
+// Makes the frame a parameter and numbers the states, and adds what runtime/device/engines/Machine.h calls:
 //
 //   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, gives what comes next
 //   func @rtsl_frame_size(%chain: i32) -> i32                   bytes of the largest frame
@@ -10,13 +10,13 @@
 //   func @rtsl_rays_kept(%part: i32) -> i32                     what of their state waiting rays read (KeptState.h)
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Dispatch.h"
+#include "codegen/passes/continuation/states/Dispatch.h"
 
 #include "codegen/ir/Separate.h"
-#include "codegen/passes/continuation/KeptState.h"
-#include "codegen/passes/continuation/RayGraph.h"
-#include "codegen/passes/continuation/Steps.h"
-#include "runtime/device/Abi.h"
+#include "codegen/passes/continuation/states/KeptState.h"
+#include "codegen/passes/continuation/states/RayGraph.h"
+#include "codegen/passes/continuation/states/Steps.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
@@ -31,7 +31,7 @@ namespace arith = mlir::arith;
 
 namespace {
 
-/// Whether rays carry a payload: 1, some do not; 2, some do (runtime/device/KeptState.h).
+/// Whether rays carry a payload: 1, some do not; 2, some do (runtime/device/engines/KeptState.h).
 std::uint32_t payloadsOf(const RayGraph &rays) {
   const std::size_t generate = rays.hasGenerate ? rays.kinds.size() - 1 : rays.kinds.size();
   std::uint32_t sent = rays.hasGenerate ? 0 : 1; // the camera's
@@ -424,13 +424,6 @@ mlir::LogicalResult Dispatcher::run() {
 }
 
 } // namespace
-
-llvm::ArrayRef<llvm::StringLiteral> machineEntries() {
-  static constexpr llvm::StringLiteral entries[] = {
-      "rtsl_rt_Material_shade", "rtsl_rt_Miss_miss", "rtsl_rt_Material_closestHit_payload",
-      "rtsl_rt_Miss_miss_payload", "rtsl_rt_RayGeneration_generate"};
-  return entries;
-}
 
 mlir::LogicalResult makeDispatch(mlir::ModuleOp module) {
   return Dispatcher(module).run();

@@ -11,7 +11,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/Components.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/states/Steps.h"
 
 #include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/MapVector.h"

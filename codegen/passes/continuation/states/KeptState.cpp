@@ -1,11 +1,11 @@
 //===- KeptState.cpp - what of a waiting ray's state is kept --------------===//
-#include "codegen/passes/continuation/KeptState.h"
+#include "codegen/passes/continuation/states/KeptState.h"
 
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
-#include "codegen/passes/continuation/Steps.h"
-#include "runtime/device/KeptState.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
+#include "runtime/device/engines/KeptState.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "llvm/ADT/StringMap.h"
@@ -48,12 +48,12 @@ struct Fields {
 KeptField fieldOf(llvm::StringRef variable) {
   return llvm::StringSwitch<KeptField>(variable)
 #define RTSL_STATE_VARIABLE(name, type) .Case(#name, device::kept##name)
-#include "runtime/device/StateVariables.def"
+#include "language/StateVariables.def"
       .Default(device::keptFieldCount);
 }
 
 /// What is the same for all rays of a sample: it stays in the state (takeFromSample in
-/// runtime/device/Undefined.h).
+/// runtime/device/ray/Undefined.h).
 Fields sharedByRays() {
   return Fields::of({device::keptScreenCoord, device::keptLensCoord, device::keptTimeSeed,
                      device::keptLaunchIndex, device::keptLaunchSize, device::keptExceptionCode});

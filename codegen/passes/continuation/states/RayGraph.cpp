@@ -1,9 +1,9 @@
 //===- RayGraph.cpp - which rays send which -------------------------------===//
-#include "codegen/passes/continuation/RayGraph.h"
+#include "codegen/passes/continuation/states/RayGraph.h"
 
 #include "codegen/ir/Rtsl.h"
-#include "codegen/passes/continuation/Steps.h"
-#include "runtime/device/StackBound.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
+#include "runtime/device/engines/StackBound.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "llvm/ADT/StringMap.h"

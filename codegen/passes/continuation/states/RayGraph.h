@@ -2,7 +2,7 @@
 //
 // A kind of rays are those that the same programs answer: the ones that bring a color, and one kind
 // for each type of payload. `generate` is a kind of its own. What the programs of a kind may send
-// bounds the stack (runtime/device/StackBound.h).
+// bounds the stack (runtime/device/engines/StackBound.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -11,7 +11,7 @@
 // the block that dominates all their uses, but never into a loop.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/states/Steps.h"
 
 #include "mlir/Analysis/CFGLoopInfo.h"
 #include "mlir/IR/Dominance.h"

@@ -18,7 +18,8 @@
 // several ways is there several times, as `^loop` here.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/CutJoins.h"
+#include "codegen/passes/continuation/suspend/CutJoins.h"
+#include "codegen/passes/continuation/states/Steps.h"
 
 #include "mlir/IR/IRMapping.h"
 #include "llvm/ADT/SmallPtrSet.h"

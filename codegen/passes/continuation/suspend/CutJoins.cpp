@@ -13,7 +13,7 @@
 // Joins in loops are taken only if others do not suffice.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/CutJoins.h"
+#include "codegen/passes/continuation/suspend/CutJoins.h"
 
 #include "mlir/Analysis/CFGLoopInfo.h"
 #include "mlir/IR/Dominance.h"

@@ -1,7 +1,7 @@
 //===- CutJoins.h - states of their own for code that many states reach ---===//
 #pragma once
 
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
 
 namespace rtsl::continuation {
 

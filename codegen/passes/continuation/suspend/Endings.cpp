@@ -5,7 +5,7 @@
 // some may lead past all, and what their conditions are made of.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
 #include "mlir/Interfaces/ControlFlowInterfaces.h"

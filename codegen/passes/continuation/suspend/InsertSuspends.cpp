@@ -24,29 +24,14 @@
 //                                             after
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Recompute.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/common/Recompute.h"
+#include "codegen/passes/continuation/calls/Steps.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/IR/PatternMatch.h"
 #include "mlir/Transforms/RegionUtils.h"
 
 namespace rtsl::continuation {
-
-llvm::SmallVector<ir::SuspendOp> suspendsOf(FuncOp function) {
-  llvm::SmallVector<ir::SuspendOp> suspends;
-  for (mlir::Block &block : function.getBody())
-    if (!block.empty())
-      if (auto suspend = llvm::dyn_cast<ir::SuspendOp>(block.back()))
-        suspends.push_back(suspend);
-  return suspends;
-}
-
-mlir::Value objectOf(FuncOp function) {
-  if (function.isExternal() || function.getNumArguments() == 0)
-    return {};
-  mlir::Value first = function.getArgument(0);
-  return llvm::isa<ir::RefType>(first.getType()) ? first : mlir::Value();
-}
 
 /// The call is prepared; what it gives comes where `builder` stands.
 static void suspendAtCall(mlir::func::CallOp call, mlir::OpBuilder builder, const WriteSummary &summary) {

@@ -26,7 +26,7 @@
 // there: that is another order of rounding. Such a ray keeps what they need and nothing else.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"

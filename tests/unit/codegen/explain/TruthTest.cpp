@@ -2,7 +2,7 @@
 // without it, and the PTX must be another; what it calls left out can be taken away again, and the
 // PTX must stay.
 #include "codegen/driver/Compiler.h"
-#include "scene/SceneFile.h"
+#include "scenefile/SceneFile.h"
 #include "tools/rtslc/SceneShaders.h"
 
 #include <gtest/gtest.h>

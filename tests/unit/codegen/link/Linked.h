@@ -5,7 +5,7 @@
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
-#include "frontend/Parser.h"
+#include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"

@@ -1,7 +1,7 @@
 //===- RayTypesTest.cpp - who answers which payload, and in which order ---===//
 #include "Linked.h"
 
-#include "runtime/device/Abi.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl {
 namespace {

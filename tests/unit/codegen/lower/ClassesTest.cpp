@@ -1,5 +1,5 @@
 //===- ClassesTest.cpp - what classes become ------------------------------===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 //===- ColorTest.cpp - colors of 1 to 16 components -----------------------===//
-#include "runtime/ColorBasis.h"
-#include "tests/unit/codegen/Shader.h"
+#include "language/ColorBasis.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 //===- CommonBuiltinsTest.cpp - what min, mod, frexp and the like compute -===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 //===- GeometryBuiltinsTest.cpp - dot, normalize, cross, refract, ... -----===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 //===- IntegerBuiltinsTest.cpp - bits, carries, comparisons, packing ------===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

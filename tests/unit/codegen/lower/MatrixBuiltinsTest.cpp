@@ -1,5 +1,5 @@
 //===- MatrixBuiltinsTest.cpp - products, determinant, inverse ------------===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

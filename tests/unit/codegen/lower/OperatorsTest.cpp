@@ -1,5 +1,5 @@
 //===- OperatorsTest.cpp - operators, conversions, constructors -----------===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 //===- Shader.cpp - RTSL text that runs in a test -------------------------===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
@@ -8,8 +8,8 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
-#include "frontend/Parser.h"
-#include "runtime/DeviceBitcode.h"
+#include "frontend/syntax/Parser.h"
+#include "runtime/program/DeviceBitcode.h"
 #include "sema/Sema.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"

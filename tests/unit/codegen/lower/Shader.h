@@ -1,8 +1,8 @@
 //===- Shader.h - RTSL text that runs in a test ---------------------------===//
 #pragma once
 
-#include "frontend/Diagnostics.h"
-#include "runtime/device/Abi.h"
+#include "frontend/diagnostics/Diagnostics.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <array>
 #include <cstdint>

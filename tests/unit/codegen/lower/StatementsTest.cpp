@@ -1,5 +1,5 @@
 //===- StatementsTest.cpp - control flow, calls, order of evaluation ------===//
-#include "tests/unit/codegen/Shader.h"
+#include "tests/unit/codegen/lower/Shader.h"
 
 #include <gtest/gtest.h>
 

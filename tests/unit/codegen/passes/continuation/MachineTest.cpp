@@ -6,8 +6,8 @@
 #include "codegen/emit/Jit.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
-#include "runtime/DeviceBitcode.h"
-#include "runtime/device/Abi.h"
+#include "runtime/program/DeviceBitcode.h"
+#include "runtime/device/ray/Abi.h"
 
 #include "mlir/IR/MLIRContext.h"
 #include "mlir/Parser/Parser.h"

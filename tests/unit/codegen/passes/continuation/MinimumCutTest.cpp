@@ -1,6 +1,6 @@
 // The choice of what to save against an exhaustive search: on small graphs the cost has to be the
 // optimum.
-#include "codegen/passes/continuation/MinimumCut.h"
+#include "codegen/passes/continuation/save/MinimumCut.h"
 
 #include <gtest/gtest.h>
 

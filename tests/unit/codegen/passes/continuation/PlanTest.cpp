@@ -1,7 +1,8 @@
 // Plans of functions with more values than a BitVector holds in itself, for AddressSanitizer too: what a trace saves
 // depends on what stands behind it alone.
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
+#include "codegen/passes/continuation/save/Steps.h"
 
 #include "mlir/IR/MLIRContext.h"
 #include "mlir/Parser/Parser.h"

@@ -1,9 +1,10 @@
 // What is saved over the traces of small shaders against the optimum. The checker makes a shader out of its own description, so it
 // knows nothing of liveness, dominance or flows: it tries every set of saved values at every trace, over all traces together.
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/MinimumCut.h"
-#include "codegen/passes/continuation/Names.h"
-#include "codegen/passes/continuation/Steps.h"
+#include "codegen/passes/continuation/save/MinimumCut.h"
+#include "codegen/passes/continuation/common/Names.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
+#include "codegen/passes/continuation/save/Steps.h"
 
 #include "mlir/IR/MLIRContext.h"
 #include "mlir/Parser/Parser.h"

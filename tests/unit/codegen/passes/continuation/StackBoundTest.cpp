@@ -1,5 +1,5 @@
 // The bound of the stack against all ways that rays can take.
-#include "runtime/device/StackBound.h"
+#include "runtime/device/engines/StackBound.h"
 
 #include <gtest/gtest.h>
 

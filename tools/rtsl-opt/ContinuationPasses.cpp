@@ -1,13 +1,16 @@
-//===- Passes.cpp - the steps of splitting as passes ----------------------===//
+//===- ContinuationPasses.cpp - the steps of splitting as passes ----------===//
 //
-// For rtsl-opt: thin covers over Steps.h.
+// For rtsl-opt: thin covers over the Steps.h of each room of codegen/passes/continuation.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/Passes.h"
+#include "tools/rtsl-opt/ContinuationPasses.h"
 
-#include "codegen/passes/continuation/CutJoins.h"
-#include "codegen/passes/continuation/Names.h"
+#include "codegen/explain/ReportJson.h"
+#include "codegen/explain/ReportText.h"
+#include "codegen/passes/continuation/suspend/CutJoins.h"
+#include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/Split.h"
+#include "codegen/passes/continuation/states/Steps.h"
 
 #include "mlir/Pass/Pass.h"
 #include "mlir/Pass/PassRegistry.h"
