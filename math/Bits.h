@@ -85,7 +85,8 @@ inline double powerOfTwo(int exponent) {
   return doubleOf(uint64_t(exponent + 1023) << 52);
 }
 
-/// Adding it leaves no bits behind the binary point and puts the integer into the low bits of the sum.
+/// Adding it leaves no bits behind the binary point and puts the integer into the low bits of the
+/// sum.
 inline constexpr double integerShifter = 0x1.8p52;
 
 /// The integer nearest to x (ties to even), for |x| < 2^31, both as a double and as an int.

@@ -1,5 +1,5 @@
-// Four doubles that are computed with at once, for functions of the components of a vector: the same
-// operations as on one double, so the same bits. For the host, with AVX2 and FMA.
+// Four doubles that are computed with at once, for functions of the components of a vector: the
+// same operations as on one double, so the same bits. For the host, with AVX2 and FMA.
 #pragma once
 
 #include "math/Bits.h"

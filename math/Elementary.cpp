@@ -12,7 +12,8 @@
   }
 /// Of vectors of that many components.
 #define RTSL_EXPORT_REFRACT(count)                                                                 \
-  void rtsl_refract##count(const float *incident, const float *normal, float eta, float *refracted) { \
+  void rtsl_refract##count(const float *incident, const float *normal, float eta,                  \
+                           float *refracted) {                                                     \
     rtsl::device::refract<count>(incident, normal, eta, refracted);                                \
   }
 #define RTSL_EXPORT_BINARY(name)                                                                   \
@@ -20,8 +21,8 @@
     return rtsl::device::name(x, y);                                                               \
   }
 
-/// Whoever asks for the sine and the cosine of one angle calls this twice, which the optimiser makes
-/// one call.
+/// Whoever asks for the sine and the cosine of one angle calls this twice, which the optimiser
+/// makes one call.
 [[gnu::const, gnu::noinline]] static rtsl::device::SineAndCosine sineAndCosine(float x) {
   return rtsl::device::sineAndCosine(x);
 }

@@ -1,8 +1,8 @@
 // Correctly rounded elementary functions in binary32, one source for the host and for nvptx64.
 //
 // Every function of one argument returns the float nearest to the exact result: tested for all 2^32
-// arguments against MPFR. pow and atan2 have an error bound with which their rounding is tested, and
-// fall back to double-double where that does not decide. docs/elementary-functions.md has the
+// arguments against MPFR. pow and atan2 have an error bound with which their rounding is tested,
+// and fall back to double-double where that does not decide. docs/elementary-functions.md has the
 // method, the bounds and the figures.
 //
 // NaN results are always 0x7fc00000. Signed zeros and infinities are as in C99; errors of domain

@@ -60,7 +60,8 @@ inline float exp2(float x) {
   if (!(x > -126.0f && x < 128.0f))
     return carefulBinaryExponential(x);
   BinaryReduction reduced = reduceBinary(x);
-  double y = plainScaledExponential(reduced.step.asInt, plainExponentialTail(reduced.fraction * ln2.hi));
+  double y =
+      plainScaledExponential(reduced.step.asInt, plainExponentialTail(reduced.fraction * ln2.hi));
   return roundsSafely(y) ? float(y) : carefulBinaryExponential(x);
 }
 

@@ -53,8 +53,8 @@ inline double plainScaledExponential(int step, double tail) {
   return powerOfTwo(step >> 6) * fma(entry, tail, entry);
 }
 
-/// e^x in plain double for |x| < 104: the step's size is good to 2^-54, so that the remainder's error, and
-/// the relative one of the result, is below 2^-47.
+/// e^x in plain double for |x| < 104: the step's size is good to 2^-54, so that the remainder's
+/// error, and the relative one of the result, is below 2^-47.
 inline double plainExponential(double x) {
   NearestInteger step = nearestInteger(x * exponentialStepsPerUnit);
   return plainScaledExponential(step.asInt,

@@ -15,7 +15,8 @@ inline float specialLogarithm(float x) {
 
 /// Where x is not normal, or plain double does not decide.
 [[gnu::cold, gnu::noinline]] inline float carefulNaturalLogarithm(float x) {
-  return x > 0.0f && x < infinity() ? roundToFloat(naturalLogarithm({x, 0.0})) : specialLogarithm(x);
+  return x > 0.0f && x < infinity() ? roundToFloat(naturalLogarithm({x, 0.0}))
+                                    : specialLogarithm(x);
 }
 [[gnu::cold, gnu::noinline]] inline float carefulBinaryLogarithm(float x) {
   return x > 0.0f && x < infinity() ? roundToFloat(binaryLogarithm(x)) : specialLogarithm(x);

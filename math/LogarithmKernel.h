@@ -51,8 +51,8 @@ inline Double2 logarithm(const LogarithmReduction &x, int exponent) {
   return {sum.hi, sum.lo + low};
 }
 
-/// The reduction of a positive normal float by its own bits, which a shader waits for less long than
-/// for those of a double; rLow is 0.
+/// The reduction of a positive normal float by its own bits, which a shader waits for less long
+/// than for those of a double; rLow is 0.
 inline LogarithmReduction reduceLogarithmOfNormal(float x) {
   uint32_t distance = bitsOf(x) - bitsOf(0.6875f);
   LogarithmEntry entry = logarithmTable[(distance >> 16) & 127];
@@ -60,9 +60,9 @@ inline LogarithmReduction reduceLogarithmOfNormal(float x) {
   return {int(distance) >> 23, entry, fma(mantissa, entry.inverse, -1.0), 0.0};
 }
 
-/// exponent * ln(2) + (hi + lo) + ln(1 + r) in plain double, relative error below 2^-51.3. The series
-/// leaves out less than 2^-52 |r|; its terms are summed so that few wait for each other. `Real` is
-/// double or DoubleLanes.
+/// exponent * ln(2) + (hi + lo) + ln(1 + r) in plain double, relative error below 2^-51.3. The
+/// series leaves out less than 2^-52 |r|; its terms are summed so that few wait for each other.
+/// `Real` is double or DoubleLanes.
 template <typename Real>
 inline Real plainLogarithm(Real exponent, Real hi, Real lo, Real r) {
   Real head = fma(exponent, ln2Parts[0], hi); // exact

@@ -67,7 +67,8 @@ inline Double2 accuratePower(double x, double y) {
 }
 
 /// x^y for finite x > 0 and finite y; `exponent` is y ln(x). On the host a function of its own:
-/// without it `pow` is small enough to be inlined where x is a constant, and its logarithm then too.
+/// without it `pow` is small enough to be inlined where x is a constant, and its logarithm then
+/// too.
 #ifndef __NVPTX__
 [[gnu::noinline]]
 #endif

@@ -2,9 +2,10 @@
 //
 //     d = n . i,  k = 1 - eta^2 (1 - d^2),  eta i - (eta d + sqrt(k)) n, and 0 where k < 0
 //
-// Near the angle of total reflection k is a small difference, and its root is off by as much as the root of its error: computed
-// in single precision, directions were wrong by thousands of rounding units there. So everything is computed in double and
-// rounded once at the end; where double cannot tell whether k is negative, k is computed again, in double-double.
+// Near the angle of total reflection k is a small difference, and its root is off by as much as the
+// root of its error: computed in single precision, directions were wrong by thousands of rounding
+// units there. So everything is computed in double and rounded once at the end; where double cannot
+// tell whether k is negative, k is computed again, in double-double.
 #pragma once
 
 #include "math/DoubleDouble.h"
@@ -25,14 +26,15 @@ template <int count, typename T>
   return k.hi;
 }
 
-/// Where plain double computes a k of this size or less, relative to its largest term, it computes k again: its own error is
-/// below 2^-48, and the root of a larger k is good to 2^-29.
+/// Where plain double computes a k of this size or less, relative to its largest term, it computes
+/// k again: its own error is below 2^-48, and the root of a larger k is good to 2^-29.
 inline constexpr double smallRadicand = 0x1p-40;
 
 } // namespace detail
 
-/// The refracted direction, each component within a rounding unit of max(1, |eta|) for i and n of unit length, up to rounding;
-/// 0 for total reflection, which is decided for i, n and eta as they are, without rounding.
+/// The refracted direction, each component within a rounding unit of max(1, |eta|) for i and n of
+/// unit length, up to rounding; 0 for total reflection, which is decided for i, n and eta as they
+/// are, without rounding.
 template <int count, typename T>
 inline void refract(const T *i, const T *n, T eta, T *refracted) {
   using namespace detail;

@@ -58,7 +58,8 @@ inline SineAndCosine sineAndCosineOfPiUpToZeros(float x) {
 
 } // namespace detail
 
-/// Both of pi x. As in IEEE 754-2019 the sine of an integer is a zero with its sign, and the cosine is
+/// Both of pi x. As in IEEE 754-2019 the sine of an integer is a zero with its sign, and the cosine
+/// is
 /// +0 halfway between integers.
 inline SineAndCosine sineAndCosineOfPi(float x) {
   SineAndCosine both = detail::sineAndCosineOfPiUpToZeros(x);

@@ -12,10 +12,13 @@ namespace rtsl::report {
 namespace {
 
 void requireSameShape(const runtime::Image &reference, const runtime::Image &test) {
-  if (reference.width != test.width || reference.height != test.height || reference.channels != test.channels)
-    throw Error(ErrorCode::BadImage,
-                         fmt::format("the reference has {}x{} pixels of {} channels, the picture {}x{} of {}", reference.width,
-                                     reference.height, reference.channels, test.width, test.height, test.channels));
+  if (reference.width != test.width || reference.height != test.height ||
+      reference.channels != test.channels)
+    throw Error(
+        ErrorCode::BadImage,
+        fmt::format("the reference has {}x{} pixels of {} channels, the picture {}x{} of {}",
+                    reference.width, reference.height, reference.channels, test.width, test.height,
+                    test.channels));
 }
 
 double relativeSquaredError(double reference, double test) {
@@ -31,7 +34,9 @@ ErrorMetrics measureError(const runtime::Image &reference, const runtime::Image 
   double squares = 0, relative = 0, sum = 0;
   for (std::size_t i = 0; i < test.pixels.size(); i += test.channels) {
     const float *a = &reference.pixels[i], *b = &test.pixels[i];
-    const auto any = [&](const float *pixel, auto predicate) { return std::any_of(pixel, pixel + test.channels, predicate); };
+    const auto any = [&](const float *pixel, auto predicate) {
+      return std::any_of(pixel, pixel + test.channels, predicate);
+    };
     const auto isNan = [](float value) { return std::isnan(value); };
     const auto isNotFinite = [](float value) { return !std::isfinite(value); };
     const bool differs = std::memcmp(a, b, test.channels * sizeof(float)) != 0;
@@ -62,7 +67,8 @@ ErrorMetrics measureError(const runtime::Image &reference, const runtime::Image 
   return metrics;
 }
 
-runtime::Image relativeSquaredErrorMap(const runtime::Image &reference, const runtime::Image &test) {
+runtime::Image relativeSquaredErrorMap(const runtime::Image &reference,
+                                       const runtime::Image &test) {
   requireSameShape(reference, test);
   runtime::Image map(test.width, test.height, 1);
   for (std::size_t pixel = 0; pixel < map.pixels.size(); ++pixel) {

@@ -7,16 +7,17 @@
 
 namespace rtsl::report {
 
-/// Added to the squared reference in relMSE, so that black pixels do not rule it (F. Rousselle, C. Knaus,
-/// M. Zwicker, "Adaptive Sampling and Reconstruction using Greedy Error Minimization", 2011).
+/// Added to the squared reference in relMSE, so that black pixels do not rule it (F. Rousselle, C.
+/// Knaus, M. Zwicker, "Adaptive Sampling and Reconstruction using Greedy Error Minimization",
+/// 2011).
 constexpr double relMseEpsilon = 1e-2;
 
 /// Errors over all channels of the pixels in which both pictures are finite; 0 if there is none.
 struct ErrorMetrics {
-  double rmse = 0;    // root of the mean of (test - reference)^2
-  double relMse = 0;  // mean of (test - reference)^2 / (reference^2 + relMseEpsilon)
-  double bias = 0;    // mean of test - reference
-  double largest = 0; // |test - reference|
+  double rmse = 0;                  // root of the mean of (test - reference)^2
+  double relMse = 0;                // mean of (test - reference)^2 / (reference^2 + relMseEpsilon)
+  double bias = 0;                  // mean of test - reference
+  double largest = 0;               // |test - reference|
   std::size_t pixels = 0;           // finite in both
   std::size_t pixelsThatDiffer = 0; // not the same bits in some channel
   std::size_t incomparable = 0;     // of those, the ones that are not finite in one picture or both
@@ -26,7 +27,8 @@ struct ErrorMetrics {
 /// Sums in double, in a fixed order. Throws BadImage if the shapes differ.
 ErrorMetrics measureError(const runtime::Image &reference, const runtime::Image &test);
 
-/// (test - reference)^2 / (reference^2 + relMseEpsilon), one value a pixel: the mean over its channels.
+/// (test - reference)^2 / (reference^2 + relMseEpsilon), one value a pixel: the mean over its
+/// channels.
 runtime::Image relativeSquaredErrorMap(const runtime::Image &reference, const runtime::Image &test);
 
 } // namespace rtsl::report

@@ -16,27 +16,33 @@ using Color = std::array<float, 3>;
 constexpr double pi = 3.14159265358979323846;
 
 /// One float or one color a pixel.
-template <typename T> struct Plane {
+template <typename T>
+struct Plane {
   std::uint32_t width, height;
   std::vector<T> values;
 
-  Plane(std::uint32_t width, std::uint32_t height) : width(width), height(height), values(std::size_t(width) * height) {}
+  Plane(std::uint32_t width, std::uint32_t height)
+      : width(width), height(height), values(std::size_t(width) * height) {}
   T &at(std::uint32_t x, std::uint32_t y) { return values[std::size_t(y) * width + x]; }
   const T &at(std::uint32_t x, std::uint32_t y) const { return values[std::size_t(y) * width + x]; }
 };
 
 /// The pixel `offset` steps from `i`; the border repeats outwards.
 std::uint32_t clampedStep(std::uint32_t i, int offset, std::uint32_t size) {
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(std::int64_t(i) + offset, 0, std::int64_t(size) - 1));
+  return static_cast<std::uint32_t>(
+      std::clamp<std::int64_t>(std::int64_t(i) + offset, 0, std::int64_t(size) - 1));
 }
 
 //===-- colour spaces -----------------------------------------------------===//
 
 // Linear sRGB to CIE XYZ, and the white of RGB (1, 1, 1): D65, the sum of each row.
-constexpr double rgbToXyz[3][3] = {{10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0},
-                                   {2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0},
-                                   {1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0}};
-constexpr double white(int i) { return rgbToXyz[i][0] + rgbToXyz[i][1] + rgbToXyz[i][2]; }
+constexpr double rgbToXyz[3][3] = {
+    {10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0},
+    {2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0},
+    {1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0}};
+constexpr double white(int i) {
+  return rgbToXyz[i][0] + rgbToXyz[i][1] + rgbToXyz[i][2];
+}
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
@@ -58,7 +64,8 @@ constexpr Matrix xyzToRgb = inverseOf(rgbToXyz);
 std::array<double, 3> relativeXyz(const Color &rgb) {
   std::array<double, 3> xyz;
   for (int i = 0; i < 3; ++i)
-    xyz[i] = (rgbToXyz[i][0] * rgb[0] + rgbToXyz[i][1] * rgb[1] + rgbToXyz[i][2] * rgb[2]) / white(i);
+    xyz[i] =
+        (rgbToXyz[i][0] * rgb[0] + rgbToXyz[i][1] * rgb[1] + rgbToXyz[i][2] * rgb[2]) / white(i);
   return xyz;
 }
 
@@ -69,7 +76,8 @@ Color toOpponent(const Color &rgb) {
 }
 
 Color fromOpponent(const Color &opponent) {
-  const double y = (opponent[0] + 16.0) / 116, x = y + opponent[1] / 500.0, z = y - opponent[2] / 200.0;
+  const double y = (opponent[0] + 16.0) / 116, x = y + opponent[1] / 500.0,
+               z = y - opponent[2] / 200.0;
   const double xyz[3] = {x * white(0), y * white(1), z * white(2)};
   Color rgb;
   for (int i = 0; i < 3; ++i)
@@ -85,7 +93,8 @@ Color toHuntLab(const Color &rgb) {
   };
   const auto [x, y, z] = relativeXyz(rgb);
   const double lightness = 116 * f(y) - 16;
-  return {float(lightness), float(0.01 * lightness * 500 * (f(x) - f(y))), float(0.01 * lightness * 200 * (f(y) - f(z)))};
+  return {float(lightness), float(0.01 * lightness * 500 * (f(x) - f(y))),
+          float(0.01 * lightness * 200 * (f(y) - f(z)))};
 }
 
 /// The distance for large differences: city block in lightness, Euclidean in colour.
@@ -104,7 +113,8 @@ struct Kernel {
   float operator[](int offset) const { return weights[offset + radius()]; }
 };
 
-template <typename Weight> Kernel makeKernel(int radius, Weight weight) {
+template <typename Weight>
+Kernel makeKernel(int radius, Weight weight) {
   Kernel kernel(radius);
   for (int i = -radius; i <= radius; ++i)
     kernel[i] = float(weight(double(i)));
@@ -127,8 +137,9 @@ void normalise(Kernel &kernel) {
     weight = float(weight / (weight > 0 ? positive : -negative));
 }
 
-/// What the eye's contrast sensitivity leaves of one channel: a sum of Gaussians of the distance x in degrees,
-/// a sqrt(pi / b) exp(-pi^2 x^2 / b) each (2020, table 1). Each is separable, their sum is not.
+/// What the eye's contrast sensitivity leaves of one channel: a sum of Gaussians of the distance x
+/// in degrees, a sqrt(pi / b) exp(-pi^2 x^2 / b) each (2020, table 1). Each is separable, their sum
+/// is not.
 struct Sensitivity {
   double a[2], b[2];
 };
@@ -147,7 +158,9 @@ ChannelFilter channelFilter(const Sensitivity &sensitivity, int radius, double p
     if (sensitivity.a[i] == 0)
       continue;
     const double b = sensitivity.b[i];
-    Kernel kernel = makeKernel(radius, [&](double x) { return std::exp(-pi * pi * x * x / (pixelsPerDegree * pixelsPerDegree * b)); });
+    Kernel kernel = makeKernel(radius, [&](double x) {
+      return std::exp(-pi * pi * x * x / (pixelsPerDegree * pixelsPerDegree * b));
+    });
     const double weight = sensitivity.a[i] * std::sqrt(pi / b), sum = sumOf(kernel);
     total += weight * sum * sum;
     filter.parts.emplace_back(weight, std::move(kernel));
@@ -158,7 +171,9 @@ ChannelFilter channelFilter(const Sensitivity &sensitivity, int radius, double p
 }
 
 /// `input` convolved with `along` in x or y and added to `output` with a weight.
-template <typename Read> Plane<float> convolveRows(std::uint32_t width, std::uint32_t height, const Kernel &kernel, Read read) {
+template <typename Read>
+Plane<float> convolveRows(std::uint32_t width, std::uint32_t height, const Kernel &kernel,
+                          Read read) {
   Plane<float> output(width, height);
   parallelRows(height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < width; ++x) {
@@ -190,10 +205,11 @@ Plane<Color> seenColors(const Plane<Color> &opponent, double pixelsPerDegree) {
   const int radius = int(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixelsPerDegree));
   Plane<Color> seen(opponent.width, opponent.height);
   for (int channel = 0; channel < 3; ++channel)
-    for (const auto &[weight, kernel] : channelFilter(sensitivities[channel], radius, pixelsPerDegree).parts) {
-      const Plane<float> rows = convolveRows(opponent.width, opponent.height, kernel, [&, channel](std::uint32_t x, std::uint32_t y) {
-        return opponent.at(x, y)[channel];
-      });
+    for (const auto &[weight, kernel] :
+         channelFilter(sensitivities[channel], radius, pixelsPerDegree).parts) {
+      const Plane<float> rows = convolveRows(
+          opponent.width, opponent.height, kernel,
+          [&, channel](std::uint32_t x, std::uint32_t y) { return opponent.at(x, y)[channel]; });
       const Plane<float> both = convolveColumns(rows, kernel);
       for (std::size_t i = 0; i < both.values.size(); ++i)
         seen.values[i][channel] += float(weight * both.values[i]);
@@ -221,12 +237,17 @@ Features findFeatures(const Plane<Color> &opponent, double pixelsPerDegree) {
   const auto gaussian = [&](double x) { return std::exp(-x * x / (2 * deviation * deviation)); };
   Kernel smooth = makeKernel(radius, gaussian);
   Kernel first = makeKernel(radius, [&](double x) { return -x * gaussian(x); });
-  Kernel second = makeKernel(radius, [&](double x) { return (x * x / (deviation * deviation) - 1) * gaussian(x); });
+  Kernel second = makeKernel(
+      radius, [&](double x) { return (x * x / (deviation * deviation) - 1) * gaussian(x); });
   for (Kernel *kernel : {&smooth, &first, &second})
     normalise(*kernel);
 
-  const auto luminance = [&](std::uint32_t x, std::uint32_t y) { return (opponent.at(x, y)[0] + 16) / 116; };
-  const auto rows = [&](const Kernel &kernel) { return convolveRows(opponent.width, opponent.height, kernel, luminance); };
+  const auto luminance = [&](std::uint32_t x, std::uint32_t y) {
+    return (opponent.at(x, y)[0] + 16) / 116;
+  };
+  const auto rows = [&](const Kernel &kernel) {
+    return convolveRows(opponent.width, opponent.height, kernel, luminance);
+  };
   const auto length = [](Plane<float> x, const Plane<float> &y) {
     for (std::size_t i = 0; i < x.values.size(); ++i)
       x.values[i] = std::hypot(x.values[i], y.values[i]);
@@ -243,8 +264,9 @@ Features findFeatures(const Plane<Color> &opponent, double pixelsPerDegree) {
 double colorError(double distance, double largest) {
   constexpr double exponent = 0.7, knee = 0.4, kneeError = 0.95;
   const double power = std::pow(distance, exponent), most = std::pow(largest, exponent);
-  return power < knee * most ? kneeError / (knee * most) * power
-                             : kneeError + (power - knee * most) / (most - knee * most) * (1 - kneeError);
+  return power < knee * most
+             ? kneeError / (knee * most) * power
+             : kneeError + (power - knee * most) / (most - knee * most) * (1 - kneeError);
 }
 
 double featureError(double edge, double point) {
@@ -257,25 +279,32 @@ struct Seen {
   Features features;
 
   Seen(const Plane<Color> &opponent, double pixelsPerDegree)
-      : colors(seenColors(opponent, pixelsPerDegree)), features(findFeatures(opponent, pixelsPerDegree)) {}
+      : colors(seenColors(opponent, pixelsPerDegree)),
+        features(findFeatures(opponent, pixelsPerDegree)) {}
 };
 
 FlipMap difference(const Seen &reference, const Seen &test) {
-  const double largest = hyabDistance(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})); // green beside blue
+  const double largest =
+      hyabDistance(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})); // green beside blue
   FlipMap map{reference.colors.width, reference.colors.height, {}};
   map.error.resize(reference.colors.values.size());
   parallelRows(map.height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < map.width; ++x) {
-      const double color = colorError(hyabDistance(reference.colors.at(x, y), test.colors.at(x, y)), largest);
-      const double edge = std::abs(reference.features.edges.at(x, y) - test.features.edges.at(x, y));
-      const double point = std::abs(reference.features.points.at(x, y) - test.features.points.at(x, y));
-      map.error[std::size_t(y) * map.width + x] = float(std::pow(color, 1 - featureError(edge, point)));
+      const double color =
+          colorError(hyabDistance(reference.colors.at(x, y), test.colors.at(x, y)), largest);
+      const double edge =
+          std::abs(reference.features.edges.at(x, y) - test.features.edges.at(x, y));
+      const double point =
+          std::abs(reference.features.points.at(x, y) - test.features.points.at(x, y));
+      map.error[std::size_t(y) * map.width + x] =
+          float(std::pow(color, 1 - featureError(edge, point)));
     }
   });
   return map;
 }
 
-template <typename OnScreen> Plane<Color> opponentPlane(const runtime::Image &image, OnScreen onScreen) {
+template <typename OnScreen>
+Plane<Color> opponentPlane(const runtime::Image &image, OnScreen onScreen) {
   Plane<Color> plane(image.width, image.height);
   parallelRows(image.height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < image.width; ++x) {
@@ -298,7 +327,8 @@ void requireComparable(const runtime::Image &reference, const runtime::Image &te
 //===-- tone mapping ------------------------------------------------------===//
 
 // (c0 x^2 + c1 x) / (c3 x^2 + c4 x + c5); the factor 0.6 is the exposure that the fit was made for.
-constexpr double c0 = 0.6 * 0.6 * 2.51, c1 = 0.6 * 0.03, c3 = 0.6 * 0.6 * 2.43, c4 = 0.6 * 0.59, c5 = 0.14;
+constexpr double c0 = 0.6 * 0.6 * 2.51, c1 = 0.6 * 0.03, c3 = 0.6 * 0.6 * 2.43, c4 = 0.6 * 0.59,
+                 c5 = 0.14;
 
 /// Light to the screen's [0, 1].
 float aces(double x) {
@@ -331,12 +361,15 @@ FlipMap flip(const runtime::Image &reference, const runtime::Image &test, double
                     Seen(opponentPlane(test, onScreen), pixelsPerDegree));
 }
 
-FlipMap flipHdr(const runtime::Image &reference, const runtime::Image &test, const FlipExposures &exposures,
-                double pixelsPerDegree) {
+FlipMap flipHdr(const runtime::Image &reference, const runtime::Image &test,
+                const FlipExposures &exposures, double pixelsPerDegree) {
   requireComparable(reference, test);
-  FlipMap worst{reference.width, reference.height, std::vector<float>(reference.pixels.size() / 3, 0.0f)};
+  FlipMap worst{reference.width, reference.height,
+                std::vector<float>(reference.pixels.size() / 3, 0.0f)};
   for (unsigned i = 0; i < exposures.count; ++i) {
-    const auto onScreen = [scale = std::exp2(exposures.at(i))](float value) { return aces(value * scale); };
+    const auto onScreen = [scale = std::exp2(exposures.at(i))](float value) {
+      return aces(value * scale);
+    };
     const FlipMap map = difference(Seen(opponentPlane(reference, onScreen), pixelsPerDegree),
                                    Seen(opponentPlane(test, onScreen), pixelsPerDegree));
     std::transform(worst.error.begin(), worst.error.end(), map.error.begin(), worst.error.begin(),

@@ -42,8 +42,8 @@ FlipMap flip(const runtime::Image &reference, const runtime::Image &test,
 
 /// HDR-FLIP: the largest LDR-FLIP of each pixel over `exposures`, tone mapped with the ACES curve
 /// (K. Narkowicz's fit, 2016). Values that are not finite or negative count as 0 light.
-FlipMap flipHdr(const runtime::Image &reference, const runtime::Image &test, const FlipExposures &exposures,
-                double pixelsPerDegree = defaultPixelsPerDegree);
+FlipMap flipHdr(const runtime::Image &reference, const runtime::Image &test,
+                const FlipExposures &exposures, double pixelsPerDegree = defaultPixelsPerDegree);
 
 /// The exposures for a reference (2021, section 3): from the one that brings its brightest
 /// pixel to 0.85 on the screen to the one that brings its median there, a stop apart or less.

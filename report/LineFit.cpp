@@ -201,7 +201,8 @@ Estimate medianOf(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   const double median = n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-  // The largest k with P(fewer than k values below the median) <= 2.5 %: the k-th value from either end bounds it.
+  // The largest k with P(fewer than k values below the median) <= 2.5 %: the k-th value from either
+  // end bounds it.
   const boost::math::binomial below(double(n), 0.5);
   std::size_t k = 0;
   while (k < n / 2 && boost::math::cdf(below, double(k)) <= 1 - upperTail)

@@ -79,11 +79,12 @@ struct Crossing {
 /// The first crossing; nothing if no level's mean comes down to the value.
 std::optional<Crossing> findCrossing(const Rounds &rounds, double y);
 
-/// The mean of values with its confidence interval by Student's t; one value has an interval of no width.
+/// The mean of values with its confidence interval by Student's t; one value has an interval of no
+/// width.
 Estimate meanOf(const std::vector<double> &values);
 
-/// The median of values with its distribution-free interval: order statistics by the binomial distribution. With fewer
-/// than six values the interval is their range.
+/// The median of values with its distribution-free interval: order statistics by the binomial
+/// distribution. With fewer than six values the interval is their range.
 Estimate medianOf(std::vector<double> values);
 
 } // namespace rtsl::report

@@ -18,7 +18,8 @@ constexpr double nearMark = 0.35; // decades that an axis may be longer for a ma
 constexpr unsigned styles = 8;
 
 struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  double low = std::numeric_limits<double>::infinity(),
+         high = -std::numeric_limits<double>::infinity();
 
   void add(double value) {
     low = std::min(low, value);
@@ -36,8 +37,12 @@ struct Range {
 /// Values to places on the paper; ranges are of log10.
 struct Axes {
   Range x, y;
-  double toX(double logarithm) const { return left + (width - left - right) * (logarithm - x.low) / (x.high - x.low); }
-  double toY(double logarithm) const { return height - bottom - (height - top - bottom) * (logarithm - y.low) / (y.high - y.low); }
+  double toX(double logarithm) const {
+    return left + (width - left - right) * (logarithm - x.low) / (x.high - x.low);
+  }
+  double toY(double logarithm) const {
+    return height - bottom - (height - top - bottom) * (logarithm - y.low) / (y.high - y.low);
+  }
 };
 
 bool isDrawable(const PlotPoint &point) {
@@ -46,7 +51,9 @@ bool isDrawable(const PlotPoint &point) {
 
 /// The lower end of an interval may reach 0, which is nowhere on the axis, and an estimate may have
 /// no interval.
-double lowEnd(const Estimate &estimate) { return estimate.low > 0 ? estimate.low : estimate.value; }
+double lowEnd(const Estimate &estimate) {
+  return estimate.low > 0 ? estimate.low : estimate.value;
+}
 double highEnd(const Estimate &estimate) {
   return estimate.high > estimate.value && std::isfinite(estimate.high) ? estimate.high
                                                                         : estimate.value;
@@ -206,7 +213,9 @@ std::string drawLine(const PlotSeries &series, const Axes &axes) {
   for (int i = 0; i <= steps; ++i) {
     const double x = range.low + (range.high - range.low) * i / steps;
     const Estimate y = series.line.at(x);
-    const auto inside = [&](double value) { return std::clamp(axes.toY(value), top, height - bottom); };
+    const auto inside = [&](double value) {
+      return std::clamp(axes.toY(value), top, height - bottom);
+    };
     upper += fmt::format("{}{:.1f} {:.1f}", i ? "L" : "M", axes.toX(x), inside(y.high));
     lower = fmt::format("L{:.1f} {:.1f}", axes.toX(x), inside(y.low)) + lower;
   }
@@ -222,13 +231,15 @@ std::string drawLine(const PlotSeries &series, const Axes &axes) {
 }
 
 std::string drawSeries(const PlotSeries &series, const Axes &axes) {
-  std::string svg = fmt::format("<g class=\"series s{}\">", series.style % styles) + drawLine(series, axes);
+  std::string svg =
+      fmt::format("<g class=\"series s{}\">", series.style % styles) + drawLine(series, axes);
   std::string path;
   for (const PlotPoint &point : series.points) {
     if (!isDrawable(point))
       continue;
     const double x = axes.toX(std::log10(point.x));
-    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x, axes.toY(std::log10(point.y.value)));
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x,
+                        axes.toY(std::log10(point.y.value)));
     svg += fmt::format(
         "<line class=\"interval\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", x, x,
         axes.toY(std::log10(lowEnd(point.y))), axes.toY(std::log10(highEnd(point.y))));
@@ -276,8 +287,10 @@ std::string drawLogPlot(const LogPlot &plot) {
                      "it for its figures.</text>",
                      textLeft);
   svg += drawGrid(axes);
-  svg += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>", left, top, width - left - right, height - top - bottom);
-  svg += fmt::format("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", (left + width - right) / 2, height - 12, escapeHtml(plot.xLabel));
+  svg += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>", left,
+                     top, width - left - right, height - top - bottom);
+  svg += fmt::format("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+                     (left + width - right) / 2, height - 12, escapeHtml(plot.xLabel));
   svg += fmt::format("<text class=\"label\" transform=\"translate(13 {}) rotate(-90)\" "
                      "text-anchor=\"middle\">{}</text>",
                      (top + height - bottom) / 2, escapeHtml(plot.yLabel));
@@ -342,11 +355,20 @@ std::string escapeHtml(const std::string &text) {
   std::string escaped;
   for (char c : text)
     switch (c) {
-    case '&': escaped += "&amp;"; break;
-    case '<': escaped += "&lt;"; break;
-    case '>': escaped += "&gt;"; break;
-    case '"': escaped += "&quot;"; break;
-    default: escaped += c;
+    case '&':
+      escaped += "&amp;";
+      break;
+    case '<':
+      escaped += "&lt;";
+      break;
+    case '>':
+      escaped += "&gt;";
+      break;
+    case '"':
+      escaped += "&quot;";
+      break;
+    default:
+      escaped += c;
     }
   return escaped;
 }

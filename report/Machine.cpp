@@ -20,7 +20,8 @@ std::string valueIn(const char *file, const std::string &key, char separator) {
     if (line.compare(0, key.size(), key) != 0 || place == std::string::npos)
       continue;
     std::string value = line.substr(place + 1);
-    const std::size_t first = value.find_first_not_of(" \t\""), last = value.find_last_not_of(" \t\"");
+    const std::size_t first = value.find_first_not_of(" \t\""),
+                      last = value.find_last_not_of(" \t\"");
     return first == std::string::npos ? "" : value.substr(first, last - first + 1);
   }
   return {};

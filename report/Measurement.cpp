@@ -14,8 +14,10 @@ namespace rtsl::report {
 
 namespace {
 
-/// A column: its name, and how it is written and read. Reading gives false for text that is no value.
-template <typename Row> struct Column {
+/// A column: its name, and how it is written and read. Reading gives false for text that is no
+/// value.
+template <typename Row>
+struct Column {
   const char *name;
   std::function<std::string(const Row &)> write;
   std::function<bool(Row &, const std::string &)> read;
@@ -27,7 +29,8 @@ bool parse(const std::string &text, double &value) {
   return !text.empty() && *end == 0;
 }
 
-template <typename Integer> bool parse(const std::string &text, Integer &value) {
+template <typename Integer>
+bool parse(const std::string &text, Integer &value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
 }
@@ -37,8 +40,12 @@ bool parse(const std::string &text, std::string &value) {
   return !text.empty();
 }
 
-template <typename Row, typename Value> Column<Row> column(const char *name, Value Row::*member) {
-  return {name, [member](const Row &row) { return fmt::format("{}", row.*member); }, // the shortest that reads back the same
+template <typename Row, typename Value>
+Column<Row> column(const char *name, Value Row::*member) {
+  return {name,
+          [member](const Row &row) {
+            return fmt::format("{}", row.*member);
+          }, // the shortest that reads back the same
           [member](Row &row, const std::string &text) { return parse(text, row.*member); }};
 }
 
@@ -65,22 +72,24 @@ const std::vector<Column<Measurement>> &columnsOf(const Measurement *) {
 }
 
 const std::vector<Column<LevelVariance>> &columnsOf(const LevelVariance *) {
-  static const std::vector<Column<LevelVariance>> columns = {column("configuration", &LevelVariance::configuration),
-                                                             column("spp", &LevelVariance::samplesPerPixel),
-                                                             column("variance", &LevelVariance::variance),
-                                                             column("mean_seconds", &LevelVariance::meanSeconds),
-                                                             column("efficiency", &LevelVariance::efficiency)};
+  static const std::vector<Column<LevelVariance>> columns = {
+      column("configuration", &LevelVariance::configuration),
+      column("spp", &LevelVariance::samplesPerPixel), column("variance", &LevelVariance::variance),
+      column("mean_seconds", &LevelVariance::meanSeconds),
+      column("efficiency", &LevelVariance::efficiency)};
   return columns;
 }
 
-template <typename Row> std::string headerOf() {
+template <typename Row>
+std::string headerOf() {
   std::string header;
   for (const auto &column : columnsOf(static_cast<const Row *>(nullptr)))
     header += (header.empty() ? "" : ",") + std::string(column.name);
   return header + "\n";
 }
 
-template <typename Row> std::string lineOf(const Row &row) {
+template <typename Row>
+std::string lineOf(const Row &row) {
   std::string line;
   for (const auto &column : columnsOf(&row))
     line += (line.empty() ? "" : ",") + column.write(row);
@@ -98,7 +107,8 @@ std::vector<std::string> split(const std::string &text, char separator) {
   }
 }
 
-template <typename Row> std::vector<Row> readTable(const std::string &path) {
+template <typename Row>
+std::vector<Row> readTable(const std::string &path) {
   if (::access(path.c_str(), F_OK) != 0)
     return {};
   std::vector<std::string> lines = split(readFile(path), '\n');
@@ -109,7 +119,8 @@ template <typename Row> std::vector<Row> readTable(const std::string &path) {
     throw Error(ErrorCode::BadImage, why, Place{path, std::uint32_t(line + 1), 1, 1});
   };
   if (lines.front() + "\n" != headerOf<Row>())
-    refuse(0, "this is no table of this version's report; choose another folder, or pass `--fresh`");
+    refuse(0,
+           "this is no table of this version's report; choose another folder, or pass `--fresh`");
   std::vector<Row> rows;
   for (std::size_t line = 1; line < lines.size(); ++line) {
     const std::vector<std::string> cells = split(lines[line], ',');
@@ -125,7 +136,8 @@ template <typename Row> std::vector<Row> readTable(const std::string &path) {
   return rows;
 }
 
-/// Appends `line`, after the header if the file is new. A line that an earlier run left half written is cut away.
+/// Appends `line`, after the header if the file is new. A line that an earlier run left half
+/// written is cut away.
 void appendLine(const std::string &path, const std::string &header, const std::string &line) {
   std::string bytes = ::access(path.c_str(), F_OK) == 0 ? readFile(path) : std::string();
   bytes.resize(bytes.rfind('\n') == std::string::npos ? 0 : bytes.rfind('\n') + 1);
@@ -134,7 +146,9 @@ void appendLine(const std::string &path, const std::string &header, const std::s
 
 } // namespace
 
-std::vector<Measurement> readMeasurements(const std::string &path) { return readTable<Measurement>(path); }
+std::vector<Measurement> readMeasurements(const std::string &path) {
+  return readTable<Measurement>(path);
+}
 void appendMeasurement(const std::string &path, const Measurement &measurement) {
   appendLine(path, headerOf<Measurement>(), lineOf(measurement));
 }

@@ -37,9 +37,9 @@ struct LevelVariance {
   double efficiency = 0;  // 1 / (variance x time); not finite if the variance is 0
 };
 
-/// Tables with a header line that grow by whole lines, so that an interrupted study can go on. Reading leaves out a
-/// last line that was cut off. Writing throws FileUnwritable; reading gives nothing for a file that is not there and
-/// throws BadImage for one that is no such table.
+/// Tables with a header line that grow by whole lines, so that an interrupted study can go on.
+/// Reading leaves out a last line that was cut off. Writing throws FileUnwritable; reading gives
+/// nothing for a file that is not there and throws BadImage for one that is no such table.
 std::vector<Measurement> readMeasurements(const std::string &path);
 void appendMeasurement(const std::string &path, const Measurement &measurement);
 /// A whole table.

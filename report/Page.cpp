@@ -64,7 +64,8 @@ std::string seconds(double value) {
 
 std::string interval(const Estimate &estimate, const char *format = "{:.3f}") {
   const auto text = [&](double value) { return fmt::format(fmt::runtime(format), value); };
-  return fmt::format("{} <span class=\"muted\">[{}, {}]</span>", text(estimate.value), text(estimate.low), text(estimate.high));
+  return fmt::format("{} <span class=\"muted\">[{}, {}]</span>", text(estimate.value),
+                     text(estimate.low), text(estimate.high));
 }
 
 /// A slope, and that of the end of a line that bends.
@@ -232,8 +233,12 @@ std::string plots(const Summary &summary, const Reference &reference) {
   html +=
       drawError(summary, "Root mean square error", "RMSE", &LevelSummary::rmse, false, ownRmse) +
       "\n";
-  html += drawError(summary, "FLIP, as seen on a screen", "mean FLIP", &LevelSummary::flip, false, 0) + "\n";
-  html += drawError(summary, "HDR-FLIP, over all exposures", "mean HDR-FLIP", &LevelSummary::flipHdr, false, 0) + "\n";
+  html +=
+      drawError(summary, "FLIP, as seen on a screen", "mean FLIP", &LevelSummary::flip, false, 0) +
+      "\n";
+  html += drawError(summary, "HDR-FLIP, over all exposures", "mean HDR-FLIP",
+                    &LevelSummary::flipHdr, false, 0) +
+          "\n";
   return html +
          "</div>\n<p class=\"muted\">Points are medians of the runs, bars their 95 % intervals; "
          "the check boxes show and hide curves. The ratio compares times of the same "
@@ -285,12 +290,19 @@ std::string levels(const Summary &summary) {
 
 } // namespace
 
-std::string writePage(const Context &context, const Summary &summary, const Reference &reference, const std::vector<Exhibit> &exhibits) {
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  html += fmt::format("<title>Error against run time: {}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n", escapeHtml(context.scene), style, plotStyle());
-  html += fmt::format("<h1>Error against run time</h1>\n<p class=\"muted\"><code>{}</code>, {}x{} pixels, {} independent runs with each number of samples, {} of rendering for "
-                      "each configuration.</p>\n",
-                      escapeHtml(context.scene), context.width, context.height, context.runs, seconds(context.budgetSeconds));
+std::string writePage(const Context &context, const Summary &summary, const Reference &reference,
+                      const std::vector<Exhibit> &exhibits) {
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+                     "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  html += fmt::format(
+      "<title>Error against run time: {}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n",
+      escapeHtml(context.scene), style, plotStyle());
+  html +=
+      fmt::format("<h1>Error against run time</h1>\n<p class=\"muted\"><code>{}</code>, {}x{} "
+                  "pixels, {} independent runs with each number of samples, {} of rendering for "
+                  "each configuration.</p>\n",
+                  escapeHtml(context.scene), context.width, context.height, context.runs,
+                  seconds(context.budgetSeconds));
   if (!summary.problems.empty()) {
     html += "<div class=\"problems\"><h2>Before you trust a figure</h2><ul>\n";
     for (const std::string &problem : summary.problems)
@@ -315,16 +327,22 @@ std::string writePage(const Context &context, const Summary &summary, const Refe
   if (!exhibits.empty()) {
     html += "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
     for (const Exhibit &exhibit : exhibits)
-      html += fmt::format("<figure><img alt=\"{}\" src=\"{}\" width=\"{}\" height=\"{}\"><figcaption>{}</figcaption></figure>\n", escapeHtml(exhibit.caption),
-                          dataUrl(exhibit.rgb), exhibit.rgb.width, exhibit.rgb.height, escapeHtml(exhibit.caption));
+      html += fmt::format("<figure><img alt=\"{}\" src=\"{}\" width=\"{}\" "
+                          "height=\"{}\"><figcaption>{}</figcaption></figure>\n",
+                          escapeHtml(exhibit.caption), dataUrl(exhibit.rgb), exhibit.rgb.width,
+                          exhibit.rgb.height, escapeHtml(exhibit.caption));
     html += "</div>\n";
   }
   html += "<details><summary>All numbers of samples</summary>\n" + levels(summary) +
-          "<p class=\"muted\">* the reference's own error is more than a tenth of this one; the fitted line leaves it out.</p></details>\n";
-  html += "<h2>How it was made</h2>\n" + definitions(context.versions) + "<br>" + definitions(context.machine);
+          "<p class=\"muted\">* the reference's own error is more than a tenth of this one; the "
+          "fitted line leaves it out.</p></details>\n";
+  html += "<h2>How it was made</h2>\n" + definitions(context.versions) + "<br>" +
+          definitions(context.machine);
   html += fmt::format("<p>Again: <code>{}</code></p>\n", escapeHtml(context.command));
-  html += "<p class=\"muted\">RMSE: root mean square difference. relMSE: mean of (difference)² / (reference² + 0.01). FLIP: Andersson et al. 2020; HDR-FLIP: Andersson et al. 2021; 67 "
-          "pixels a degree. Variance: of a picture over the runs, mean over pixels and channels.</p>\n</body>\n</html>\n";
+  html += "<p class=\"muted\">RMSE: root mean square difference. relMSE: mean of (difference)² / "
+          "(reference² + 0.01). FLIP: Andersson et al. 2020; HDR-FLIP: Andersson et al. 2021; 67 "
+          "pixels a degree. Variance: of a picture over the runs, mean over pixels and "
+          "channels.</p>\n</body>\n</html>\n";
   return html;
 }
 

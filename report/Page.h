@@ -14,8 +14,8 @@ struct Context {
   std::string scene;
   std::uint32_t width = 0, height = 0, runs = 0;
   double budgetSeconds = 0;
-  std::string command;                                        // that makes it again
-  std::vector<std::pair<std::string, std::string>> versions;  // of the compiler and its libraries
+  std::string command;                                       // that makes it again
+  std::vector<std::pair<std::string, std::string>> versions; // of the compiler and its libraries
   std::vector<std::pair<std::string, std::string>> machine;
 };
 
@@ -25,8 +25,10 @@ struct Exhibit {
   runtime::Image rgb; // linear
 };
 
-/// One self-contained HTML page: no scripts, nothing loaded from elsewhere, dark where the reader's system is.
-std::string writePage(const Context &context, const Summary &summary, const Reference &reference, const std::vector<Exhibit> &exhibits);
+/// One self-contained HTML page: no scripts, nothing loaded from elsewhere, dark where the reader's
+/// system is.
+std::string writePage(const Context &context, const Summary &summary, const Reference &reference,
+                      const std::vector<Exhibit> &exhibits);
 
 /// The same as JSON, version 2; docs/report.md lists its keys. Values that are not finite are null.
 std::string writeJson(const Context &context, const Summary &summary, const Reference &reference);

@@ -6,8 +6,8 @@
 
 namespace rtsl::report {
 
-/// Calls `work(y)` once for each y in [0, rows), on several threads, and waits. What a row computes must not depend on
-/// another row's result of the same call.
+/// Calls `work(y)` once for each y in [0, rows), on several threads, and waits. What a row computes
+/// must not depend on another row's result of the same call.
 void parallelRows(std::uint32_t rows, const std::function<void(std::uint32_t)> &work);
 
 } // namespace rtsl::report

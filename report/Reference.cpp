@@ -20,8 +20,12 @@ namespace {
 constexpr std::uint32_t firstSeed = 1u << 24; // far from those of a study
 constexpr std::uint32_t mostSamples = 1u << 20;
 
-std::string picturePath(const std::string &folder) { return folder + "/reference.exr"; }
-std::string factsPath(const std::string &folder) { return folder + "/reference.json"; }
+std::string picturePath(const std::string &folder) {
+  return folder + "/reference.exr";
+}
+std::string factsPath(const std::string &folder) {
+  return folder + "/reference.json";
+}
 
 std::string describe(const std::string &subject, const Reference::OwnError &own) {
   const std::string error =
@@ -46,7 +50,8 @@ constexpr int factsVersion = 2;
 std::uint32_t samplesFor(const Subject &subject, double seconds) {
   std::uint32_t samples = 1;
   for (;;) {
-    const double taken = std::max(subject.render(samples, firstSeed - 1).statistics.renderSeconds, 1e-6);
+    const double taken =
+        std::max(subject.render(samples, firstSeed - 1).statistics.renderSeconds, 1e-6);
     const double possible = samples * seconds / taken;
     if (possible < 8.0 * samples || samples >= mostSamples / 8) // long enough to go by
       return std::uint32_t(std::clamp(possible, 1.0, double(mostSamples)));
@@ -56,21 +61,25 @@ std::uint32_t samplesFor(const Subject &subject, double seconds) {
 
 } // namespace
 
-Reference readReference(const std::string &path, std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+Reference readReference(const std::string &path, std::uint32_t width, std::uint32_t height,
+                        std::uint32_t channels) {
   Reference reference;
   reference.image = runtime::readImage(path);
   reference.origin = path;
   const runtime::Image &image = reference.image;
   if (image.width != width || image.height != height || image.channels != channels)
-    reference.problem = fmt::format("`{}` has {}x{} pixels of {} channels, the pictures {}x{} of {}: no errors are measured", path,
-                                    image.width, image.height, image.channels, width, height, channels);
-  else if (std::none_of(image.pixels.begin(), image.pixels.end(), [](float value) { return std::isfinite(value); }))
+    reference.problem = fmt::format(
+        "`{}` has {}x{} pixels of {} channels, the pictures {}x{} of {}: no errors are measured",
+        path, image.width, image.height, image.channels, width, height, channels);
+  else if (std::none_of(image.pixels.begin(), image.pixels.end(),
+                        [](float value) { return std::isfinite(value); }))
     reference.problem = fmt::format("`{}` has no finite pixel: no errors are measured", path);
   return reference;
 }
 
 std::optional<Reference> findReference(const std::string &subject, const std::string &folder) {
-  if (::access(picturePath(folder).c_str(), R_OK) != 0 || ::access(factsPath(folder).c_str(), R_OK) != 0)
+  if (::access(picturePath(folder).c_str(), R_OK) != 0 ||
+      ::access(factsPath(folder).c_str(), R_OK) != 0)
     return std::nullopt;
   const nlohmann::json facts = nlohmann::json::parse(readFile(factsPath(folder)), nullptr, false);
   if (facts.is_discarded() || facts.value("version", 0) != factsVersion ||
@@ -94,8 +103,8 @@ std::optional<Reference> findReference(const std::string &subject, const std::st
   return reference;
 }
 
-Reference makeReference(const Subject &subject, const Subject &single, const std::string &folder, std::uint32_t runs, double seconds,
-                        const ProgressFunction &progress) {
+Reference makeReference(const Subject &subject, const Subject &single, const std::string &folder,
+                        std::uint32_t runs, double seconds, const ProgressFunction &progress) {
   Reference::OwnError own;
   own.samplesPerPixel = samplesFor(subject, seconds / runs);
   RunningVariance spread;
@@ -104,7 +113,8 @@ Reference makeReference(const Subject &subject, const Subject &single, const std
     const Picture picture = subject.render(own.samplesPerPixel, firstSeed + own.runs);
     own.seconds += picture.statistics.renderSeconds;
     if (own.runs == 0)
-      own.rounding = measureError(picture.image, single.render(own.samplesPerPixel, firstSeed).image).rmse;
+      own.rounding =
+          measureError(picture.image, single.render(own.samplesPerPixel, firstSeed).image).rmse;
     spread.add(picture.image);
     ++own.runs;
   }

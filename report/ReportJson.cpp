@@ -11,7 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const Estimate &estimate) { return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}}; }
+Json toJson(const Estimate &estimate) {
+  return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
+}
 
 Json toJson(const std::vector<std::pair<std::string, std::string>> &facts) {
   Json object = Json::object();

@@ -77,7 +77,9 @@ private:
     return {configuration, samples, run};
   }
   std::string tablePath() const { return options.folder + "/measurements.csv"; }
-  std::string partialPath(std::uint64_t hash) const { return fmt::format("{}/partial/{:016x}.exr", options.folder, hash); }
+  std::string partialPath(std::uint64_t hash) const {
+    return fmt::format("{}/partial/{:016x}.exr", options.folder, hash);
+  }
   std::uint32_t seedOf(unsigned level, std::uint32_t run) const {
     return 1 + level * options.runs + run;
   }
@@ -171,7 +173,8 @@ private:
     if (run > 0)
       measurement.pairVariance =
           varianceOfPair(subject, level, run, measurement.pictureHash, picture.image);
-    if (const std::string path = partialPath(measurement.pictureHash); !std::filesystem::exists(path))
+    if (const std::string path = partialPath(measurement.pictureHash);
+        !std::filesystem::exists(path))
       runtime::writeImage(path, picture.image);
     if (run == 0)
       runtime::writeImage(lastPicturePath(options.folder, subject), picture.image);
@@ -225,12 +228,13 @@ private:
     Measurement &measurement = known->second;
     measurement.pictureHash = hash;
     // A picture without a reference is compared with itself: that counts what is not finite.
-    const ErrorMetrics error = measureError(reference.problem.empty() ? reference.image : image, image);
+    const ErrorMetrics error =
+        measureError(reference.problem.empty() ? reference.image : image, image);
     measurement.nanPixels = error.nanPixels;
     measurement.infinitePixels = error.infinitePixels;
     if (!reference.problem.empty() || error.pixels == 0) {
-      measurement.rmse = measurement.relMse = measurement.bias = measurement.flip = measurement.flipHdr =
-          std::numeric_limits<double>::quiet_NaN();
+      measurement.rmse = measurement.relMse = measurement.bias = measurement.flip =
+          measurement.flipHdr = std::numeric_limits<double>::quiet_NaN();
       return measurement;
     }
     measurement.rmse = error.rmse;
@@ -280,7 +284,8 @@ std::string lastPicturePath(const std::string &folder, const Subject &subject) {
   return folder + "/pictures/" + file + ".exr";
 }
 
-Study runStudy(const std::vector<Subject> &subjects, const Reference &reference, const StudyOptions &options) {
+Study runStudy(const std::vector<Subject> &subjects, const Reference &reference,
+               const StudyOptions &options) {
   return StudyRun(subjects, reference, options).run();
 }
 

@@ -21,9 +21,10 @@
 namespace rtsl::report {
 
 struct StudyOptions {
-  std::string folder;         // keeps measurements.csv, levels.csv, pictures/ and, while running, partial/
-  std::uint32_t runs = 8;     // with each number of samples: the rounds
-  double budgetSeconds = 10;  // of rendering, for each subject; the first three levels run in any case
+  std::string folder; // keeps measurements.csv, levels.csv, pictures/ and, while running, partial/
+  std::uint32_t runs = 8; // with each number of samples: the rounds
+  double budgetSeconds =
+      10; // of rendering, for each subject; the first three levels run in any case
   std::uint32_t mostSamples = 1u << 16;
   ProgressFunction progress = [](double, const std::string &) {};
 };
@@ -40,7 +41,9 @@ std::vector<unsigned> levelOrder(std::uint32_t round, unsigned levels);
 /// The picture of a subject with the most samples so far, first run.
 std::string lastPicturePath(const std::string &folder, const Subject &subject);
 
-/// Goes on where an earlier run in the same folder was interrupted; what it finds there it does not measure again.
-Study runStudy(const std::vector<Subject> &subjects, const Reference &reference, const StudyOptions &options);
+/// Goes on where an earlier run in the same folder was interrupted; what it finds there it does not
+/// measure again.
+Study runStudy(const std::vector<Subject> &subjects, const Reference &reference,
+               const StudyOptions &options);
 
 } // namespace rtsl::report

@@ -19,7 +19,8 @@ struct Picture {
 /// One way to render the scene. The name has no commas, for it goes into tables.
 struct Subject {
   std::string name;
-  std::vector<std::pair<std::string, std::string>> settings; // what tells it from the others: {"traversal", "embree"}
+  // what tells it from the others: {"traversal", "embree"}
+  std::vector<std::pair<std::string, std::string>> settings;
   double compileSeconds = 0;
   /// The same arguments must give the same bits, and different seeds independent pictures.
   std::function<Picture(std::uint32_t samplesPerPixel, std::uint32_t seed)> render;

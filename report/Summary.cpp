@@ -17,14 +17,16 @@ namespace {
 
 using ByLevel = std::map<std::uint32_t, std::vector<const Measurement *>>;
 
-template <typename Field> Estimate medianOver(const std::vector<const Measurement *> &runs, Field field) {
+template <typename Field>
+Estimate medianOver(const std::vector<const Measurement *> &runs, Field field) {
   std::vector<double> values;
   for (const Measurement *run : runs)
     values.push_back(run->*field);
   return medianOf(std::move(values));
 }
 
-LevelSummary summariseLevel(const std::vector<const Measurement *> &runs, const Study &study, const Reference &reference) {
+LevelSummary summariseLevel(const std::vector<const Measurement *> &runs, const Study &study,
+                            const Reference &reference) {
   LevelSummary level;
   level.samplesPerPixel = runs.front()->samplesPerPixel;
   level.runs = runs.size();
@@ -34,7 +36,8 @@ LevelSummary summariseLevel(const std::vector<const Measurement *> &runs, const 
   level.flip = medianOver(runs, &Measurement::flip);
   level.flipHdr = medianOver(runs, &Measurement::flipHdr);
   for (const LevelVariance &variance : study.levels)
-    if (variance.configuration == runs.front()->configuration && variance.samplesPerPixel == level.samplesPerPixel) {
+    if (variance.configuration == runs.front()->configuration &&
+        variance.samplesPerPixel == level.samplesPerPixel) {
       level.variance = variance.variance;
       level.efficiency = variance.efficiency;
     }
@@ -88,8 +91,9 @@ void fitLines(SubjectSummary &subject, const Rounds &rounds) {
   subject.lastSlopeOverSamples = lastSlope(subject.relMseOverSamples, overSamples(rounds));
   if (subject.relMseOverSeconds.points != 0)
     return;
-  const bool isBlackAndWhite = std::all_of(subject.levels.begin(), subject.levels.end(),
-                                           [](const LevelSummary &level) { return level.relMse.value == 0; });
+  const bool isBlackAndWhite =
+      std::all_of(subject.levels.begin(), subject.levels.end(),
+                  [](const LevelSummary &level) { return level.relMse.value == 0; });
   subject.noFit =
       isBlackAndWhite
           ? "every picture equals the reference, so there is no error to fit"
@@ -232,7 +236,8 @@ void comparePictures(Summary &summary, const Study &study) {
     common = std::min(common, subject.levels.empty() ? 0 : subject.levels.back().samplesPerPixel);
   for (SubjectSummary &subject : summary.subjects)
     for (const Measurement &measurement : study.measurements)
-      if (measurement.configuration == subject.name && measurement.samplesPerPixel == common && measurement.run == 0)
+      if (measurement.configuration == subject.name && measurement.samplesPerPixel == common &&
+          measurement.run == 0)
         subject.commonPicture = measurement.pictureHash;
 }
 
@@ -306,27 +311,31 @@ void remark(const SubjectSummary &subject, const Summary &summary, const Referen
                               "has no meaning");
   if (!subject.noFit.empty() && summary.heavyTails.empty())
     remarks.add(subject.name, "no line was fitted: " + subject.noFit);
-  const auto unresolved = std::count_if(levels.begin(), levels.end(), [](const LevelSummary &level) {
-    return !level.isResolved;
-  });
+  const auto unresolved = std::count_if(
+      levels.begin(), levels.end(), [](const LevelSummary &level) { return !level.isResolved; });
   if (unresolved && reference.ownError)
-    remarks.add(subject.name,
-                fmt::format("the reference's own error is more than a tenth of the error with {}, "
-                            "which the line leaves out; a larger `--budget` makes a better reference",
-                            unresolved == 1 ? std::string("the most samples")
-                                            : fmt::format("the {} largest numbers of samples",
-                                                          unresolved)));
+    remarks.add(
+        subject.name,
+        fmt::format("the reference's own error is more than a tenth of the error with {}, "
+                    "which the line leaves out; a larger `--budget` makes a better reference",
+                    unresolved == 1
+                        ? std::string("the most samples")
+                        : fmt::format("the {} largest numbers of samples", unresolved)));
 }
 
 void findProblems(Summary &summary, const Reference &reference) {
   std::vector<std::string> &problems = summary.problems;
   if (!reference.problem.empty())
     problems.push_back(reference.problem);
-  else if (std::all_of(reference.image.pixels.begin(), reference.image.pixels.end(), [](float value) { return value == 0; }))
-    problems.push_back("the reference is black: relMSE is the squared error over a constant here, and FLIP has no exposure to go by");
-  if (std::any_of(reference.image.pixels.begin(), reference.image.pixels.end(), [](float v) { return !std::isfinite(v); }) &&
+  else if (std::all_of(reference.image.pixels.begin(), reference.image.pixels.end(),
+                       [](float value) { return value == 0; }))
+    problems.push_back("the reference is black: relMSE is the squared error over a constant here, "
+                       "and FLIP has no exposure to go by");
+  if (std::any_of(reference.image.pixels.begin(), reference.image.pixels.end(),
+                  [](float v) { return !std::isfinite(v); }) &&
       reference.problem.empty())
-    problems.push_back("some pixels of the reference are not finite; they are left out of every error");
+    problems.push_back(
+        "some pixels of the reference are not finite; they are left out of every error");
   if (!summary.heavyTails.empty())
     problems.push_back("rare, large samples rule the errors, so that no interval can be given and "
                        "no line is fitted (" +
@@ -348,7 +357,8 @@ void findProblems(Summary &summary, const Reference &reference) {
 
 } // namespace
 
-Summary summarise(const std::vector<Subject> &subjects, const Study &study, const Reference &reference) {
+Summary summarise(const std::vector<Subject> &subjects, const Study &study,
+                  const Reference &reference) {
   Summary summary;
   std::vector<ByLevel> byLevel(subjects.size());
   for (std::size_t i = 0; i < subjects.size(); ++i)

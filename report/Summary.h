@@ -38,16 +38,19 @@ struct SubjectSummary {
   double compileSeconds = 0;
   Estimate buildSeconds;
   std::vector<LevelSummary> levels;
-  LineFit
-      relMseOverSeconds; // log10 of both, resolved levels; the reference's own error is subtracted
+  // log10 of both, resolved levels; the reference's own error is subtracted
+  LineFit relMseOverSeconds;
   LineFit relMseOverSamples;
   /// The slopes of the last three levels that the lines use, where there are more and a line bends.
   std::optional<Estimate> lastSlopeOverSeconds, lastSlopeOverSamples;
-  std::uint64_t nanPixels = 0, infinitePixels = 0, samplesNotFinite = 0, raysTooDeep = 0; // over all pictures
-  std::string noFit;                                                    // why there is no line, if there is none
-  /// The median of the levels' 1 / (variance x seconds), of those with at least 10 ms a picture if there are such.
+  std::uint64_t nanPixels = 0, infinitePixels = 0, samplesNotFinite = 0,
+                raysTooDeep = 0; // over all pictures
+  std::string noFit;             // why there is no line, if there is none
+  /// The median of the levels' 1 / (variance x seconds), of those with at least 10 ms a picture if
+  /// there are such.
   double efficiency = 0;
-  /// The hash of its picture with the most samples that all subjects have; the same for the same bits.
+  /// The hash of its picture with the most samples that all subjects have; the same for the same
+  /// bits.
   std::uint64_t commonPicture = 0;
   /// Of Summary::commonRelMse, read off the measured points on both sides.
   std::optional<TimeToError> toCommonRelMse;
@@ -63,6 +66,7 @@ struct Summary {
   std::vector<std::string> problems; // what a reader has to know before he trusts a figure
 };
 
-Summary summarise(const std::vector<Subject> &subjects, const Study &study, const Reference &reference);
+Summary summarise(const std::vector<Subject> &subjects, const Study &study,
+                  const Reference &reference);
 
 } // namespace rtsl::report

@@ -1,8 +1,8 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
-#include "support/ErrorCollector.h"
 #include "scenefile/MeshFiles.h"
 #include "scenefile/SceneFile.h"
 #include "support/ClosestName.h"
+#include "support/ErrorCollector.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 
 namespace rtsl::scene {
 
-using runtime::ClassInfo;
 using Error;
 using ErrorCode;
+using runtime::ClassInfo;
 using runtime::MemberInfo;
 using runtime::NamedValue;
 using runtime::ObjectValues;
@@ -29,7 +29,8 @@ using Kind = JsonValue::Kind;
 class SceneBuilder {
 public:
   SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program)
-      : description(description), program(*program), scene(std::move(program)), files(description) {}
+      : description(description), program(*program), scene(std::move(program)), files(description) {
+  }
 
   Scene build() {
     attempt([&] {
@@ -112,13 +113,13 @@ private:
     for (const auto &[key, value] : object.members)
       ofMembers.attempt([&, &key = key, &value = value] {
         const MemberInfo *member = classInfo ? find(classInfo->members, key.text) : nullptr;
-        const bool mayBeEmpty = member && member->hasDefault &&
-                                member->type.kind == ValueType::Kind::Reference;
-        values.members.push_back({key.text,
-                                  convert(*value, member ? &member->type : nullptr,
-                                          fmt::format("member `{}` of `{}`", key.text, name),
-                                          mayBeEmpty),
-                                  key.place});
+        const bool mayBeEmpty =
+            member && member->hasDefault && member->type.kind == ValueType::Kind::Reference;
+        values.members.push_back(
+            {key.text,
+             convert(*value, member ? &member->type : nullptr,
+                     fmt::format("member `{}` of `{}`", key.text, name), mayBeEmpty),
+             key.place});
       });
     ofMembers.throwIfAny();
     return scene.addObject(object.className.text, values, name);

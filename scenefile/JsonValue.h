@@ -28,8 +28,8 @@ struct JsonValue {
   double number = 0;
   std::string string;
   std::vector<JsonValue> elements; // Array
-  std::vector<std::pair<JsonKey, JsonValue>>
-      members; // Object, in the order of the file; no key twice
+  // Object, in the order of the file; no key twice
+  std::vector<std::pair<JsonKey, JsonValue>> members;
 
   // Where it begins: a string inside its quotes, an array or object at its bracket (length 1). Line
   // 0 for an override.
@@ -38,9 +38,7 @@ struct JsonValue {
   bool fromOverride = false; // came from --set
 
   Place place() const { return {*file, line, column, length}; }
-  Place place(const JsonKey &key) const {
-    return {*file, key.line, key.column, key.length};
-  }
+  Place place(const JsonKey &key) const { return {*file, key.line, key.column, key.length}; }
   const JsonValue *find(const std::string &key) const;
   JsonValue *find(const std::string &key);
 };

@@ -1,8 +1,8 @@
 #include "scenefile/Reader.h"
 
-#include "support/ErrorCollector.h"
 #include "runtime/scene/Scene.h"
 #include "support/ClosestName.h"
+#include "support/ErrorCollector.h"
 
 #include <fmt/format.h>
 

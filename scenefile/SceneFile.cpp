@@ -1,10 +1,10 @@
 //===- SceneFile.cpp - from JSON to a description -------------------------===//
 #include "scenefile/SceneFile.h"
 
-#include "support/AtomicFile.h"
-#include "support/ErrorCollector.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
+#include "support/AtomicFile.h"
+#include "support/ErrorCollector.h"
 
 #include <fmt/format.h>
 
@@ -94,9 +94,8 @@ private:
   }
 
   void readSingle(const char *key, std::optional<ObjectDescription> &object) {
-    section(key, [&](const JsonValue &value) {
-      object = readObject(value, fmt::format("`{}`", key));
-    });
+    section(key,
+            [&](const JsonValue &value) { object = readObject(value, fmt::format("`{}`", key)); });
   }
 
   /// What begins a sample.
@@ -309,8 +308,8 @@ private:
 };
 
 /// An object of the scene, wherever it is written: its class, and its members.
-using ObjectVisitor =
-    std::function<void(const LocatedName &, const std::vector<std::pair<LocatedName, const JsonValue *>> &)>;
+using ObjectVisitor = std::function<void(
+    const LocatedName &, const std::vector<std::pair<LocatedName, const JsonValue *>> &)>;
 
 /// Objects written where a reference is asked for are objects too.
 void forEachObject(const JsonValue &value, const ObjectVisitor &visit) {

@@ -111,8 +111,8 @@ std::vector<std::string> classesUsed(const SceneDescription &description);
 /// Every mention of a class, with its place, in the order of the file's sections.
 std::vector<LocatedName> classMentions(const SceneDescription &description);
 
-/// The members that are set in some object of each class that the scene names, inherited ones included. What is null, or a
-/// list of nothing else, is not set.
+/// The members that are set in some object of each class that the scene names, inherited ones
+/// included. What is null, or a list of nothing else, is not set.
 std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description);
 
 /// Loads the meshes, makes the objects and checks all names and types against the program.

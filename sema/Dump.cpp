@@ -4,9 +4,9 @@
 // source alone.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Casting.h"
-#include "sema/fold/ConstantFold.h"
 #include "sema/Sema.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/typed/Casting.h"
 #include "sema/typed/TypeProperties.h"
 
 #include <fmt/format.h>
@@ -143,10 +143,9 @@ void Dumper::member(const Member &member) {
   std::string value;
   if (member.constant)
     value = " = " + constantText(*member.constant, member.type);
-  line(fmt::format("member {} {}{}{} : {}",
-                   accessText(member.isConst ? ast::Access::None : member.access),
-                   member.isOptional ? "optional " : "", member.name, value,
-                   toString(member.type)));
+  line(fmt::format(
+      "member {} {}{}{} : {}", accessText(member.isConst ? ast::Access::None : member.access),
+      member.isOptional ? "optional " : "", member.name, value, toString(member.type)));
   if (!member.constant && member.init) {
     Indent indent(*this);
     expr(*member.init);
@@ -406,7 +405,9 @@ void Dumper::expr(const Expr &e) {
   }
   case ExprKind::Call: {
     const auto &call = cast<CallExpr>(e);
-    node((call.isOfBase ? "call " + call.function->owner->name + "::" : call.onSelf ? "call self." : "call ") +
+    node((call.isOfBase ? "call " + call.function->owner->name + "::"
+          : call.onSelf ? "call self."
+                        : "call ") +
              call.function->name,
          e);
     Indent indent(*this);

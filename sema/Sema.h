@@ -11,8 +11,9 @@
 
 namespace rtsl {
 
-/// Checks all `units` and what they import, once each. Reports through `diagnostics`. Returns a module even if there
-/// were errors (what was broken is left out), so that tools may look at the rest.
+/// Checks all `units` and what they import, once each. Reports through `diagnostics`. Returns a
+/// module even if there were errors (what was broken is left out), so that tools may look at the
+/// rest.
 std::unique_ptr<typed::Module> check(const std::vector<const ast::TranslationUnit *> &units,
                                      const ImportResolver &resolver, Diagnostics &diagnostics);
 

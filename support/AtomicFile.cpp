@@ -164,7 +164,8 @@ void writeFileAtomically(const std::string &path, std::string_view bytes) {
 void refuseToOverwrite(const std::string &output, const std::vector<std::string> &inputs) {
   const bool isStandardOutput = output == standardOutput;
   struct stat written, read;
-  if ((isStandardOutput ? ::fstat(STDOUT_FILENO, &written) : ::stat(output.c_str(), &written)) != 0 ||
+  if ((isStandardOutput ? ::fstat(STDOUT_FILENO, &written) : ::stat(output.c_str(), &written)) !=
+          0 ||
       !S_ISREG(written.st_mode))
     return;
   for (const std::string &input : inputs) {
@@ -173,10 +174,11 @@ void refuseToOverwrite(const std::string &output, const std::vector<std::string>
       continue;
     const std::string what = isStandardOutput ? "standard output" : fmt::format("`{}`", output);
     Error error(ErrorCode::OverwritesInput,
-                input == output ? fmt::format("{} is an input and would be overwritten", what)
-                                : fmt::format("{} is the same file as the input `{}`, which would be "
-                                              "overwritten",
-                                              what, input),
+                input == output
+                    ? fmt::format("{} is an input and would be overwritten", what)
+                    : fmt::format("{} is the same file as the input `{}`, which would be "
+                                  "overwritten",
+                                  what, input),
                 Place{isStandardOutput ? "<stdout>" : output});
     error.note("write to another file");
     throw error;

@@ -17,12 +17,12 @@ void writeFileAtomically(const std::string &path, std::string_view bytes);
 /// Throws FileUnwritable if writeFileAtomically could not create its file.
 void checkFileWritable(const std::string &path);
 
-/// Throws OverwritesInput if `output` is the same file as one of `inputs`, by whatever name or link.
-/// "-" is standard output.
+/// Throws OverwritesInput if `output` is the same file as one of `inputs`, by whatever name or
+/// link. "-" is standard output.
 void refuseToOverwrite(const std::string &output, const std::vector<std::string> &inputs);
 
-/// The whole of a file; of "-", standard input. Throws FileNotFound, FileUnreadable: a device cannot
-/// be read, for it may never end.
+/// The whole of a file; of "-", standard input. Throws FileNotFound, FileUnreadable: a device
+/// cannot be read, for it may never end.
 std::string readFile(const std::string &path);
 
 } // namespace rtsl

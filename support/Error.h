@@ -19,7 +19,7 @@ enum class ErrorCode : std::uint8_t {
   // Files.
   FileNotFound,
   FileUnreadable,
-  FileUnwritable, // a path that cannot be written, or a disk that is full
+  FileUnwritable,  // a path that cannot be written, or a disk that is full
   OverwritesInput, // an output that is a file which is read
   UnsupportedFormat,
   // Meshes and images.

@@ -11,7 +11,8 @@
 namespace rtsl {
 
 /// Keeps those `most` items that come first by `Less`, and counts all.
-template <typename Item, typename Less> class FirstFew {
+template <typename Item, typename Less>
+class FirstFew {
 public:
   explicit FirstFew(std::size_t most, Less less = {}) : most(most), less(less) {}
 

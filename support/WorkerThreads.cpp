@@ -68,10 +68,11 @@ bool start(Worker &worker, std::uint64_t stackBytes) {
 }
 
 [[noreturn]] void refuse(std::uint64_t stackBytes) {
-  throw Error(ErrorCode::OutOfMemory,
-              fmt::format("the rays of one sample take {:.1f} MiB of stack, and there is no memory for "
-                          "so much: make the limit of depth or the local variables of shaders smaller",
-                          double(stackBytes) / (1 << 20)));
+  throw Error(
+      ErrorCode::OutOfMemory,
+      fmt::format("the rays of one sample take {:.1f} MiB of stack, and there is no memory for "
+                  "so much: make the limit of depth or the local variables of shaders smaller",
+                  double(stackBytes) / (1 << 20)));
 }
 
 } // namespace

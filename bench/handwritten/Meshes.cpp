@@ -7,8 +7,8 @@
 //===----------------------------------------------------------------------===//
 #include "Program.h"
 
-#include "runtime/geometry/Mesh.h"
 #include "runtime/device/ray/Random.h"
+#include "runtime/geometry/Mesh.h"
 
 #include <embree3/rtcore.h>
 
@@ -102,8 +102,8 @@ bool isOccluded(const Scene &scene, vec3 from, vec3 direction, float distance) {
   return ray.tfar < 0;
 }
 
-/// What arrives of both lights, and of the ambient one. Random numbers are drawn as BallLight.rtsl of
-/// examples/glass draws them.
+/// What arrives of both lights, and of the ambient one. Random numbers are drawn as BallLight.rtsl
+/// of examples/glass draws them.
 vec3 arriving(const Scene &scene, const std::uint32_t key[2], vec3 point, vec3 normal) {
   vec3 sum = scene.ambient;
   std::uint32_t dimension = 0;
@@ -112,8 +112,8 @@ vec3 arriving(const Scene &scene, const std::uint32_t key[2], vec3 point, vec3 n
     const float around = 6.2831853f * rtsl::device::randomNumber(key, dimension + 1);
     dimension += 3; // RTSL counts one for the shadow ray
     const float ring = std::sqrt(std::max(1 - height * height, 0.0f));
-    const vec3 source =
-        ball.position + ball.radius * vec3(ring * std::cos(around), height, ring * std::sin(around));
+    const vec3 source = ball.position + ball.radius * vec3(ring * std::cos(around), height,
+                                                           ring * std::sin(around));
     const vec3 path = source - point;
     const float squared = glm::dot(path, path), distance = std::sqrt(squared);
     const vec3 toLight = path * (1 / distance);
@@ -132,9 +132,9 @@ vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::ui
   float jitterX, jitterY;
   pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
   const Camera &camera = scene.camera;
-  const vec3 direction = glm::normalize(
-      camera.corner + (float(x) + jitterX) / float(picture.width) * camera.across +
-      (1 - (float(y) + jitterY) / float(picture.height)) * camera.upward);
+  const vec3 direction =
+      glm::normalize(camera.corner + (float(x) + jitterX) / float(picture.width) * camera.across +
+                     (1 - (float(y) + jitterY) / float(picture.height)) * camera.upward);
 
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

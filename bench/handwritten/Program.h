@@ -1,7 +1,7 @@
 //===- Program.h - what programs by hand have in common -------------------===//
 //
-// Arguments, threads, and times, which go to standard output as JSON, named as `rtslc render --json`
-// names them. Meshes and images go through the runtime, for they are not what is compared.
+// Arguments, threads, and times, which go to standard output as JSON, named as `rtslc render
+// --json` names them. Meshes and images go through the runtime, for they are not what is compared.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

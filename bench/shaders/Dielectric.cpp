@@ -25,12 +25,14 @@ glm::vec3 Dielectric::shade(const Hit &hit) const {
   const float ratio = entering ? 1.0f / index : index;
   const float cosine = glm::clamp(-glm::dot(direction, normal), 0.0f, 1.0f);
 
-  const glm::vec3 next = random() < reflectance(cosine, ratio) ? glm::reflect(direction, normal)
-                                                               : glm::refract(direction, normal, ratio);
+  const glm::vec3 next = random() < reflectance(cosine, ratio)
+                             ? glm::reflect(direction, normal)
+                             : glm::refract(direction, normal, ratio);
   glm::vec3 attenuation(1.0f);
   if (!entering) {
     const float length = hit.distance * glm::length(hit.direction);
-    attenuation = glm::vec3(std::pow(tint.x, length), std::pow(tint.y, length), std::pow(tint.z, length));
+    attenuation =
+        glm::vec3(std::pow(tint.x, length), std::pow(tint.y, length), std::pow(tint.z, length));
   }
   return attenuation * trace(hit.point, next);
 }

@@ -2,8 +2,8 @@
 //
 //     PROGRAM ROUNDS
 //
-// prints a line of JSON a shader: nanoseconds a call of each round, of both sides in turns, and how far their answers
-// are apart.
+// prints a line of JSON a shader: nanoseconds a call of each round, of both sides in turns, and how
+// far their answers are apart.
 //
 //===----------------------------------------------------------------------===//
 #include "ByHand.h"
@@ -66,7 +66,8 @@ std::vector<Hit> someHits() {
   return hits;
 }
 
-/// The object of the only class of some shaders, as its defaults make it, and the rays that meet it.
+/// The object of the only class of some shaders, as its defaults make it, and the rays that meet
+/// it.
 class Generated {
 public:
   Generated(const RtslShaders *shaders, const std::vector<Hit> &hits)
@@ -114,10 +115,12 @@ glm::vec3 vector(const float *components) {
   return glm::vec3(components[0], components[1], components[2]);
 }
 
-/// Calls both sides for all hits, in turns. Each is a function from the number of a hit to the answer.
+/// Calls both sides for all hits, in turns. Each is a function from the number of a hit to the
+/// answer.
 template <typename ByHand, typename Ours>
 void compare(const char *name, int rounds, ByHand byHand, Ours ours) {
-  std::array<std::vector<glm::vec3>, 2> answers = {std::vector<glm::vec3>(hitCount), std::vector<glm::vec3>(hitCount)};
+  std::array<std::vector<glm::vec3>, 2> answers = {std::vector<glm::vec3>(hitCount),
+                                                   std::vector<glm::vec3>(hitCount)};
   std::array<std::vector<double>, 2> times;
   const auto run = [&](std::size_t side, auto &shader) {
     const double start = processorNanoseconds();
@@ -196,13 +199,15 @@ int main(int argc, char **argv) {
           Hit hit = hits[i];
           hit.distance = infinity;
           glm::vec3 gradient(0.0f);
-          return byHand.intersect(hit, gradient) ? glm::vec3(hit.distance, 0.0f, 1.0f) : glm::vec3(0.0f);
+          return byHand.intersect(hit, gradient) ? glm::vec3(hit.distance, 0.0f, 1.0f)
+                                                 : glm::vec3(0.0f);
         },
         [&](std::size_t i) {
           RtslState &state = generated.states[i];
           state.HitDistance = infinity;
           intersect(&state, generated.object);
-          return state.HitDistance < infinity ? glm::vec3(state.HitDistance, 0.0f, 1.0f) : glm::vec3(0.0f);
+          return state.HitDistance < infinity ? glm::vec3(state.HitDistance, 0.0f, 1.0f)
+                                              : glm::vec3(0.0f);
         });
   }
   {

@@ -29,8 +29,8 @@ float random() {
   return float(drawn >> 8) * 0x1p-24f;
 }
 
-bool light(int index, const glm::vec3 &point, const glm::vec3 &normal, float cosine, glm::vec3 &direction,
-           glm::vec3 &color) {
+bool light(int index, const glm::vec3 &point, const glm::vec3 &normal, float cosine,
+           glm::vec3 &direction, glm::vec3 &color) {
   direction = lights[index] - point;
   color = glm::vec3(1.0f, 0.9f, 0.8f);
   return glm::dot(direction, normal) > cosine * glm::length(direction);
@@ -40,7 +40,8 @@ bool light(int index, const glm::vec3 &point, const glm::vec3 &normal, float cos
 
 extern "C" {
 
-void rtsl_trace(RtslState *, float ox, float oy, float oz, float dx, float dy, float dz, float *color) {
+void rtsl_trace(RtslState *, float ox, float oy, float oz, float dx, float dy, float dz,
+                float *color) {
   const glm::vec3 arrived = byhand::trace({ox, oy, oz}, {dx, dy, dz});
   color[0] = arrived.x;
   color[1] = arrived.y;
@@ -58,10 +59,11 @@ float rtsl_rand(RtslState *) {
   return byhand::random();
 }
 
-uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx, float ny, float nz,
-                          float cosine) {
+uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx,
+                          float ny, float nz, float cosine) {
   glm::vec3 direction, color;
-  const bool reaches = byhand::light(int(index), {px, py, pz}, {nx, ny, nz}, cosine, direction, color);
+  const bool reaches =
+      byhand::light(int(index), {px, py, pz}, {nx, ny, nz}, cosine, direction, color);
   for (int i = 0; i < 3; ++i) {
     state->LightDirection[i] = direction[i];
     state->LightColor[i] = color[i];

@@ -1,8 +1,9 @@
 //===- Surroundings.h - what shaders are called with, the same for both sides --------===//
 //
-// A shader asks its surroundings for rays, light and random numbers. Here they answer cheaply and always the same, so
-// that what is timed is the shader. The two sides see them through their own interface: the generated code through
-// the functions of runtime/device/ray/Abi.h, the code by hand through those of this header; both end in the same few lines.
+// A shader asks its surroundings for rays, light and random numbers. Here they answer cheaply and
+// always the same, so that what is timed is the shader. The two sides see them through their own
+// interface: the generated code through the functions of runtime/device/ray/Abi.h, the code by hand
+// through those of this header; both end in the same few lines.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -28,8 +29,8 @@ float random();
 extern const int lightCount; // a scene's own: shaders are compiled without it
 
 /// Whether a light reaches a point, from within `cosine` of the normal; `direction` is not unit.
-bool light(int index, const glm::vec3 &point, const glm::vec3 &normal, float cosine, glm::vec3 &direction,
-           glm::vec3 &color);
+bool light(int index, const glm::vec3 &point, const glm::vec3 &normal, float cosine,
+           glm::vec3 &direction, glm::vec3 &color);
 
 extern const glm::vec3 ambient;
 

@@ -8,8 +8,8 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "sema/typed/Analysis.h"
 #include "runtime/device/ray/Abi.h"
+#include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
@@ -86,7 +86,8 @@ void ModulePrinter::placeAttributes() {
       if (member->access != ast::Access::Scratch)
         continue;
       const std::pair<std::string, const Type *> key = {member->name, member->type};
-      auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute &a) { return a.key == key; });
+      auto found = std::find_if(attributes.begin(), attributes.end(),
+                                [&](const Attribute &a) { return a.key == key; });
       if (found == attributes.end())
         found = attributes.insert(attributes.end(), {key, {}, member->range});
       found->families.insert(&top(*definition));
@@ -98,8 +99,9 @@ void ModulePrinter::placeAttributes() {
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t j = 0; j < i; ++j) {
-        const bool meet = std::any_of(attributes[i].families.begin(), attributes[i].families.end(),
-                                      [&](const auto *one) { return attributes[j].families.count(one) != 0; });
+        const bool meet =
+            std::any_of(attributes[i].families.begin(), attributes[i].families.end(),
+                        [&](const auto *one) { return attributes[j].families.count(one) != 0; });
         const unsigned begin = attributeWords[attributes[j].key];
         const unsigned end = begin + wordsOf(attributes[j].key.second, options.colorComponents);
         if (meet && offset < end && begin < offset + words) {
@@ -111,7 +113,8 @@ void ModulePrinter::placeAttributes() {
     attributeWords[attributes[i].key] = offset;
     last = std::max(last, offset + words);
     if (last > RTSL_MAX_ATTRIBUTE_WORDS) {
-      diagnostics.report(rtsl::Code::attributesTooLarge, attributes[i].range, last, RTSL_MAX_ATTRIBUTE_WORDS);
+      diagnostics.report(rtsl::Code::attributesTooLarge, attributes[i].range, last,
+                         RTSL_MAX_ATTRIBUTE_WORDS);
       failed = true;
       return;
     }
@@ -129,7 +132,8 @@ std::string ModulePrinter::scratchStructure(const typed::Class &definition) {
       if (member->access != ast::Access::Scratch || !known.insert(names.of(member.get())).second)
         continue;
       text += this->member(*member);
-      visits += fmt::format("at({}, {});\n", attributeWords[{member->name, member->type}], names.of(member.get()));
+      visits += fmt::format("at({}, {});\n", attributeWords[{member->name, member->type}],
+                            names.of(member.get()));
     }
   if (!visits.empty())
     text += "\ntemplate <typename Visit>\nvoid visit(Visit at) {\n" + visits + "}\n";

@@ -62,8 +62,9 @@ Code FunctionPrinter::print(const typed::BuiltinExpr &expr) {
   return cpp::call("rtsl::print", std::move(values));
 }
 
-// The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax, payload, root...)`. The
-// ray may write it in its place, for nothing else reads it meanwhile, unless what stands behind it changes it first.
+// The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax,
+// payload, root...)`. The ray may write it in its place, for nothing else reads it meanwhile,
+// unless what stands behind it changes it first.
 Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
   constexpr std::size_t at = 4;
   const typed::Expr &payload = *expr.args[at];
@@ -75,7 +76,8 @@ Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
       continue;
     inputs.push_back(expr.args[i].get());
     const Effects effects = module.effects.expression(*expr.args[i]);
-    isChanged |= conflicts(effects, indices) || (i > at && conflicts(effects, module.effects.expression(payload)));
+    isChanged |= conflicts(effects, indices) ||
+                 (i > at && conflicts(effects, module.effects.expression(payload)));
   }
   auto trace = [](std::vector<Code> codes) {
     codes.insert(codes.begin(), name("rt"));
@@ -120,7 +122,8 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::Illuminate:
     return with({name("rt")});
   case Builtin::Hit:
-    return function && module.takesScratch(*function) ? with({name("rt"), name("scratch")}) : with({name("rt")});
+    return function && module.takesScratch(*function) ? with({name("rt"), name("scratch")})
+                                                      : with({name("rt")});
   case Builtin::TracePayload:
     return tracePayload(expr);
   case Builtin::IgnoreIntersection:

@@ -24,7 +24,8 @@ bool FunctionPrinter::canBind(const typed::Expr &place) const {
   if (components(place, vector).size() > 1)
     return false;
   auto *variable = dynCast<typed::VariableExpr>(&place);
-  const bool isBool = place.type->is(TypeKind::Bool) || (place.type->isVector() && place.type->element->is(TypeKind::Bool));
+  const bool isBool = place.type->is(TypeKind::Bool) ||
+                      (place.type->isVector() && place.type->element->is(TypeKind::Bool));
   if (auto *component = dynCast<typed::SwizzleExpr>(&place); component && isBool)
     return canBind(*component->base);
   return variable || !isBool;
@@ -40,11 +41,13 @@ static bool meet(const std::set<const void *> &a, const std::set<const void *> &
 }
 
 Code FunctionPrinter::callWith(const Code &callee, std::vector<Code> first,
-                               const typed::Function &target, const std::vector<typed::ExprPtr> &args,
-                               const Type *result) {
+                               const typed::Function &target,
+                               const std::vector<typed::ExprPtr> &args, const Type *result) {
   EffectsOf &effects = module.effects;
   const Effects &inside = effects.function(target);
-  auto isOutput = [&](std::size_t i) { return target.parameters[i]->direction != ast::Direction::In; };
+  auto isOutput = [&](std::size_t i) {
+    return target.parameters[i]->direction != ast::Direction::In;
+  };
 
   std::vector<Effects> facts;
   std::vector<std::set<const void *>> roots(args.size());
@@ -112,7 +115,8 @@ Code FunctionPrinter::callWith(const Code &callee, std::vector<Code> first,
 }
 
 /// A call, what follows it, and the variable that holds its result; nothing if it has none.
-Code FunctionPrinter::valueThen(const Type *type, const std::string &hint, const Code &call, const Statements &after) {
+Code FunctionPrinter::valueThen(const Type *type, const std::string &hint, const Code &call,
+                                const Statements &after) {
   Code value;
   if (type->is(TypeKind::Void))
     before->push_back(statement(call));
@@ -130,7 +134,8 @@ Code FunctionPrinter::call(const typed::CallExpr &expr) {
   if (module.takesScratch(target))
     first.push_back(name("scratch"));
   const std::string base = expr.isOfBase ? module.names.of(target.owner) + "::" : std::string();
-  return callWith(name(base + module.names.of(&target)), std::move(first), target, expr.args, expr.type);
+  return callWith(name(base + module.names.of(&target)), std::move(first), target, expr.args,
+                  expr.type);
 }
 
 Code FunctionPrinter::methodCall(const typed::MethodCallExpr &expr) {
@@ -140,7 +145,8 @@ Code FunctionPrinter::methodCall(const typed::MethodCallExpr &expr) {
   const Code receiver = operand(*expr.receiver, Binding::Primary);
   if (!expr.function)
     return callMember(receiver, expr.method, {name("rt")});
-  return callWith(member(receiver, module.names.of(expr.function)), {name("rt")}, *expr.function, expr.args, expr.type);
+  return callWith(member(receiver, module.names.of(expr.function)), {name("rt")}, *expr.function,
+                  expr.args, expr.type);
 }
 
 } // namespace rtsl::cpp

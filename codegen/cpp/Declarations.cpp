@@ -17,9 +17,8 @@ ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options
     : module(module), options(options), names(module),
       effects(module, options.prints, options.exceptions && options.checkIndices),
       hitAnswers(module), notes(diagnostics.sources()), tracing(module),
-      mayReferToNothing(typed::mayReferToNothing(module)),
-      lookupsNest(typed::lookupsNest(module)), states(states),
-      diagnostics(diagnostics) {
+      mayReferToNothing(typed::mayReferToNothing(module)), lookupsNest(typed::lookupsNest(module)),
+      states(states), diagnostics(diagnostics) {
   if (!states)
     return;
   findStates();
@@ -45,7 +44,9 @@ std::optional<SourcePlace> ModulePrinter::lineDirective(SourceRange range, unsig
   return SourcePlace{notes.file(range), line};
 }
 
-static std::string text(const std::optional<SourcePlace> &place) { return place ? print(*place) : std::string(); }
+static std::string text(const std::optional<SourcePlace> &place) {
+  return place ? print(*place) : std::string();
+}
 
 //===----------------------------------------------------------------------===//
 // Types
@@ -72,11 +73,13 @@ std::string ModulePrinter::type(const Type *type, bool inMemory) {
     case TypeKind::UInt:
       return fmt::format("glm::uvec{}", type->count);
     default:
-      return inMemory ? fmt::format("glm::vec<{}, rtsl::Bool>", type->count) : fmt::format("glm::bvec{}", type->count);
+      return inMemory ? fmt::format("glm::vec<{}, rtsl::Bool>", type->count)
+                      : fmt::format("glm::bvec{}", type->count);
     }
   case TypeKind::Matrix:
-    return type->columns() == type->rows() ? fmt::format("glm::mat{}", type->columns())
-                                           : fmt::format("glm::mat{}x{}", type->columns(), type->rows());
+    return type->columns() == type->rows()
+               ? fmt::format("glm::mat{}", type->columns())
+               : fmt::format("glm::mat{}x{}", type->columns(), type->rows());
   case TypeKind::Color:
     return "Color";
   case TypeKind::Struct:
@@ -89,8 +92,9 @@ std::string ModulePrinter::type(const Type *type, bool inMemory) {
   case TypeKind::Array:
     return fmt::format("rtsl::array<{}, {}>", memoryType(type->element), type->count);
   case TypeKind::Buffer:
-    return type->count == 1 ? fmt::format("rtsl::Buffer<{}>", memoryType(type->element))
-                            : fmt::format("rtsl::Buffer<{}, {}>", memoryType(type->element), type->count);
+    return type->count == 1
+               ? fmt::format("rtsl::Buffer<{}>", memoryType(type->element))
+               : fmt::format("rtsl::Buffer<{}, {}>", memoryType(type->element), type->count);
   case TypeKind::Error:
   case TypeKind::String:
     break;
@@ -115,7 +119,8 @@ Code ModulePrinter::zero(const Type *type) {
 
 Code ModulePrinter::colorOf(std::vector<Code> components) {
   if (components.size() == 3 && options.colorComponents != 3)
-    return call(withParameters("rtsl::rgb", {std::to_string(options.colorComponents)}), std::move(components));
+    return call(withParameters("rtsl::rgb", {std::to_string(options.colorComponents)}),
+                std::move(components));
   return construct("Color", std::move(components));
 }
 
@@ -139,10 +144,12 @@ bool ModulePrinter::takesScratch(const typed::Function &function) {
     return inside.reportsHit;
   if (!hasScratch(*function.owner))
     return false;
-  return inside.usesScratch || inside.reportsHit || (function.isStateMethod && function.name == "intersect");
+  return inside.usesScratch || inside.reportsHit ||
+         (function.isStateMethod && function.name == "intersect");
 }
 
-bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed::Function &function) {
+bool ModulePrinter::isByReference(const typed::Variable &parameter,
+                                  const typed::Function &function) {
   const Type *type = parameter.type;
   const bool isLarge = type->is(TypeKind::Struct) || type->is(TypeKind::Array) || type->isMatrix();
   if (parameter.direction != ast::Direction::In || !isLarge)
@@ -152,7 +159,8 @@ bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed:
                         function.parameters.begin();
   auto assigns = [&](const typed::Function &method) {
     return method.body &&
-           assignedVariables(*method.body).count(method.parameters[static_cast<std::size_t>(position)].get()) != 0;
+           assignedVariables(*method.body)
+                   .count(method.parameters[static_cast<std::size_t>(position)].get()) != 0;
   };
   if (!function.owner || function.isConstructor || function.isStateMethod)
     return !assigns(function);
@@ -160,9 +168,11 @@ bool ModulePrinter::isByReference(const typed::Variable &parameter, const typed:
   const typed::Function &top = overridden(function);
   return std::none_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
     return definition->derivesFrom(top.owner) &&
-           std::any_of(definition->functions.begin(), definition->functions.end(), [&](const auto &method) {
-             return method->name == top.name && typed::sameParameters(*method, top) && assigns(*method);
-           });
+           std::any_of(definition->functions.begin(), definition->functions.end(),
+                       [&](const auto &method) {
+                         return method->name == top.name && typed::sameParameters(*method, top) &&
+                                assigns(*method);
+                       });
   });
 }
 
@@ -177,22 +187,26 @@ static bool mentions(const Tree &tree, const typed::Variable &variable) {
   return found;
 }
 
-bool ModulePrinter::beginsAsZero(const typed::Variable &parameter, const typed::Function &function) const {
+bool ModulePrinter::beginsAsZero(const typed::Variable &parameter,
+                                 const typed::Function &function) const {
   if (parameter.direction != ast::Direction::Out || !function.body)
     return false;
   for (const typed::StmtPtr &stmt : cast<typed::CompoundStmt>(*function.body).body) {
-    const bool isPlain = stmt && (stmt->kind == ast::StmtKind::Expression || stmt->kind == ast::StmtKind::Declaration);
+    const bool isPlain = stmt && (stmt->kind == ast::StmtKind::Expression ||
+                                  stmt->kind == ast::StmtKind::Declaration);
     if (!stmt || (isPlain && !mentions(*stmt, parameter)))
       continue;
     auto *expression = dynCast<typed::ExpressionStmt>(stmt);
     auto *assign = expression ? dynCast<typed::AssignExpr>(expression->expr) : nullptr;
     auto *target = assign ? dynCast<typed::VariableExpr>(assign->target) : nullptr;
-    return !target || target->variable != &parameter || assign->compound || mentions(*assign->value, parameter);
+    return !target || target->variable != &parameter || assign->compound ||
+           mentions(*assign->value, parameter);
   }
   return true;
 }
 
-std::string ModulePrinter::parameterName(const typed::Function &function, std::size_t number) const {
+std::string ModulePrinter::parameterName(const typed::Function &function,
+                                         std::size_t number) const {
   const std::string &name = names.of(function.parameters[number].get());
   return name.empty() ? fmt::format("unnamed{}", number + 1) : name;
 }
@@ -229,7 +243,8 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
     const Effects &inside = effects.function(function);
     const bool writes = inside.writesScratch || inside.reportsHit || function.name == "intersect";
     const std::string scratch = function.owner ? "Scratch" : "rtsl::Scratch";
-    parameters.push_back(std::string(writes ? "" : "const ") + scratch + (mentionsScratch ? " &scratch" : " &"));
+    parameters.push_back(std::string(writes ? "" : "const ") + scratch +
+                         (mentionsScratch ? " &scratch" : " &"));
   }
   for (std::size_t number = 0; number != function.parameters.size(); ++number) {
     const auto &parameter = function.parameters[number];
@@ -251,7 +266,8 @@ std::string ModulePrinter::signature(const typed::Function &function, bool isMet
     parameters.push_back(text + name);
   }
 
-  std::string text = type(function.returnType) + " " + names.of(&function) + "(" + join(parameters, ", ") + ")";
+  std::string text =
+      type(function.returnType) + " " + names.of(&function) + "(" + join(parameters, ", ") + ")";
   if (isMethod) {
     if (!function.isConstructor && !effects.function(function).writesMembers)
       text += " const";
@@ -268,7 +284,8 @@ bool ModulePrinter::overrides(const typed::Function &function) const {
     return false;
   for (const typed::Class *base = function.owner->base; base; base = base->base)
     for (const auto &method : base->functions)
-      if (method->name == function.name && typed::sameParameters(*method, function) && !isPartOfStates(*method))
+      if (method->name == function.name && typed::sameParameters(*method, function) &&
+          !isPartOfStates(*method))
         return isOverridden(*method);
   return false;
 }
@@ -276,12 +293,14 @@ bool ModulePrinter::overrides(const typed::Function &function) const {
 // Only what the author's own code calls on the object itself needs C++'s dispatch: the runtime and
 // references know the class.
 bool ModulePrinter::isOverridden(const typed::Function &function) const {
-  if (function.isConstructor || !function.owner || function.isStateMethod || isPartOfStates(function))
+  if (function.isConstructor || !function.owner || function.isStateMethod ||
+      isPartOfStates(function))
     return false;
   for (const auto &definition : module.classes)
     if (definition.get() != function.owner && definition->derivesFrom(function.owner))
       for (const auto &method : definition->functions)
-        if (method->name == function.name && typed::sameParameters(*method, function) && !isPartOfStates(*method))
+        if (method->name == function.name && typed::sameParameters(*method, function) &&
+            !isPartOfStates(*method))
           return true;
   return false;
 }
@@ -300,13 +319,15 @@ std::string ModulePrinter::function(const typed::Function &function, bool isMeth
 //===----------------------------------------------------------------------===//
 
 std::string ModulePrinter::structure(const typed::Struct &structure) {
-  std::string text = commentText(structure.comment) + "struct " + names.of(&structure) + " {\n" + rayType(structure);
+  std::string text = commentText(structure.comment) + "struct " + names.of(&structure) + " {\n" +
+                     rayType(structure);
   for (std::size_t i = 0; i < structure.fields.size(); ++i) {
     const typed::Field &field = structure.fields[i];
     if (i > 0 && notes.followsEmptyLine(field.range, structure.fields[i - 1].range))
       text += "\n";
     const Code initial = field.type->is(TypeKind::Bool) ? list("", {}) : zero(field.type);
-    text += commentText(field.comment) + memoryType(field.type) + " " + declarator(memoryType(field.type), names.of(&field), initial) + ";";
+    text += commentText(field.comment) + memoryType(field.type) + " " +
+            declarator(memoryType(field.type), names.of(&field), initial) + ";";
     const std::string trailing = notes.trailingComment(field.range);
     text += trailing.empty() ? "\n" : " " + trailing + "\n";
   }
@@ -318,18 +339,21 @@ std::string ModulePrinter::structure(const typed::Struct &structure) {
     std::vector<std::string> parts;
     for (const typed::Field &field : structure.fields)
       parts.push_back(fmt::format("a.{0} == b.{0}", names.of(&field)));
-    text += fmt::format("\nfriend bool operator==(const {0} &a, const {0} &b) {{ return {1}; }}\n"
-                        "friend bool operator!=(const {0} &a, const {0} &b) {{ return !(a == b); }}\n",
-                        names.of(&structure), join(parts, " && "));
+    text +=
+        fmt::format("\nfriend bool operator==(const {0} &a, const {0} &b) {{ return {1}; }}\n"
+                    "friend bool operator!=(const {0} &a, const {0} &b) {{ return !(a == b); }}\n",
+                    names.of(&structure), join(parts, " && "));
   }
   return text + "};\n";
 }
 
-/// Whether C++ takes the initialiser for a constant expression: numbers, constants that it takes for such, and what is not
-/// division. The header's functions are none, and no infinity may come out.
-bool ModulePrinter::isConstexpr(const Type *type, const typed::Constant *value, const std::string &name,
-                                const Code &initialiser) {
-  if (!type->isScalar() || !value || (type->is(TypeKind::Float) && !std::isfinite(value->scalars.front().f)))
+/// Whether C++ takes the initialiser for a constant expression: numbers, constants that it takes
+/// for such, and what is not division. The header's functions are none, and no infinity may come
+/// out.
+bool ModulePrinter::isConstexpr(const Type *type, const typed::Constant *value,
+                                const std::string &name, const Code &initialiser) {
+  if (!type->isScalar() || !value ||
+      (type->is(TypeKind::Float) && !std::isfinite(value->scalars.front().f)))
     return false;
   bool isPlain = true;
   forEachPart(initialiser, [&](const ExpressionNode &part) {
@@ -360,8 +384,9 @@ std::string ModulePrinter::constant(const typed::Variable &constant) {
   const Code initialiser = printer.initialiser(*constant.init);
   const bool isPlain = isConstexpr(constant.type, constant.constant.get(), name, initialiser) ||
                        printer.isTable(*constant.init);
-  std::string text = commentText(constant.comment) + "inline " + (isPlain ? "constexpr " : "const ") +
-                     type(constant.type) + " " + declarator(type(constant.type), name, initialiser) + ";";
+  std::string text = commentText(constant.comment) + "inline " +
+                     (isPlain ? "constexpr " : "const ") + type(constant.type) + " " +
+                     declarator(type(constant.type), name, initialiser) + ";";
   const std::string trailing = notes.trailingComment(constant.init->range);
   return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
 }
@@ -375,8 +400,8 @@ std::string ModulePrinter::freeFunctions() {
       continue;
     forEachExpr(*function->body, [&](const typed::Expr &expr) {
       auto *call = dynCast<typed::CallExpr>(&expr);
-      if (call && !call->function->owner && !defined.count(call->function) && call->function != function.get() &&
-          asked.insert(call->function).second)
+      if (call && !call->function->owner && !defined.count(call->function) &&
+          call->function != function.get() && asked.insert(call->function).second)
         prototypes.push_back(call->function);
     });
     defined.insert(function.get());
@@ -403,15 +428,16 @@ std::string ModulePrinter::member(const typed::Member &member) {
     const Code initialiser = member.init ? printer.initialiser(*member.init) : zero(member.type);
     const bool isPlain = isConstexpr(member.type, member.constant.get(), name, initialiser) ||
                          (member.init && printer.isTable(*member.init));
-    text += std::string(isPlain ? "static constexpr " : "inline static const ") + type(member.type) + " " +
-            declarator(type(member.type), name, initialiser) + ";";
+    text += std::string(isPlain ? "static constexpr " : "inline static const ") +
+            type(member.type) + " " + declarator(type(member.type), name, initialiser) + ";";
   } else {
     Code value = member.init ? printer.initialiser(*member.init) : zero(member.type);
     if (member.type->is(TypeKind::Bool)) // converts in braces
       value = member.init ? list("", {value}) : list("", {});
     text += memoryType(member.type) + " " + declarator(memoryType(member.type), name, value) + ";";
   }
-  const std::string trailing = notes.trailingComment(member.init ? member.init->range : member.range);
+  const std::string trailing =
+      notes.trailingComment(member.init ? member.init->range : member.range);
   return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
 }
 
@@ -440,18 +466,21 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
   for (const auto &function : definition.functions)
     for (const typed::Class *at = definition.base; at; at = at->base)
       for (const auto &method : at->functions)
-        if (method->name == function->name && !method->isConstructor && !isPartOfStates(*method) && !isPartOfStates(*function) &&
+        if (method->name == function->name && !method->isConstructor && !isPartOfStates(*method) &&
+            !isPartOfStates(*function) &&
             (!isSplit(*at, *method) || nameOfMachine(*at, *method) == names.of(method.get())) &&
             !typed::sameParameters(*method, *function) && shown.insert(method->name).second)
           parts.push_back("using " + names.of(at) + "::" + names.of(method.get()) + ";\n");
   for (const auto &function : definition.functions) {
     const bool isMachine = function->body && isSplit(definition, *function);
     if (function->body && (isMachine || !isPartOfStates(*function)))
-      parts.push_back(isMachine ? stateMachine(definition, *function) : this->function(*function, true));
+      parts.push_back(isMachine ? stateMachine(definition, *function)
+                                : this->function(*function, true));
   }
   for (std::string &machine : inheritedStateMachines(definition))
     parts.push_back(std::move(machine));
-  return text + "struct " + names.of(&definition) + " : " + base + " {\n" + join(parts, "\n") + "};\n";
+  return text + "struct " + names.of(&definition) + " : " + base + " {\n" + join(parts, "\n") +
+         "};\n";
 }
 
 //===----------------------------------------------------------------------===//
@@ -477,11 +506,12 @@ std::string ModulePrinter::run() {
   const std::string methods = referenceMethods();
   const std::string references = this->references();
 
-  std::string text =
-      options.fast ? "// Made by rtslc --emit=cpp --fp=fast: what it computes differs in the last digits with the compiler\n"
-                     "// and its options.\n#define RTSL_FAST\n"
-                   : "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math it computes what rtslc's own\n"
-                     "// machine code computes, to the last bit.\n";
+  std::string text = options.fast ? "// Made by rtslc --emit=cpp --fp=fast: what it computes "
+                                    "differs in the last digits with the compiler\n"
+                                    "// and its options.\n#define RTSL_FAST\n"
+                                  : "// Made by rtslc --emit=cpp. Compiled with any options but "
+                                    "-ffast-math it computes what rtslc's own\n"
+                                    "// machine code computes, to the last bit.\n";
   if (!options.whyCalls.empty())
     text += "//\n// Rays are calls, not the ends of states: " + options.whyCalls + ".\n";
   if (!options.checkIndices)
@@ -490,10 +520,11 @@ std::string ModulePrinter::run() {
   text += "namespace " + options.name + " {\n\n";
   text += fmt::format("using State = rtsl::State<{0}>;\nusing Color = rtsl::Color<{0}>;\n",
                       options.colorComponents);
-  auto add = [&](const std::string &part) { // with an empty line above; of two the formatter makes one
-    if (!part.empty())
-      text += "\n" + part;
-  };
+  auto add =
+      [&](const std::string &part) { // with an empty line above; of two the formatter makes one
+        if (!part.empty())
+          text += "\n" + part;
+      };
   if (!calledMethods.empty()) // what they are given says where they begin
     add(stepNumbers());
   add(references);
@@ -520,16 +551,17 @@ std::string ModulePrinter::run() {
   add(entries);
   text += "\n} // namespace " + options.name + "\n";
   if (!module.classes.empty())
-    text += fmt::format("\n/// For rtsl::program in C++, and rtslSceneCreate in C.\n"
-                        "extern \"C\" const RtslShaders *{0}_shaders();\n"
-                        "const RtslShaders *{0}_shaders() {{\n"
-                        "  static const RtslShaders shaders = {0}::describe();\n  return &shaders;\n}}\n",
-                        options.name);
+    text += fmt::format(
+        "\n/// For rtsl::program in C++, and rtslSceneCreate in C.\n"
+        "extern \"C\" const RtslShaders *{0}_shaders();\n"
+        "const RtslShaders *{0}_shaders() {{\n"
+        "  static const RtslShaders shaders = {0}::describe();\n  return &shaders;\n}}\n",
+        options.name);
   return format(text);
 }
 
-std::optional<std::string> print(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
-                                 const StateProgram *states) {
+std::optional<std::string> print(const typed::Module &module, const Options &options,
+                                 Diagnostics &diagnostics, const StateProgram *states) {
   ModulePrinter printer(module, options, diagnostics, states);
   std::string text = printer.run();
   if (printer.failed || diagnostics.hasErrors())

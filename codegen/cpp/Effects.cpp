@@ -75,7 +75,8 @@ const typed::Function &overridden(const typed::Function &function) {
   return *top;
 }
 
-// All methods of the name are alike, whichever class has them: they have one signature, and a call may run any of them.
+// All methods of the name are alike, whichever class has them: they have one signature, and a call
+// may run any of them.
 Effects EffectsOf::ofBodies(const typed::Function &function) {
   Effects effects;
   std::set<const void *> locals;

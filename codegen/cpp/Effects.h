@@ -19,10 +19,10 @@ namespace rtsl::cpp {
 /// numbers, `nearest` the hit so far.
 struct Effects {
   std::set<const void *> reads, writes;
-  bool random = false;    // draws random numbers
+  bool random = false; // draws random numbers
   bool reportsHit = false;
-  bool traces = false;    // trace or illuminance
-  bool usesRay = false;   // needs the state for anything: state variables, other objects, rays
+  bool traces = false;  // trace or illuminance
+  bool usesRay = false; // needs the state for anything: state variables, other objects, rays
   bool usesScratch = false;
   bool writesScratch = false;
   bool writesMembers = false;
@@ -77,14 +77,15 @@ private:
   void collectWrite(const typed::Expr &place, Effects &effects);
   void collectLights(Effects &effects);
   Effects ofBodies(const typed::Function &function);
-  void collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args, Effects &effects);
+  void collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
+                   Effects &effects);
 
   const typed::Module &module;
   bool prints, raises;
   std::map<const typed::Function *, Effects> known;
   std::set<const typed::Function *> open; // of which the effects are being found
   bool comesRound = false;                // one of these was looked at meanwhile
-  bool texturesDraw = false; // some texture's `lookup` draws random numbers
+  bool texturesDraw = false;              // some texture's `lookup` draws random numbers
 };
 
 } // namespace rtsl::cpp

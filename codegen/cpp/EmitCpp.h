@@ -26,15 +26,16 @@ struct Options {
   bool exceptions = false;           // samples end at what docs/language.md calls an exception
   std::uint32_t undefined = 0;       // RTSL_FEATURE_UNDEFINED_*, for tests
   bool checkIndices = true;
-  std::string whyCalls;              // what states cannot show, so that traces are calls though nobody asked; empty: nothing
-  bool fast = false;                 // RTSL_FAST: the C++ compiler may change last digits (docs/fast.md)
+  // what states cannot show, so that traces are calls though nobody asked; empty: nothing
+  std::string whyCalls;
+  bool fast = false; // RTSL_FAST: the C++ compiler may change last digits (docs/fast.md)
   const HitErrorFunctions *hitErrors = nullptr; // HitErrors.h; null: there are none
 };
 
 struct StateProgram;
 
-/// The text, formatted; nothing if something cannot be printed, which is reported. `states`: methods that trace, split, to
-/// be printed as their states (States.h); null: traces are calls.
+/// The text, formatted; nothing if something cannot be printed, which is reported. `states`:
+/// methods that trace, split, to be printed as their states (States.h); null: traces are calls.
 std::optional<std::string> print(const typed::Module &module, const Options &options,
                                  Diagnostics &diagnostics, const StateProgram *states = nullptr);
 

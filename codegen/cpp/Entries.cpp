@@ -1,10 +1,10 @@
 //===- Entries.cpp - how the runtime and references reach the classes -----===//
 #include "codegen/cpp/Printer.h"
 
-#include "sema/typed/Analysis.h"
 #include "codegen/link/Members.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 #include "runtime/device/ray/Abi.h"
+#include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
@@ -31,7 +31,8 @@ std::vector<const typed::Class *> ModulePrinter::classesBelow(const std::string 
   return classes;
 }
 
-const typed::Function *ModulePrinter::findMethod(const typed::Class &definition, const typed::Function &like) const {
+const typed::Function *ModulePrinter::findMethod(const typed::Class &definition,
+                                                 const typed::Function &like) const {
   for (const typed::Class *at = &definition; at; at = at->base)
     for (const auto &function : at->functions)
       if (function->name == like.name && typed::sameParameters(*function, like))
@@ -43,10 +44,11 @@ bool endsInReturn(const Statements &statements) {
   return !statements.empty() && statements.back().is(StatementKind::Return);
 }
 
-// A switch over the classes, or the statements alone if there is one. `run` gives nothing for a class that has no such
-// method. `mayBeNone`: nothing happens if there is no object.
+// A switch over the classes, or the statements alone if there is one. `run` gives nothing for a
+// class that has no such method. `mayBeNone`: nothing happens if there is no object.
 Statements ModulePrinter::dispatch(const std::vector<const typed::Class *> &classes,
-                                   const std::function<Statements(const typed::Class &)> &run, bool mayBeNone) {
+                                   const std::function<Statements(const typed::Class &)> &run,
+                                   bool mayBeNone) {
   Statement choice = simple(StatementKind::Switch);
   choice.value = staticCast("Id", call("rtsl::classOf", {cpp::name("rt"), cpp::name("object")}));
   for (const typed::Class *definition : classes) {
@@ -59,7 +61,8 @@ Statements ModulePrinter::dispatch(const std::vector<const typed::Class *> &clas
       return {branch(binary(Operator::NotEqual, cpp::name("object"), integer(0)), std::move(body))};
     if (!endsInReturn(body))
       body.push_back(simple(StatementKind::Break));
-    choice.arms.push_back({{cpp::name("Id::" + names.of(definition))}, false, false, std::move(body)});
+    choice.arms.push_back(
+        {{cpp::name("Id::" + names.of(definition))}, false, false, std::move(body)});
   }
   if (choice.arms.empty())
     return {};
@@ -68,11 +71,13 @@ Statements ModulePrinter::dispatch(const std::vector<const typed::Class *> &clas
 }
 
 Code ModulePrinter::objectOf(const typed::Class &definition) const {
-  return call(withParameters("rtsl::object", {names.of(&definition)}), {cpp::name("rt"), cpp::name("object")});
+  return call(withParameters("rtsl::object", {names.of(&definition)}),
+              {cpp::name("rt"), cpp::name("object")});
 }
 
 Code ModulePrinter::storedScratch(const typed::Class &definition) const {
-  return call(withParameters("rtsl::loadScratch", {names.of(&definition) + "::Scratch"}), {cpp::name("rt")});
+  return call(withParameters("rtsl::loadScratch", {names.of(&definition) + "::Scratch"}),
+              {cpp::name("rt")});
 }
 
 //===----------------------------------------------------------------------===//
@@ -83,7 +88,8 @@ static std::string parameterList(ModulePrinter &printer, const typed::Function &
   std::vector<std::string> parameters = {"State &rt"};
   for (std::size_t i = 0; i != function.parameters.size(); ++i) {
     const typed::Variable &parameter = *function.parameters[i];
-    parameters.push_back(printer.type(parameter.type) + (parameter.direction == ast::Direction::In ? " " : " &") +
+    parameters.push_back(printer.type(parameter.type) +
+                         (parameter.direction == ast::Direction::In ? " " : " &") +
                          printer.parameterName(function, i));
   }
   return join(parameters, ", ");
@@ -102,7 +108,8 @@ std::string ModulePrinter::references() {
       text += "struct " + names.of(structure.get()) + ";\n";
   for (const auto &[className, methods] : referenced) {
     text += "\n/// Any `" + className + "` of the scene.\nstruct " + names.reference(className) +
-            " : rtsl::Reference {\nusing Reference::Reference;\nstatic constexpr const char *className = \"" +
+            " : rtsl::Reference {\nusing Reference::Reference;\nstatic constexpr const char "
+            "*className = \"" +
             className + "\";\n";
     for (const ThroughReference &through : methods) {
       if (through.function)
@@ -119,7 +126,8 @@ std::string ModulePrinter::references() {
 
 /// `const rtsl::NestedLookup nested(rt);`: what a texture wrote is there again afterwards.
 static Statement nestedLookup() {
-  Statement made = declaration("const", "rtsl::NestedLookup", "nested", construct("rtsl::NestedLookup", {name("rt")}));
+  Statement made = declaration("const", "rtsl::NestedLookup", "nested",
+                               construct("rtsl::NestedLookup", {name("rt")}));
   made.declarators.front().isDirect = true;
   return made;
 }
@@ -131,20 +139,24 @@ std::string ModulePrinter::referenceMethods() {
     for (const ThroughReference &through : methods) {
       if (!through.function) {
         const bool isColor = through.method == "lookup";
-        const Code state = cpp::member(cpp::name("rt"), isColor ? "TextureColor" : "FloatTextureValue");
-        Statements body = {lookupsNest ? nestedLookup() : statement(call("rtsl::clearTexture", {cpp::name("rt")}))};
+        const Code state =
+            cpp::member(cpp::name("rt"), isColor ? "TextureColor" : "FloatTextureValue");
+        Statements body = {lookupsNest ? nestedLookup()
+                                       : statement(call("rtsl::clearTexture", {cpp::name("rt")}))};
         append(body, dispatch(
                          classes,
                          [&](const typed::Class &definition) -> Statements {
                            const typed::Function *lookup = definition.findMethod("lookup");
                            if (!lookup)
                              return {};
-                           return {statement(callMember(objectOf(definition), names.of(lookup), {cpp::name("rt")}))};
+                           return {statement(callMember(objectOf(definition), names.of(lookup),
+                                                        {cpp::name("rt")}))};
                          },
                          mayReferToNothing));
         body.push_back(returning(state));
-        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n{}}}\n", isColor ? "Color" : "float",
-                            names.reference(className), through.method, print(body));
+        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n{}}}\n",
+                            isColor ? "Color" : "float", names.reference(className), through.method,
+                            print(body));
         continue;
       }
       const typed::Function &function = *through.function;
@@ -169,13 +181,16 @@ std::string ModulePrinter::referenceMethods() {
       const bool isDirect = classes.size() == 1 && !body.empty() && !mayReferToNothing;
       Statements zeros; // what the method of no object gives
       for (std::size_t i = 0; i != function.parameters.size() && !isDirect; ++i)
-        if (const typed::Variable &parameter = *function.parameters[i]; parameter.direction == ast::Direction::Out)
-          zeros.push_back(statement(assign(cpp::name(parameterName(function, i)), zero(parameter.type))));
+        if (const typed::Variable &parameter = *function.parameters[i];
+            parameter.direction == ast::Direction::Out)
+          zeros.push_back(
+              statement(assign(cpp::name(parameterName(function, i)), zero(parameter.type))));
       if (!isVoid && !isDirect)
         zeros.push_back(returning(list("", {})));
       body.insert(isVoid ? body.begin() : body.end(), zeros.begin(), zeros.end());
-      text += fmt::format("\ninline {} {}::{}({}) const {{\n{}}}\n", type(function.returnType), names.reference(className),
-                          names.of(&function), parameterList(*this, function), print(body));
+      text += fmt::format("\ninline {} {}::{}({}) const {{\n{}}}\n", type(function.returnType),
+                          names.reference(className), names.of(&function),
+                          parameterList(*this, function), print(body));
     }
   }
   return text;
@@ -207,17 +222,20 @@ static const typed::Function *slotMethod(const typed::Class &definition, const c
 }
 
 Statements ModulePrinter::withState(const Statements &body) const {
-  const Code state = call(withParameters("rtsl::stateOf", {std::to_string(options.colorComponents)}), {cpp::name("ray")});
+  const Code state =
+      call(withParameters("rtsl::stateOf", {std::to_string(options.colorComponents)}),
+           {cpp::name("ray")});
   Statements all = {declaration("State &", "rt", state)};
   append(all, body);
   return all;
 }
 
 std::string ModulePrinter::slots() {
-  std::string text = "\n//===----------------------------------------------------------------------===//\n"
-                     "// What the runtime asks for\n"
-                     "//===----------------------------------------------------------------------===//\n"
-                     "\nnamespace slots {\n";
+  std::string text =
+      "\n//===----------------------------------------------------------------------===//\n"
+      "// What the runtime asks for\n"
+      "//===----------------------------------------------------------------------===//\n"
+      "\nnamespace slots {\n";
   for (const Slot &slot : allSlots) {
     if (isRunBySteps(slot.method))
       continue;
@@ -234,12 +252,14 @@ std::string ModulePrinter::slots() {
       const Code object = objectOf(definition), rt = cpp::name("rt");
       if (takesScratch(*method) && method->name == "intersect")
         return {statement(call("rtsl::intersect", {rt, object}))};
-      const std::vector<Code> arguments = takesScratch(*method) ? std::vector<Code>{rt, storedScratch(definition)} : std::vector<Code>{rt};
+      const std::vector<Code> arguments = takesScratch(*method)
+                                              ? std::vector<Code>{rt, storedScratch(definition)}
+                                              : std::vector<Code>{rt};
       return {statement(callMember(object, names.of(method), arguments))};
     });
     if (!body.empty())
-      text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n{}}}\n", slot.method,
-                          print(withState(body)));
+      text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n{}}}\n",
+                          slot.method, print(withState(body)));
   }
   return text + payloadSlots() + runState() + "\n} // namespace slots\n";
 }
@@ -276,8 +296,9 @@ std::vector<std::string> needsOf(const Effects &facts) {
   ask("RTSL_NEEDS_TIME", {StateVariable::Time, StateVariable::TimeSeed});
   ask("RTSL_NEEDS_LAUNCH", {StateVariable::LaunchIndex, StateVariable::LaunchSize});
   ask("RTSL_NEEDS_LENS", {StateVariable::LensCoord});
-  ask("RTSL_NEEDS_SAMPLING", {StateVariable::EmissionColor, StateVariable::BSDFValue, StateVariable::BSDFSeed,
-                              StateVariable::PDF, StateVariable::du, StateVariable::dv});
+  ask("RTSL_NEEDS_SAMPLING",
+      {StateVariable::EmissionColor, StateVariable::BSDFValue, StateVariable::BSDFSeed,
+       StateVariable::PDF, StateVariable::du, StateVariable::dv});
   return words;
 }
 
@@ -328,14 +349,16 @@ std::vector<std::string> ModulePrinter::needsOfProgram() {
   for (const auto &definition : module.classes)
     for (const auto &function : definition->functions) {
       everything.add(effects.function(*function));
-      if (definition->root == "rt_Primitive" && function->isStateMethod && function->name != "computeBounds")
+      if (definition->root == "rt_Primitive" && function->isStateMethod &&
+          function->name != "computeBounds")
         ofHits.add(effects.function(*function));
       hasAnyHit |= function->isStateMethod && function->name == "anyHit";
     }
   std::vector<std::string> words = needsOf(everything);
   if (readsAny(ofHits, {StateVariable::BoundMin, StateVariable::BoundMax}) ||
-      readsAny(effectsOfAll("rt_Primitive", "intersect"), {StateVariable::PrimitiveIndex, StateVariable::InstanceIndex,
-                                                           StateVariable::ObjectToWorld, StateVariable::WorldToObject}))
+      readsAny(effectsOfAll("rt_Primitive", "intersect"),
+               {StateVariable::PrimitiveIndex, StateVariable::InstanceIndex,
+                StateVariable::ObjectToWorld, StateVariable::WorldToObject}))
     words.emplace_back("RTSL_NEEDS_CANDIDATE");
   if (hasAnyHit)
     words.emplace_back("RTSL_NEEDS_ANY_HIT");
@@ -367,23 +390,28 @@ std::string ModulePrinter::description() {
           structsOf(parameter->type, described);
   }
   for (const typed::Struct *structure : described) {
-    text += fmt::format("\ninline void describeFields(rtsl::StructDescription<{0}> &fields) {{\nfields.name = \"{1}\";\n",
+    text += fmt::format("\ninline void describeFields(rtsl::StructDescription<{0}> &fields) "
+                        "{{\nfields.name = \"{1}\";\n",
                         names.of(structure), structure->name);
     for (const typed::Field &field : structure->fields)
-      text += fmt::format("fields.add(\"{}\", &{}::{});\n", field.name, names.of(structure), names.of(&field));
+      text += fmt::format("fields.add(\"{}\", &{}::{});\n", field.name, names.of(structure),
+                          names.of(&field));
     text += "}\n";
   }
 
-  text += fmt::format("\nstatic RtslShaders describe() {{\nrtsl::Program<{}> program;\n", options.colorComponents);
+  text += fmt::format("\nstatic RtslShaders describe() {{\nrtsl::Program<{}> program;\n",
+                      options.colorComponents);
   for (const auto &definition : module.classes) {
     const std::string &name = names.of(definition.get());
-    text += fmt::format("program.add<{0}>(static_cast<std::uint32_t>(Id::{0}), \"{1}\", \"{2}\", \"{3}\")", name,
-                        definition->name, definition->base ? definition->base->name : definition->root,
-                        definition->root);
+    text += fmt::format(
+        "program.add<{0}>(static_cast<std::uint32_t>(Id::{0}), \"{1}\", \"{2}\", \"{3}\")", name,
+        definition->name, definition->base ? definition->base->name : definition->root,
+        definition->root);
     for (const typed::Member *member : allMembers(*definition)) {
       if (member->isConst || member->access == ast::Access::Scratch)
         continue;
-      text += fmt::format(".member(\"{}\", &{}::{}, rtsl::Access::{}{})", member->name, name, names.of(member),
+      text += fmt::format(".member(\"{}\", &{}::{}, rtsl::Access::{}{})", member->name, name,
+                          names.of(member),
                           member->access == ast::Access::Public ? "Public" : "Private",
                           member->init || member->isOptional ? ", rtsl::Default::Given" : "");
     }
@@ -391,16 +419,18 @@ std::string ModulePrinter::description() {
       std::vector<std::string> parameters;
       for (std::size_t i = 0; i < constructor->parameters.size(); ++i) {
         const std::string &parameter = constructor->parameters[i]->name;
-        parameters.push_back("\"" + (parameter.empty() ? "unnamed" + std::to_string(i) : parameter) + "\"");
+        parameters.push_back(
+            "\"" + (parameter.empty() ? "unnamed" + std::to_string(i) : parameter) + "\"");
       }
-      text += fmt::format(".constructor<&{}::{}>({{{}}})", names.of(constructor->owner), names.of(constructor),
-                          join(parameters, ", "));
+      text += fmt::format(".constructor<&{}::{}>({{{}}})", names.of(constructor->owner),
+                          names.of(constructor), join(parameters, ", "));
     }
     std::set<std::string> methods;
     for (const typed::Class *at = definition.get(); at; at = at->base)
       for (const auto &function : at->functions)
         methods.insert(typed::takesPayload(*function)
-                           ? fmt::format("\"{}({})\"", function->name, toString(function->parameters.front()->type))
+                           ? fmt::format("\"{}({})\"", function->name,
+                                         toString(function->parameters.front()->type))
                            : "\"" + function->name + "\"");
     if (!methods.empty())
       text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
@@ -416,9 +446,11 @@ std::string ModulePrinter::description() {
     text += needs + ";\n";
   for (const Slot &slot : allSlots)
     for (const typed::Class *definition : classesBelow(slot.base))
-      if (slot.method == hitErrorMethod ? withHitErrors.count(definition) != 0
-                                        : !isRunBySteps(slot.method) && slotMethod(*definition, slot.method) != nullptr) {
-        text += fmt::format("program.slots().{}_{} = &slots::{};\n", slot.base, slot.method, slot.method);
+      if (slot.method == hitErrorMethod
+              ? withHitErrors.count(definition) != 0
+              : !isRunBySteps(slot.method) && slotMethod(*definition, slot.method) != nullptr) {
+        text += fmt::format("program.slots().{}_{} = &slots::{};\n", slot.base, slot.method,
+                            slot.method);
         break;
       }
   std::vector<std::string> features;

@@ -16,7 +16,8 @@ std::string join(const std::vector<std::string> &parts, const char *between) {
   return fmt::format("{}", fmt::join(parts, between));
 }
 
-FunctionPrinter::FunctionPrinter(ModulePrinter &module, const typed::Function *function, const typed::Class *owner)
+FunctionPrinter::FunctionPrinter(ModulePrinter &module, const typed::Function *function,
+                                 const typed::Class *owner)
     : module(module), function(function), owner(function ? function->owner : owner) {
   if (!function)
     return;
@@ -26,7 +27,9 @@ FunctionPrinter::FunctionPrinter(ModulePrinter &module, const typed::Function *f
     usedNames.insert(module.names.of(local.get()));
 }
 
-Code FunctionPrinter::initialiser(const typed::Expr &expr) { return apart(expr, Binding::Assignment); }
+Code FunctionPrinter::initialiser(const typed::Expr &expr) {
+  return apart(expr, Binding::Assignment);
+}
 
 //===----------------------------------------------------------------------===//
 // Order
@@ -66,7 +69,8 @@ static std::string hintFor(const typed::Expr &expr) {
   return hint.empty() ? "value" : hint;
 }
 
-std::vector<Code> FunctionPrinter::operands(const std::vector<const typed::Expr *> &exprs, Binding atLeast) {
+std::vector<Code> FunctionPrinter::operands(const std::vector<const typed::Expr *> &exprs,
+                                            Binding atLeast) {
   std::vector<Effects> all;
   bool anyEffects = false;
   for (const typed::Expr *expr : exprs) {
@@ -79,7 +83,8 @@ std::vector<Code> FunctionPrinter::operands(const std::vector<const typed::Expr 
     bool shows = false;
     for (std::size_t later = i + 1; anyEffects && later < exprs.size(); ++later)
       shows |= conflicts(all[i], all[later]);
-    codes.push_back(shows ? hoist(exprs[i]->type, hintFor(*exprs[i]), argument(*exprs[i])) : operand(*exprs[i], atLeast));
+    codes.push_back(shows ? hoist(exprs[i]->type, hintFor(*exprs[i]), argument(*exprs[i]))
+                          : operand(*exprs[i], atLeast));
   }
   return codes;
 }
@@ -146,10 +151,12 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
     return place(expr);
   case ExprKind::Index: {
     const auto &part = cast<typed::IndexExpr>(expr);
-    const bool changes = conflicts(module.effects.expression(*part.base), module.effects.expression(*part.index));
+    const bool changes =
+        conflicts(module.effects.expression(*part.base), module.effects.expression(*part.index));
     if (!part.base->type->isVector() || !changes)
       return place(expr);
-    return element(part, hoist(part.base->type, "value", argument(*part.base)), false); // of the vector as it was
+    return element(part, hoist(part.base->type, "value", argument(*part.base)),
+                   false); // of the vector as it was
   }
   case ExprKind::Swizzle:
     return swizzle(cast<typed::SwizzleExpr>(expr));
@@ -247,7 +254,8 @@ Code FunctionPrinter::convert(const typed::ConvertExpr &expr) {
       value && !isWritten && from->isScalar() && !namedConstant(*value)) {
     typed::Constant::Scalar scalar = value->value.scalars.front();
     if (toScalar->is(TypeKind::Float) && !fromScalar->is(TypeKind::Bool)) {
-      scalar.f = fromScalar->is(TypeKind::Int) ? static_cast<float>(scalar.i) : static_cast<float>(scalar.u);
+      scalar.f = fromScalar->is(TypeKind::Int) ? static_cast<float>(scalar.i)
+                                               : static_cast<float>(scalar.u);
       return scalarLiteral(toScalar, scalar, "");
     }
     if (toScalar->is(TypeKind::UInt) && fromScalar->is(TypeKind::Int) && scalar.i >= 0)
@@ -261,7 +269,8 @@ Code FunctionPrinter::convert(const typed::ConvertExpr &expr) {
     return cpp::binary(Operator::NotEqual, this->operand(operand, Binding::Relation), zero);
   }
   if (fromScalar->is(TypeKind::Float))
-    return cpp::call(toScalar->is(TypeKind::Int) ? "rtsl::toInt" : "rtsl::toUint", {argument(operand)});
+    return cpp::call(toScalar->is(TypeKind::Int) ? "rtsl::toInt" : "rtsl::toUint",
+                     {argument(operand)});
   return cpp::construct(module.type(to), {argument(operand)});
 }
 
@@ -278,17 +287,20 @@ Code FunctionPrinter::construct(const typed::ConstructExpr &expr) {
   if (type->is(TypeKind::Struct) || type->is(TypeKind::Array)) {
     std::vector<Code> parts;
     for (std::size_t i = 0; i < expr.args.size(); ++i) {
-      const Type *part = type->is(TypeKind::Struct) ? type->structure->fields[i].type : type->element;
+      const Type *part =
+          type->is(TypeKind::Struct) ? type->structure->fields[i].type : type->element;
       parts.push_back(inMemory(part, apart(*expr.args[i], Binding::Assignment)));
     }
-    return type->is(TypeKind::Array) ? array(typeName, std::move(parts)) : list(typeName, std::move(parts));
+    return type->is(TypeKind::Array) ? array(typeName, std::move(parts))
+                                     : list(typeName, std::move(parts));
   }
   if (type->is(TypeKind::Class) || first.type == type)
     return this->expr(first);
   if (type->isScalar()) { // of the first component
     if (first.type->isMatrix())
       return subscript(subscript(operand(first, Binding::Primary), integer(0)), integer(0));
-    return isSimple(first) ? component(place(first), 0) : cpp::call("rtsl::part<0>", {argument(first)});
+    return isSimple(first) ? component(place(first), 0)
+                           : cpp::call("rtsl::part<0>", {argument(first)});
   }
   std::vector<Code> args = arguments(expr.args);
   if (type->is(TypeKind::Color))
@@ -310,7 +322,8 @@ Code FunctionPrinter::construct(const typed::ConstructExpr &expr) {
     return cpp::call(withParameters("rtsl::matrixOf", {typeName}), std::move(args));
   }
   const bool isExact = scalars == type->count && !hasMatrix;
-  const bool isOne = expr.args.size() == 1 && !hasMatrix; // to every component, or the first of a longer one
+  const bool isOne =
+      expr.args.size() == 1 && !hasMatrix; // to every component, or the first of a longer one
   if (isExact || isOne)
     return cpp::construct(typeName, std::move(args));
   return cpp::call(withParameters("rtsl::vectorOf", {typeName}), std::move(args));
@@ -338,17 +351,20 @@ Code FunctionPrinter::swizzle(const typed::SwizzleExpr &expr) {
   if (parts.size() == 1 && !dynCast<typed::ConvertExpr>(vector))
     return component(operand(*vector, Binding::Primary), parts[0]);
   if (isSimple(*vector)) {
-    const bool isRepeated = std::all_of(parts.begin(), parts.end(), [&](std::uint8_t at) { return at == parts[0]; });
+    const bool isRepeated =
+        std::all_of(parts.begin(), parts.end(), [&](std::uint8_t at) { return at == parts[0]; });
     std::vector<Code> codes;
     for (std::uint8_t part : parts)
       if (codes.empty() || !isRepeated)
         codes.push_back(component(place(*vector), part));
-    return parts.size() == 1 ? codes.front() : cpp::construct(module.type(expr.type), std::move(codes));
+    return parts.size() == 1 ? codes.front()
+                             : cpp::construct(module.type(expr.type), std::move(codes));
   }
   std::vector<std::string> numbers;
   for (std::uint8_t part : parts)
     numbers.push_back(std::to_string(part));
-  return cpp::call(withParameters(parts.size() == 1 ? "rtsl::part" : "rtsl::swizzle", numbers), {argument(*vector)});
+  return cpp::call(withParameters(parts.size() == 1 ? "rtsl::part" : "rtsl::swizzle", numbers),
+                   {argument(*vector)});
 }
 
 } // namespace rtsl::cpp

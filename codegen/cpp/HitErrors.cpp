@@ -49,7 +49,8 @@ namespace {
 
 class HitErrorWriter {
 public:
-  HitErrorWriter(ModulePrinter &module, const typed::Class &definition) : module(module), definition(definition) {}
+  HitErrorWriter(ModulePrinter &module, const typed::Class &definition)
+      : module(module), definition(definition) {}
 
   std::string body(mlir::func::FuncOp function) {
     write(function.getBody());
@@ -79,14 +80,16 @@ private:
     const llvm::APInt value = llvm::cast<mlir::IntegerAttr>(attribute).getValue();
     if (value.getBitWidth() == 1)
       return value.isZero() ? "false" : "true";
-    return value.isMinSignedValue() ? "std::numeric_limits<int>::min()" : std::to_string(value.getSExtValue());
+    return value.isMinSignedValue() ? "std::numeric_limits<int>::min()"
+                                    : std::to_string(value.getSExtValue());
   }
 
   /// One component of a vector, or the scalar.
   std::string part(Value value, unsigned index) {
     mlir::Attribute attribute;
     if (!mlir::matchPattern(value, mlir::m_Constant(&attribute)))
-      return widthOf(value.getType()) ? fmt::format("{}.{}", nameOf(value), "xyzw"[index]) : nameOf(value);
+      return widthOf(value.getType()) ? fmt::format("{}.{}", nameOf(value), "xyzw"[index])
+                                      : nameOf(value);
     if (auto dense = llvm::dyn_cast<mlir::DenseElementsAttr>(attribute))
       return number(dense.getValues<mlir::Attribute>()[index]);
     return number(attribute);
@@ -126,8 +129,8 @@ private:
   }
   void wrapping(mlir::Operation &op, const char *sign) {
     each(op, [&](unsigned i) {
-      return fmt::format("static_cast<int>(static_cast<unsigned>({}) {} static_cast<unsigned>({}))", part(op.getOperand(0), i),
-                         sign, part(op.getOperand(1), i));
+      return fmt::format("static_cast<int>(static_cast<unsigned>({}) {} static_cast<unsigned>({}))",
+                         part(op.getOperand(0), i), sign, part(op.getOperand(1), i));
     });
   }
   void call(mlir::Operation &op, const std::string &function) {
@@ -139,38 +142,66 @@ private:
     });
   }
 
-  static std::string compare(arith::CmpFPredicate predicate, const std::string &a, const std::string &b) {
+  static std::string compare(arith::CmpFPredicate predicate, const std::string &a,
+                             const std::string &b) {
     using P = arith::CmpFPredicate;
     switch (predicate) {
-    case P::OEQ: return a + " == " + b;
-    case P::OGT: return a + " > " + b;
-    case P::OGE: return a + " >= " + b;
-    case P::OLT: return a + " < " + b;
-    case P::OLE: return a + " <= " + b;
-    case P::UNE: return a + " != " + b;
-    case P::ONE: return fmt::format("({0} < {1} || {0} > {1})", a, b);
-    case P::UEQ: return fmt::format("!({0} < {1} || {0} > {1})", a, b);
-    case P::UGT: return fmt::format("!({} <= {})", a, b);
-    case P::UGE: return fmt::format("!({} < {})", a, b);
-    case P::ULT: return fmt::format("!({} >= {})", a, b);
-    case P::ULE: return fmt::format("!({} > {})", a, b);
-    case P::ORD: return fmt::format("({0} == {0} && {1} == {1})", a, b);
-    case P::UNO: return fmt::format("({0} != {0} || {1} != {1})", a, b);
-    case P::AlwaysFalse: return "false";
-    case P::AlwaysTrue: return "true";
+    case P::OEQ:
+      return a + " == " + b;
+    case P::OGT:
+      return a + " > " + b;
+    case P::OGE:
+      return a + " >= " + b;
+    case P::OLT:
+      return a + " < " + b;
+    case P::OLE:
+      return a + " <= " + b;
+    case P::UNE:
+      return a + " != " + b;
+    case P::ONE:
+      return fmt::format("({0} < {1} || {0} > {1})", a, b);
+    case P::UEQ:
+      return fmt::format("!({0} < {1} || {0} > {1})", a, b);
+    case P::UGT:
+      return fmt::format("!({} <= {})", a, b);
+    case P::UGE:
+      return fmt::format("!({} < {})", a, b);
+    case P::ULT:
+      return fmt::format("!({} >= {})", a, b);
+    case P::ULE:
+      return fmt::format("!({} > {})", a, b);
+    case P::ORD:
+      return fmt::format("({0} == {0} && {1} == {1})", a, b);
+    case P::UNO:
+      return fmt::format("({0} != {0} || {1} != {1})", a, b);
+    case P::AlwaysFalse:
+      return "false";
+    case P::AlwaysTrue:
+      return "true";
     }
     return "false";
   }
-  static std::string compare(arith::CmpIPredicate predicate, const std::string &a, const std::string &b) {
+  static std::string compare(arith::CmpIPredicate predicate, const std::string &a,
+                             const std::string &b) {
     using P = arith::CmpIPredicate;
     const auto sign = [&] {
       switch (predicate) {
-      case P::eq: return "==";
-      case P::ne: return "!=";
-      case P::slt: case P::ult: return "<";
-      case P::sle: case P::ule: return "<=";
-      case P::sgt: case P::ugt: return ">";
-      case P::sge: case P::uge: return ">=";
+      case P::eq:
+        return "==";
+      case P::ne:
+        return "!=";
+      case P::slt:
+      case P::ult:
+        return "<";
+      case P::sle:
+      case P::ule:
+        return "<=";
+      case P::sgt:
+      case P::ugt:
+        return ">";
+      case P::sge:
+      case P::uge:
+        return ">=";
       }
       return "==";
     }();
@@ -229,7 +260,8 @@ private:
 
   std::string place(Value address) {
     if (auto state = address.getDefiningOp<ir::StateOp>())
-      return state.getName() == "hitError" ? "rtsl::rawState(rt)->hitError" : "rt." + state.getName().str();
+      return state.getName() == "hitError" ? "rtsl::rawState(rt)->hitError"
+                                           : "rt." + state.getName().str();
     if (auto variable = address.getDefiningOp<ir::VarOp>())
       return nameOf(variable);
     if (auto member = address.getDefiningOp<ir::MemberOp>())
@@ -253,7 +285,9 @@ private:
     const auto table = inTable(op.getAddress());
     if (!table) {
       mlir::Type type = op.getType();
-      const bool isFloat = type.isF32() || (widthOf(type) && llvm::cast<mlir::VectorType>(type).getElementType().isF32());
+      const bool isFloat =
+          type.isF32() ||
+          (widthOf(type) && llvm::cast<mlir::VectorType>(type).getElementType().isF32());
       const std::string from = place(op.getAddress());
       return define(op, isFloat ? from : typeText(type) + "(" + from + ")");
     }
@@ -261,7 +295,9 @@ private:
     mlir::Type scalar = widthOf(type) ? llvm::cast<mlir::VectorType>(type).getElementType() : type;
     each(*op, [&](unsigned i) {
       const std::string word = fmt::format("{}[{} + {}]", table->first, table->second, i);
-      return scalar.isF32() ? "rtsl::bitsAs<float>(" + word + ")" : scalar.isInteger(1) ? word + " != 0" : word;
+      return scalar.isF32()        ? "rtsl::bitsAs<float>(" + word + ")"
+             : scalar.isInteger(1) ? word + " != 0"
+                                   : word;
     });
   }
 
@@ -279,7 +315,8 @@ private:
     if (op.hasTrait<mlir::OpTrait::ConstantLike>())
       return;
     llvm::TypeSwitch<mlir::Operation *>(&op)
-        .Case<ir::StateOp, ir::MemberOp, ir::FieldOp, ir::ElementOp, ir::BufferElementOp, ir::YieldOp>([](auto) {})
+        .Case<ir::StateOp, ir::MemberOp, ir::FieldOp, ir::ElementOp, ir::BufferElementOp,
+              ir::YieldOp>([](auto) {})
         .Case([&](ir::TableOp table) {
           std::vector<std::string> words;
           for (std::int32_t word : table.getWords())
@@ -287,10 +324,13 @@ private:
           line("static constexpr int " + nameOf(table) + "[] = {" + join(words, ", ") + "};");
         })
         .Case([&](ir::VarOp variable) {
-          line(typeText(llvm::cast<ir::PtrType>(variable.getType()).getPointee()) + " " + nameOf(variable) + "{};");
+          line(typeText(llvm::cast<ir::PtrType>(variable.getType()).getPointee()) + " " +
+               nameOf(variable) + "{};");
         })
         .Case([&](ir::LoadOp from) { load(from); })
-        .Case([&](ir::StoreOp into) { line(place(into.getAddress()) + " = " + whole(into.getValue()) + ";"); })
+        .Case([&](ir::StoreOp into) {
+          line(place(into.getAddress()) + " = " + whole(into.getValue()) + ";");
+        })
         .Case([&](ir::ClearOp cleared) { line(place(cleared.getAddress()) + " = {};"); })
         .Case([&](ir::BufferLengthOp length) {
           define(length, fmt::format("{}.length({})", place(length.getBuffer()), length.getDim()));
@@ -307,20 +347,26 @@ private:
         .Case([&](arith::MulIOp) { wrapping(op, "*"); })
         .Case<arith::AndIOp, arith::OrIOp, arith::XOrIOp>([&](auto) {
           mlir::Type type = op.getResult(0).getType();
-          const bool isBool = type.isInteger(1) || (widthOf(type) && llvm::cast<mlir::VectorType>(type).getElementType().isInteger(1));
-          const char *sign = llvm::isa<arith::AndIOp>(op) ? (isBool ? "&&" : "&")
+          const bool isBool =
+              type.isInteger(1) ||
+              (widthOf(type) && llvm::cast<mlir::VectorType>(type).getElementType().isInteger(1));
+          const char *sign = llvm::isa<arith::AndIOp>(op)  ? (isBool ? "&&" : "&")
                              : llvm::isa<arith::OrIOp>(op) ? (isBool ? "||" : "|")
                                                            : (isBool ? "!=" : "^");
-          each(op, [&](unsigned i) { return part(op.getOperand(0), i) + " " + sign + " " + part(op.getOperand(1), i); });
+          each(op, [&](unsigned i) {
+            return part(op.getOperand(0), i) + " " + sign + " " + part(op.getOperand(1), i);
+          });
         })
         .Case([&](arith::CmpFOp comparison) {
           each(op, [&](unsigned i) {
-            return compare(comparison.getPredicate(), part(op.getOperand(0), i), part(op.getOperand(1), i));
+            return compare(comparison.getPredicate(), part(op.getOperand(0), i),
+                           part(op.getOperand(1), i));
           });
         })
         .Case([&](arith::CmpIOp comparison) {
           each(op, [&](unsigned i) {
-            return compare(comparison.getPredicate(), part(op.getOperand(0), i), part(op.getOperand(1), i));
+            return compare(comparison.getPredicate(), part(op.getOperand(0), i),
+                           part(op.getOperand(1), i));
           });
         })
         .Case([&](arith::SelectOp choice) {
@@ -329,15 +375,19 @@ private:
                    part(choice.getFalseValue(), i);
           });
         })
-        .Case([&](arith::SIToFPOp) { call(op, isWide(op) ? "static_cast<double>" : "static_cast<float>"); })
+        .Case([&](arith::SIToFPOp) {
+          call(op, isWide(op) ? "static_cast<double>" : "static_cast<float>");
+        })
         .Case([&](arith::UIToFPOp) {
           each(op, [&](unsigned i) {
-            return fmt::format("static_cast<{}>(static_cast<unsigned>({}))", isWide(op) ? "double" : "float", part(op.getOperand(0), i));
+            return fmt::format("static_cast<{}>(static_cast<unsigned>({}))",
+                               isWide(op) ? "double" : "float", part(op.getOperand(0), i));
           });
         })
         .Case([&](arith::BitcastOp cast) {
           mlir::Type type = cast.getType();
-          const bool isFloat = (widthOf(type) ? llvm::cast<mlir::VectorType>(type).getElementType() : type).isF32();
+          const bool isFloat =
+              (widthOf(type) ? llvm::cast<mlir::VectorType>(type).getElementType() : type).isF32();
           call(op, isFloat ? "rtsl::bitsAs<float>" : "rtsl::bitsAs<int>");
         })
         .Case<arith::IndexCastUIOp>([&](auto) { call(op, "static_cast<unsigned>"); })
@@ -353,20 +403,27 @@ private:
         .Case([&](math::RoundEvenOp) { call(op, "rtsl::roundEven"); })
         .Case([&](ir::ToSintOp) { call(op, "rtsl::toInt"); })
         .Case([&](ir::ToUintOp) {
-          each(op, [&](unsigned i) { return "static_cast<int>(rtsl::toUint(" + part(op.getOperand(0), i) + "))"; });
+          each(op, [&](unsigned i) {
+            return "static_cast<int>(rtsl::toUint(" + part(op.getOperand(0), i) + "))";
+          });
         })
         .Case([&](ir::ElementaryOp function) {
           const bool isAtan2 = function.getFunction() == ir::Elementary::Atan2;
-          call(op, "rtsl::" + (isAtan2 ? "atan" : ir::stringifyElementary(function.getFunction()).str()));
+          call(op, "rtsl::" +
+                       (isAtan2 ? "atan" : ir::stringifyElementary(function.getFunction()).str()));
         })
         .Case([&](vector::ExtractOp chosen) {
           if (chosen.hasDynamicPosition())
-            return define(chosen, fmt::format("{}[static_cast<int>({})]", whole(chosen.getSource()), whole(chosen.getDynamicPosition()[0])));
-          define(chosen, part(chosen.getSource(), static_cast<unsigned>(chosen.getStaticPosition()[0])));
+            return define(chosen, fmt::format("{}[static_cast<int>({})]", whole(chosen.getSource()),
+                                              whole(chosen.getDynamicPosition()[0])));
+          define(chosen,
+                 part(chosen.getSource(), static_cast<unsigned>(chosen.getStaticPosition()[0])));
         })
         .Case([&](vector::InsertOp insert) {
           const auto at = static_cast<unsigned>(insert.getStaticPosition()[0]);
-          each(op, [&](unsigned i) { return i == at ? whole(insert.getValueToStore()) : part(insert.getDest(), i); });
+          each(op, [&](unsigned i) {
+            return i == at ? whole(insert.getValueToStore()) : part(insert.getDest(), i);
+          });
         })
         .Case([&](vector::FromElementsOp made) {
           each(op, [&](unsigned i) { return whole(made.getElements()[i]); });
@@ -392,7 +449,9 @@ private:
         })
         .Case([&](ir::LoopOp loop) { write(loop); })
         .Case([&](ir::SwitchOp choice) { write(choice); })
-        .Case([&](ir::ConditionOp condition) { line("if (!" + whole(condition.getCondition()) + ")\nbreak;"); })
+        .Case([&](ir::ConditionOp condition) {
+          line("if (!" + whole(condition.getCondition()) + ")\nbreak;");
+        })
         .Case([&](ir::BreakOp) { line("break;"); })
         .Case([&](ir::ContinueOp) { line("continue;"); })
         .Case<ir::ReturnOp, mlir::func::ReturnOp>([&](auto) {
@@ -404,7 +463,8 @@ private:
 
   /// `continue` goes to the step, so that stands at the beginning of the next turn.
   void write(ir::LoopOp loop) {
-    const bool hasStep = !loop.getStep().empty() && loop.getStep().front().getOperations().size() > 1;
+    const bool hasStep =
+        !loop.getStep().empty() && loop.getStep().front().getOperations().size() > 1;
     if (!hasStep && !loop.getPostTest()) {
       line("for (;;) {");
     } else {
@@ -461,13 +521,16 @@ std::string ModulePrinter::hitErrors() {
     return text;
   mlir::ModuleOp ir = options.hitErrors->ir;
   for (const auto &definition : module.classes) {
-    auto function = ir.lookupSymbol<mlir::func::FuncOp>(definition->name + "." + hitErrorMethod.str());
+    auto function =
+        ir.lookupSymbol<mlir::func::FuncOp>(definition->name + "." + hitErrorMethod.str());
     if (!function)
       continue;
     withHitErrors.insert(definition.get());
     text += "\n/// Bounds the error of HitDistance where `intersect` of `" + definition->name +
-            "` has found it: running error analysis.\ninline void boundHitError(State &rt, [[maybe_unused]] const " +
-            names.of(definition.get()) + " &self) {\n" + HitErrorWriter(*this, *definition).body(function) + "}\n";
+            "` has found it: running error analysis.\ninline void boundHitError(State &rt, "
+            "[[maybe_unused]] const " +
+            names.of(definition.get()) + " &self) {\n" +
+            HitErrorWriter(*this, *definition).body(function) + "}\n";
   }
   return text;
 }

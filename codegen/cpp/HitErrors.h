@@ -1,7 +1,7 @@
 //===- HitErrors.h - bounds of t, in C++ ----------------------------------===//
 //
-// What the compiler derives from `intersect` (codegen/passes/errors) has no source of the author's: it
-// is printed from the IR, an operation a line.
+// What the compiler derives from `intersect` (codegen/passes/errors) has no source of the author's:
+// it is printed from the IR, an operation a line.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

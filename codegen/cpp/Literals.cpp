@@ -12,10 +12,10 @@
 
 namespace rtsl::cpp {
 
-
 /// The sign of a number is an operator in C++, and what is not finite has a name.
 template <typename Number>
-static Code numberLiteral(Number value, const char *type, const char *infinity, const char *suffix) {
+static Code numberLiteral(Number value, const char *type, const char *infinity,
+                          const char *suffix) {
   if (std::isnan(value))
     return call(fmt::format("std::numeric_limits<{}>::quiet_NaN", type), {});
   if (std::signbit(value))
@@ -28,7 +28,9 @@ static Code numberLiteral(Number value, const char *type, const char *infinity, 
   return literal(text + suffix, value == 0);
 }
 
-Code floatLiteral(float value) { return numberLiteral(value, "float", "rtsl::infinity", "f"); }
+Code floatLiteral(float value) {
+  return numberLiteral(value, "float", "rtsl::infinity", "f");
+}
 
 Code doubleLiteral(double value) {
   return numberLiteral(value, "double", "std::numeric_limits<double>::infinity()", "");
@@ -49,14 +51,18 @@ static std::string inCpp(const std::string &spelling) {
 }
 
 /// A literal of an author, without its sign.
-static Code withSign(const std::string &spelling, const std::function<Code(const std::string &)> &make) {
-  return spelling.front() == '-' ? unary(UnaryOperator::Minus, make(spelling.substr(1))) : make(spelling);
+static Code withSign(const std::string &spelling,
+                     const std::function<Code(const std::string &)> &make) {
+  return spelling.front() == '-' ? unary(UnaryOperator::Minus, make(spelling.substr(1)))
+                                 : make(spelling);
 }
 
 static bool sameValue(const typed::Constant &a, const typed::Constant &b) {
   return a.scalars.size() == b.scalars.size() &&
          std::equal(a.scalars.begin(), a.scalars.end(), b.scalars.begin(),
-                    [](typed::Constant::Scalar x, typed::Constant::Scalar y) { return x.u == y.u || x.b == y.b; });
+                    [](typed::Constant::Scalar x, typed::Constant::Scalar y) {
+                      return x.u == y.u || x.b == y.b;
+                    });
 }
 
 // The checker puts values for the names of constants. What the author wrote still stands in the
@@ -68,8 +74,8 @@ const void *FunctionPrinter::namedConstant(const typed::LiteralExpr &expr) const
   if (name.empty() || name == "true" || name == "false")
     return nullptr;
   auto isIt = [&](const auto &constant) {
-    return constant.name == name && constant.isConst && constant.type == expr.type && constant.constant &&
-           sameValue(*constant.constant, expr.value);
+    return constant.name == name && constant.isConst && constant.type == expr.type &&
+           constant.constant && sameValue(*constant.constant, expr.value);
   };
   if (function)
     for (const auto &local : function->locals)
@@ -94,8 +100,9 @@ bool FunctionPrinter::isTable(const typed::Expr &expr) const {
   };
   auto *array = dynCast<typed::ConstructExpr>(&expr);
   return array && array->type->is(TypeKind::Array) &&
-         std::all_of(array->args.begin(), array->args.end(),
-                     [&](const typed::ExprPtr &element) { return isNumber(*element) || isTable(*element); });
+         std::all_of(array->args.begin(), array->args.end(), [&](const typed::ExprPtr &element) {
+           return isNumber(*element) || isTable(*element);
+         });
 }
 
 Code FunctionPrinter::scalarLiteral(const Type *type, typed::Constant::Scalar value,
@@ -104,9 +111,10 @@ Code FunctionPrinter::scalarLiteral(const Type *type, typed::Constant::Scalar va
   case TypeKind::Bool:
     return boolean(value.b);
   case TypeKind::Float:
-    return spelling.empty() ? floatLiteral(value.f) : withSign(spelling, [&](const std::string &text) {
-      return cpp::literal(inCpp(text), value.f == 0);
-    });
+    return spelling.empty() ? floatLiteral(value.f)
+                            : withSign(spelling, [&](const std::string &text) {
+                                return cpp::literal(inCpp(text), value.f == 0);
+                              });
   case TypeKind::UInt: {
     std::string text = spelling.empty() ? std::to_string(value.u) : spelling;
     while (!text.empty() && (text.back() == 'u' || text.back() == 'U'))
@@ -118,11 +126,13 @@ Code FunctionPrinter::scalarLiteral(const Type *type, typed::Constant::Scalar va
       return integer(value.i);
     if (value.i < 0 && spelling.front() == '0') // names 32 bits
       return cpp::construct("int", {cpp::literal(spelling + "u")});
-    return withSign(spelling, [&](const std::string &text) { return cpp::literal(text, value.i == 0); });
+    return withSign(spelling,
+                    [&](const std::string &text) { return cpp::literal(text, value.i == 0); });
   }
 }
 
-Code FunctionPrinter::literal(const Type *type, const typed::Constant &constant, const std::string &spelling) {
+Code FunctionPrinter::literal(const Type *type, const typed::Constant &constant,
+                              const std::string &spelling) {
   if (type->isScalar())
     return scalarLiteral(type, constant.scalars.front(), spelling);
   std::size_t next = 0;
@@ -140,7 +150,8 @@ Code FunctionPrinter::literal(const Type *type, const typed::Constant &constant,
         parts.push_back(inMemory(at->element, part(at->element)));
       return array(module.type(at), std::move(parts));
     }
-    const std::size_t count = at->is(TypeKind::Color) ? constant.scalars.size() : at->componentCount();
+    const std::size_t count =
+        at->is(TypeKind::Color) ? constant.scalars.size() : at->componentCount();
     const Type *scalar = at->is(TypeKind::Color) ? nullptr : at->scalar();
     for (std::size_t i = 0; i < count; ++i)
       parts.push_back(scalar ? scalarLiteral(scalar, constant.scalars[next++], "")

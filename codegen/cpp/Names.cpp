@@ -11,24 +11,25 @@ namespace rtsl::cpp {
 bool isReserved(const std::string &word) {
   static const std::set<std::string> words = {
       // Keywords of C++17 and C++20, and the spelled operators.
-      "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case",
-      "catch", "char", "char8_t", "char16_t", "char32_t", "class", "compl", "concept", "const",
-      "consteval", "constexpr", "constinit", "const_cast", "continue", "co_await", "co_return",
-      "co_yield", "decltype", "default", "delete", "do", "double", "dynamic_cast", "else", "enum",
-      "explicit", "export", "extern", "false", "float", "for", "friend", "goto", "if", "inline", "int",
-      "long", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr", "operator", "or",
-      "or_eq", "private", "protected", "public", "register", "reinterpret_cast", "requires", "return",
-      "short", "signed", "sizeof", "static", "static_assert", "static_cast", "struct", "switch",
-      "template", "this", "thread_local", "throw", "true", "try", "typedef", "typeid", "typename",
-      "union", "unsigned", "using", "virtual", "void", "volatile", "wchar_t", "while", "xor", "xor_eq",
+      "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break",
+      "case", "catch", "char", "char8_t", "char16_t", "char32_t", "class", "compl", "concept",
+      "const", "consteval", "constexpr", "constinit", "const_cast", "continue", "co_await",
+      "co_return", "co_yield", "decltype", "default", "delete", "do", "double", "dynamic_cast",
+      "else", "enum", "explicit", "export", "extern", "false", "float", "for", "friend", "goto",
+      "if", "inline", "int", "long", "mutable", "namespace", "new", "noexcept", "not", "not_eq",
+      "nullptr", "operator", "or", "or_eq", "private", "protected", "public", "register",
+      "reinterpret_cast", "requires", "return", "short", "signed", "sizeof", "static",
+      "static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local",
+      "throw", "true", "try", "typedef", "typeid", "typename", "union", "unsigned", "using",
+      "virtual", "void", "volatile", "wchar_t", "while", "xor", "xor_eq",
       // Macros of the standard library and of common systems.
-      "assert", "errno", "major", "minor", "makedev", "linux", "unix", "stdin", "stdout",
-      "stderr", "signbit", "offsetof", "setjmp", "NULL", "NAN", "INFINITY", "HUGE_VAL", "EOF", "BUFSIZ",
+      "assert", "errno", "major", "minor", "makedev", "linux", "unix", "stdin", "stdout", "stderr",
+      "signbit", "offsetof", "setjmp", "NULL", "NAN", "INFINITY", "HUGE_VAL", "EOF", "BUFSIZ",
       "RAND_MAX", "EXIT_SUCCESS", "EXIT_FAILURE", "CHAR_BIT", "INT_MIN", "INT_MAX", "UINT_MAX",
-      "LONG_MIN", "LONG_MAX", "FLT_MIN", "FLT_MAX", "FLT_EPSILON", "DBL_MIN", "DBL_MAX", "DBL_EPSILON",
-      "EDOM", "ERANGE", "EILSEQ", "DOMAIN", "OVERFLOW", "UNDERFLOW", "M_PI", "M_E", "M_LN2",
-      "M_SQRT2", "M_PI_2", "M_PI_4", "MB_CUR_MAX", "FP_NAN", "FP_INFINITE", "FP_ZERO", "FP_NORMAL",
-      "FP_SUBNORMAL", "SIZE_MAX",
+      "LONG_MIN", "LONG_MAX", "FLT_MIN", "FLT_MAX", "FLT_EPSILON", "DBL_MIN", "DBL_MAX",
+      "DBL_EPSILON", "EDOM", "ERANGE", "EILSEQ", "DOMAIN", "OVERFLOW", "UNDERFLOW", "M_PI", "M_E",
+      "M_LN2", "M_SQRT2", "M_PI_2", "M_PI_4", "MB_CUR_MAX", "FP_NAN", "FP_INFINITE", "FP_ZERO",
+      "FP_NORMAL", "FP_SUBNORMAL", "SIZE_MAX",
       // What generated code uses.
       "glm", "std", "rtsl", "rt", "scratch", "State", "Color", "Scratch", "Id", "lights", "program",
       "describe", "describeFields", "slots", "className", "visit", "Step"};
@@ -42,8 +43,8 @@ bool isReserved(const std::string &word) {
          word.compare(0, 5, "rtsl_") == 0;
 }
 
-/// What stands where types are named outside of the author's code: functions in the namespace `slots`, and what they call
-/// their parameters.
+/// What stands where types are named outside of the author's code: functions in the namespace
+/// `slots`, and what they call their parameters.
 static const std::set<std::string> &besideTypes() {
   static const std::set<std::string> words = {
 #define RTSL_SLOT(base, method) #method,
@@ -63,7 +64,8 @@ static std::string cleaned(std::string word) {
   return word;
 }
 
-std::string unique(std::string name, std::set<std::string> &taken, const std::set<std::string> &around) {
+std::string unique(std::string name, std::set<std::string> &taken,
+                   const std::set<std::string> &around) {
   for (std::size_t at; (at = name.find("__")) != std::string::npos;) // C++ keeps these for itself
     name.erase(at, 1);
   const std::string base = name;
@@ -73,16 +75,19 @@ std::string unique(std::string name, std::set<std::string> &taken, const std::se
 }
 
 /// What is avoided must not be its name; `all` are names that others have.
-void Names::give(const void *entity, const std::string &name, const std::string &shown, const Avoided &avoided,
-                 const std::set<std::string> &all) {
+void Names::give(const void *entity, const std::string &name, const std::string &shown,
+                 const Avoided &avoided, const std::set<std::string> &all) {
   const auto avoids = [&avoided](const std::string &one) {
-    return std::any_of(avoided.begin(), avoided.end(), [&one](const auto *names) { return names->count(one) != 0; });
+    return std::any_of(avoided.begin(), avoided.end(),
+                       [&one](const auto *names) { return names->count(one) != 0; });
   };
   std::string result = cleaned(name);
   if (isReserved(result) || avoids(result) || (result != name && all.count(result))) {
     std::string base = result.back() == '_' ? result : result + "_";
-    for (const char *prefix : {"GLM_", "RTSL_", "rtsl_"}) // no name begins so, whatever stands behind it
-      if (const std::size_t length = std::string(prefix).size(); base.compare(0, length, prefix) == 0)
+    for (const char *prefix :
+         {"GLM_", "RTSL_", "rtsl_"}) // no name begins so, whatever stands behind it
+      if (const std::size_t length = std::string(prefix).size();
+          base.compare(0, length, prefix) == 0)
         base.erase(length - 1, 1);
     result = base;
     for (unsigned i = 2; avoids(result) || all.count(result) || isReserved(result); ++i)
@@ -115,7 +120,8 @@ void Names::nameFileLevel(const typed::Module &module) {
   for (const auto &function : module.functions)
     all.insert(function->name);
 
-  auto add = [&](const void *entity, const std::string &name, const std::set<std::string> &avoid = {}) {
+  auto add = [&](const void *entity, const std::string &name,
+                 const std::set<std::string> &avoid = {}) {
     give(entity, name, name, {&avoid}, all);
     fileLevel.insert(names[entity]);
   };
@@ -140,8 +146,8 @@ void Names::nameFileLevel(const typed::Module &module) {
   };
   for (const auto &definition : module.classes)
     addReference(definition->name, names[definition.get()]);
-  for (const char *root : {"Camera", "Primitive", "Texture", "Material", "Light", "RayGeneration", "Miss",
-                           "Selector", "Exception"})
+  for (const char *root : {"Camera", "Primitive", "Texture", "Material", "Light", "RayGeneration",
+                           "Miss", "Selector", "Exception"})
     addReference(std::string("rt_") + root, root);
 
   for (const auto &structure : module.structs) {
@@ -153,7 +159,9 @@ void Names::nameFileLevel(const typed::Module &module) {
   }
 }
 
-std::string Names::reference(const std::string &className) const { return references.at(className); }
+std::string Names::reference(const std::string &className) const {
+  return references.at(className);
+}
 
 // Members and methods of a class and its bases; a method that overrides another has its name.
 void Names::nameClass(const typed::Class &definition) {
@@ -197,7 +205,8 @@ void Names::nameLocals(const typed::Function &function) {
 
   for (const auto &parameter : function.parameters)
     if (!parameter->name.empty())
-      give(parameter.get(), parameter->name, prefix + "." + parameter->name, {&fileLevel, &methods}, all);
+      give(parameter.get(), parameter->name, prefix + "." + parameter->name, {&fileLevel, &methods},
+           all);
     else
       names[parameter.get()] = "";
   for (const auto &local : function.locals) {
@@ -208,12 +217,15 @@ void Names::nameLocals(const typed::Function &function) {
           if (auto known = names.find(variable->variable); known != names.end())
             read.insert(known->second);
       });
-    give(local.get(), local->name, prefix + "." + local->name, {&fileLevel, &methods, &members, &read}, all);
+    give(local.get(), local->name, prefix + "." + local->name,
+         {&fileLevel, &methods, &members, &read}, all);
     all.insert(names[local.get()]);
   }
 }
 
-const std::string &Names::of(const void *entity) const { return names.at(entity); }
+const std::string &Names::of(const void *entity) const {
+  return names.at(entity);
+}
 
 std::string nameOfRoot(const std::string &root) {
   return root == typed::helperRoot ? "Helper" : root.substr(3);

@@ -20,7 +20,8 @@ class Names {
 public:
   explicit Names(const typed::Module &module);
 
-  const std::string &of(const void *entity) const; // Variable, Member, Function, Struct, Class, Field
+  const std::string &
+  of(const void *entity) const; // Variable, Member, Function, Struct, Class, Field
   /// The type of references to a class ("Checker", "rt_Texture"): `CheckerRef`, `TextureRef`.
   std::string reference(const std::string &className) const;
 
@@ -34,8 +35,8 @@ private:
   void nameLocals(const typed::Function &function);
   /// Sets of names that are not copied, for there may be thousands at file level.
   using Avoided = std::vector<const std::set<std::string> *>;
-  void give(const void *entity, const std::string &name, const std::string &shown, const Avoided &avoided,
-            const std::set<std::string> &all);
+  void give(const void *entity, const std::string &name, const std::string &shown,
+            const Avoided &avoided, const std::set<std::string> &all);
 
   std::map<const void *, std::string> names;
   std::map<std::string, std::string> references;
@@ -45,11 +46,13 @@ private:
   std::set<std::string> memberNames; // of all classes, methods too
 };
 
-/// The name, or the name with a number behind it, as none of these and none around them; it is one of these then. Without two underscores in a row, which
-/// C++ keeps for itself.
-std::string unique(std::string name, std::set<std::string> &taken, const std::set<std::string> &around = {});
+/// The name, or the name with a number behind it, as none of these and none around them; it is one
+/// of these then. Without two underscores in a row, which C++ keeps for itself.
+std::string unique(std::string name, std::set<std::string> &taken,
+                   const std::set<std::string> &around = {});
 
-/// The class of include/rtsl/shader that an `rt_` base is, or that of none: `rt_Texture` is rtsl::Texture.
+/// The class of include/rtsl/shader that an `rt_` base is, or that of none: `rt_Texture` is
+/// rtsl::Texture.
 std::string nameOfRoot(const std::string &root);
 
 /// An identifier made of a file's name: "my-glass.cpp" gives "my_glass".

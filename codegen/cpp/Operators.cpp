@@ -27,7 +27,8 @@ using typed::ExprKind;
 static constexpr std::int64_t intMin = std::numeric_limits<std::int32_t>::min();
 static constexpr std::int64_t intMax = std::numeric_limits<std::int32_t>::max();
 
-std::optional<Interval> FunctionPrinter::range(BinaryOp op, const typed::Expr &left, const typed::Expr &right) {
+std::optional<Interval> FunctionPrinter::range(BinaryOp op, const typed::Expr &left,
+                                               const typed::Expr &right) {
   const std::optional<Interval> a = range(left), b = range(right);
   if (op == BinaryOp::BitAnd) {
     if (a && a->low >= 0 && b && b->low >= 0)
@@ -51,7 +52,8 @@ std::optional<Interval> FunctionPrinter::range(BinaryOp op, const typed::Expr &l
     result = {a->low - b->high, a->high - b->low};
     break;
   case BinaryOp::Mul: {
-    auto [low, high] = std::minmax({a->low * b->low, a->low * b->high, a->high * b->low, a->high * b->high});
+    auto [low, high] =
+        std::minmax({a->low * b->low, a->low * b->high, a->high * b->low, a->high * b->high});
     result = {low, high};
     break;
   }
@@ -127,10 +129,13 @@ std::optional<Interval> FunctionPrinter::range(const typed::Expr &expr) {
 /// The operator of C++ that is spelled alike.
 static Operator operatorFor(BinaryOp op) {
   static constexpr Operator all[] = {
-      Operator::Multiply,     Operator::Divide,   Operator::Remainder, Operator::Add,       Operator::Subtract,
-      Operator::ShiftLeft,    Operator::ShiftRight, Operator::Less,    Operator::Greater,   Operator::LessEqual,
-      Operator::GreaterEqual, Operator::Equal,    Operator::NotEqual,  Operator::BitAnd,    Operator::BitXor,
-      Operator::BitOr,        Operator::And,      Operator::NotEqual,  Operator::Or};
+      Operator::Multiply,   Operator::Divide,       Operator::Remainder,
+      Operator::Add,        Operator::Subtract,     Operator::ShiftLeft,
+      Operator::ShiftRight, Operator::Less,         Operator::Greater,
+      Operator::LessEqual,  Operator::GreaterEqual, Operator::Equal,
+      Operator::NotEqual,   Operator::BitAnd,       Operator::BitXor,
+      Operator::BitOr,      Operator::And,          Operator::NotEqual,
+      Operator::Or};
   return all[static_cast<int>(op)];
 }
 
@@ -149,7 +154,8 @@ static bool isSafeDivisor(const typed::Expr &expr) {
   return literal && literal->type->isScalar() && literal->value.scalars.front().i > 0;
 }
 
-std::optional<Operator> FunctionPrinter::plainOperator(BinaryOp op, const typed::Expr &left, const typed::Expr &right) {
+std::optional<Operator> FunctionPrinter::plainOperator(BinaryOp op, const typed::Expr &left,
+                                                       const typed::Expr &right) {
   const Type *l = left.type, *r = right.type;
   const bool hasMatrix = l->isMatrix() || r->isMatrix();
   const Type *scalar = l->scalar();
@@ -179,7 +185,8 @@ std::optional<Operator> FunctionPrinter::plainOperator(BinaryOp op, const typed:
   case BinaryOp::Shr: {
     auto *count = dynCast<typed::LiteralExpr>(&right);
     const bool isKnown = l->isScalar() && count && count->value.scalars.front().u < 32;
-    return isKnown && (isUint || op == BinaryOp::Shr) ? std::optional(operatorFor(op)) : std::nullopt;
+    return isKnown && (isUint || op == BinaryOp::Shr) ? std::optional(operatorFor(op))
+                                                      : std::nullopt;
   }
   case BinaryOp::Less:
   case BinaryOp::GreaterEqual: // of a uint and zero: compilers find that too plain
@@ -192,7 +199,8 @@ std::optional<Operator> FunctionPrinter::plainOperator(BinaryOp op, const typed:
   }
 }
 
-std::string FunctionPrinter::functionFor(BinaryOp op, const typed::Expr &left, const typed::Expr &right) {
+std::string FunctionPrinter::functionFor(BinaryOp op, const typed::Expr &left,
+                                         const typed::Expr &right) {
   const bool hasMatrix = left.type->isMatrix() || right.type->isMatrix();
   switch (op) {
   case BinaryOp::Mul:
@@ -237,7 +245,8 @@ void FunctionPrinter::compareStructs(const Type *type) {
 }
 
 // `a + b + c` of ints is `rtsl::add(a, b, c)`.
-void FunctionPrinter::appendOperands(BinaryOp op, const typed::Expr &expr, std::vector<const typed::Expr *> &into) {
+void FunctionPrinter::appendOperands(BinaryOp op, const typed::Expr &expr,
+                                     std::vector<const typed::Expr *> &into) {
   auto *nested = dynCast<typed::BinaryExpr>(&expr);
   const bool isSum = (op == BinaryOp::Add || op == BinaryOp::Mul) && expr.type->scalar() &&
                      expr.type->scalar()->is(TypeKind::Int);
@@ -276,7 +285,8 @@ Code FunctionPrinter::binary(BinaryOp op, const typed::Expr &left, const typed::
   // Bools that lie in memory compare with those that do not as values do.
   if (op == BinaryOp::Equal || op == BinaryOp::NotEqual || op == BinaryOp::LogicalXor) {
     Code &stored = both[isInMemory(left) ? 0 : 1];
-    if (left.type->isVector() && left.type->element->is(TypeKind::Bool) && isInMemory(left) != isInMemory(right))
+    if (left.type->isVector() && left.type->element->is(TypeKind::Bool) &&
+        isInMemory(left) != isInMemory(right))
       stored = cpp::construct(module.type(left.type), {stored});
   }
   const bool compares = bindingOf(own) == Binding::Equality || bindingOf(own) == Binding::Relation;
@@ -315,8 +325,8 @@ Code FunctionPrinter::unary(const typed::UnaryExpr &expr) {
 // Assignments
 //===----------------------------------------------------------------------===//
 
-void FunctionPrinter::assignComponents(const Code &target, const std::vector<std::uint8_t> &parts, const Code &from,
-                                       Statements &out) {
+void FunctionPrinter::assignComponents(const Code &target, const std::vector<std::uint8_t> &parts,
+                                       const Code &from, Statements &out) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     out.push_back(statement(cpp::assign(component(target, parts[i]), component(from, i))));
 }
@@ -324,7 +334,8 @@ void FunctionPrinter::assignComponents(const Code &target, const std::vector<std
 Code FunctionPrinter::incDec(const typed::IncDecExpr &expr, bool resultIsUsed) {
   const typed::Expr *vector = nullptr;
   const Type *scalar = expr.target->type->scalar();
-  if (const std::vector<std::uint8_t> parts = components(*expr.target, vector); parts.size() > 1) { // `v.xy++`
+  if (const std::vector<std::uint8_t> parts = components(*expr.target, vector);
+      parts.size() > 1) { // `v.xy++`
     const Code old = hoist(expr.target->type, "value", argument(*expr.target));
     const Code changed = hoist(expr.target->type, "value", stepped(old, scalar, expr.increment));
     assignComponents(place(*vector), parts, changed, *before);
@@ -359,9 +370,11 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   const Effects indices = indexEffects(*expr.target);
   const bool storeIndices = conflicts(indices, value) || (parts.size() > 1 && !indices.isPure());
 
-  // Indices that do something are evaluated once; the old value is kept if evaluating the new one changes it.
+  // Indices that do something are evaluated once; the old value is kept if evaluating the new one
+  // changes it.
   Code stored, old;
-  const bool changesOld = expr.compound && conflicts(module.effects.expression(*expr.target), value);
+  const bool changesOld =
+      expr.compound && conflicts(module.effects.expression(*expr.target), value);
   if (expr.compound && (changesOld || !indices.isPure())) {
     stored = place(parts.size() > 1 ? *vector : *expr.target, true);
     std::vector<Code> codes;
@@ -377,14 +390,16 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
     if (!expr.compound) {
       // `a = b = c` stays as it is; an assignment anywhere else becomes a statement of its own.
       auto *inner = dynCast<typed::AssignExpr>(expr.value);
-      if (inner && !replaced.count(inner) && !conflicts(module.effects.expression(*expr.target), module.effects.expression(*inner)))
+      if (inner && !replaced.count(inner) &&
+          !conflicts(module.effects.expression(*expr.target), module.effects.expression(*inner)))
         return assign(*inner, true);
       return argument(*expr.value);
     }
     const Code left = old ? old : argument(*expr.target);
     if (plain)
       return cpp::binary(*plain, left, operand(*expr.value, bindingOf(*plain)));
-    return cpp::call(functionFor(expr.op, *expr.target, *expr.value), {left, argument(*expr.value)});
+    return cpp::call(functionFor(expr.op, *expr.target, *expr.value),
+                     {left, argument(*expr.value)});
   };
 
   if (parts.size() > 1) { // `v.zx = ...`: component by component

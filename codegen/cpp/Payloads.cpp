@@ -1,10 +1,12 @@
 //===- Payloads.cpp - rays that carry a struct ----------------------------===//
 //
-// A struct that rays carry gets a number, and says how hits of its rays are searched for, as linking does for machine code
-// (codegen/link/RayTypes.cpp). Methods that take a payload are reached through slots that ask which it is.
+// A struct that rays carry gets a number, and says how hits of its rays are searched for, as
+// linking does for machine code (codegen/link/RayTypes.cpp). Methods that take a payload are
+// reached through slots that ask which it is.
 //
-// `ignoreIntersection()` and `terminateRay()` end `anyHit` at once, from functions that it calls too: in C++ each `return`s,
-// and so does who called it. Where C++ has no `return`, in the middle of an expression, an exception ends them all.
+// `ignoreIntersection()` and `terminateRay()` end `anyHit` at once, from functions that it calls
+// too: in C++ each `return`s, and so does who called it. Where C++ has no `return`, in the middle
+// of an expression, an exception ends them all.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
@@ -28,7 +30,9 @@ static bool isPayloadMethod(const typed::Function &function) {
   return typed::takesPayload(function);
 }
 
-static const typed::Struct *payloadOf(const typed::Function &method) { return method.parameters.front()->type->structure; }
+static const typed::Struct *payloadOf(const typed::Function &method) {
+  return method.parameters.front()->type->structure;
+}
 
 std::vector<const typed::Function *> ModulePrinter::payloadMethods(const typed::Class &definition,
                                                                    const std::string &name) const {
@@ -36,14 +40,16 @@ std::vector<const typed::Function *> ModulePrinter::payloadMethods(const typed::
   for (const typed::Class *at = &definition; at; at = at->base)
     for (const auto &function : at->functions)
       if (isPayloadMethod(*function) && function->name == name && function->body &&
-          std::none_of(methods.begin(), methods.end(),
-                       [&](const auto *known) { return payloadOf(*known) == payloadOf(*function); }))
+          std::none_of(methods.begin(), methods.end(), [&](const auto *known) {
+            return payloadOf(*known) == payloadOf(*function);
+          }))
         methods.push_back(function.get());
   return methods;
 }
 
 /// Does anybody see in which order materials are asked? Where it cannot be ruled out quickly, yes.
-bool ModulePrinter::orderShows(const std::vector<const typed::Function *> &anyHits, bool hasClosestHit) {
+bool ModulePrinter::orderShows(const std::vector<const typed::Function *> &anyHits,
+                               bool hasClosestHit) {
   for (const typed::Function *method : anyHits) {
     const Effects inside = effects.statement(*method->body);
     if (inside.random || inside.writes.count(method->parameters.front().get()))
@@ -55,12 +61,14 @@ bool ModulePrinter::orderShows(const std::vector<const typed::Function *> &anyHi
         return;
       effects.forEachEvaluated(*function.body, [&](const typed::Expr &expr) {
         if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-          shows |= builtin->builtin == Builtin::Print || (hasClosestHit && builtin->builtin == Builtin::TerminateRay);
+          shows |= builtin->builtin == Builtin::Print ||
+                   (hasClosestHit && builtin->builtin == Builtin::TerminateRay);
         shows |= expr.kind == typed::ExprKind::MethodCall;
         if (auto *call = dynCast<typed::CallExpr>(&expr)) {
           look(*call->function);
           for (const auto &definition : module.classes)
-            if (const typed::Function *other = call->function->owner ? findMethod(*definition, *call->function) : nullptr)
+            if (const typed::Function *other =
+                    call->function->owner ? findMethod(*definition, *call->function) : nullptr)
               look(*other);
         }
       });
@@ -84,7 +92,8 @@ void ModulePrinter::numberRayTypes() {
       add(payloadOf(function));
     if (function.body)
       forEachExpr(*function.body, [&](const typed::Expr &expr) {
-        if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr); builtin && builtin->builtin == Builtin::TracePayload)
+        if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+            builtin && builtin->builtin == Builtin::TracePayload)
           add(builtin->args[4]->type->structure);
       });
   };
@@ -99,7 +108,8 @@ void ModulePrinter::numberRayTypes() {
       std::vector<const typed::Function *> found;
       for (const auto &definition : module.classes)
         for (const auto &function : definition->functions)
-          if (isPayloadMethod(*function) && function->name == name && payloadOf(*function) == type.payload)
+          if (isPayloadMethod(*function) && function->name == name &&
+              payloadOf(*function) == type.payload)
             found.push_back(function.get());
       return found;
     };
@@ -117,8 +127,9 @@ void ModulePrinter::numberRayTypes() {
 std::string ModulePrinter::rayType(const typed::Struct &structure) const {
   for (const RayType &type : rayTypes)
     if (type.payload == &structure)
-      return fmt::format("// The type of the rays that carry it.\nstatic constexpr rtsl::RayType rayType{{{}{}}};\n\n", type.number,
-                         type.search.empty() ? "" : ", " + join(type.search, " | "));
+      return fmt::format("// The type of the rays that carry it.\nstatic constexpr rtsl::RayType "
+                         "rayType{{{}{}}};\n\n",
+                         type.number, type.search.empty() ? "" : ", " + join(type.search, " | "));
   return {};
 }
 
@@ -141,7 +152,7 @@ std::string ModulePrinter::payloadSlots() {
   std::string text;
   for (const PayloadSlot &slot : payloadSlotTable) {
     if (!firstCalls.empty() && std::string(slot.method) != "anyHit")
-      continue; // runState has them
+      continue;       // runState has them
     Statements tests; // from the last type to the first
     const std::vector<const typed::Class *> classes = classesBelow(slot.base);
     for (auto type = rayTypes.rbegin(); type != rayTypes.rend(); ++type) {
@@ -152,7 +163,8 @@ std::string ModulePrinter::payloadSlots() {
             if (takesScratch(*method))
               arguments.push_back(storedScratch(definition));
             arguments.push_back(cpp::name("payload"));
-            return {statement(callMember(objectOf(definition), names.of(method), std::move(arguments)))};
+            return {statement(
+                callMember(objectOf(definition), names.of(method), std::move(arguments)))};
           }
         return {};
       });
@@ -166,9 +178,10 @@ std::string ModulePrinter::payloadSlots() {
     if (tests.empty())
       continue;
     const bool isCaught = throwsFromAnyHit && std::string(slot.method) == "anyHit";
-    text += fmt::format("\ninline void {}WithPayload(RtslState *ray, RtslRef object) {}{{\n{}}}{}\n", slot.method,
-                        isCaught ? "try " : "", print(withState(tests)),
-                        isCaught ? " catch (const rtsl::EndOfAnyHit &) {\n}" : "");
+    text +=
+        fmt::format("\ninline void {}WithPayload(RtslState *ray, RtslRef object) {}{{\n{}}}{}\n",
+                    slot.method, isCaught ? "try " : "", print(withState(tests)),
+                    isCaught ? " catch (const rtsl::EndOfAnyHit &) {\n}" : "");
   }
   return text;
 }
@@ -185,8 +198,10 @@ std::string ModulePrinter::describePayloads() {
   std::string text;
   for (const PayloadSlot &slot : payloadSlotTable)
     for (const typed::Class *definition : classesBelow(slot.base))
-      if ((firstCalls.empty() || std::string(slot.method) == "anyHit") && !payloadMethods(*definition, slot.method).empty()) {
-        text += fmt::format("program.slots().{0}_{1}_payload = &slots::{1}WithPayload;\n", slot.base, slot.method);
+      if ((firstCalls.empty() || std::string(slot.method) == "anyHit") &&
+          !payloadMethods(*definition, slot.method).empty()) {
+        text += fmt::format("program.slots().{0}_{1}_payload = &slots::{1}WithPayload;\n",
+                            slot.base, slot.method);
         break;
       }
   return text;
@@ -198,15 +213,18 @@ std::string ModulePrinter::describePayloads() {
 
 // A function is printed once for all classes that inherit it.
 bool ModulePrinter::mayAnswerHit(const typed::Function &function) {
-  return function.owner ? hitAnswers.mayAnswerOf(function) : hitAnswers.mayAnswer(function, nullptr);
+  return function.owner ? hitAnswers.mayAnswerOf(function)
+                        : hitAnswers.mayAnswer(function, nullptr);
 }
 
 bool FunctionPrinter::mayEndAnyHit() const {
-  return function && (!function->isStateMethod || function->name == "anyHit") && module.mayAnswerHit(*function);
+  return function && (!function->isStateMethod || function->name == "anyHit") &&
+         module.mayAnswerHit(*function);
 }
 
 static Code answerIn(const typed::Expr &expr) {
-  return call(std::string("rtsl::") + typed::name(cast<typed::BuiltinExpr>(expr).builtin), {name("rt")});
+  return call(std::string("rtsl::") + typed::name(cast<typed::BuiltinExpr>(expr).builtin),
+              {name("rt")});
 }
 
 Statements FunctionPrinter::hitAnswer(const typed::Expr &expr) {
@@ -229,7 +247,8 @@ void FunctionPrinter::leaveIfAnswered() {
     before->push_back(statement(cpp::call("rtsl::endIfAnswered", {name("rt")})));
     return;
   }
-  const Statement leave = returning(function->returnType->is(TypeKind::Void) ? Code() : list("", {}));
+  const Statement leave =
+      returning(function->returnType->is(TypeKind::Void) ? Code() : list("", {}));
   before->push_back(branch(cpp::call("rtsl::isAnswered", {name("rt")}), {leave}));
 }
 

@@ -1,9 +1,9 @@
 //===- Places.cpp - variables, members, elements, parts of vectors --------===//
 #include "codegen/cpp/Printer.h"
 
+#include "sema/fold/ConstantFold.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
-#include "sema/fold/ConstantFold.h"
 
 #include <fmt/format.h>
 
@@ -36,7 +36,8 @@ bool FunctionPrinter::isSimple(const typed::Expr &expr) const {
   }
   case ExprKind::Swizzle: {
     const auto &swizzle = cast<typed::SwizzleExpr>(expr);
-    return swizzle.components.size() == 1 && swizzle.base->type->isVector() && isSimple(*swizzle.base);
+    return swizzle.components.size() == 1 && swizzle.base->type->isVector() &&
+           isSimple(*swizzle.base);
   }
   default:
     return false;
@@ -90,8 +91,8 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
   }
   case ExprKind::Field: {
     const auto &field = cast<typed::FieldExpr>(expr);
-    const Code base =
-        typed::isPlace(*field.base) ? place(*field.base, storeIndices) : operand(*field.base, Binding::Primary);
+    const Code base = typed::isPlace(*field.base) ? place(*field.base, storeIndices)
+                                                  : operand(*field.base, Binding::Primary);
     return member(base, module.names.of(&field.base->type->structure->fields[field.field]));
   }
   case ExprKind::Swizzle: {
@@ -116,14 +117,16 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
       for (std::uint8_t part : parts)
         numbers.push_back(integer(part));
       const std::string type = withParameters("rtsl::array", {"int", std::to_string(parts.size())});
-      const Code number = subscript(array(type, std::move(numbers)), this->index(index, storeIndices));
+      const Code number =
+          subscript(array(type, std::move(numbers)), this->index(index, storeIndices));
       return cpp::call("rtsl::at", {place(*vector, storeIndices), number});
     }
     // An outer index comes first.
-    const bool changes = isNested && conflicts(module.effects.expression(*index.base), module.effects.expression(*index.index));
+    const bool changes = isNested && conflicts(module.effects.expression(*index.base),
+                                               module.effects.expression(*index.index));
     const Code base = typed::isPlace(*index.base) ? place(*index.base, storeIndices || changes)
-                      : changes                      ? hoist(index.base->type, "value", argument(*index.base))
-                                                     : operand(*index.base, Binding::Primary);
+                      : changes ? hoist(index.base->type, "value", argument(*index.base))
+                                : operand(*index.base, Binding::Primary);
     return element(index, base, storeIndices);
   }
   default:
@@ -142,7 +145,8 @@ Code FunctionPrinter::index(const typed::IndexExpr &expr, bool storeIndices) {
 // Outside of functions there is no sample that could end.
 Code FunctionPrinter::checked(Code index, Code count) const {
   const bool raises = function && module.options.exceptions && module.options.checkIndices;
-  return raises ? cpp::call("rtsl::checked", {name("rt"), std::move(index), std::move(count)}) : index;
+  return raises ? cpp::call("rtsl::checked", {name("rt"), std::move(index), std::move(count)})
+                : index;
 }
 
 Code FunctionPrinter::element(const typed::IndexExpr &expr, const Code &base, bool storeIndices) {
@@ -169,8 +173,10 @@ Code FunctionPrinter::bufferElement(const typed::IndexExpr &expr) {
   std::vector<Code> codes = operands(indices, Binding::Assignment);
   const Code buffer = place(*base);
   for (std::size_t i = 0; i < codes.size(); ++i)
-    codes[i] = checked(codes[i], lengthOf(buffer, codes.size() == 1 ? std::nullopt : std::optional(i)));
-  return codes.size() == 1 ? subscript(buffer, codes.front()) : callMember(buffer, "at", std::move(codes));
+    codes[i] =
+        checked(codes[i], lengthOf(buffer, codes.size() == 1 ? std::nullopt : std::optional(i)));
+  return codes.size() == 1 ? subscript(buffer, codes.front())
+                           : callMember(buffer, "at", std::move(codes));
 }
 
 /// Of a buffer, or of one of its dimensions.
@@ -181,8 +187,8 @@ Code FunctionPrinter::lengthOf(const Code &buffer, std::optional<std::size_t> di
   return callMember(buffer, "length", std::move(arguments));
 }
 
-// `buffer[i].length()` is that of the second dimension; which i does not matter, but what it does is
-// done.
+// `buffer[i].length()` is that of the second dimension; which i does not matter, but what it does
+// is done.
 Code FunctionPrinter::length(const typed::LengthExpr &expr) {
   std::size_t dimension = 0;
   const typed::Expr *base = expr.base.get();

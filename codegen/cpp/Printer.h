@@ -12,8 +12,8 @@
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
 #include "codegen/cpp/Tracing.h"
-#include "sema/typed/Analysis.h"
 #include "codegen/cpp/tree/Print.h"
+#include "sema/typed/Analysis.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 
@@ -36,19 +36,20 @@ struct Interval {
 struct StateProgram;
 struct FrameField;
 
-/// A method that traces and is called through references: it runs on a frame of its own, which begins with what it is
-/// given and returns.
+/// A method that traces and is called through references: it runs on a frame of its own, which
+/// begins with what it is given and returns.
 struct CalledMethod {
-  std::string symbol;                          // of its declaration in the IR
-  std::string slot;                            // what the IR calls it in every class
-  const typed::Class *definition = nullptr;    // the first that has it
-  const typed::Function *function = nullptr;   // and what it has
-  std::string step;                            // where it begins: `Filter_follow`
-  std::string structure;                       // of what it is given, in the references to the class: `Follow`
-  std::vector<const typed::Variable *> given;  // as the IR passes it; null: where a result goes that stays whole
-  std::vector<std::string> fields;             // of these
-  std::vector<std::int32_t> offsets;           // in the IR
-  std::string returned;                        // the field of the result; empty: there is none
+  std::string symbol;                        // of its declaration in the IR
+  std::string slot;                          // what the IR calls it in every class
+  const typed::Class *definition = nullptr;  // the first that has it
+  const typed::Function *function = nullptr; // and what it has
+  std::string step;                          // where it begins: `Filter_follow`
+  std::string structure; // of what it is given, in the references to the class: `Follow`
+  // as the IR passes it; null: where a result goes that stays whole
+  std::vector<const typed::Variable *> given;
+  std::vector<std::string> fields;   // of these
+  std::vector<std::int32_t> offsets; // in the IR
+  std::string returned;              // the field of the result; empty: there is none
 };
 
 class ModulePrinter {
@@ -63,7 +64,8 @@ public:
   std::string memoryType(const Type *type) { return this->type(type, true); }
   /// `{}`, or the zero of a number: what a variable without an initialiser holds.
   Code zero(const Type *type);
-  /// A color of so many components, or of one that all have; of three it is RGB, whatever a color has here.
+  /// A color of so many components, or of one that all have; of three it is RGB, whatever a color
+  /// has here.
   Code colorOf(std::vector<Code> components);
 
   /// Does the function ask for the ray's state, or for its class's scratch members?
@@ -85,7 +87,8 @@ public:
   const CalledMethod *calledMethod(const std::string &symbol) const;
   /// The struct of what it is given: `FilterRef::Follow`.
   std::string structureOf(const CalledMethod &called) const;
-  /// The C++ names that mean something in every method of a class: those at file level, and those of the class.
+  /// The C++ names that mean something in every method of a class: those at file level, and those
+  /// of the class.
   const std::set<std::string> &namesInFile() const;
   std::set<std::string> namesInClass(const typed::Class &definition) const;
 
@@ -105,12 +108,14 @@ public:
   bool throwsFromAnyHit = false;          // some answer stands where no `return` can
 
 private:
-  std::unordered_set<std::string> constexprNames; // constants of numbers that were printed as constexpr
+  // constants of numbers that were printed as constexpr
+  std::unordered_set<std::string> constexprNames;
 
   // Declarations.cpp
   std::string structure(const typed::Struct &structure);
   std::string constant(const typed::Variable &constant);
-  bool isConstexpr(const Type *type, const typed::Constant *value, const std::string &name, const Code &initialiser);
+  bool isConstexpr(const Type *type, const typed::Constant *value, const std::string &name,
+                   const Code &initialiser);
   std::string freeFunctions();
   std::string signature(const typed::Function &function, bool isMethod);
   std::string function(const typed::Function &function, bool isMethod);
@@ -151,14 +156,16 @@ private:
   void findCalledMethods();
   const std::set<std::string> &typeNames() const; // of the author's structs and classes
   std::string stepName(const typed::Class &definition, const std::string &function);
-  const CalledMethod *calledMethod(const typed::Class &definition, const typed::Function &method) const;
+  const CalledMethod *calledMethod(const typed::Class &definition,
+                                   const typed::Function &method) const;
   std::string callStructures(const std::string &className);
   Statements runCalledMethod(const CalledMethod &called);
 
   // Payloads.cpp
   void numberRayTypes();
   std::string rayType(const typed::Struct &structure) const;
-  std::vector<const typed::Function *> payloadMethods(const typed::Class &definition, const std::string &name) const;
+  std::vector<const typed::Function *> payloadMethods(const typed::Class &definition,
+                                                      const std::string &name) const;
   bool orderShows(const std::vector<const typed::Function *> &anyHits, bool hasClosestHit);
   std::string payloadSlots();
   std::string describePayloads();
@@ -173,8 +180,10 @@ private:
   std::vector<std::string> needsOfProgram();
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
   Statements dispatch(const std::vector<const typed::Class *> &classes,
-                      const std::function<Statements(const typed::Class &)> &run, bool mayBeNone = false);
-  /// The object that the runtime names, as one of this class; what the hit so far has stored for it.
+                      const std::function<Statements(const typed::Class &)> &run,
+                      bool mayBeNone = false);
+  /// The object that the runtime names, as one of this class; what the hit so far has stored for
+  /// it.
   Code objectOf(const typed::Class &definition) const;
   Code storedScratch(const typed::Class &definition) const;
   /// The ray's payload; whether it is of that type.
@@ -182,7 +191,8 @@ private:
   Code carries(const typed::Struct &payload) const;
   /// With a variable for the ray's state in front.
   Statements withState(const Statements &body) const;
-  const typed::Function *findMethod(const typed::Class &definition, const typed::Function &like) const;
+  const typed::Function *findMethod(const typed::Class &definition,
+                                    const typed::Function &like) const;
 
   /// `shadeAfterTrace1(rt, frame)`, on an object.
   struct MethodCall {
@@ -192,15 +202,16 @@ private:
   };
   /// A state that runs when a ray is back.
   struct Step {
-    std::string name;                        // its number in C++
+    std::string name; // its number in C++
     const typed::Class *definition = nullptr;
     const typed::Function *method = nullptr;
     MethodCall call;
   };
   std::vector<Step> steps;
   std::set<std::string> stepNames;
-  std::map<std::pair<const typed::Class *, std::string>, MethodCall> firstCalls; // by class and method
-  std::vector<std::string> frames, calledFrames;                                   // the structs
+  std::map<std::pair<const typed::Class *, std::string>, MethodCall>
+      firstCalls;                                // by class and method
+  std::vector<std::string> frames, calledFrames; // the structs
   TracingFunctions tracing;
   const bool mayReferToNothing; // some reference
   const bool lookupsNest;       // some texture looks up another
@@ -214,7 +225,8 @@ private:
   std::vector<RayType> rayTypes;
 
   const StateProgram *states;
-  /// The states of each method of each class, by the names that the IR has and whether the method has a frame of its own.
+  /// The states of each method of each class, by the names that the IR has and whether the method
+  /// has a frame of its own.
   std::map<std::tuple<std::string, std::string, bool>, std::vector<mlir::func::FuncOp>> statesOf;
   mutable std::set<std::string> fileNames, fileTypes; // that namesInFile() and typeNames() give
   Diagnostics &diagnostics;
@@ -230,8 +242,10 @@ private:
 
 class FunctionPrinter {
 public:
-  /// `function` is null for an initialiser outside of functions, of a member of `owner` or at file level.
-  FunctionPrinter(ModulePrinter &module, const typed::Function *function, const typed::Class *owner = nullptr);
+  /// `function` is null for an initialiser outside of functions, of a member of `owner` or at file
+  /// level.
+  FunctionPrinter(ModulePrinter &module, const typed::Function *function,
+                  const typed::Class *owner = nullptr);
 
   /// The statements of the body.
   Statements body();
@@ -263,7 +277,8 @@ private:
   // Expressions.cpp
   Code expr(const typed::Expr &expr);
   Code lowered(const typed::Expr &expr);
-  /// In the place of an operand of an operator that binds so tightly, where the author's own parentheses stay.
+  /// In the place of an operand of an operator that binds so tightly, where the author's own
+  /// parentheses stay.
   Code operand(const typed::Expr &expr, Binding atLeast);
   Code argument(const typed::Expr &expr) { return operand(expr, Binding::Assignment); }
   /// Operands in an order that C++ does not promise: what could be noticed goes into variables.
@@ -272,7 +287,8 @@ private:
   /// In a place where control may not come, or comes more than once: nothing can be put before it.
   Code apart(const typed::Expr &expr, Binding atLeast);
   Code literal(const Type *type, const typed::Constant &constant, const std::string &spelling);
-  /// The constant (Variable or Member) that the author named where the tree has its value; null: none.
+  /// The constant (Variable or Member) that the author named where the tree has its value; null:
+  /// none.
   const void *namedConstant(const typed::LiteralExpr &expr) const;
   Code scalarLiteral(const Type *type, typed::Constant::Scalar value, const std::string &spelling);
   Code convert(const typed::ConvertExpr &expr);
@@ -287,18 +303,22 @@ private:
   Code unary(const typed::UnaryExpr &expr);
   Code binary(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
   /// The operator of C++; nothing: there is none that means the same.
-  std::optional<Operator> plainOperator(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
+  std::optional<Operator> plainOperator(ast::BinaryOp op, const typed::Expr &left,
+                                        const typed::Expr &right);
   /// Operands of an operation that takes any number of them.
-  void appendOperands(ast::BinaryOp op, const typed::Expr &expr, std::vector<const typed::Expr *> &into);
+  void appendOperands(ast::BinaryOp op, const typed::Expr &expr,
+                      std::vector<const typed::Expr *> &into);
   std::string functionFor(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
   Code assign(const typed::AssignExpr &expr, bool resultIsUsed);
   /// `target.z = from.x; target.x = from.y;`
-  void assignComponents(const Code &target, const std::vector<std::uint8_t> &parts, const Code &from, Statements &out);
+  void assignComponents(const Code &target, const std::vector<std::uint8_t> &parts,
+                        const Code &from, Statements &out);
   Code incDec(const typed::IncDecExpr &expr, bool resultIsUsed);
   /// `value + 1` or `value - 1`
   Code stepped(const Code &value, const Type *scalar, bool increment);
   std::optional<Interval> range(const typed::Expr &expr);
-  std::optional<Interval> range(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right);
+  std::optional<Interval> range(ast::BinaryOp op, const typed::Expr &left,
+                                const typed::Expr &right);
   void compareStructs(const Type *type);
 
   // Places.cpp
@@ -321,17 +341,20 @@ private:
   Code methodCall(const typed::MethodCallExpr &expr);
   Code callWith(const Code &callee, std::vector<Code> first, const typed::Function &function,
                 const std::vector<typed::ExprPtr> &args, const Type *result);
-  Code valueThen(const Type *type, const std::string &hint, const Code &call, const Statements &after);
+  Code valueThen(const Type *type, const std::string &hint, const Code &call,
+                 const Statements &after);
   bool canBind(const typed::Expr &place) const;
 
   // Builtins.cpp
   Code builtin(const typed::BuiltinExpr &expr);
-  Code withOutputs(const std::string &callee, const typed::BuiltinExpr &expr, std::size_t firstOutput);
+  Code withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
+                   std::size_t firstOutput);
   Code print(const typed::BuiltinExpr &expr);
   Code tracePayload(const typed::BuiltinExpr &expr);
 
   // Payloads.cpp
-  /// `ignoreIntersection();` or `terminateRay();` as statements; empty if the expression is neither.
+  /// `ignoreIntersection();` or `terminateRay();` as statements; empty if the expression is
+  /// neither.
   Statements hitAnswer(const typed::Expr &expr);
   Code endOfAnyHit(const typed::BuiltinExpr &expr);
   /// After a call of what may end `anyHit`: nothing more happens.
@@ -341,14 +364,14 @@ private:
   ModulePrinter &module;
   const typed::Function *function;
   const typed::Class *owner;
-  Statements *before = nullptr; // statements that go before the one being made
-  bool isInLambda = false;                    // these are not the function's own
+  Statements *before = nullptr;                 // statements that go before the one being made
+  bool isInLambda = false;                      // these are not the function's own
   std::set<std::string> usedNames, temporaries; // the latter are of variables of its own
   std::set<const typed::Variable *> readVariables, mentionedVariables, hoistedDeclarations;
   std::map<const typed::Variable *, Interval> counters;
 
   std::map<const typed::Expr *, Code> replaced; // parts that stand elsewhere, as what they are here
-  bool isNested = true; // parts with effects are not among them
+  bool isNested = true;                         // parts with effects are not among them
 
   friend class ModulePrinter;
   friend class StateWriter;

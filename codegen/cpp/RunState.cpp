@@ -10,14 +10,16 @@ namespace rtsl::cpp {
 namespace {
 /// A method with which the machine begins.
 struct Beginning {
-  const char *base, *method, *step, *slot; // of the class, of the function, its number in C++, and who asks for it
+  const char *base, *method, *step,
+      *slot; // of the class, of the function, its number in C++, and who asks for it
   bool hasPayload;
 };
-constexpr Beginning beginnings[] = {{"rt_Material", "shade", "shade", "shadeFirst", false},
-                                    {"rt_Miss", "miss", "miss", "missFirst", false},
-                                    {"rt_Material", "closestHit", "closestHit", "closestHitFirst", true},
-                                    {"rt_Miss", "miss", "missWithPayload", "missWithPayloadFirst", true},
-                                    {"rt_RayGeneration", "generate", "generate", "generateFirst", false}};
+constexpr Beginning beginnings[] = {
+    {"rt_Material", "shade", "shade", "shadeFirst", false},
+    {"rt_Miss", "miss", "miss", "missFirst", false},
+    {"rt_Material", "closestHit", "closestHit", "closestHitFirst", true},
+    {"rt_Miss", "miss", "missWithPayload", "missWithPayloadFirst", true},
+    {"rt_RayGeneration", "generate", "generate", "generateFirst", false}};
 } // namespace
 
 /// Does some class have such a method?
@@ -32,7 +34,8 @@ static bool isThere(const std::vector<const typed::Class *> &classes, const Begi
 }
 
 bool ModulePrinter::isRunBySteps(const std::string &slot) const {
-  return !firstCalls.empty() && (slot == "shade" || slot == "miss" || slot == "generate" || slot == "closestHit");
+  return !firstCalls.empty() &&
+         (slot == "shade" || slot == "miss" || slot == "generate" || slot == "closestHit");
 }
 
 std::string ModulePrinter::stepNumbers() const {
@@ -52,10 +55,11 @@ std::string ModulePrinter::stepNumbers() const {
     numbers.push_back(step.name);
   const std::string last = begin.back();
   begin.pop_back();
-  return fmt::format("// Where a method goes on: {}{} begin{}, the others run when a ray is back{}.\n"
-                     "enum class Step : rtsl::Next {{ {} }};\n",
-                     begin.empty() ? "" : join(begin, ", ") + " and ", last, begin.empty() ? "s" : "",
-                     calledMethods.empty() ? "" : " or a call over", join(numbers, ", "));
+  return fmt::format(
+      "// Where a method goes on: {}{} begin{}, the others run when a ray is back{}.\n"
+      "enum class Step : rtsl::Next {{ {} }};\n",
+      begin.empty() ? "" : join(begin, ", ") + " and ", last, begin.empty() ? "s" : "",
+      calledMethods.empty() ? "" : " or a call over", join(numbers, ", "));
 }
 
 std::string ModulePrinter::runState() {
@@ -69,21 +73,24 @@ std::string ModulePrinter::runState() {
       for (const typed::Class *at = &definition; at && !method; at = at->base)
         for (const auto &function : at->functions)
           if (function->isStateMethod && function->body && function->name == one.method &&
-              (payload ? typed::takesPayload(*function) && function->parameters.front()->type->structure == payload
+              (payload ? typed::takesPayload(*function) &&
+                             function->parameters.front()->type->structure == payload
                        : function->parameters.empty()))
             method = function.get();
       if (!method)
         return {};
       // States of its own class, or of one between it and the method's: a base has others.
       for (const typed::Class *at = &definition; at != method->owner->base; at = at->base)
-        if (auto first = firstCalls.find({at, typed::slotName(module, *method)}); first != firstCalls.end())
+        if (auto first = firstCalls.find({at, typed::slotName(module, *method)});
+            first != firstCalls.end())
           return {returning(first->second.on(objectOf(definition)))};
       std::vector<Code> arguments = {cpp::name("rt")};
       if (takesScratch(*method))
         arguments.push_back(storedScratch(definition));
       if (payload)
         arguments.push_back(payloadAt(*payload));
-      return {statement(callMember(objectOf(definition), names.of(method), std::move(arguments))), done};
+      return {statement(callMember(objectOf(definition), names.of(method), std::move(arguments))),
+              done};
     });
   };
   Statement choice = simple(StatementKind::Switch);
@@ -110,7 +117,8 @@ std::string ModulePrinter::runState() {
   for (const Step &step : steps)
     add(step.name, {returning(step.call.on(objectOf(*step.definition)))});
   Statements body = withState({choice, done});
-  return fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef object, void *{}) {{\n{}}}\n",
+  return fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef "
+                     "object, void *{}) {{\n{}}}\n",
                      mentions(body, "frame") ? "frame" : "/*frame*/", print(body));
 }
 
@@ -122,7 +130,8 @@ std::string ModulePrinter::describeStates() const {
     text += fmt::format("program.calls<{}>({});\n", join(calledFrames, ", "), calledMethods.size());
   for (const Beginning &one : beginnings)
     if (isThere(classesBelow(one.base), one))
-      text += fmt::format("program.slots().states.{} = static_cast<rtsl::Next>(Step::{});\n", one.slot, one.step);
+      text += fmt::format("program.slots().states.{} = static_cast<rtsl::Next>(Step::{});\n",
+                          one.slot, one.step);
   return text;
 }
 

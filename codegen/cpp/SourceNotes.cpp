@@ -7,7 +7,9 @@
 
 namespace rtsl::cpp {
 
-static bool isSpace(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
+static bool isSpace(char c) {
+  return std::isspace(static_cast<unsigned char>(c)) != 0;
+}
 
 bool SourceNotes::inParentheses(SourceRange range) const {
   if (!range.isValid())
@@ -57,7 +59,8 @@ std::string SourceNotes::identifier(SourceRange range) const {
     return {};
   const std::string_view text = sources.text(range);
   auto isWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  const bool isName = !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) == 0 &&
+  const bool isName = !text.empty() &&
+                      std::isdigit(static_cast<unsigned char>(text.front())) == 0 &&
                       std::all_of(text.begin(), text.end(), isWord);
   return isName ? std::string(text) : std::string();
 }
@@ -66,7 +69,8 @@ bool SourceNotes::followsEmptyLine(SourceRange range, SourceRange previous) cons
   if (!range.isValid())
     return false;
   unsigned line = sources.lineColumn(range.file, range.begin).line;
-  if (previous.isValid() && previous.file == range.file && sources.lineColumn(range.file, previous.end).line == line)
+  if (previous.isValid() && previous.file == range.file &&
+      sources.lineColumn(range.file, previous.end).line == line)
     return false;
   while (line > 1) {
     std::string_view above = sources.line(range.file, line - 1);
@@ -81,7 +85,9 @@ bool SourceNotes::followsEmptyLine(SourceRange range, SourceRange previous) cons
   return false;
 }
 
-std::string SourceNotes::file(SourceRange range) const { return std::string(sources.name(range.file)); }
+std::string SourceNotes::file(SourceRange range) const {
+  return std::string(sources.name(range.file));
+}
 
 std::string SourceNotes::shownFile(SourceRange range) const {
   return std::string(shownBegin(sources, range).file);

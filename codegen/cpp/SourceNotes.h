@@ -1,7 +1,7 @@
 //===- SourceNotes.h - what only the author's text knows ------------------===//
 //
-// The typed tree has no parentheses, no empty lines and no comments behind a declaration on the same
-// line. Its nodes know where they stand, so the text can be asked.
+// The typed tree has no parentheses, no empty lines and no comments behind a declaration on the
+// same line. Its nodes know where they stand, so the text can be asked.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -23,15 +23,16 @@ public:
   /// The comment that ends the line on which the range ends, with its markers; empty: none. Only
   /// where nothing but punctuation and initialisers stands between.
   std::string trailingComment(SourceRange range) const;
-  /// Is there an empty line above the text, or above the comment directly above it? Not if it stands on the line of what
-  /// comes before.
+  /// Is there an empty line above the text, or above the comment directly above it? Not if it
+  /// stands on the line of what comes before.
   bool followsEmptyLine(SourceRange range, SourceRange previous) const;
   /// File and line, for #line.
   std::string file(SourceRange range) const;
   unsigned line(SourceRange range) const;
   /// The name of the file that messages about a range would show.
   std::string shownFile(SourceRange range) const;
-  /// The text of a line of the file in which the range is, without comment and white space around it.
+  /// The text of a line of the file in which the range is, without comment and white space around
+  /// it.
   std::string textOfLine(SourceRange range, unsigned line) const;
 
 private:

@@ -1,8 +1,8 @@
 //===- Statements.cpp - statements ----------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
-#include "sema/typed/Analysis.h"
 #include "math/Elementary.h"
+#include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
@@ -44,8 +44,10 @@ Statements FunctionPrinter::body() {
   });
   Statements all;
   for (std::size_t i = 0; i != function->parameters.size(); ++i)
-    if (const typed::Variable &parameter = *function->parameters[i]; module.beginsAsZero(parameter, *function))
-      all.push_back(statement(cpp::assign(name(module.parameterName(*function, i)), module.zero(parameter.type))));
+    if (const typed::Variable &parameter = *function->parameters[i];
+        module.beginsAsZero(parameter, *function))
+      all.push_back(statement(
+          cpp::assign(name(module.parameterName(*function, i)), module.zero(parameter.type))));
   print(statements, all);
   return all;
 }
@@ -56,8 +58,10 @@ void FunctionPrinter::print(const std::vector<typed::StmtPtr> &statements, State
       continue;
     const std::size_t first = out.size();
     print(*statements[i], out);
-    const SourceRange previous = i > 0 && statements[i - 1] ? statements[i - 1]->range : SourceRange();
-    if (i > 0 && first < out.size() && module.notes.followsEmptyLine(statements[i]->range, previous))
+    const SourceRange previous =
+        i > 0 && statements[i - 1] ? statements[i - 1]->range : SourceRange();
+    if (i > 0 && first < out.size() &&
+        module.notes.followsEmptyLine(statements[i]->range, previous))
       out[first].hasSpace = true;
   }
 }
@@ -146,7 +150,8 @@ Statements FunctionPrinter::nested(const typed::StmtPtr &stmt, bool &hasBraces) 
     return block(cast<typed::CompoundStmt>(*stmt).body);
   Statements inner;
   print(*stmt, inner);
-  const bool isEmpty = inner.size() == 1 && inner.front().is(StatementKind::Empty) && inner.front().comment.empty();
+  const bool isEmpty =
+      inner.size() == 1 && inner.front().is(StatementKind::Empty) && inner.front().comment.empty();
   return isEmpty ? Statements() : inner;
 }
 
@@ -182,7 +187,9 @@ Statements FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, bool
     const bool isUnread = !readVariables.count(variable);
     const bool isTableOf = variable->isConst && variable->init && isTable(*variable->init);
     const std::string constness = isTableOf ? "static constexpr" : variable->isConst ? "const" : "";
-    const std::string qualifiers = !isUnread ? constness : constness.empty() ? "[[maybe_unused]]" : "[[maybe_unused]] " + constness;
+    const std::string qualifiers = !isUnread           ? constness
+                                   : constness.empty() ? "[[maybe_unused]]"
+                                                       : "[[maybe_unused]] " + constness;
     if (lineType == variable->type && !isUnread && all.back().qualifiers == qualifiers) {
       all.back().declarators.push_back({own, value}); // declarators of one type share a line
       continue;
@@ -205,7 +212,8 @@ Statements FunctionPrinter::expressionStatement(const typed::Expr &expr) {
   if (auto *value = dynCast<typed::IncDecExpr>(&expr)) {
     code = incDec(*value, false);
     const typed::Expr *vector = nullptr;
-    return components(*value->target, vector).size() > 1 ? Statements() : Statements{statement(code)};
+    return components(*value->target, vector).size() > 1 ? Statements()
+                                                         : Statements{statement(code)};
   }
   if (auto *comma = dynCast<typed::CommaExpr>(&expr)) { // two statements
     Statements both = expressionStatement(*comma->left);
@@ -223,9 +231,11 @@ Statements FunctionPrinter::expressionStatement(const typed::Expr &expr) {
   code = this->expr(expr);
   if (!code)
     return {};
-  const bool isCall = (expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall || expr.kind == ExprKind::Builtin) &&
+  const bool isCall = (expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall ||
+                       expr.kind == ExprKind::Builtin) &&
                       code->is(ExpressionKind::Call);
-  const bool isUnused = !expr.type->is(TypeKind::Void) && (!isCall || module.effects.expression(expr).isPure());
+  const bool isUnused =
+      !expr.type->is(TypeKind::Void) && (!isCall || module.effects.expression(expr).isPure());
   return {statement(isUnused ? discarded(code) : code)};
 }
 
@@ -238,7 +248,8 @@ Statement FunctionPrinter::ifStatement(const typed::IfStmt &stmt) {
   made.value = operand(*stmt.condition, Binding::Comma);
   // The comment behind the opening brace of the author's.
   if (stmt.thenStmt && stmt.thenStmt->kind == StmtKind::Compound)
-    made.trailing = module.notes.trailingComment({stmt.range.file, stmt.condition->range.begin, stmt.condition->range.end});
+    made.trailing = module.notes.trailingComment(
+        {stmt.range.file, stmt.condition->range.begin, stmt.condition->range.end});
   nest(stmt.thenStmt, made);
   if (stmt.elseStmt)
     made.otherwise = nested(stmt.elseStmt, made.otherwiseHasBraces);
@@ -255,13 +266,15 @@ void FunctionPrinter::noteCounter(const typed::ForStmt &stmt) {
     return;
   auto *counter = dynCast<typed::VariableExpr>(condition->left);
   auto *stepped = dynCast<typed::VariableExpr>(step->target);
-  const bool isBounded = condition->op == ast::BinaryOp::Less || condition->op == ast::BinaryOp::NotEqual ||
+  const bool isBounded = condition->op == ast::BinaryOp::Less ||
+                         condition->op == ast::BinaryOp::NotEqual ||
                          condition->op == ast::BinaryOp::LessEqual;
   if (!counter || !stepped || counter->variable != stepped->variable || !isBounded ||
       !counter->variable->type->is(TypeKind::Int))
     return;
   const auto &declared = declaration->variables;
-  if (std::find(declared.begin(), declared.end(), counter->variable) == declared.end() || !counter->variable->init)
+  if (std::find(declared.begin(), declared.end(), counter->variable) == declared.end() ||
+      !counter->variable->init)
     return;
   if (stmt.body && assignedVariables(*stmt.body).count(counter->variable))
     return;
@@ -274,8 +287,10 @@ void FunctionPrinter::noteCounter(const typed::ForStmt &stmt) {
                                    last ? last->high : std::numeric_limits<std::int32_t>::max()};
   } else if (condition->op == ast::BinaryOp::LessEqual && last &&
              last->high < std::numeric_limits<std::int32_t>::max()) {
-    counters[counter->variable] = {first ? first->low : std::numeric_limits<std::int32_t>::min(), last->high + 1};
-  } else if (condition->op == ast::BinaryOp::NotEqual && isConstant && first && first->high <= last->low) {
+    counters[counter->variable] = {first ? first->low : std::numeric_limits<std::int32_t>::min(),
+                                   last->high + 1};
+  } else if (condition->op == ast::BinaryOp::NotEqual && isConstant && first &&
+             first->high <= last->low) {
     counters[counter->variable] = {first->low, last->high};
   }
 }
@@ -376,7 +391,8 @@ Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
             continue;
           }
           hoistedDeclarations.insert(variable);
-          declared.push_back(cpp::declaration(module.type(variable->type), module.names.of(variable), list("", {})));
+          declared.push_back(cpp::declaration(module.type(variable->type),
+                                              module.names.of(variable), list("", {})));
         }
   made.value = operand(*stmt.value, Binding::Comma);
   const bool isUnsigned = stmt.value->type->is(TypeKind::UInt);
@@ -384,7 +400,9 @@ Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
     const auto &source = stmt.arms[i];
     Arm &arm = made.arms.emplace_back();
     for (std::int64_t value : source.values)
-      arm.labels.push_back(isUnsigned ? cpp::literal(fmt::format("{}u", static_cast<std::uint32_t>(value))) : integer(value));
+      arm.labels.push_back(isUnsigned
+                               ? cpp::literal(fmt::format("{}u", static_cast<std::uint32_t>(value)))
+                               : integer(value));
     arm.isDefault = source.isDefault;
     const std::size_t before = temporaries.size();
     arm.body = block(source.body);
@@ -403,7 +421,8 @@ Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
 Statement lightLoop(const std::string &lights, std::vector<Code> arguments) {
   arguments.insert(arguments.begin(), name("rt"));
   Statement made = simple(StatementKind::For);
-  made.init = {declaration("rtsl::Lights", lights, construct("rtsl::Lights", std::move(arguments)))};
+  made.init = {
+      declaration("rtsl::Lights", lights, construct("rtsl::Lights", std::move(arguments)))};
   made.init.front().declarators.front().isDirect = true;
   made.value = callMember(name(lights), "next", {});
   return made;

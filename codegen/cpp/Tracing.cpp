@@ -9,8 +9,8 @@ bool TracingFunctions::mayBeCalled(const typed::Function &callee) const {
   if (contains(callee))
     return true;
   for (const typed::Function *other : functions) // one that overrides it
-    if (callee.owner && other->owner && other->owner->derivesFrom(callee.owner) && other->name == callee.name &&
-        typed::sameParameters(*other, callee))
+    if (callee.owner && other->owner && other->owner->derivesFrom(callee.owner) &&
+        other->name == callee.name && typed::sameParameters(*other, callee))
       return true;
   return false;
 }
@@ -20,7 +20,8 @@ bool TracingFunctions::isFound(const typed::Function &function) const {
   if (function.body)
     forEachExpr(*function.body, [&](const typed::Expr &expr) {
       if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-        found |= builtin->builtin == typed::Builtin::Trace || builtin->builtin == typed::Builtin::TracePayload;
+        found |= builtin->builtin == typed::Builtin::Trace ||
+                 builtin->builtin == typed::Builtin::TracePayload;
       else if (auto *call = dynCast<typed::CallExpr>(&expr))
         found |= mayBeCalled(*call->function);
       else if (auto *method = dynCast<typed::MethodCallExpr>(&expr))

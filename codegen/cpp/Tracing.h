@@ -7,8 +7,8 @@
 
 namespace rtsl::cpp {
 
-/// The functions that send rays, themselves or through what they call. (`typed::Function::mayTrace` counts the rays of
-/// lights too, and not what overrides a function.)
+/// The functions that send rays, themselves or through what they call. (`typed::Function::mayTrace`
+/// counts the rays of lights too, and not what overrides a function.)
 class TracingFunctions {
 public:
   explicit TracingFunctions(const typed::Module &module);

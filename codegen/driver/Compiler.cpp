@@ -4,11 +4,14 @@
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/HitErrors.h"
 #include "codegen/cpp/states/States.h"
-#include "codegen/explain/Graphviz.h"
 #include "codegen/driver/HostCode.h"
 #include "codegen/driver/Stages.h"
 #include "codegen/emit/NativeImage.h"
 #include "codegen/emit/Ptx.h"
+#include "codegen/explain/Graphviz.h"
+#include "codegen/explain/ReportJson.h"
+#include "codegen/explain/ReportText.h"
+#include "codegen/explain/StateGraph.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/BindScene.h"
 #include "codegen/link/Link.h"
@@ -17,16 +20,13 @@
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/states/Dispatch.h"
-#include "codegen/explain/ReportJson.h"
-#include "codegen/explain/ReportText.h"
-#include "codegen/explain/StateGraph.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 #include "codegen/passes/restructure/Restructure.h"
 #include "frontend/source/Expansion.h"
 #include "runtime/program/DeviceBitcode.h"
-#include "support/WorkerThreads.h"
 #include "sema/typed/Casting.h"
 #include "sema/typed/Walk.h"
+#include "support/WorkerThreads.h"
 
 #include "mlir/Dialect/LLVMIR/LLVMDialect.h"
 #include "llvm/IR/Module.h"
@@ -42,14 +42,17 @@ using namespace driver;
 namespace {
 
 /// Stages that show states by name, before they are numbered.
-bool isLookedAtSplit(Stage stage) { return stage == Stage::Split || stage == Stage::Structured; }
+bool isLookedAtSplit(Stage stage) {
+  return stage == Stage::Split || stage == Stage::Structured;
+}
 
-/// The PTX of a module without a scene: a function a method, or a state where it traces. What others supply is declared:
-/// slots, and the functions of runtime/device.
+/// The PTX of a module without a scene: a function a method, or a state where it traces. What
+/// others supply is declared: slots, and the functions of runtime/device.
 std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   for (auto function : ir.getOps<mlir::func::FuncOp>())
     if (function->hasAttr(continuation::factOfScene))
-      function->setAttr("llvm.linkage", mlir::LLVM::LinkageAttr::get(ir.getContext(), mlir::LLVM::Linkage::Internal));
+      function->setAttr("llvm.linkage", mlir::LLVM::LinkageAttr::get(
+                                            ir.getContext(), mlir::LLVM::Linkage::Internal));
   LlvmCode code = translate(ir, gpuOptions(options));
   for (llvm::Function &function : *code.module)
     if (!function.hasLocalLinkage())
@@ -58,7 +61,8 @@ std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
 }
 
 /// Where `word` stands, which begins at a place in the IR.
-SourceRange rangeAt(const ir::SourcePlace &place, std::string_view word, const Diagnostics &diagnostics) {
+SourceRange rangeAt(const ir::SourcePlace &place, std::string_view word,
+                    const Diagnostics &diagnostics) {
   const FileId file = diagnostics.sources().find(place.file);
   if (!file)
     return {};
@@ -66,22 +70,24 @@ SourceRange rangeAt(const ir::SourcePlace &place, std::string_view word, const D
   return {file, begin, begin + static_cast<std::uint32_t>(word.size())};
 }
 
-/// A GPU has no stack for recursion, which a bound program has only if it is deep. False, with a message, if there is some.
+/// A GPU has no stack for recursion, which a bound program has only if it is deep. False, with a
+/// message, if there is some.
 bool requireNoRecursion(mlir::ModuleOp ir, Diagnostics &diagnostics) {
   mlir::func::FuncOp function = recursiveFunction(ir);
   if (!function)
     return true;
   const std::string method = function.getSymName().rsplit('.').second.str();
   diagnostics
-      .report(Code::recursionTooDeep, rangeAt(ir::placeOf(function->getLoc()), method, diagnostics), method,
-              mostRecursionLevels)
+      .report(Code::recursionTooDeep, rangeAt(ir::placeOf(function->getLoc()), method, diagnostics),
+              method, mostRecursionLevels)
       .note("on the CPU, `--target=host` renders it");
   return false;
 }
 
-/// Warns of a trace over which much is alive: values that are saved, and variables that lie in the frame all the time.
-void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &frame, std::uint32_t largeLiveState,
-                     Diagnostics &diagnostics) {
+/// Warns of a trace over which much is alive: values that are saved, and variables that lie in the
+/// frame all the time.
+void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &frame,
+                     std::uint32_t largeLiveState, Diagnostics &diagnostics) {
   struct Part {
     std::string name;
     std::uint32_t bytes;
@@ -97,10 +103,12 @@ void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &
     }
   if (bytes <= largeLiveState)
     return;
-  std::stable_sort(parts.begin(), parts.end(), [](const Part &a, const Part &b) { return a.bytes > b.bytes; });
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part &a, const Part &b) { return a.bytes > b.bytes; });
 
-  Diagnostic &diagnostic = diagnostics.report(Code::liveState, rangeAt(trace.place, "trace", diagnostics), bytes, largeLiveState, parts.front().name,
-                                              parts.front().bytes);
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::liveState, rangeAt(trace.place, "trace", diagnostics), bytes,
+                         largeLiveState, parts.front().name, parts.front().bytes);
   std::string others;
   for (std::size_t i = 1; i < parts.size(); ++i)
     others += fmt::format("{}{} {}", i == 1 ? "" : ", ", parts[i].name, parts[i].bytes);
@@ -110,16 +118,18 @@ void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &
 
 } // namespace
 
-std::optional<std::string> emit(const typed::Module &module, Stage stage, const CompileOptions &options,
-                                Diagnostics &diagnostics) {
+std::optional<std::string> emit(const typed::Module &module, Stage stage,
+                                const CompileOptions &options, Diagnostics &diagnostics) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
-  const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, diagnostics, *context);
+  const mlir::OwningOpRef<mlir::ModuleOp> ir =
+      lowerModule(module, options, {}, diagnostics, *context);
   if (!ir)
     return std::nullopt;
   if (stage == Stage::Ir)
     return print(*ir);
   const bool isSplit = stage == Stage::Split || stage == Stage::Structured || stage == Stage::Ptx;
-  runToSsa(*ir, options, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/stage == Stage::Ptx);
+  runToSsa(*ir, options, isSplit ? TraceMode::Split : TraceMode::Recurse,
+           /*dispatch=*/stage == Stage::Ptx);
   if (stage == Stage::Structured)
     expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)); });
   if (stage == Stage::Ssa || isLookedAtSplit(stage))
@@ -162,9 +172,12 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
   return cpp::print(module, printing, diagnostics, &states);
 }
 
-/// Bounds of t for the primitives of a program in C++, whose scene is not known: any of its materials may be on any of them.
-mlir::OwningOpRef<mlir::ModuleOp> deriveHitErrors(const typed::Module &module, const CompileOptions &options,
-                                                  mlir::MLIRContext &context, Diagnostics &diagnostics) {
+/// Bounds of t for the primitives of a program in C++, whose scene is not known: any of its
+/// materials may be on any of them.
+mlir::OwningOpRef<mlir::ModuleOp> deriveHitErrors(const typed::Module &module,
+                                                  const CompileOptions &options,
+                                                  mlir::MLIRContext &context,
+                                                  Diagnostics &diagnostics) {
   std::vector<std::string> primitives;
   for (const auto &definition : module.classes)
     if (definition->root == "rt_Primitive")
@@ -181,7 +194,9 @@ mlir::OwningOpRef<mlir::ModuleOp> deriveHitErrors(const typed::Module &module, c
   mlir::SymbolTable symbols(*ir);
   if (functionsThatSendRays(*ir, symbols).empty())
     return {};
-  warnOfUnboundHits(rtsl::deriveHitErrors(*ir, symbols, primitives, elementaryErrorsOf(options.floatingPoint)), module, diagnostics);
+  warnOfUnboundHits(
+      rtsl::deriveHitErrors(*ir, symbols, primitives, elementaryErrorsOf(options.floatingPoint)),
+      module, diagnostics);
   for (auto function : llvm::make_early_inc_range(ir->getOps<mlir::func::FuncOp>()))
     if (!function->hasAttr(hitErrorAttribute))
       function.erase();
@@ -200,9 +215,10 @@ bool mayTrace(const typed::Module &module) {
 
 } // namespace
 
-std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
-                                   std::optional<TraceMode> trace, std::uint32_t features,
-                                   const CompileOptions &options, Diagnostics &diagnostics) {
+std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name,
+                                   bool lineDirectives, std::optional<TraceMode> trace,
+                                   std::uint32_t features, const CompileOptions &options,
+                                   Diagnostics &diagnostics) {
   cpp::Options printing;
   printing.prints = features & RTSL_FEATURE_PRINT;
   printing.exceptions = features & RTSL_FEATURE_EXCEPTIONS;
@@ -213,7 +229,8 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   printing.colorComponents = options.colorComponents;
   printing.lineDirectives = lineDirectives;
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
-  const mlir::OwningOpRef<mlir::ModuleOp> bounds = deriveHitErrors(module, options, *context, diagnostics);
+  const mlir::OwningOpRef<mlir::ModuleOp> bounds =
+      deriveHitErrors(module, options, *context, diagnostics);
   const cpp::HitErrorFunctions hitErrors = {bounds ? *bounds : mlir::ModuleOp()};
   if (bounds)
     printing.hitErrors = &hitErrors;
@@ -233,10 +250,14 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
 
 static std::string write(const SplitReport &report, ReportFormat format) {
   switch (format) {
-  case ReportFormat::Json: return toJson(report);
-  case ReportFormat::Dot: return toDot(report);
-  case ReportFormat::Svg: return drawGraph(toDot(report), "states of functions that trace");
-  case ReportFormat::Text: break;
+  case ReportFormat::Json:
+    return toJson(report);
+  case ReportFormat::Dot:
+    return toDot(report);
+  case ReportFormat::Svg:
+    return drawGraph(toDot(report), "states of functions that trace");
+  case ReportFormat::Text:
+    break;
   }
   return toText(report);
 }
@@ -244,13 +265,15 @@ static std::string write(const SplitReport &report, ReportFormat format) {
 std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options,
                                          ReportFormat format, Diagnostics &diagnostics) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
-  const mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, {}, diagnostics, *context);
+  const mlir::OwningOpRef<mlir::ModuleOp> ir =
+      lowerModule(module, options, {}, diagnostics, *context);
   if (!ir)
     return std::nullopt;
   return write(runToExplainedStates(*ir, options), format);
 }
 
-void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics) {
+void checkLiveState(const typed::Module &module, const CompileOptions &options,
+                    Diagnostics &diagnostics) {
   if (!diagnostics.warnings.isOn(Code::liveState))
     return;
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
@@ -271,7 +294,8 @@ mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const L
                                             const CompileOptions &options, Diagnostics &diagnostics,
                                             mlir::MLIRContext &context, runtime::Program &program,
                                             Findings *findings = nullptr) {
-  mlir::OwningOpRef<mlir::ModuleOp> ir = lowerModule(module, options, request, diagnostics, context);
+  mlir::OwningOpRef<mlir::ModuleOp> ir =
+      lowerModule(module, options, request, diagnostics, context);
   LinkRequest asked = request;
   asked.features |= options.undefined;
   if (!ir || !link(*ir, module, asked, options.colorComponents, diagnostics, program, findings,
@@ -280,8 +304,8 @@ mlir::OwningOpRef<mlir::ModuleOp> linkScene(const typed::Module &module, const L
   return ir;
 }
 
-/// With arithmetic in double what a scene sets stays a variable, for a bound index would change what lies in memory, and so where
-/// a number is rounded.
+/// With arithmetic in double what a scene sets stays a variable, for a bound index would change
+/// what lies in memory, and so where a number is rounded.
 LinkRequest whenBound(LinkRequest request, const CompileOptions &options) {
   if (options.floatingPoint == FloatingPoint::Double) {
     request.keep.add(Item::Parameters);
@@ -291,23 +315,25 @@ LinkRequest whenBound(LinkRequest request, const CompileOptions &options) {
 }
 
 /// Makes the objects of a scene, and leaves in `ir` what renders that scene.
-void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOptions &options, const MakeObjects &makeObjects,
-                 const runtime::Program &program, Findings *findings = nullptr) {
+void bindToScene(mlir::ModuleOp ir, const LinkRequest &request, const CompileOptions &options,
+                 const MakeObjects &makeObjects, const runtime::Program &program,
+                 Findings *findings = nullptr) {
   const mlir::OwningOpRef<mlir::ModuleOp> copy = ir.clone();
   keepConstructors(*copy);
   auto constructors = std::make_shared<runtime::Program>(program);
   compileConstructors(*copy, options, *constructors);
   // Constructors and bounds may have large local variables.
   runtime::SceneFacts facts;
-  runOnThreads(1, constructors->stackBytes(0, 0), [&](unsigned) { facts = makeObjects(constructors); });
+  runOnThreads(1, constructors->stackBytes(0, 0),
+               [&](unsigned) { facts = makeObjects(constructors); });
   bindScene(ir, facts, whenBound(request, options), findings);
 }
 
 } // namespace
 
-std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
-                                     const CompileOptions &options, Diagnostics &diagnostics,
-                                     const MakeObjects &makeObjects) {
+std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request,
+                                     Stage stage, const CompileOptions &options,
+                                     Diagnostics &diagnostics, const MakeObjects &makeObjects) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
   const bool isSplit = stage != Stage::Ir && stage != Stage::Ssa;
@@ -320,7 +346,8 @@ std::optional<std::string> emitScene(const typed::Module &module, const LinkRequ
     return std::nullopt;
   if (stage == Stage::Ir)
     return print(*ir);
-  runToSsa(*ir, options, isSplit ? TraceMode::Split : TraceMode::Recurse, /*dispatch=*/!isLookedAtSplit(stage));
+  runToSsa(*ir, options, isSplit ? TraceMode::Split : TraceMode::Recurse,
+           /*dispatch=*/!isLookedAtSplit(stage));
   if (stage == Stage::Structured)
     expectSuccess(*ir, [&] { return mlir::succeeded(restructure(*ir)); });
   if (stage == Stage::Ssa || isLookedAtSplit(stage))
@@ -359,7 +386,8 @@ SourceRange firstPrint(const typed::Module &module, const LinkRequest &request) 
 void describeEvents(const typed::Module &module, const LinkRequest &request,
                     const CompileOptions &options, bool hasChecks, const runtime::Program &program,
                     const SourceManager &sources, Findings &findings) {
-  const bool hasExceptions = (request.features & RTSL_FEATURE_EXCEPTIONS) && !(request.features & RTSL_FEATURE_UNHEEDED);
+  const bool hasExceptions =
+      (request.features & RTSL_FEATURE_EXCEPTIONS) && !(request.features & RTSL_FEATURE_UNHEEDED);
   Finding exceptions = {Item::Events, "exceptions", hasExceptions, {}, {}};
   exceptions.reason = hasExceptions ? "asked for, by the scene's `exception` or --exceptions"
                                     : "the scene has no `exception`, and --exceptions is not given";
@@ -422,7 +450,8 @@ bool hasIndexChecks(const typed::Module &module, const LinkRequest &request,
 }
 
 /// What a bound program takes on a GPU. `ir` is used up.
-ProgramSize measure(mlir::ModuleOp ir, const CompileOptions &options, const runtime::Program &program) {
+ProgramSize measure(mlir::ModuleOp ir, const CompileOptions &options,
+                    const runtime::Program &program) {
   ProgramSize size;
   const SplitReport report = runToStates(ir, splitOptions(options));
   size.frameBytes = report.frameSize();
@@ -442,19 +471,22 @@ ProgramSize measure(mlir::ModuleOp ir, const CompileOptions &options, const runt
 
 } // namespace
 
-std::optional<SceneExplanation> explainScene(const typed::Module &module, const LinkRequest &request,
-                                             const CompileOptions &options, Diagnostics &diagnostics,
-                                             const MakeObjects &makeObjects) {
+std::optional<SceneExplanation>
+explainScene(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+             Diagnostics &diagnostics, const MakeObjects &makeObjects) {
   SceneExplanation explanation;
   runtime::SceneFacts facts; // made once: what a program leaves out changes no object
   {
     const std::unique_ptr<mlir::MLIRContext> context = makeContext();
     auto program = std::make_shared<runtime::Program>();
-    const auto ir = linkScene(module, request, options, diagnostics, *context, *program, &explanation.findings);
+    const auto ir =
+        linkScene(module, request, options, diagnostics, *context, *program, &explanation.findings);
     if (!ir)
       return std::nullopt;
-    bindToScene(*ir, request, options, [&](const auto &constructors) { return facts = makeObjects(constructors); }, *program,
-                &explanation.findings);
+    bindToScene(
+        *ir, request, options,
+        [&](const auto &constructors) { return facts = makeObjects(constructors); }, *program,
+        &explanation.findings);
     describeEvents(module, request, options,
                    hasIndexChecks(module, request, options, diagnostics.sources(), facts), *program,
                    diagnostics.sources(), explanation.findings);
@@ -464,9 +496,9 @@ std::optional<SceneExplanation> explainScene(const typed::Module &module, const 
   for (Item item : allItems) {
     if (request.keep.has(item))
       continue;
-    const bool leavesOut = std::any_of(explanation.findings.begin(), explanation.findings.end(), [&](const Finding &finding) {
-      return finding.item == item && !finding.isNeeded;
-    });
+    const bool leavesOut = std::any_of(
+        explanation.findings.begin(), explanation.findings.end(),
+        [&](const Finding &finding) { return finding.item == item && !finding.isNeeded; });
     if (!leavesOut || item == Item::Meshes) { // nothing changes in the program
       explanation.sizeKeeping[item] = explanation.size;
       continue;
@@ -495,7 +527,8 @@ void keep(ItemSet items, LinkRequest &request, CompileOptions &options) {
     request.features |= RTSL_FEATURE_EXCEPTIONS | RTSL_FEATURE_UNHEEDED;
 }
 
-std::optional<std::string> explainSceneStates(const typed::Module &module, const LinkRequest &request, std::uint32_t maxDepth,
+std::optional<std::string> explainSceneStates(const typed::Module &module,
+                                              const LinkRequest &request, std::uint32_t maxDepth,
                                               const CompileOptions &options, ReportFormat format,
                                               Diagnostics &diagnostics) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
@@ -508,8 +541,10 @@ std::optional<std::string> explainSceneStates(const typed::Module &module, const
   return write(report, format);
 }
 
-std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
-                                                       const CompileOptions &options, Diagnostics &diagnostics,
+std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module,
+                                                       const LinkRequest &request,
+                                                       const CompileOptions &options,
+                                                       Diagnostics &diagnostics,
                                                        const MakeObjects &makeObjects) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   auto program = std::make_shared<runtime::Program>();
@@ -523,8 +558,9 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   return program;
 }
 
-bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
-                    Diagnostics &diagnostics, const MakeObjects &makeObjects, runtime::Package &package) {
+bool compilePackage(const typed::Module &module, const LinkRequest &request,
+                    const CompileOptions &options, Diagnostics &diagnostics,
+                    const MakeObjects &makeObjects, runtime::Package &package) {
   const std::unique_ptr<mlir::MLIRContext> context = makeContext();
   runtime::Program program;
   auto ir = linkScene(module, request, options, diagnostics, *context, program);

@@ -8,8 +8,8 @@
 #include "codegen/ir/FloatingPoint.h"
 #include "codegen/link/LinkRequest.h"
 #include "frontend/diagnostics/Diagnostics.h"
-#include "runtime/program/Program.h"
 #include "runtime/package/Package.h"
+#include "runtime/program/Program.h"
 #include "sema/typed/TypedAst.h"
 
 #include <functional>
@@ -22,30 +22,47 @@
 namespace rtsl {
 
 /// What can be looked at on the way, in order.
-enum class Stage : std::uint8_t { Preprocessed, Ast, TypedAst, Ir, Ssa, Split, Structured, Llvm, Ptx, Cpp, Reflection };
+enum class Stage : std::uint8_t {
+  Preprocessed,
+  Ast,
+  TypedAst,
+  Ir,
+  Ssa,
+  Split,
+  Structured,
+  Llvm,
+  Ptx,
+  Cpp,
+  Reflection
+};
 
-/// How `trace` runs: as a call, or as the end of one state and the beginning of another, without recursion
-/// (docs/continuations.md). The picture is the same, bit for bit.
+/// How `trace` runs: as a call, or as the end of one state and the beginning of another, without
+/// recursion (docs/continuations.md). The picture is the same, bit for bit.
 enum class TraceMode : std::uint8_t { Recurse, Split };
 
-/// What renders a scene in this process: the runtime with its own traversals, or the GPU's whole program, compiled for
-/// the CPU. The picture is the same, bit for bit, if the runtime traverses as GPUs do.
+/// What renders a scene in this process: the runtime with its own traversals, or the GPU's whole
+/// program, compiled for the CPU. The picture is the same, bit for bit, if the runtime traverses as
+/// GPUs do.
 enum class Target : std::uint8_t { Host, HostMegakernel };
 
 struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool checkIndices = true;
   unsigned optimization = 2; // of machine code, 0 to 3; up to 2 the parts of a large program have 1
-  unsigned threads = 0;      // 1: none but the caller's. Otherwise large programs are compiled on all cores
+  unsigned threads =
+      0; // 1: none but the caller's. Otherwise large programs are compiled on all cores
   TraceMode trace = TraceMode::Recurse; // of Target::Host; there is no recursion elsewhere
   Target target = Target::Host;
   /// States save all that is live over a trace, and nothing is computed again: to compare with.
   bool savesAllThatIsLive = false;
-  /// What -Wlive-state calls much, in bytes: half of the registers that a GPU thread of a ray tracer has, 32 of 64.
+  /// What -Wlive-state calls much, in bytes: half of the registers that a GPU thread of a ray
+  /// tracer has, 32 of 64.
   std::uint32_t largeLiveState = 128;
-  /// Numbers go through checks, to find where they stop being finite (runtime/program/NumberCheck.h). The bits are the same.
+  /// Numbers go through checks, to find where they stop being finite
+  /// (runtime/program/NumberCheck.h). The bits are the same.
   bool checksNumbers = false;
-  /// Bring everything back to level 1 and down again, with TraceMode::Split: for tests, which ask that this changes nothing.
+  /// Bring everything back to level 1 and down again, with TraceMode::Split: for tests, which ask
+  /// that this changes nothing.
   bool restructure = false;
   FloatingPoint floatingPoint = FloatingPoint::Strict;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
@@ -54,43 +71,50 @@ struct CompileOptions {
   std::uint32_t undefined = 0;
 };
 
-/// Makes objects of a scene by a program that has what this takes, constructors, defaults and bounds, and nothing else.
+/// Makes objects of a scene by a program that has what this takes, constructors, defaults and
+/// bounds, and nothing else.
 using MakeObjects = std::function<runtime::SceneFacts(std::shared_ptr<const runtime::Program>)>;
 
-/// Asks for `items` to be kept. Of Item::Events that are checks of indices, and exceptions that are noted and end no sample.
+/// Asks for `items` to be kept. Of Item::Events that are checks of indices, and exceptions that are
+/// noted and end no sample.
 void keep(ItemSet items, LinkRequest &request, CompileOptions &options);
 
-/// The text of `stage` (Ir and what follows) for a module without a scene: what is called through references stays a
-/// declared slot. Nothing if there were errors.
-std::optional<std::string> emit(const typed::Module &module, Stage stage, const CompileOptions &options,
-                                Diagnostics &diagnostics);
+/// The text of `stage` (Ir and what follows) for a module without a scene: what is called through
+/// references stays a declared slot. Nothing if there were errors.
+std::optional<std::string> emit(const typed::Module &module, Stage stage,
+                                const CompileOptions &options, Diagnostics &diagnostics);
 
-/// The same for the linked program of a scene. From Split on it is what GPUs run: without recursion, with the traversal of
-/// runtime/device. Its PTX has one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h); its LLVM IR is that
-/// of Target::HostMegakernel. With `makeObjects` it is bound to the scene that this makes, as a package is.
-std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request, Stage stage,
-                                     const CompileOptions &options, Diagnostics &diagnostics,
+/// The same for the linked program of a scene. From Split on it is what GPUs run: without
+/// recursion, with the traversal of runtime/device. Its PTX has one kernel, `rtsl_render`, that
+/// takes an RtslJob (runtime/device/ray/Abi.h); its LLVM IR is that of Target::HostMegakernel. With
+/// `makeObjects` it is bound to the scene that this makes, as a package is.
+std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request,
+                                     Stage stage, const CompileOptions &options,
+                                     Diagnostics &diagnostics,
                                      const MakeObjects &makeObjects = nullptr);
 
-/// The module as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md). `name` becomes its namespace, and
-/// `<name>_shaders` what it exports. Nothing if there were errors.
+/// The module as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md). `name` becomes
+/// its namespace, and `<name>_shaders` what it exports. Nothing if there were errors.
 ///
-/// `trace`: what becomes of a method that traces: its states, or a call where it traces. Without it states, or calls
-/// if something in such a method cannot be printed as states. `features`: RTSL_FEATURE_* of the program.
-std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name, bool lineDirectives,
-                                   std::optional<TraceMode> trace, std::uint32_t features,
-                                   const CompileOptions &options, Diagnostics &diagnostics);
+/// `trace`: what becomes of a method that traces: its states, or a call where it traces. Without it
+/// states, or calls if something in such a method cannot be printed as states. `features`:
+/// RTSL_FEATURE_* of the program.
+std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name,
+                                   bool lineDirectives, std::optional<TraceMode> trace,
+                                   std::uint32_t features, const CompileOptions &options,
+                                   Diagnostics &diagnostics);
 
 /// How a report is written: for people, for programs, for Graphviz, or drawn.
 enum class ReportFormat : std::uint8_t { Text, Json, Dot, Svg };
 
-/// What splitting at `trace` saves and recomputes in each function that traces, and the states that it makes. Nothing if
-/// there were errors.
+/// What splitting at `trace` saves and recomputes in each function that traces, and the states that
+/// it makes. Nothing if there were errors.
 std::optional<std::string> explainStates(const typed::Module &module, const CompileOptions &options,
                                          ReportFormat format, Diagnostics &diagnostics);
 
 /// The same for the linked program of a scene, with its limit of depth.
-std::optional<std::string> explainSceneStates(const typed::Module &module, const LinkRequest &request, std::uint32_t maxDepth,
+std::optional<std::string> explainSceneStates(const typed::Module &module,
+                                              const LinkRequest &request, std::uint32_t maxDepth,
                                               const CompileOptions &options, ReportFormat format,
                                               Diagnostics &diagnostics);
 
@@ -111,24 +135,30 @@ struct SceneExplanation {
   std::shared_ptr<const runtime::Program> program;
 };
 
-/// Compiles a scene's program, and once more for each item with that item kept. Nothing if there were errors.
-std::optional<SceneExplanation> explainScene(const typed::Module &module, const LinkRequest &request,
-                                             const CompileOptions &options, Diagnostics &diagnostics,
-                                             const MakeObjects &makeObjects);
+/// Compiles a scene's program, and once more for each item with that item kept. Nothing if there
+/// were errors.
+std::optional<SceneExplanation>
+explainScene(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+             Diagnostics &diagnostics, const MakeObjects &makeObjects);
 
-/// Splits the module at `trace` and warns where more than CompileOptions::largeLiveState bytes are saved: -Wlive-state. Does nothing
-/// if that warning is off, or if the module cannot be lowered.
-void checkLiveState(const typed::Module &module, const CompileOptions &options, Diagnostics &diagnostics);
+/// Splits the module at `trace` and warns where more than CompileOptions::largeLiveState bytes are
+/// saved: -Wlive-state. Does nothing if that warning is off, or if the module cannot be lowered.
+void checkLiveState(const typed::Module &module, const CompileOptions &options,
+                    Diagnostics &diagnostics);
 
-/// Compiles and links the module for scenes, in this process. Null if there were errors. With `makeObjects` it is bound to
-/// the scene that this makes (codegen/link/BindScene.h), and renders no other. SceneProgram.h puts both together.
-std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module, const LinkRequest &request,
-                                                       const CompileOptions &options, Diagnostics &diagnostics,
+/// Compiles and links the module for scenes, in this process. Null if there were errors. With
+/// `makeObjects` it is bound to the scene that this makes (codegen/link/BindScene.h), and renders
+/// no other. SceneProgram.h puts both together.
+std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module,
+                                                       const LinkRequest &request,
+                                                       const CompileOptions &options,
+                                                       Diagnostics &diagnostics,
                                                        const MakeObjects &makeObjects = nullptr);
 
-/// What a package needs of a program bound to a scene (runtime/package/Package.h): everything but the scene and its
-/// options. False if there were errors.
-bool compilePackage(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
-                    Diagnostics &diagnostics, const MakeObjects &makeObjects, runtime::Package &package);
+/// What a package needs of a program bound to a scene (runtime/package/Package.h): everything but
+/// the scene and its options. False if there were errors.
+bool compilePackage(const typed::Module &module, const LinkRequest &request,
+                    const CompileOptions &options, Diagnostics &diagnostics,
+                    const MakeObjects &makeObjects, runtime::Package &package);
 
 } // namespace rtsl

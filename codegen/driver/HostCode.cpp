@@ -29,7 +29,8 @@ namespace {
 //===----------------------------------------------------------------------===//
 
 /// What samples of a linked program come from.
-std::vector<std::string> sampleSymbols(const runtime::Program &program, const CompileOptions &options) {
+std::vector<std::string> sampleSymbols(const runtime::Program &program,
+                                       const CompileOptions &options) {
   if (options.target == Target::HostMegakernel)
     return {"rtsl_lane_bytes", "rtsl_run_lane"};
   if (options.trace == TraceMode::Split)
@@ -59,22 +60,26 @@ void find(const codegen::Jit &jit, const std::string &name, Function *&function)
 }
 
 /// Looks up the entries of a compiled program.
-void fillEntries(runtime::Program &program, const codegen::Jit &jit, const CompileOptions &options) {
+void fillEntries(runtime::Program &program, const codegen::Jit &jit,
+                 const CompileOptions &options) {
   if (options.target == Target::HostMegakernel) {
     find(jit, "rtsl_lane_bytes", program.megakernel.laneBytes);
     find(jit, "rtsl_run_lane", program.megakernel.runLane);
-    program.megakernel.stackBytes = jit.stackUse()->bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
+    program.megakernel.stackBytes =
+        jit.stackUse()->bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
   } else {
     find(jit, sampleSymbols(program, options).front(), program.sample);
   }
-  program.stackBytes = [use = jit.stackUse()](std::uint32_t maxDepth, std::uint32_t referenceChain) {
+  program.stackBytes = [use = jit.stackUse()](std::uint32_t maxDepth,
+                                              std::uint32_t referenceChain) {
     // The camera's ray or `generate`, and rays of depth 0 to maxDepth.
     return use->bytes(std::uint64_t(maxDepth) + 2, referenceChain);
   };
   find(jit, "rtsl_rt_Material_anyHit_payload", program.slots.rt_Material_anyHit_payload);
 #define RTSL_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "language/Slots.def"
-#define RTSL_SAMPLING_SLOT(base, method) find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
+#define RTSL_SAMPLING_SLOT(base, method)                                                           \
+  find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "language/SamplingSlots.def"
   for (runtime::ClassInfo &info : program.classes) {
     find(jit, initializeSymbol(info.name), info.initialize);
@@ -83,9 +88,10 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit, const Compi
   }
 }
 
-/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into the program.
-void load(std::vector<codegen::ObjectCode> parts, std::vector<codegen::HostSymbol> symbols, const CompileOptions &options,
-          runtime::Program &program) {
+/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into
+/// the program.
+void load(std::vector<codegen::ObjectCode> parts, std::vector<codegen::HostSymbol> symbols,
+          const CompileOptions &options, runtime::Program &program) {
   symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
   symbols.push_back({"rtsl_check_number", reinterpret_cast<void *>(&rtsl_check_number)});
   if (options.floatingPoint == FloatingPoint::Double)
@@ -105,7 +111,8 @@ codegen::ObjectCode toObject(LlvmCode code) {
   return take(codegen::makeObjectCode(*code.module, *code.machine));
 }
 
-/// Calls `work(0)` ... `work(count - 1)`, on several threads if the context may have them. What one of them throws comes out.
+/// Calls `work(0)` ... `work(count - 1)`, on several threads if the context may have them. What one
+/// of them throws comes out.
 template <typename Work>
 void forEach(mlir::MLIRContext &context, std::size_t count, Work work) {
   std::exception_ptr thrown;
@@ -125,9 +132,11 @@ void forEach(mlir::MLIRContext &context, std::size_t count, Work work) {
 /// Level 2 with its device code, in as many parts as it has.
 class PartCompiler {
 public:
-  PartCompiler(mlir::ModuleOp ir, const CompileOptions &options, llvm::ArrayRef<std::string_view> bitcodes,
-               std::vector<std::string> exports, runtime::Program &program)
-      : ir(ir), options(options), bitcodes(bitcodes), exports(std::move(exports)), program(program) {}
+  PartCompiler(mlir::ModuleOp ir, const CompileOptions &options,
+               llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports,
+               runtime::Program &program)
+      : ir(ir), options(options), bitcodes(bitcodes), exports(std::move(exports)),
+        program(program) {}
 
   std::vector<codegen::ObjectCode> run();
 
@@ -152,8 +161,8 @@ LlvmCode PartCompiler::rest() {
   return code;
 }
 
-/// A part has many functions of which each runs seldom, and they have been simplified before: most of what LLVM's level 2
-/// adds is time.
+/// A part has many functions of which each runs seldom, and they have been simplified before: most
+/// of what LLVM's level 2 adds is time.
 LlvmCode PartCompiler::part(mlir::ModuleOp functions, std::vector<std::string> &missing) {
   codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
   if (machine.optimization < 3)
@@ -167,20 +176,24 @@ LlvmCode PartCompiler::part(mlir::ModuleOp functions, std::vector<std::string> &
 }
 
 std::vector<codegen::ObjectCode> PartCompiler::run() {
-  const bool isWhole = options.checksNumbers || options.floatingPoint == FloatingPoint::Double; // both look at all of it
+  const bool isWhole = options.checksNumbers ||
+                       options.floatingPoint == FloatingPoint::Double; // both look at all of it
   std::vector<mlir::OwningOpRef<mlir::ModuleOp>> parts;
   if (!isWhole)
     parts = codegen::takeParts(ir);
   std::vector<std::optional<LlvmCode>> codes(parts.size());
   std::vector<std::vector<std::string>> missing(parts.size());
   mlir::MLIRContext &context = *ir.getContext();
-  forEach(context, parts.size(), [&](std::size_t index) { codes[index].emplace(part(*parts[index], missing[index])); });
+  forEach(context, parts.size(),
+          [&](std::size_t index) { codes[index].emplace(part(*parts[index], missing[index])); });
   for (std::vector<std::string> &names : missing)
     exports.insert(exports.end(), names.begin(), names.end());
 
-  std::vector<std::optional<codegen::ObjectCode>> objects(parts.size() + 1); // the rest takes longest, so it comes first
-  forEach(context, objects.size(),
-          [&](std::size_t index) { objects[index].emplace(toObject(index == 0 ? rest() : std::move(*codes[index - 1]))); });
+  std::vector<std::optional<codegen::ObjectCode>> objects(
+      parts.size() + 1); // the rest takes longest, so it comes first
+  forEach(context, objects.size(), [&](std::size_t index) {
+    objects[index].emplace(toObject(index == 0 ? rest() : std::move(*codes[index - 1])));
+  });
   std::vector<codegen::ObjectCode> made;
   for (std::optional<codegen::ObjectCode> &object : objects)
     made.push_back(std::move(*object));
@@ -193,7 +206,8 @@ void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Pr
   const bool isMegakernel = options.target == Target::HostMegakernel;
   runToSsa(ir, options, isMegakernel ? TraceMode::Split : options.trace);
   if (options.restructure) {
-    expectSuccess(ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
+    expectSuccess(
+        ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
     run(ir, codegen::buildSsaPipeline);
   }
 
@@ -203,14 +217,16 @@ void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Pr
     symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
   }
   const std::vector<std::string_view> whole = {runtime::deviceBitcode()};
-  PartCompiler compiler(ir, options, isMegakernel ? megakernelCode(/*forGpu=*/false) : whole, entries(program, options), program);
+  PartCompiler compiler(ir, options, isMegakernel ? megakernelCode(/*forGpu=*/false) : whole,
+                        entries(program, options), program);
   load(compiler.run(), std::move(symbols), options, program);
 }
 
 /// Constructors run once: those of so many classes take longer to optimise than to run.
 constexpr std::size_t manyClasses = 100;
 
-void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
+void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
+                         runtime::Program &program) {
   std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
@@ -221,7 +237,8 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options, runti
     codegen::buildSsaPipeline(passes);
   });
   codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
-  machine.optimization = program.classes.size() > manyClasses ? 0 : std::min(machine.optimization, 1u);
+  machine.optimization =
+      program.classes.size() > manyClasses ? 0 : std::min(machine.optimization, 1u);
   LlvmCode code = translate(ir, machine);
   defineFacts(code, program);
   linkDeviceCode(code, runtime::deviceBitcode(), names);

@@ -4,11 +4,11 @@
 #include "codegen/cpp/Effects.h"
 #include "codegen/cpp/Names.h"
 #include "codegen/driver/Stages.h"
+#include "codegen/explain/ReportJson.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/link/Members.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/lower/Lowering.h"
-#include "codegen/explain/ReportJson.h"
 #include "sema/fold/ConstantFold.h"
 
 #include "mlir/IR/MLIRContext.h"
@@ -95,7 +95,8 @@ private:
     Json payloadOf = Json::array();
     for (const auto &definition : module.classes)
       for (const auto &function : definition->functions)
-        if (function->isStateMethod && !function->parameters.empty() && function->parameters[0]->type == type)
+        if (function->isStateMethod && !function->parameters.empty() &&
+            function->parameters[0]->type == type)
           payloadOf.push_back(definition->name + "." + function->name);
     if (!payloadOf.empty())
       json["payloadOf"] = std::move(payloadOf);
@@ -120,12 +121,13 @@ private:
 
   Json describe(const typed::Member &member, ir::ClassOp record) {
     static const char *const words[] = {"const", "public", "private", "scratch"};
-    const char *access = member.isConst                              ? words[0]
-                         : member.access == ast::Access::Public      ? words[1]
-                         : member.access == ast::Access::Scratch     ? words[3]
-                                                                     : words[2];
+    const char *access = member.isConst                          ? words[0]
+                         : member.access == ast::Access::Public  ? words[1]
+                         : member.access == ast::Access::Scratch ? words[3]
+                                                                 : words[2];
     Json json = {{"name", member.name}, {"type", toString(member.type)}, {"access", access}};
-    if (const std::optional<std::uint32_t> offset = record ? ir::memberOffset(record, member.name) : std::nullopt) {
+    if (const std::optional<std::uint32_t> offset =
+            record ? ir::memberOffset(record, member.name) : std::nullopt) {
       json["offset"] = *offset;
       json["size"] = ir::sizeInBytes(types.type(member.type));
     }
@@ -208,8 +210,8 @@ private:
 
 } // namespace
 
-std::optional<std::string> emitReflection(const typed::Module &module, const CompileOptions &options,
-                                          Diagnostics &diagnostics) {
+std::optional<std::string> emitReflection(const typed::Module &module,
+                                          const CompileOptions &options, Diagnostics &diagnostics) {
   // How traces cut functions into states, and the frames of those.
   const std::unique_ptr<mlir::MLIRContext> splitContext = driver::makeContext();
   const mlir::OwningOpRef<mlir::ModuleOp> split =

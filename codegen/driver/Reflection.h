@@ -8,10 +8,10 @@
 
 namespace rtsl {
 
-/// The classes, structs and functions of a module as JSON: types, defaults, comments, what methods read and write, the
-/// layouts of records, payloads and frames, and what printed C++ calls differently. docs/reflection-schema.json is its
-/// schema. Nothing if there were errors.
-std::optional<std::string> emitReflection(const typed::Module &module, const CompileOptions &options,
-                                          Diagnostics &diagnostics);
+/// The classes, structs and functions of a module as JSON: types, defaults, comments, what methods
+/// read and write, the layouts of records, payloads and frames, and what printed C++ calls
+/// differently. docs/reflection-schema.json is its schema. Nothing if there were errors.
+std::optional<std::string> emitReflection(const typed::Module &module,
+                                          const CompileOptions &options, Diagnostics &diagnostics);
 
 } // namespace rtsl

@@ -1,6 +1,7 @@
 //===- SceneProgram.h - a scene, and the program that renders it ----------===//
 //
-// For programs that have scenes: the compiler itself knows of them only what runtime/program/Program.h says.
+// For programs that have scenes: the compiler itself knows of them only what
+// runtime/program/Program.h says.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -17,15 +18,17 @@ namespace rtsl {
 /// Makes a scene's objects for a program.
 using BuildScene = std::function<runtime::Scene(std::shared_ptr<const runtime::Program>)>;
 
-/// Compiles the module for the scene that `build` makes, which comes back with its program. Nothing if there were errors.
-inline std::optional<runtime::Scene> compileScene(const typed::Module &module, const LinkRequest &request,
-                                                  const CompileOptions &options, Diagnostics &diagnostics,
-                                                  const BuildScene &build) {
+/// Compiles the module for the scene that `build` makes, which comes back with its program. Nothing
+/// if there were errors.
+inline std::optional<runtime::Scene>
+compileScene(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+             Diagnostics &diagnostics, const BuildScene &build) {
   std::optional<runtime::Scene> scene;
-  const auto program = compileProgram(module, request, options, diagnostics, [&](const auto &constructors) {
-    scene = build(constructors);
-    return scene->facts();
-  });
+  const auto program =
+      compileProgram(module, request, options, diagnostics, [&](const auto &constructors) {
+        scene = build(constructors);
+        return scene->facts();
+      });
   if (!program)
     return std::nullopt;
   scene->useProgram(program);

@@ -1,8 +1,8 @@
 //===- SourceLoader.cpp - files and their imports -------------------------===//
 #include "codegen/driver/SourceLoader.h"
 
-#include "frontend/source/Expansion.h"
 #include "frontend/preprocessor/FileSearch.h"
+#include "frontend/source/Expansion.h"
 #include "frontend/syntax/Parser.h"
 
 #include <algorithm>
@@ -31,7 +31,8 @@ const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRa
   return unit.get();
 }
 
-std::optional<PreprocessedFile> SourceLoader::preprocessFile(const std::string &path, SourceRange importer) {
+std::optional<PreprocessedFile> SourceLoader::preprocessFile(const std::string &path,
+                                                             SourceRange importer) {
   std::string whyNot;
   const std::optional<FileId> file = sources.addFile(path, whyNot);
   if (!file) {
@@ -48,7 +49,8 @@ std::optional<PreprocessedFile> SourceLoader::preprocessFile(const std::string &
 const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import, FileId importer) {
   if (!import.isFile) {
     diagnostics.report(Code::unknownModule, import.range, import.path)
-        .note("this version has no installed modules; a file is imported as `import \"name.rtsl\";`");
+        .note(
+            "this version has no installed modules; a file is imported as `import \"name.rtsl\";`");
     return nullptr;
   }
   // An import in an included file means what lies beside that file.
@@ -57,7 +59,8 @@ const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import,
   folders.insert(folders.end(), options.includeFolders.begin(), options.includeFolders.end());
   if (const std::optional<std::string> found = findFile(import.path, folders))
     return load(*found, import.range);
-  explainSearch(diagnostics.report(Code::includeNotFound, import.range, import.path), import.path, folders, {});
+  explainSearch(diagnostics.report(Code::includeNotFound, import.range, import.path), import.path,
+                folders, {});
   return nullptr;
 }
 

@@ -1,13 +1,14 @@
 //===- SourceLoader.h - files and their imports ---------------------------===//
 //
-// Reads RTSL files, each once however often it is imported, and finds what an import names (frontend/preprocessor/FileSearch.h).
+// Reads RTSL files, each once however often it is imported, and finds what an import names
+// (frontend/preprocessor/FileSearch.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "frontend/syntax/Ast.h"
 #include "frontend/diagnostics/Diagnostics.h"
 #include "frontend/preprocessor/Preprocessor.h"
+#include "frontend/syntax/Ast.h"
 
 #include <map>
 #include <memory>
@@ -22,20 +23,23 @@ public:
   SourceLoader(SourceManager &sources, Diagnostics &diagnostics, PreprocessorOptions options = {})
       : sources(sources), diagnostics(diagnostics), options(std::move(options)) {}
 
-  /// Reads and parses a file ("-" is standard input). Null if it cannot be read; that is reported at `importer`, which
-  /// is invalid for a file that was named on the command line.
+  /// Reads and parses a file ("-" is standard input). Null if it cannot be read; that is reported
+  /// at `importer`, which is invalid for a file that was named on the command line.
   const ast::TranslationUnit *load(const std::string &path, SourceRange importer = {});
 
   /// Reads a file and runs the preprocessor alone; nothing if it cannot be read.
-  std::optional<PreprocessedFile> preprocessFile(const std::string &path, SourceRange importer = {});
+  std::optional<PreprocessedFile> preprocessFile(const std::string &path,
+                                                 SourceRange importer = {});
 
   /// What `import` means in the file `importer`; null if there is no such file, which is reported.
   const ast::TranslationUnit *resolve(const ast::ImportDecl &import, FileId importer);
 
-  /// Loads what the loaded files import, and so on. (Checking does so as well, where it comes to that.)
+  /// Loads what the loaded files import, and so on. (Checking does so as well, where it comes to
+  /// that.)
   void loadImports();
 
-  /// All files that were read, imported and included ones too, each once, in the order in which they were met.
+  /// All files that were read, imported and included ones too, each once, in the order in which
+  /// they were met.
   const std::vector<std::string> &files() const { return read; }
 
 private:

@@ -31,7 +31,8 @@ std::unique_ptr<mlir::MLIRContext> makeContext() {
   registry.insert<ir::RtslDialect>();
   codegen::registerPassDependencies(registry);
   codegen::registerLlvmTranslation(registry);
-  auto context = std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
+  auto context =
+      std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
   context->loadAllAvailableDialects();
   return context;
 }
@@ -41,7 +42,8 @@ constexpr std::ptrdiff_t fewestFunctionsForThreads = 100;
 
 void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
   const auto functions = ir.getOps<mlir::func::FuncOp>();
-  if (options.threads == 1 || std::distance(functions.begin(), functions.end()) < fewestFunctionsForThreads)
+  if (options.threads == 1 ||
+      std::distance(functions.begin(), functions.end()) < fewestFunctionsForThreads)
     return;
   mlir::MLIRContext &context = *ir.getContext();
   // Pipelines load their dialects when they run, and several that run at once must not.
@@ -56,7 +58,8 @@ void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
   context.enableMultithreading();
 }
 
-mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
+mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
+                                              const CompileOptions &options,
                                               const LinkRequest &request, Diagnostics &diagnostics,
                                               mlir::MLIRContext &context) {
   LowerOptions lowering;
@@ -149,8 +152,10 @@ void defineFacts(LlvmCode &code, const runtime::Program &program) {
 }
 
 const std::vector<std::string_view> &megakernelCode(bool forGpu) {
-  static const std::vector<std::string_view> host = {runtime::deviceBitcode(), runtime::megakernelBitcode()};
-  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(), runtime::gpuMegakernelBitcode()};
+  static const std::vector<std::string_view> host = {runtime::deviceBitcode(),
+                                                     runtime::megakernelBitcode()};
+  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(),
+                                                    runtime::gpuMegakernelBitcode()};
   return forGpu ? gpu : host;
 }
 
@@ -159,7 +164,8 @@ void linkMegakernel(LlvmCode &code, bool forGpu, std::vector<std::string> export
   code.options.isMegakernel = true;
 }
 
-void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports) {
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
+                    std::vector<std::string> exports) {
   exports.insert(exports.end(), code.kept.begin(), code.kept.end());
   if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
     throw std::logic_error(llvm::toString(std::move(error)));

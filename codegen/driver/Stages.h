@@ -1,7 +1,8 @@
 //===- Stages.h - the steps that all ways through the compiler share ------===//
 //
-// From a checked module to IR, states, LLVM IR and PTX. A step that fails is a mistake of ours, for the program was checked before: it
-// throws std::logic_error, which ends `rtslc` with a status of its own.
+// From a checked module to IR, states, LLVM IR and PTX. A step that fails is a mistake of ours, for
+// the program was checked before: it throws std::logic_error, which ends `rtslc` with a status of
+// its own.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -39,11 +40,13 @@ T take(llvm::Expected<T> expected) {
 
 std::unique_ptr<mlir::MLIRContext> makeContext();
 
-/// Passes and what else works on functions alone may use several threads from now on, if the module is large.
+/// Passes and what else works on functions alone may use several threads from now on, if the module
+/// is large.
 void allowThreads(mlir::ModuleOp ir, const CompileOptions &options);
 
 /// Null if something is not supported, which is reported.
-mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module, const CompileOptions &options,
+mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
+                                              const CompileOptions &options,
                                               const LinkRequest &request, Diagnostics &diagnostics,
                                               mlir::MLIRContext &context);
 
@@ -59,7 +62,8 @@ SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options);
 SplitReport runToExplainedStates(mlir::ModuleOp ir, const CompileOptions &options);
 
 /// With `trace` left a call, or as states.
-void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace, bool dispatch = true);
+void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace,
+              bool dispatch = true);
 
 std::string print(mlir::ModuleOp ir);
 
@@ -88,7 +92,8 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu);
 /// Makes a program that refers to nothing outside (runtime/device/engines/Megakernel.h).
 void linkMegakernel(LlvmCode &code, bool forGpu, std::vector<std::string> exports);
 
-void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes, std::vector<std::string> exports);
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
+                    std::vector<std::string> exports);
 
 codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu);
 codegen::MachineOptions gpuOptions(const CompileOptions &options);

@@ -5,6 +5,8 @@
 
 namespace rtsl {
 
-std::string llvmVersion() { return LLVM_VERSION_STRING; }
+std::string llvmVersion() {
+  return LLVM_VERSION_STRING;
+}
 
 } // namespace rtsl

@@ -17,17 +17,19 @@ namespace {
 
 constexpr llvm::StringLiteral checkFunction = "rtsl_check_number";
 
-bool isFloat(mlir::Type type) { return mlir::getElementTypeOrSelf(type).isF32(); }
+bool isFloat(mlir::Type type) {
+  return mlir::getElementTypeOrSelf(type).isF32();
+}
 
-/// Whether an operation computes a number, rather than moving it. What shaders call of each other is
-/// looked at inside.
+/// Whether an operation computes a number, rather than moving it. What shaders call of each other
+/// is looked at inside.
 bool computes(mlir::Operation *op) {
   if (op->getNumResults() != 1 || !isFloat(op->getResult(0).getType()))
     return false;
   if (auto call = llvm::dyn_cast<LLVM::CallOp>(op))
     return call.getCallee() && call.getCallee()->starts_with("rtsl_");
-  return llvm::isa<LLVM::FAddOp, LLVM::FSubOp, LLVM::FMulOp, LLVM::FDivOp, LLVM::FRemOp, LLVM::FMAOp,
-                   LLVM::SqrtOp>(op);
+  return llvm::isa<LLVM::FAddOp, LLVM::FSubOp, LLVM::FMulOp, LLVM::FDivOp, LLVM::FRemOp,
+                   LLVM::FMAOp, LLVM::SqrtOp>(op);
 }
 
 class Checks {
@@ -40,7 +42,8 @@ public:
     module.walk([&](mlir::Operation *op) {
       if (computes(op))
         computed.push_back(op);
-      else if (auto store = llvm::dyn_cast<LLVM::StoreOp>(op); store && isFloat(store.getValue().getType()))
+      else if (auto store = llvm::dyn_cast<LLVM::StoreOp>(op);
+               store && isFloat(store.getValue().getType()))
         stores.push_back(op);
     });
     if (computed.empty() && stores.empty())
@@ -73,13 +76,15 @@ private:
   mlir::Value component(mlir::Location location, mlir::Value value, unsigned index) {
     if (!llvm::isa<mlir::VectorType>(value.getType()))
       return value;
-    mlir::Value at = LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
-                                              builder.getI32IntegerAttr(static_cast<int32_t>(index)));
+    mlir::Value at =
+        LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
+                                 builder.getI32IntegerAttr(static_cast<int32_t>(index)));
     return LLVM::ExtractElementOp::create(builder, location, value, at);
   }
 
   /// The value after its check, where `sources` are what it was computed from.
-  mlir::Value checked(mlir::Location location, mlir::Value value, llvm::ArrayRef<mlir::Value> sources) {
+  mlir::Value checked(mlir::Location location, mlir::Value value,
+                      llvm::ArrayRef<mlir::Value> sources) {
     const mlir::Value place = placeNumber(location);
     const auto vector = llvm::dyn_cast<mlir::VectorType>(value.getType());
     const unsigned count = vector ? static_cast<unsigned>(vector.getNumElements()) : 1;
@@ -93,9 +98,10 @@ private:
         arguments.push_back(LLVM::ConstantOp::create(builder, location, builder.getF32Type(),
                                                      builder.getF32FloatAttr(0)));
       arguments.push_back(place);
-      mlir::Value after = LLVM::CallOp::create(builder, location, mlir::TypeRange{builder.getF32Type()},
-                                               checkFunction, arguments)
-                              .getResult();
+      mlir::Value after =
+          LLVM::CallOp::create(builder, location, mlir::TypeRange{builder.getF32Type()},
+                               checkFunction, arguments)
+              .getResult();
       if (!vector) {
         result = after;
         continue;
@@ -123,7 +129,8 @@ private:
       if (isFloat(operand.getType()) && sources.size() < 3)
         sources.push_back(operand);
     const mlir::Value after = checked(op->getLoc(), value, sources);
-    value.replaceUsesWithIf(after, [&](mlir::OpOperand &use) { return users.contains(use.getOwner()); });
+    value.replaceUsesWithIf(after,
+                            [&](mlir::OpOperand &use) { return users.contains(use.getOwner()); });
   }
 
   mlir::ModuleOp module;

@@ -1,8 +1,9 @@
 //===- CheckNumbers.h - where a number stops being finite ------------------===//
 //
-// For programs that find out why a sample is infinite or not a number (runtime/program/NumberCheck.h): every
-// number that a shader computes or stores goes through a call of rtsl_check_number, with what it was
-// computed from and the number of its place in the source. The bits are the same.
+// For programs that find out why a sample is infinite or not a number
+// (runtime/program/NumberCheck.h): every number that a shader computes or stores goes through a
+// call of rtsl_check_number, with what it was computed from and the number of its place in the
+// source. The bits are the same.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -68,7 +68,8 @@ LogicalResult checkLinked(mlir::ModuleOp module) {
 
 /// On a module of which all this is noted.
 constexpr llvm::StringLiteral wholeProgramNoted = "rtsl.noted";
-/// On a module: a ray that was sent points to its payload, which lies in the frame of the state that sent it.
+/// On a module: a ray that was sent points to its payload, which lies in the frame of the state
+/// that sent it.
 constexpr llvm::StringLiteral holdsPayloads = "rtsl.holds_payloads";
 
 /// Marks constructors and everything that they call, directly or not.
@@ -85,11 +86,13 @@ void markWriters(mlir::ModuleOp module) {
       mark(function);
   const mlir::SymbolTable symbols(module);
   while (!worklist.empty())
-    worklist.pop_back_val().walk([&](CallOp call) { mark(symbols.lookup<FuncOp>(call.getCallee())); });
+    worklist.pop_back_val().walk(
+        [&](CallOp call) { mark(symbols.lookup<FuncOp>(call.getCallee())); });
 }
 
 void notePayloads(mlir::ModuleOp module) {
-  if (module.walk([](ir::SpawnPayloadOp) { return mlir::WalkResult::interrupt(); }).wasInterrupted())
+  if (module.walk([](ir::SpawnPayloadOp) { return mlir::WalkResult::interrupt(); })
+          .wasInterrupted())
     module->setAttr(holdsPayloads, mlir::UnitAttr::get(module.getContext()));
 }
 
@@ -175,7 +178,8 @@ void addStateParameter(mlir::ModuleOp module) {
 // 5. Vectors of bools as results
 //===----------------------------------------------------------------------===//
 
-/// FastISel of LLVM 22 cannot take a `<4 x i1>` from a call where the processor has AVX-512 (llvm-project issue 179100).
+/// FastISel of LLVM 22 cannot take a `<4 x i1>` from a call where the processor has AVX-512
+/// (llvm-project issue 179100).
 mlir::Type returnedType(mlir::Type type) {
   auto vector = llvm::dyn_cast<mlir::VectorType>(type);
   return vector && vector.getElementType().isInteger(1)
@@ -191,7 +195,8 @@ void returnBoolsAsNumbers(mlir::ModuleOp module) {
     function.walk([](mlir::func::ReturnOp op) {
       mlir::OpBuilder builder(op);
       for (mlir::OpOperand &result : op->getOpOperands())
-        if (const mlir::Type returned = returnedType(result.get().getType()); returned != result.get().getType())
+        if (const mlir::Type returned = returnedType(result.get().getType());
+            returned != result.get().getType())
           result.set(mlir::arith::ExtUIOp::create(builder, op.getLoc(), returned, result.get()));
     });
   }
@@ -221,7 +226,8 @@ void declareNullRecord(mlir::ModuleOp module) {
                          LLVM::Linkage::Internal, nullRecord, builder.getI32IntegerAttr(0));
 }
 
-/// One global for all tables with the same words. The second of a name has `.1` behind it, and so on.
+/// One global for all tables with the same words. The second of a name has `.1` behind it, and so
+/// on.
 void declareTables(mlir::ModuleOp module) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
   llvm::DenseMap<mlir::Attribute, mlir::StringAttr> symbols; // by words
@@ -238,9 +244,10 @@ void declareTables(mlir::ModuleOp module) {
       const auto count = static_cast<int64_t>(table.getWords().size());
       auto words = mlir::DenseIntElementsAttr::get(
           mlir::RankedTensorType::get({count}, builder.getI32Type()), table.getWords());
-      auto global = LLVM::GlobalOp::create(builder, table.getLoc(),
-                                           LLVM::LLVMArrayType::get(builder.getI32Type(), static_cast<unsigned>(count)),
-                                           /*isConstant=*/true, LLVM::Linkage::Private, name, words, ir::memoryAlignment);
+      auto global = LLVM::GlobalOp::create(
+          builder, table.getLoc(),
+          LLVM::LLVMArrayType::get(builder.getI32Type(), static_cast<unsigned>(count)),
+          /*isConstant=*/true, LLVM::Linkage::Private, name, words, ir::memoryAlignment);
       global.setUnnamedAddr(LLVM::UnnamedAddr::Global);
       taken.insert(global);
     }

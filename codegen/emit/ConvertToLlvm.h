@@ -1,8 +1,8 @@
 //===- ConvertToLlvm.h - level 2 to MLIR's LLVM dialect -------------------===//
 //
 // Here the state of the ray becomes a parameter, the first of every function, and every address an
-// offset: of RtslState and RtslLaunch by offsetof (runtime/device/ray/Abi.h), of records and aggregates
-// by codegen/ir/Layout.h.
+// offset: of RtslState and RtslLaunch by offsetof (runtime/device/ray/Abi.h), of records and
+// aggregates by codegen/ir/Layout.h.
 //
 //   - a reference is an i32, an address an !llvm.ptr, a bool in memory an i32;
 //   - memory is accessed with alignment 4, vectors too;
@@ -30,8 +30,8 @@ namespace rtsl::codegen {
 /// linking supplies: a dispatch slot, or the offset of an attribute.
 std::unique_ptr<mlir::Pass> createConvertToLlvmPass();
 
-/// Notes on operations what the pass finds in the whole program and in no part of it (Parts.h). The pass does so itself for
-/// a module that is a whole program.
+/// Notes on operations what the pass finds in the whole program and in no part of it (Parts.h). The
+/// pass does so itself for a module that is a whole program.
 void noteWholeProgram(mlir::ModuleOp module);
 
 /// From level 2 to the LLVM dialect, cleaned up.

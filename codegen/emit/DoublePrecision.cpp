@@ -1,16 +1,16 @@
 //===- DoublePrecision.cpp - what --fp=double changes ---------------------===//
 #include "codegen/emit/DoublePrecision.h"
 
-#include "runtime/program/NumberCheck.h"
 #include "math/Refraction.h"
+#include "runtime/program/NumberCheck.h"
 
+#include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/SmallVectorExtras.h"
 #include "llvm/Analysis/ConstantFolding.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/Module.h"
-#include "llvm/ADT/SetVector.h"
-#include "llvm/ADT/SmallVectorExtras.h"
 
 #include <cmath>
 
@@ -18,7 +18,9 @@ namespace rtsl::codegen {
 
 namespace {
 
-double inverseSquareRoot(double x) { return 1.0 / std::sqrt(x); }
+double inverseSquareRoot(double x) {
+  return 1.0 / std::sqrt(x);
+}
 
 /// Sine and cosine of pi x. All but the product with pi and what follows it is exact.
 double sineOfPi(double x) {
@@ -27,21 +29,24 @@ double sineOfPi(double x) {
     turn = std::copysign(1.0, turn) - turn;
   if (turn == 0.0)
     return std::copysign(0.0, x);
-  return std::fabs(turn) > 0.25 ? std::copysign(std::cos(M_PI * (0.5 - std::fabs(turn))), turn) : std::sin(M_PI * turn);
+  return std::fabs(turn) > 0.25 ? std::copysign(std::cos(M_PI * (0.5 - std::fabs(turn))), turn)
+                                : std::sin(M_PI * turn);
 }
-double cosineOfPi(double x) { return sineOfPi(0.5 - std::fabs(std::remainder(x, 2.0))); }
+double cosineOfPi(double x) {
+  return sineOfPi(0.5 - std::fabs(std::remainder(x, 2.0)));
+}
 
 using Unary = double (*)(double);
 using Binary = double (*)(double, double);
 using Refract = void (*)(const double *, const double *, double, double *);
 
-#define UNARY(name)                                                                                \
-  { "rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Unary>(&std::name)) }
+#define UNARY(name) {"rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Unary>(&std::name))}
 #define BINARY(name)                                                                               \
-  { "rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Binary>(&std::name)) }
+  {"rtsl_double_" #name, reinterpret_cast<void *>(static_cast<Binary>(&std::name))}
 
 #define REFRACT(count)                                                                             \
-  { "rtsl_double_refract" #count, reinterpret_cast<void *>(static_cast<Refract>(&device::refract<count, double>)) }
+  {"rtsl_double_refract" #count,                                                                   \
+   reinterpret_cast<void *>(static_cast<Refract>(&device::refract<count, double>))}
 
 struct DoubleFunction {
   const char *name;
@@ -49,15 +54,34 @@ struct DoubleFunction {
 };
 
 const DoubleFunction functions[] = {
-    UNARY(sin),    UNARY(cos),   UNARY(tan),   UNARY(asin),  UNARY(acos),
-    UNARY(atan),   UNARY(sinh),  UNARY(cosh),  UNARY(tanh),  UNARY(asinh),
-    UNARY(acosh),  UNARY(atanh), UNARY(exp),   UNARY(exp2),  UNARY(expm1),
-    UNARY(log),    UNARY(log2),  UNARY(log1p), BINARY(pow),  BINARY(atan2),
+    UNARY(sin),
+    UNARY(cos),
+    UNARY(tan),
+    UNARY(asin),
+    UNARY(acos),
+    UNARY(atan),
+    UNARY(sinh),
+    UNARY(cosh),
+    UNARY(tanh),
+    UNARY(asinh),
+    UNARY(acosh),
+    UNARY(atanh),
+    UNARY(exp),
+    UNARY(exp2),
+    UNARY(expm1),
+    UNARY(log),
+    UNARY(log2),
+    UNARY(log1p),
+    BINARY(pow),
+    BINARY(atan2),
     {"rtsl_double_inversesqrt", reinterpret_cast<void *>(&inverseSquareRoot)},
     {"rtsl_double_check_number", reinterpret_cast<void *>(&rtsl_double_check_number)},
     {"rtsl_double_sinpi", reinterpret_cast<void *>(&sineOfPi)},
     {"rtsl_double_cospi", reinterpret_cast<void *>(&cosineOfPi)},
-    REFRACT(1), REFRACT(2), REFRACT(3), REFRACT(4),
+    REFRACT(1),
+    REFRACT(2),
+    REFRACT(3),
+    REFRACT(4),
 };
 
 /// The name of the double function for an elementary one of the device code; empty for others.
@@ -73,7 +97,9 @@ std::string doubleNameOf(const llvm::CallInst &call) {
   return "";
 }
 
-bool isSingle(const llvm::Type *type) { return type->getScalarType()->isFloatTy(); }
+bool isSingle(const llvm::Type *type) {
+  return type->getScalarType()->isFloatTy();
+}
 
 llvm::Type *doubled(llvm::Type *type) {
   llvm::Type *scalar = llvm::Type::getDoubleTy(type->getContext());
@@ -115,16 +141,18 @@ bool isWidenedCall(const llvm::CallInst &call) {
   return callee && callee->getFunctionType() != call.getFunctionType();
 }
 
-/// A function whose parameters and results of single precision, if it has any, are double. What runtime and shaders call of
-/// one another passes no numbers in this direction.
+/// A function whose parameters and results of single precision, if it has any, are double. What
+/// runtime and shaders call of one another passes no numbers in this direction.
 llvm::Function *withDoubleSignature(llvm::Function &function) {
   llvm::FunctionType *type = function.getFunctionType();
   auto widened = [](llvm::Type *part) { return isSingle(part) ? doubled(part) : part; };
   const auto parameters = llvm::map_to_vector(type->params(), widened);
-  llvm::FunctionType *wide = llvm::FunctionType::get(widened(type->getReturnType()), parameters, type->isVarArg());
+  llvm::FunctionType *wide =
+      llvm::FunctionType::get(widened(type->getReturnType()), parameters, type->isVarArg());
   if (wide == type)
     return &function;
-  llvm::Function *result = llvm::Function::Create(wide, function.getLinkage(), function.getAddressSpace());
+  llvm::Function *result =
+      llvm::Function::Create(wide, function.getLinkage(), function.getAddressSpace());
   function.getParent()->getFunctionList().insert(function.getIterator(), result);
   result->copyAttributesFrom(&function);
   result->takeName(&function);
@@ -169,10 +197,11 @@ private:
     if (!isSingle(instruction.getType()))
       return false;
     if (const auto *call = llvm::dyn_cast<llvm::CallInst>(&instruction))
-      return isArithmetic(call->getIntrinsicID()) || !doubleNameOf(*call).empty() || isWidenedCall(*call);
-    return llvm::isa<llvm::BinaryOperator, llvm::UnaryOperator, llvm::SelectInst, llvm::PHINode, llvm::FreezeInst,
-                     llvm::ExtractElementInst, llvm::InsertElementInst, llvm::ShuffleVectorInst, llvm::SIToFPInst,
-                     llvm::UIToFPInst,
+      return isArithmetic(call->getIntrinsicID()) || !doubleNameOf(*call).empty() ||
+             isWidenedCall(*call);
+    return llvm::isa<llvm::BinaryOperator, llvm::UnaryOperator, llvm::SelectInst, llvm::PHINode,
+                     llvm::FreezeInst, llvm::ExtractElementInst, llvm::InsertElementInst,
+                     llvm::ShuffleVectorInst, llvm::SIToFPInst, llvm::UIToFPInst,
                      llvm::FPTruncInst>(instruction);
   }
 
@@ -186,8 +215,8 @@ private:
   /// Whether a user takes double operands though its own result is none.
   static bool takesDouble(const llvm::Instruction &user) {
     if (const auto *call = llvm::dyn_cast<llvm::CallInst>(&user))
-      return call->getIntrinsicID() == llvm::Intrinsic::fptosi_sat || call->getIntrinsicID() == llvm::Intrinsic::fptoui_sat ||
-             isWidenedCall(*call);
+      return call->getIntrinsicID() == llvm::Intrinsic::fptosi_sat ||
+             call->getIntrinsicID() == llvm::Intrinsic::fptoui_sat || isWidenedCall(*call);
     if (llvm::isa<llvm::ReturnInst>(user))
       return user.getFunction()->getReturnType()->isFPOrFPVectorTy();
     return llvm::isa<llvm::FCmpInst, llvm::FPToSIInst, llvm::FPToUIInst, llvm::FPExtInst>(user);
@@ -215,13 +244,15 @@ private:
       for (const llvm::Use &argument : call->args()) // wide by now, but for integers
         operands.push_back(argument->getType());
       llvm::FunctionCallee callee =
-          module.getOrInsertFunction(name, llvm::FunctionType::get(type, operands, false), call->getCalledFunction()->getAttributes());
+          module.getOrInsertFunction(name, llvm::FunctionType::get(type, operands, false),
+                                     call->getCalledFunction()->getAttributes());
       call->setCalledFunction(callee);
     } else if (isComputed) {
-      call->setCalledFunction(llvm::Intrinsic::getOrInsertDeclaration(&module, call->getIntrinsicID(), {type}));
-    } else {
       call->setCalledFunction(
-          llvm::Intrinsic::getOrInsertDeclaration(&module, call->getIntrinsicID(), {call->getType(), type}));
+          llvm::Intrinsic::getOrInsertDeclaration(&module, call->getIntrinsicID(), {type}));
+    } else {
+      call->setCalledFunction(llvm::Intrinsic::getOrInsertDeclaration(
+          &module, call->getIntrinsicID(), {call->getType(), type}));
     }
   }
 
@@ -235,7 +266,8 @@ private:
   /// A single value as double.
   llvm::Value *wide(llvm::Value *value) {
     if (auto *constant = llvm::dyn_cast<llvm::Constant>(value))
-      return llvm::ConstantFoldCastOperand(llvm::Instruction::FPExt, constant, doubled(value->getType()),
+      return llvm::ConstantFoldCastOperand(llvm::Instruction::FPExt, constant,
+                                           doubled(value->getType()),
                                            function.getParent()->getDataLayout());
     llvm::Value *&result = widened[value];
     if (!result) {
@@ -264,7 +296,8 @@ private:
     if (auto *instruction = llvm::dyn_cast<llvm::Instruction>(&value))
       builder.SetInsertPoint(instruction->getParent(), *instruction->getInsertionPointAfterDef());
     else
-      builder.SetInsertPoint(&function.getEntryBlock(), function.getEntryBlock().getFirstInsertionPt());
+      builder.SetInsertPoint(&function.getEntryBlock(),
+                             function.getEntryBlock().getFirstInsertionPt());
   }
 
   llvm::Function &function;

@@ -60,9 +60,10 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::unique_ptr<llvm::LLVMConte
 }
 
 /// All symbols at once: a search for each alone takes longer than its function.
-llvm::Error Jit::Implementation::findAddresses(orc::JITDylib &library, const orc::SymbolNameSet &exports) {
-  auto found = session->lookup(orc::makeJITDylibSearchOrder(&library),
-                               orc::SymbolLookupSet(exports));
+llvm::Error Jit::Implementation::findAddresses(orc::JITDylib &library,
+                                               const orc::SymbolNameSet &exports) {
+  auto found =
+      session->lookup(orc::makeJITDylibSearchOrder(&library), orc::SymbolLookupSet(exports));
   if (!found) {
     std::string message = llvm::toString(found.takeError());
     if (!messages.empty())
@@ -74,13 +75,15 @@ llvm::Error Jit::Implementation::findAddresses(orc::JITDylib &library, const orc
   return llvm::Error::success();
 }
 
-llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::vector<ObjectCode> parts, const std::vector<HostSymbol> &symbols) {
+llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::vector<ObjectCode> parts,
+                                                 const std::vector<HostSymbol> &symbols) {
   std::unique_ptr<Jit> result(new Jit);
   Implementation &self = *result->implementation;
 
-  // No threads, no platform with its own run-time modules, no search in the process: a small program
-  // is up in milliseconds, and calls only what it is given.
-  auto process = orc::SelfExecutorProcessControl::Create(nullptr, std::make_unique<orc::InPlaceTaskDispatcher>());
+  // No threads, no platform with its own run-time modules, no search in the process: a small
+  // program is up in milliseconds, and calls only what it is given.
+  auto process = orc::SelfExecutorProcessControl::Create(
+      nullptr, std::make_unique<orc::InPlaceTaskDispatcher>());
   if (!process)
     return process.takeError();
   self.session = std::make_unique<orc::ExecutionSession>(std::move(*process));
@@ -112,8 +115,9 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::vector<ObjectCode> parts, 
       self.stackUse->add(part.stackUse);
     else
       self.stackUse = std::make_shared<StackUse>(std::move(part.stackUse));
-    if (llvm::Error error = self.linker->add(
-            library, std::make_unique<llvm::SmallVectorMemoryBuffer>(std::move(part.bytes), /*RequiresNullTerminator=*/false)))
+    if (llvm::Error error =
+            self.linker->add(library, std::make_unique<llvm::SmallVectorMemoryBuffer>(
+                                          std::move(part.bytes), /*RequiresNullTerminator=*/false)))
       return error;
   }
   if (llvm::Error error = self.findAddresses(library, exports))

@@ -20,7 +20,8 @@ struct HostSymbol {
 /// may call what compilers take for granted (memcpy, memset, ...) and nothing else.
 class Jit {
 public:
-  /// Links parts of a program, which may call one another. An error names the symbols that nobody defines.
+  /// Links parts of a program, which may call one another. An error names the symbols that nobody
+  /// defines.
   static llvm::Expected<std::unique_ptr<Jit>> create(std::vector<ObjectCode> parts,
                                                      const std::vector<HostSymbol> &symbols);
 

@@ -110,8 +110,8 @@ createTargetMachine(const MachineOptions &options) {
 }
 
 /// Functions are inlined only where their features allow it, so all of them say the same; also that
-/// there is no C library whose functions could be recognised, as is said of the device code. Estimates
-/// of reciprocals would make a NaN of 1 / 0, with FloatingPoint::Fast too.
+/// there is no C library whose functions could be recognised, as is said of the device code.
+/// Estimates of reciprocals would make a NaN of 1 / 0, with FloatingPoint::Fast too.
 static void setProcessor(llvm::Module &module, llvm::StringRef cpu, llvm::StringRef features) {
   for (llvm::Function &function : module) {
     if (function.isDeclaration())
@@ -246,20 +246,20 @@ static void keepLoadsNarrow(llvm::PassInstrumentationCallbacks &callbacks) {
 /// Twice, for functions that are passed to others are called directly once these are inlined, and
 /// addresses lie in variables themselves.
 static void addJoining(llvm::PassBuilder &builder) {
-  builder.registerPipelineStartEPCallback([](llvm::ModulePassManager &passes,
-                                             llvm::OptimizationLevel) {
-    for (int round = 0; round < 2; ++round) {
-      passes.addPass(llvm::AlwaysInlinerPass(/*InsertLifetime=*/false));
-      llvm::FunctionPassManager functions;
-      functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
-      functions.addPass(llvm::EarlyCSEPass());
-      functions.addPass(llvm::InstCombinePass());
-      functions.addPass(llvm::SimplifyCFGPass());
-      functions.addPass(UniteAddressesPass());
-      functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
-      passes.addPass(llvm::createModuleToFunctionPassAdaptor(std::move(functions)));
-    }
-  });
+  builder.registerPipelineStartEPCallback(
+      [](llvm::ModulePassManager &passes, llvm::OptimizationLevel) {
+        for (int round = 0; round < 2; ++round) {
+          passes.addPass(llvm::AlwaysInlinerPass(/*InsertLifetime=*/false));
+          llvm::FunctionPassManager functions;
+          functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
+          functions.addPass(llvm::EarlyCSEPass());
+          functions.addPass(llvm::InstCombinePass());
+          functions.addPass(llvm::SimplifyCFGPass());
+          functions.addPass(UniteAddressesPass());
+          functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
+          passes.addPass(llvm::createModuleToFunctionPassAdaptor(std::move(functions)));
+        }
+      });
 }
 
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {

@@ -40,7 +40,8 @@ struct MachineOptions {
   bool hostCpu = false;
   /// Code for an NVIDIA GPU, rather than for the host: "sm_75" and the like. Empty: the host.
   std::string gpu;
-  /// A megakernel: the rays of a lane are local variables, so calls that take their addresses are inlined (JoinCalls.h).
+  /// A megakernel: the rays of a lane are local variables, so calls that take their addresses are
+  /// inlined (JoinCalls.h).
   bool isMegakernel = false;
   /// Of shader code. Device code is always strict.
   FloatingPoint floatingPoint = FloatingPoint::Strict;

@@ -32,8 +32,8 @@ mlir::Type memoryType(const mlir::TypeConverter &converter, mlir::Type type) {
   return isBool(type) ? ir::intLike(type) : converter.convertType(type);
 }
 
-/// Whether what lies at `address` stays as it is while the program runs: it is part of a constant, or of a member or of
-/// a buffer, and the code does not belong to a constructor.
+/// Whether what lies at `address` stays as it is while the program runs: it is part of a constant,
+/// or of a member or of a buffer, and the code does not belong to a constructor.
 bool isInvariant(Value address) {
   while (mlir::Operation *op = address.getDefiningOp()) {
     if (llvm::isa<ir::TableOp>(op))
@@ -174,7 +174,8 @@ struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
                                          alignof(void *), false, false, /*isInvariant=*/true);
     Value record = indexedAddress(rewriter, location, records,
                                   widen(rewriter, location, adaptor.getObject()), 1);
-    rewriter.replaceOp(op, offsetAddress(rewriter, location, record, static_cast<uint32_t>(offset)));
+    rewriter.replaceOp(op,
+                       offsetAddress(rewriter, location, record, static_cast<uint32_t>(offset)));
     return mlir::success();
   }
 };
@@ -192,9 +193,11 @@ uint32_t stateOffset(llvm::StringRef name) {
 
 struct ConvertTable : ConvertOpToLLVMPattern<ir::TableOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
-  LogicalResult matchAndRewrite(ir::TableOp op, OpAdaptor, ConversionPatternRewriter &rewriter) const override {
+  LogicalResult matchAndRewrite(ir::TableOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
     auto symbol = op->getAttrOfType<mlir::StringAttr>(tableSymbol);
-    rewriter.replaceOpWithNewOp<LLVM::AddressOfOp>(op, LLVM::LLVMPointerType::get(op.getContext()), symbol.getValue());
+    rewriter.replaceOpWithNewOp<LLVM::AddressOfOp>(op, LLVM::LLVMPointerType::get(op.getContext()),
+                                                   symbol.getValue());
     return mlir::success();
   }
 };
@@ -213,7 +216,8 @@ struct ConvertKeepAddress : ConvertOpToLLVMPattern<ir::KeepAddressOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::KeepAddressOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, adaptor.getValue(), adaptor.getSlot(), alignof(void *));
+    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, adaptor.getValue(), adaptor.getSlot(),
+                                               alignof(void *));
     return mlir::success();
   }
 };
@@ -356,10 +360,12 @@ struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
 } // namespace
 
 void addMemoryPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
-  patterns.add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
-               ConvertElement, ConvertMember, ConvertTable, ConvertState, ConvertFrameSlot, ConvertKeepAddress, ConvertKeptAddress, ConvertAttribute,
-               ConvertBufferElement, ConvertBufferLength, ConvertNullRef, ConvertCastRef,
-               ConvertEqualRef, ConvertClassId>(converter);
+  patterns
+      .add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
+           ConvertElement, ConvertMember, ConvertTable, ConvertState, ConvertFrameSlot,
+           ConvertKeepAddress, ConvertKeptAddress, ConvertAttribute, ConvertBufferElement,
+           ConvertBufferLength, ConvertNullRef, ConvertCastRef, ConvertEqualRef, ConvertClassId>(
+          converter);
 }
 
 } // namespace rtsl::codegen

@@ -26,8 +26,8 @@ namespace {
 
 LLVM_ENABLE_BITMASK_ENUMS_IN_NAMESPACE();
 
-/// Where the linker believes the code to lie: beyond 4 GiB, so that it does not shorten a distance to
-/// an absolute address.
+/// Where the linker believes the code to lie: beyond 4 GiB, so that it does not shorten a distance
+/// to an absolute address.
 constexpr std::uint64_t linkAddress = 0x100000000000;
 constexpr std::uint64_t segmentAlignment = 64;
 
@@ -125,8 +125,7 @@ public:
     };
   }
 
-  llvm::Error modifyPassConfig(jitlink::LinkGraph &,
-                               jitlink::PassConfiguration &passes) override {
+  llvm::Error modifyPassConfig(jitlink::LinkGraph &, jitlink::PassConfiguration &passes) override {
     passes.PreFixupPasses.push_back(refuseAbsoluteAddresses);
     return llvm::Error::success();
   }
@@ -174,14 +173,17 @@ llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMa
   if (!object)
     return object.takeError();
   auto graph = jitlink::createLinkGraphFromELFObject_x86_64(
-      llvm::MemoryBufferRef(llvm::StringRef(object->bytes.data(), object->bytes.size()), "host code"), std::make_shared<orc::SymbolStringPool>());
+      llvm::MemoryBufferRef(llvm::StringRef(object->bytes.data(), object->bytes.size()),
+                            "host code"),
+      std::make_shared<orc::SymbolStringPool>());
   if (!graph)
     return graph.takeError();
   Result result;
   jitlink::link_ELF_x86_64(std::move(*graph), std::make_unique<Context>(result, entries));
   if (result.error)
     return std::move(result.error);
-  result.image.stackBytes = object->stackUse.bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
+  result.image.stackBytes =
+      object->stackUse.bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
   return std::move(result.image);
 }
 

@@ -47,18 +47,20 @@ struct ConvertElementary : ConvertOpToLLVMPattern<ir::ElementaryOp> {
   }
 };
 
-/// Vectors go through memory. The function is of single precision or, where arithmetic is widened, of double: then its operands
-/// are widened here, which widening the rest makes the identity.
+/// Vectors go through memory. The function is of single precision or, where arithmetic is widened,
+/// of double: then its operands are widened here, which widening the rest makes the identity.
 struct ConvertRefract : ConvertOpToLLVMPattern<ir::RefractOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::RefractOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
     const Location location = op.getLoc();
     const bool isDouble = op->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
-    const mlir::Type number = isDouble ? mlir::Type(rewriter.getF64Type()) : mlir::Type(rewriter.getF32Type());
+    const mlir::Type number =
+        isDouble ? mlir::Type(rewriter.getF64Type()) : mlir::Type(rewriter.getF32Type());
     auto vector = llvm::dyn_cast<mlir::VectorType>(op.getType());
     const mlir::Type type = vector ? mlir::Type(vector.clone(number)) : number;
-    const uint32_t bytes = isDouble ? 8 : 4, count = vector ? static_cast<uint32_t>(vector.getNumElements()) : 1;
+    const uint32_t bytes = isDouble ? 8 : 4,
+                   count = vector ? static_cast<uint32_t>(vector.getNumElements()) : 1;
     auto widened = [&](Value value, mlir::Type wide) -> Value {
       return isDouble ? Value(LLVM::FPExtOp::create(rewriter, location, wide, value)) : value;
     };
@@ -69,9 +71,12 @@ struct ConvertRefract : ConvertOpToLLVMPattern<ir::RefractOp> {
     };
     Value incident = inMemory(adaptor.getIncident()), normal = inMemory(adaptor.getNormal());
     Value result = stackSlot(rewriter, location, count * bytes, bytes);
-    callRuntime(rewriter, location, runtimeFunction(op), {incident, normal, widened(adaptor.getEta(), number), result});
+    callRuntime(rewriter, location, runtimeFunction(op),
+                {incident, normal, widened(adaptor.getEta(), number), result});
     Value refracted = LLVM::LoadOp::create(rewriter, location, type, result, bytes);
-    rewriter.replaceOp(op, isDouble ? Value(LLVM::FPTruncOp::create(rewriter, location, op.getType(), refracted)) : refracted);
+    rewriter.replaceOp(
+        op, isDouble ? Value(LLVM::FPTruncOp::create(rewriter, location, op.getType(), refracted))
+                     : refracted);
     return mlir::success();
   }
 };
@@ -79,7 +84,8 @@ struct ConvertRefract : ConvertOpToLLVMPattern<ir::RefractOp> {
 /// What nothing was to know of it stays hidden until arithmetic has been widened.
 struct ConvertHide : ConvertOpToLLVMPattern<ir::HideOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
-  LogicalResult matchAndRewrite(ir::HideOp op, OpAdaptor adaptor, ConversionPatternRewriter &rewriter) const override {
+  LogicalResult matchAndRewrite(ir::HideOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
     rewriter.replaceOpWithNewOp<LLVM::FreezeOp>(op, adaptor.getValue());
     return mlir::success();
   }
@@ -132,8 +138,8 @@ struct ConvertDivision : ConvertOpToLLVMPattern<Op> {
 } // namespace
 
 void addNumberPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
-  patterns.add<ConvertElementary, ConvertRefract, ConvertHide, ConvertToInt<ir::ToSintOp>, ConvertToInt<ir::ToUintOp>,
-               ConvertDivision<ir::SDivOp, LLVM::SDivOp, true, true>,
+  patterns.add<ConvertElementary, ConvertRefract, ConvertHide, ConvertToInt<ir::ToSintOp>,
+               ConvertToInt<ir::ToUintOp>, ConvertDivision<ir::SDivOp, LLVM::SDivOp, true, true>,
                ConvertDivision<ir::UDivOp, LLVM::UDivOp, false, true>,
                ConvertDivision<ir::SRemOp, LLVM::SRemOp, true, false>,
                ConvertDivision<ir::URemOp, LLVM::URemOp, false, false>>(converter);

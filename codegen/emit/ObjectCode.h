@@ -22,7 +22,8 @@ struct ObjectCode {
   StackUse stackUse;
 };
 
-/// Compiles an optimised module. Several threads may do so at once, each with a module in a context of its own.
+/// Compiles an optimised module. Several threads may do so at once, each with a module in a context
+/// of its own.
 llvm::Expected<ObjectCode> makeObjectCode(llvm::Module &module, llvm::TargetMachine &machine);
 
 } // namespace rtsl::codegen

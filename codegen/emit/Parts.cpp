@@ -89,7 +89,8 @@ std::vector<std::string> visibleFunctions(const llvm::Module &module) {
   return names;
 }
 
-/// Of the function and all that comes with it, which has names of its own in each module. Counted no further than is needed.
+/// Of the function and all that comes with it, which has names of its own in each module. Counted
+/// no further than is needed.
 static unsigned instructionCount(const llvm::Function &function) {
   unsigned count = 0;
   llvm::SetVector<const llvm::Function *> pending;
@@ -108,8 +109,10 @@ static unsigned instructionCount(const llvm::Function &function) {
 std::vector<std::string> shareLargeFunctions(llvm::Module &part) {
   std::vector<llvm::Function *> large;
   for (llvm::Function &function : part)
-    if (function.hasLocalLinkage() && function.getName().starts_with("rtsl_") && // others have no name outside
-        !function.hasFnAttribute(llvm::Attribute::AlwaysInline) && instructionCount(function) > largestInlined)
+    if (function.hasLocalLinkage() &&
+        function.getName().starts_with("rtsl_") && // others have no name outside
+        !function.hasFnAttribute(llvm::Attribute::AlwaysInline) &&
+        instructionCount(function) > largestInlined)
       large.push_back(&function);
   for (llvm::Function *function : large) {
     function->deleteBody(); // its linkage is external after that

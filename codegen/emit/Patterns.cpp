@@ -63,7 +63,8 @@ Value stackSlot(OpBuilder &builder, Location location, uint32_t size, uint32_t a
   mlir::Type pointer = LLVM::LLVMPointerType::get(builder.getContext());
   mlir::Type bytes = LLVM::LLVMArrayType::get(builder.getI8Type(), size);
   Value one = LLVM::ConstantOp::create(builder, location, builder.getI32IntegerAttr(1));
-  return LLVM::AllocaOp::create(builder, location, pointer, bytes, one, std::max(alignment, ir::memoryAlignment));
+  return LLVM::AllocaOp::create(builder, location, pointer, bytes, one,
+                                std::max(alignment, ir::memoryAlignment));
 }
 
 llvm::SmallVector<Value> componentsOf(OpBuilder &builder, Location location, Value vector) {

@@ -49,7 +49,8 @@ mlir::Value constantLike(mlir::OpBuilder &builder, mlir::Location location, mlir
 
 /// A slot on the stack of `size` bytes, made at the entry of the function around the insertion
 /// point, with the alignment of all our memory if none is given.
-mlir::Value stackSlot(mlir::OpBuilder &builder, mlir::Location location, uint32_t size, uint32_t alignment = 0);
+mlir::Value stackSlot(mlir::OpBuilder &builder, mlir::Location location, uint32_t size,
+                      uint32_t alignment = 0);
 
 /// The components of a vector.
 llvm::SmallVector<mlir::Value> componentsOf(mlir::OpBuilder &builder, mlir::Location location,

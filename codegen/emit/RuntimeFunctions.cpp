@@ -16,8 +16,10 @@ std::string runtimeFunction(mlir::Operation *op) {
       })
       .Case([](ir::RefractOp refract) {
         const auto vector = llvm::dyn_cast<mlir::VectorType>(refract.getType());
-        const bool isDouble = refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
-        return (isDouble ? "rtsl_double_refract" : "rtsl_refract") + std::to_string(vector ? vector.getNumElements() : 1);
+        const bool isDouble =
+            refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
+        return (isDouble ? "rtsl_double_refract" : "rtsl_refract") +
+               std::to_string(vector ? vector.getNumElements() : 1);
       })
       .Case([](ir::TraceOp) { return "rtsl_trace"; })
       .Case([](ir::TracePayloadOp) { return "rtsl_trace_payload"; })
@@ -50,8 +52,11 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
         return function(f32, llvm::SmallVector<mlir::Type>(elementary.getOperands().size(), f32));
       })
       .Case([&](ir::RefractOp refract) {
-        const bool isDouble = refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
-        return function(nothing, {pointer, pointer, isDouble ? mlir::Type(mlir::Float64Type::get(context)) : f32, pointer});
+        const bool isDouble =
+            refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
+        return function(nothing,
+                        {pointer, pointer,
+                         isDouble ? mlir::Type(mlir::Float64Type::get(context)) : f32, pointer});
       })
       .Case([&](ir::TraceOp) {
         return function(nothing, {pointer, f32, f32, f32, f32, f32, f32, pointer});
@@ -60,12 +65,8 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
         return function(nothing, {pointer, f32, f32, f32, f32, f32, f32, f32, f32, pointer, i32,
                                   i32, f32, i32, i32});
       })
-      .Case([&](ir::RaiseOp) {
-        return function(nothing, {pointer, i32});
-      })
-      .Case([&](ir::PrintOp) {
-        return function(nothing, {pointer, i32, pointer, i32});
-      })
+      .Case([&](ir::RaiseOp) { return function(nothing, {pointer, i32}); })
+      .Case([&](ir::PrintOp) { return function(nothing, {pointer, i32, pointer, i32}); })
       .Case([&](ir::HitOp hit) {
         return hit.getError() ? function(i32, {pointer, f32, f32}) : function(i32, {pointer, f32});
       })
@@ -73,12 +74,8 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
       .Case([&](ir::IlluminateOp) {
         return function(i32, {pointer, i32, f32, f32, f32, f32, f32, f32, f32});
       })
-      .Case([&](ir::SpawnOp) {
-        return function(nothing, {pointer, f32, f32, f32, f32, f32, f32});
-      })
-      .Case([&](ir::MoveFrameOp) {
-        return function(nothing, {pointer, i32, i32});
-      })
+      .Case([&](ir::SpawnOp) { return function(nothing, {pointer, f32, f32, f32, f32, f32, f32}); })
+      .Case([&](ir::MoveFrameOp) { return function(nothing, {pointer, i32, i32}); })
       .Case([&](ir::TraceResultOp) { return function(pointer, {pointer}); });
 }
 

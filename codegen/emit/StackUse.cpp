@@ -3,8 +3,8 @@
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/StringMap.h"
-#include "llvm/IR/DiagnosticInfo.h"
 #include "llvm/IR/DiagnosticHandler.h"
+#include "llvm/IR/DiagnosticInfo.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/LLVMContext.h"
@@ -52,8 +52,8 @@ struct CollectFrames : llvm::DiagnosticHandler {
   std::shared_ptr<Frames> frames;
 };
 
-/// Tarjan's strongly connected components of the nodes in `chosen`, callees before callers. Chains of
-/// calls may be long, so the walk keeps a stack of its own.
+/// Tarjan's strongly connected components of the nodes in `chosen`, callees before callers. Chains
+/// of calls may be long, so the walk keeps a stack of its own.
 std::vector<std::vector<Index>> componentsOf(const Graph &graph, const std::vector<bool> &chosen) {
   constexpr Index none = ~Index(0);
   struct Step {
@@ -117,8 +117,8 @@ std::uint64_t sumOf(const Graph &graph, const std::vector<Index> &nodes) {
   return sum;
 }
 
-/// The longest way down through the chosen nodes, where `weigh(component)` is what a component takes
-/// by itself.
+/// The longest way down through the chosen nodes, where `weigh(component)` is what a component
+/// takes by itself.
 template <typename Weigh>
 std::uint64_t longestPath(const Graph &graph, const std::vector<bool> &chosen, Weigh weigh) {
   std::vector<std::uint64_t> below(graph.size(), 0); // from a node on, itself included
@@ -166,7 +166,8 @@ struct StackUse::Implementation {
     return runtime + longestPath(known, shaders, [&](const std::vector<Index> &part) {
              // Between two calls through the same reference a member has led on; other functions of
              // the circle may have called meanwhile.
-             return sumOf(known, part) * (isCycle(known, part) ? (referenceChain + 1) * part.size() : 1);
+             return sumOf(known, part) *
+                    (isCycle(known, part) ? (referenceChain + 1) * part.size() : 1);
            });
   }
 };
@@ -199,7 +200,8 @@ void StackUse::add(const StackUse &other) {
     self->graph[index].isDefined |= node.isDefined;
     std::set<Index> callees(self->graph[index].callees.begin(), self->graph[index].callees.end());
     for (Index callee : node.callees)
-      if (const Index here = self->nodeOf(other.self->graph[callee].name); callees.insert(here).second)
+      if (const Index here = self->nodeOf(other.self->graph[callee].name);
+          callees.insert(here).second)
         self->graph[index].callees.push_back(here);
   }
   for (const auto &frame : *other.self->frames) {

@@ -25,7 +25,8 @@ public:
   StackUse(StackUse &&) noexcept;
   ~StackUse();
 
-  /// Adds what another module of the same program has. Functions of one name are copies of one another.
+  /// Adds what another module of the same program has. Functions of one name are copies of one
+  /// another.
   void add(const StackUse &other);
 
   /// Bytes of stack that functions of the module take at most, their callees in it included, where

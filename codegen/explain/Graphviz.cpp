@@ -23,8 +23,7 @@ namespace {
 /// A file for one of the streams of `dot`; removed by the destructor.
 struct TemporaryFile {
   TemporaryFile() {
-    if (const std::error_code error =
-            llvm::sys::fs::createTemporaryFile("rtslc-graph", "", path))
+    if (const std::error_code error = llvm::sys::fs::createTemporaryFile("rtslc-graph", "", path))
       refuseToWrite(error);
   }
   TemporaryFile(const TemporaryFile &) = delete;
@@ -63,7 +62,8 @@ struct TemporaryFile {
 static std::string runDot(const std::string &graph) {
   const llvm::ErrorOr<std::string> program = llvm::sys::findProgramByName("dot");
   if (!program)
-    throw Error(ErrorCode::FileNotFound, "cannot find `dot` of Graphviz, which lays out the picture")
+    throw Error(ErrorCode::FileNotFound,
+                "cannot find `dot` of Graphviz, which lays out the picture")
         .note("install Graphviz (on Debian: `apt-get install graphviz`), or use `--format=dot`");
 
   TemporaryFile in, out, messages;
@@ -71,8 +71,8 @@ static std::string runDot(const std::string &graph) {
   const std::array<std::optional<llvm::StringRef>, 3> streams = {in.path.str(), out.path.str(),
                                                                  messages.path.str()};
   std::string error;
-  const int status = llvm::sys::ExecuteAndWait(*program, {*program, "-Tsvg"}, std::nullopt, streams,
-                                               0, 0, &error);
+  const int status =
+      llvm::sys::ExecuteAndWait(*program, {*program, "-Tsvg"}, std::nullopt, streams, 0, 0, &error);
   if (status != 0)
     throw Error(ErrorCode::FileUnreadable,
                 "`" + *program + "` failed: " +

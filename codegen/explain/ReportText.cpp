@@ -20,14 +20,16 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
     out << "\n";
   }
   for (const continuation::TrimmedPayload &trimmed : report.trimmed)
-    out << "payload " << trimmed.payload << ": " << trimmed.bytes << " bytes of " << trimmed.bytesBefore
-        << "; not passed, for nobody there reads it, " << llvm::join(trimmed.fields, ", ") << "\n";
+    out << "payload " << trimmed.payload << ": " << trimmed.bytes << " bytes of "
+        << trimmed.bytesBefore << "; not passed, for nobody there reads it, "
+        << llvm::join(trimmed.fields, ", ") << "\n";
   const std::uint32_t levels = report.rays.levels(report.maxDepth);
   out << "stack: " << levels << (levels == 1 ? " level" : " levels") << " of "
       << report.levelBytes() << " bytes for rays as deep as " << report.maxDepth << ", "
       << (report.rays.grows() ? "more if that is larger" : "and no more if that is larger") << "\n";
   if (const std::uint32_t growth = report.frameGrowth())
-    out << "stack: " << growth << " bytes more a level for each object in the scene's longest chain of references, "
+    out << "stack: " << growth
+        << " bytes more a level for each object in the scene's longest chain of references, "
         << "for methods call themselves through them\n";
 }
 
@@ -41,7 +43,8 @@ std::string listOf(const std::vector<std::string> &names) {
   std::vector<std::string> shown;
   if (constants != 0)
     shown.push_back(constants == 1 ? "a constant" : std::to_string(constants) + " constants");
-  llvm::copy_if(names, std::back_inserter(shown), [](const std::string &name) { return !isConstant(name); });
+  llvm::copy_if(names, std::back_inserter(shown),
+                [](const std::string &name) { return !isConstant(name); });
   return shown.empty() ? "" : ": " + llvm::join(shown, ", ");
 }
 
@@ -56,7 +59,8 @@ static std::string count(unsigned number, llvm::StringRef what) {
 
 static std::string describe(const ExtraReport &extra) {
   std::string text = extra.recomputed == 0 ? "" : count(extra.recomputed, "operation") + " again, ";
-  return text + count(extra.stores, "store") + ", " + count(extra.loads, "load") + ", cost " + std::to_string(extra.cost);
+  return text + count(extra.stores, "store") + ", " + count(extra.loads, "load") + ", cost " +
+         std::to_string(extra.cost);
 }
 
 /// What is live, and how much of it is left after each optimisation.
@@ -65,14 +69,16 @@ static void writeTrace(llvm::raw_ostream &out, const TraceReport &trace) {
   for (const StepReport &step : trace.steps)
     if (llvm::StringRef(step.step) == "trim-vectors" && step.savedBytes != trace.liveBytes)
       out << "    trimmed        " << step.savedBytes << " bytes\n";
-  out << "    rematerialised " << trace.rematerialisedBytes << " bytes" << listOf(trace.rematerialised) << "\n";
+  out << "    rematerialised " << trace.rematerialisedBytes << " bytes"
+      << listOf(trace.rematerialised) << "\n";
   out << "    saved          " << trace.savedBytes << " bytes" << listOf(trace.saved) << "\n";
   if (trace.liveBytes == 0 && trace.savedBytes == 0)
     return;
   const TraceTraffic &traffic = trace.steps.back().traffic;
   out << "    stored         " << toText(traffic.stored) << "\n";
   out << "    restored       " << toText(traffic.restored) << "\n";
-  out << "    extra          " << describe(trace.extra) << "; of plain liveness " << describe(trace.plainly) << "\n";
+  out << "    extra          " << describe(trace.extra) << "; of plain liveness "
+      << describe(trace.plainly) << "\n";
 }
 
 std::string toText(const SplitReport &report) {
@@ -87,7 +93,7 @@ std::string toText(const SplitReport &report) {
           << ", the last: its ray takes the place of this one, so recursion runs as a loop\n";
     for (const TraceReport &trace : function.traces) {
       const std::string place = trace.place.text();
-      out << (trace.isJoin            ? "  join"
+      out << (trace.isJoin           ? "  join"
               : trace.callee.empty() ? "  trace"
                                      : "  call of " + trace.callee)
           << (place.empty() ? "" : " at " + place) << ", resumes at " << trace.resumesAt << "\n";

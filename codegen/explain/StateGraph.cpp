@@ -28,16 +28,19 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
     if (trace.resumesAt != state)
       continue;
     const std::string place = trace.place.text();
-    const std::string what = trace.isJoin ? "join" : trace.callee.empty() ? "trace" : "call of " + trace.callee;
+    const std::string what = trace.isJoin           ? "join"
+                             : trace.callee.empty() ? "trace"
+                                                    : "call of " + trace.callee;
     lines.push_back(place.empty() ? "behind a " + what : "behind the " + what + " at " + place);
-    lines.push_back(std::to_string(trace.savedBytes) + " of " + std::to_string(trace.liveBytes) + " bytes saved" +
-                    listOf(trace.saved));
+    lines.push_back(std::to_string(trace.savedBytes) + " of " + std::to_string(trace.liveBytes) +
+                    " bytes saved" + listOf(trace.saved));
     if (!trace.rematerialised.empty())
       lines.push_back("computed again" + listOf(trace.rematerialised));
     if (trace.liveBytes != 0) {
       const TraceTraffic &traffic = trace.steps.back().traffic;
-      lines.push_back(toText(traffic.stored) + " stored, " + toText(traffic.restored) + " restored; cost " +
-                      std::to_string(trace.extra.cost) + " of " + std::to_string(trace.plainly.cost));
+      lines.push_back(toText(traffic.stored) + " stored, " + toText(traffic.restored) +
+                      " restored; cost " + std::to_string(trace.extra.cost) + " of " +
+                      std::to_string(trace.plainly.cost));
     }
   }
   for (const TransitionReport &way : function.transitions) {
@@ -59,7 +62,8 @@ std::string titleOf(const FunctionReport &function) {
          ", frame of " + std::to_string(function.frame.size) + " bytes";
 }
 
-std::string escaped(llvm::StringRef text, llvm::StringRef special, llvm::ArrayRef<const char *> by) {
+std::string escaped(llvm::StringRef text, llvm::StringRef special,
+                    llvm::ArrayRef<const char *> by) {
   std::string result;
   for (char c : text) {
     const std::size_t which = special.find(c);

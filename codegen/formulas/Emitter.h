@@ -83,15 +83,17 @@ public:
     return createOrFold<Op>(std::forward<Args>(args)...);
   }
 
-  /// Whether arithmetic will be done in double, so that none may be done in single now (HideConstants.h).
+  /// Whether arithmetic will be done in double, so that none may be done in single now
+  /// (HideConstants.h).
   bool isWidenedLater() const;
 
 private:
   /// Operations whose result on constants depends on the precision.
   template <typename Op>
   static constexpr bool roundsToSingle =
-      llvm::is_one_of<Op, mlir::arith::AddFOp, mlir::arith::SubFOp, mlir::arith::MulFOp, mlir::arith::DivFOp, mlir::arith::SIToFPOp,
-                      mlir::arith::UIToFPOp, mlir::math::FmaOp, mlir::math::SqrtOp, ir::RefractOp>::value;
+      llvm::is_one_of<Op, mlir::arith::AddFOp, mlir::arith::SubFOp, mlir::arith::MulFOp,
+                      mlir::arith::DivFOp, mlir::arith::SIToFPOp, mlir::arith::UIToFPOp,
+                      mlir::math::FmaOp, mlir::math::SqrtOp, ir::RefractOp>::value;
 
   void fill(mlir::Region &region, Block body);
 };
@@ -235,7 +237,7 @@ Num floor(Num a);
 Num ceil(Num a);
 Num trunc(Num a);
 Num roundEven(Num a); // halves to the even neighbour
-Num abs(Num a); // integers too; the most negative integer stays
+Num abs(Num a);       // integers too; the most negative integer stays
 /// All components of a vector of bools.
 Num all(Num a);
 Num any(Num a);

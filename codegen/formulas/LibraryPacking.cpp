@@ -21,7 +21,7 @@ Num Library::halfFromFloat(Num x) {
     // Subnormal halves are multiples of 2^-24, the distance of floats just above 0.5.
     Num subnormal = (magnitude.asFloat() + 0.5).bits() - 0x3f000000;
     Num half = select(less(magnitude, 0x38800000), subnormal, normal);
-    half = select(less(0x477fffff, magnitude), 0x7c00, half); // 65536 and more
+    half = select(less(0x477fffff, magnitude), 0x7c00, half);        // 65536 and more
     return select(less(0x7f800000, magnitude), 0x7e00, sign | half); // of a NaN no sign is seen
   });
 }

@@ -20,7 +20,8 @@ ClassTable::ClassTable(mlir::ModuleOp module) {
   }
 }
 
-const ClassTable::Member *ClassTable::find(llvm::StringRef className, llvm::StringRef member) const {
+const ClassTable::Member *ClassTable::find(llvm::StringRef className,
+                                           llvm::StringRef member) const {
   const auto record = classes.find(className);
   if (record == classes.end())
     return nullptr;

@@ -13,14 +13,16 @@ namespace rtsl::ir {
 /// On an `rtsl.member` on its way to LLVM: bytes from the start of the record.
 constexpr llvm::StringLiteral offsetInRecord = "rtsl.offset";
 
-/// Finds members of classes in constant time. Made for a pass in which declarations of classes neither come nor go.
+/// Finds members of classes in constant time. Made for a pass in which declarations of classes
+/// neither come nor go.
 class ClassTable {
 public:
   explicit ClassTable(mlir::ModuleOp module);
 
   struct Member {
     MemberDeclOp declaration;
-    std::optional<std::uint32_t> offset; // bytes from the start of the record; none of a scratch member
+    // bytes from the start of the record; none of a scratch member
+    std::optional<std::uint32_t> offset;
   };
   /// Null if the class is not declared or does not have the member.
   const Member *find(llvm::StringRef className, llvm::StringRef member) const;

@@ -1,10 +1,10 @@
 //===- Precompiled.h - the headers that every part of codegen reads -------===//
 //
-// MLIR's headers take longer to read than most of our files take to compile, so they are read once. A file still includes
-// what it uses; nothing may rely on this one.
+// MLIR's headers take longer to read than most of our files take to compile, so they are read once.
+// A file still includes what it uses; nothing may rely on this one.
 //
-// The headers of ours below have include guards: GCC compares what `#pragma once` marks by its time of change, and
-// a precompiled header out of ccache may be older than the files of this folder.
+// The headers of ours below have include guards: GCC compares what `#pragma once` marks by its time
+// of change, and a precompiled header out of ccache may be older than the files of this folder.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,7 +1,7 @@
 //===- RtslContinuationOps.td - continuations (level 2) -------------------===//
 //
-// What takes the place of `rtsl.trace` when a function is split there. Included by RtslOps.td. In the order in which the
-// passes of codegen/passes/continuation make them.
+// What takes the place of `rtsl.trace` when a function is split there. Included by RtslOps.td. In
+// the order in which the passes of codegen/passes/continuation make them.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CONTINUATION_OPS_TD
@@ -120,7 +120,8 @@ def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
   }];
 }
 
-// Calls with a frame of their own. What is called runs on the same ray, on a frame above that of its caller:
+// Calls with a frame of their own. What is called runs on the same ray, on a frame above that of
+// its caller:
 //
 //   bytes 0 to 11   the state in which the caller goes on, the caller's object, and how far its frame begins below this one
 //   from 16 on      arguments, then results, then what the callee saves itself

@@ -19,8 +19,10 @@ LogicalResult SuspendOp::verify() {
     return emitOpError() << "names half a ray";
   if (getOrigin() && (resume->empty() || !llvm::isa<TraceResultOp>(resume->front())))
     return emitOpError() << "resumes at a block that does not begin with `rtsl.trace_result`";
-  if (!getOrigin() && (resume->empty() || !llvm::isa<TraceReturnedOp, CallReturnedOp>(resume->front())))
-    return emitOpError() << "resumes at a block that does not begin with `rtsl.trace_returned` or `rtsl.call_returned`";
+  if (!getOrigin() &&
+      (resume->empty() || !llvm::isa<TraceReturnedOp, CallReturnedOp>(resume->front())))
+    return emitOpError() << "resumes at a block that does not begin with `rtsl.trace_returned` or "
+                            "`rtsl.call_returned`";
   if (getNames().size() != getSaved().size())
     return emitOpError() << "saves " << getSaved().size() << " values and names "
                          << getNames().size();
@@ -63,7 +65,8 @@ void FrameObjectOp::getAsmResultNames(mlir::OpAsmSetValueNameFn setName) {
 }
 
 LogicalResult NextOp::verify() {
-  const bool wantsState = getTransition() == Transition::Trace || getTransition() == Transition::Jump;
+  const bool wantsState =
+      getTransition() == Transition::Trace || getTransition() == Transition::Jump;
   if (getState().has_value() != wantsState)
     return emitOpError() << "names a state for `trace` and `jump`, and none otherwise";
   return mlir::success();

@@ -62,7 +62,9 @@ mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
   bool isUnit = mlir::isa<mlir::UnitAttr>(attribute.getValue());
   if ((name == "rtsl.class" || name == "rtsl.method") && !isText)
     return op->emitOpError() << "`" << name << "` is to be a string";
-  if ((name == "rtsl.constructor" || name == "rtsl.export" || name == "rtsl.noinline" || name == "rtsl.states") && !isUnit)
+  if ((name == "rtsl.constructor" || name == "rtsl.export" || name == "rtsl.noinline" ||
+       name == "rtsl.states") &&
+      !isUnit)
     return op->emitOpError() << "`" << name << "` takes no value";
   return mlir::success();
 }

@@ -106,7 +106,8 @@ static unsigned floatsOf(mlir::Attribute constant, float (&numbers)[4]) {
 OpFoldResult RefractOp::fold(FoldAdaptor adaptor) {
   float incident[4], normal[4], eta[4], refracted[4];
   const unsigned count = floatsOf(adaptor.getIncident(), incident);
-  if (count == 0 || floatsOf(adaptor.getNormal(), normal) != count || floatsOf(adaptor.getEta(), eta) != 1)
+  if (count == 0 || floatsOf(adaptor.getNormal(), normal) != count ||
+      floatsOf(adaptor.getEta(), eta) != 1)
     return {};
   switch (count) {
   case 1:
@@ -121,7 +122,8 @@ OpFoldResult RefractOp::fold(FoldAdaptor adaptor) {
   default:
     device::refract<4>(incident, normal, eta[0], refracted);
   }
-  return mlir::DenseElementsAttr::get(llvm::cast<mlir::ShapedType>(getType()), llvm::ArrayRef<float>(refracted, count));
+  return mlir::DenseElementsAttr::get(llvm::cast<mlir::ShapedType>(getType()),
+                                      llvm::ArrayRef<float>(refracted, count));
 }
 
 //===----------------------------------------------------------------------===//

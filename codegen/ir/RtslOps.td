@@ -1,6 +1,7 @@
 //===- RtslOps.td - operations of the `rtsl` dialect ----------------------===//
 //
-// In the order in which a reader wants them: the module, memory, references, rays, numbers, control flow.
+// In the order in which a reader wants them: the module, memory, references, rays, numbers, control
+// flow.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_OPS_TD
@@ -640,7 +641,8 @@ def Rtsl_SwitchOp : Rtsl_Op<"switch", [NoRegionArguments]> {
   let hasVerifier = 1;
   let skipDefaultBuilders = 1;
   let builders = [
-    // One entry of `values` an arm; each arm gets an empty block. `defaultArm` is the index of an arm.
+    // One entry of `values` an arm; each arm gets an empty block. `defaultArm` is the index of an
+    // arm.
     OpBuilder<(ins "::mlir::Value":$value, "::llvm::ArrayRef<::llvm::SmallVector<int32_t>>":$values,
                    "std::optional<unsigned>":$defaultArm)>];
   let extraClassDeclaration = [{

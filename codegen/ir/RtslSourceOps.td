@@ -1,8 +1,8 @@
 //===- RtslSourceOps.td - expressions that stay as the author wrote them --===//
 //
-// In place of the operations that an expression is made of, where C++ is to be printed from the IR: the passes see what it
-// reads and what it costs, the printer has the author's tree (codegen/lower/SourceTable.h). There is no machine code for
-// these.
+// In place of the operations that an expression is made of, where C++ is to be printed from the IR:
+// the passes see what it reads and what it costs, the printer has the author's tree
+// (codegen/lower/SourceTable.h). There is no machine code for these.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_SOURCE_OPS_TD

@@ -21,7 +21,8 @@ static mlir::Type pointee(mlir::Value address) {
 
 bool isNumbers(mlir::Type type) {
   if (auto structure = llvm::dyn_cast<StructType>(type))
-    return llvm::all_of(structure.getFieldTypes(), [](mlir::Type field) { return isNumbers(field); });
+    return llvm::all_of(structure.getFieldTypes(),
+                        [](mlir::Type field) { return isNumbers(field); });
   if (auto array = llvm::dyn_cast<ArrayType>(type))
     return isNumbers(array.getElement());
   return isValueType(type) && !llvm::isa<RefType>(type);
@@ -89,7 +90,8 @@ mlir::OpFoldResult LoadOp::fold(FoldAdaptor) {
   if (!vector)
     return scalar(getType(), words.front());
   llvm::SmallVector<mlir::Attribute, 4> components;
-  for (const std::int32_t word : words.take_front(static_cast<std::size_t>(vector.getNumElements())))
+  for (const std::int32_t word :
+       words.take_front(static_cast<std::size_t>(vector.getNumElements())))
     components.push_back(scalar(vector.getElementType(), word));
   return mlir::DenseElementsAttr::get(vector, components);
 }

@@ -22,7 +22,8 @@ bool isScalar(mlir::Type type);
 /// A scalar, a vector of 1 to 16 scalars or a reference: what an SSA value that goes to memory may
 /// be.
 bool isValueType(mlir::Type type);
-/// Numbers, and structs and arrays of them: nothing that has a meaning in one process or one scene only.
+/// Numbers, and structs and arrays of them: nothing that has a meaning in one process or one scene
+/// only.
 bool isNumbers(mlir::Type type);
 /// What may stand behind a `!rtsl.ptr`: a value type or an aggregate of such.
 bool isStorable(mlir::Type type);

@@ -1,7 +1,8 @@
 //===- Separate.h - functions that stay functions -------------------------===//
 //
-// A switch that chooses between a few functions becomes one function with them, which is faster. With hundreds it would
-// become a function so large that passes take longer than in proportion to its size.
+// A switch that chooses between a few functions becomes one function with them, which is faster.
+// With hundreds it would become a function so large that passes take longer than in proportion to
+// its size.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -8,7 +8,8 @@ namespace rtsl::ir {
 std::string SourcePlace::text() const {
   if (file.empty())
     return {};
-  return (llvm::sys::path::filename(file) + ":" + llvm::Twine(line) + ":" + llvm::Twine(column)).str();
+  return (llvm::sys::path::filename(file) + ":" + llvm::Twine(line) + ":" + llvm::Twine(column))
+      .str();
 }
 
 SourcePlace placeOf(mlir::Location location) {

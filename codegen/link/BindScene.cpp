@@ -1,8 +1,9 @@
 //===- BindScene.cpp - what the objects of a scene say of a program -------===//
 //
-// A program that renders is made after the constructors of its scene have run. By then members no longer change, and
-// where all objects of a class agree on one it is a constant: what is computed from it folds. Objects that a reference
-// of a class may lead to are those of the class and of all classes below it.
+// A program that renders is made after the constructors of its scene have run. By then members no
+// longer change, and where all objects of a class agree on one it is a constant: what is computed
+// from it folds. Objects that a reference of a class may lead to are those of the class and of all
+// classes below it.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/BindScene.h"
@@ -49,7 +50,8 @@ void hide(mlir::func::FuncOp function) {
 using Objects = std::vector<const runtime::SceneFacts::Object *>;
 
 /// The objects of each class and of the classes below it.
-std::map<mlir::Operation *, Objects> objectsByClass(const mlir::SymbolTable &symbols, const runtime::SceneFacts &scene) {
+std::map<mlir::Operation *, Objects> objectsByClass(const mlir::SymbolTable &symbols,
+                                                    const runtime::SceneFacts &scene) {
   std::map<mlir::Operation *, Objects> byClass;
   for (const runtime::SceneFacts::Object &object : scene.objects) {
     auto at = symbols.lookup<ir::ClassOp>(object.className);
@@ -67,7 +69,9 @@ std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberD
   std::vector<std::int32_t> common;
   for (const runtime::SceneFacts::Object *object : objects) {
     std::vector<std::int32_t> words(ir::sizeInBytes(member.getType()) / 4);
-    std::memcpy(words.data(), object->record + *classes.find(object->className, member.getSymName())->offset, words.size() * 4);
+    std::memcpy(words.data(),
+                object->record + *classes.find(object->className, member.getSymName())->offset,
+                words.size() * 4);
     if (!common.empty() && common != words)
       return {};
     common = std::move(words);
@@ -76,7 +80,8 @@ std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberD
 }
 
 /// The first place that reads a member, by class and name.
-using Readers = std::map<std::pair<std::string, std::string>, std::pair<std::string, ir::SourcePlace>>;
+using Readers =
+    std::map<std::pair<std::string, std::string>, std::pair<std::string, ir::SourcePlace>>;
 
 /// The functions that the runtime calls, and those that they call: what only constructors and
 /// bounds need is not read when a picture is made.
@@ -119,35 +124,43 @@ std::string valueText(mlir::Type type, const std::vector<std::int32_t> &words) {
     float number;
     std::memcpy(&number, &word, sizeof number);
     text += text.empty() ? "" : ", ";
-    text += scalar.isF32() ? fmt::format("{:.6g}", number) : scalar.isInteger(1) ? (word ? "true" : "false") : fmt::format("{}", word);
+    text += scalar.isF32()        ? fmt::format("{:.6g}", number)
+            : scalar.isInteger(1) ? (word ? "true" : "false")
+                                  : fmt::format("{}", word);
   }
   return words.size() == 1 ? text : "(" + text + ")";
 }
 
-Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t objects, const std::vector<std::int32_t> &words,
-                 const Readers &readers) {
+Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t objects,
+                 const std::vector<std::int32_t> &words, const Readers &readers) {
   const std::string className = record.getSymName().str();
   Finding finding = {Item::Parameters, className + "." + member.getSymName().str(), false, {}, {}};
   const auto reader = readers.find({className, member.getSymName().str()});
   if (reader == readers.end()) {
-    const bool isEmpty = llvm::isa<ir::RefType>(member.getType()) && !words.empty() && words.front() == 0;
+    const bool isEmpty =
+        llvm::isa<ir::RefType>(member.getType()) && !words.empty() && words.front() == 0;
     finding.reason = isEmpty ? "no object has anything there" : "no code that renders reads it";
     return finding;
   }
   finding.place = reader->second.second;
   if (const mlir::Type type = member.getType(); llvm::isa<ir::RefType, ir::BufferType>(type)) {
     finding.isNeeded = true;
-    finding.reason = llvm::isa<ir::BufferType>(type) ? "read from the record: a buffer" : "read from the record: a reference";
+    finding.reason = llvm::isa<ir::BufferType>(type) ? "read from the record: a buffer"
+                                                     : "read from the record: a reference";
     return finding;
   }
   const std::string value = words.empty() ? std::string() : valueText(member.getType(), words);
   if (words.empty())
-    finding.reason = fmt::format("read from the record: {} differ", objects == 2 ? "both objects" : fmt::format("the {} objects", objects));
+    finding.reason =
+        fmt::format("read from the record: {} differ",
+                    objects == 2 ? "both objects" : fmt::format("the {} objects", objects));
   else if (objects == 1)
-    finding.reason = fmt::format("in the code{}: one object has it", value.empty() ? "" : " as " + value);
+    finding.reason =
+        fmt::format("in the code{}: one object has it", value.empty() ? "" : " as " + value);
   else
-    finding.reason = fmt::format("in the code{}: the same in {}", value.empty() ? "" : " as " + value,
-                                 objects == 2 ? "both objects" : fmt::format("all {} objects", objects));
+    finding.reason =
+        fmt::format("in the code{}: the same in {}", value.empty() ? "" : " as " + value,
+                    objects == 2 ? "both objects" : fmt::format("all {} objects", objects));
   finding.isNeeded = words.empty();
   return finding;
 }
@@ -158,9 +171,10 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
   ir.walk([&](mlir::Operation *op) {
     if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op) && !loops.place.isKnown()) {
       loops.isNeeded = scene.lightCount != 0;
-      loops.reason = scene.lightCount == 0 ? "the scene has no lights: the loop is gone"
-                                           : fmt::format("{} light{}, a number in the code", scene.lightCount,
-                                                         scene.lightCount == 1 ? "" : "s");
+      loops.reason = scene.lightCount == 0
+                         ? "the scene has no lights: the loop is gone"
+                         : fmt::format("{} light{}, a number in the code", scene.lightCount,
+                                       scene.lightCount == 1 ? "" : "s");
       loops.place = ir::placeOf(op->getLoc());
     } else if (llvm::isa<ir::AmbientOp>(op) && !ambient.place.isKnown()) {
       ambient.reason = fmt::format("in the code as ({:.6g})", fmt::join(scene.ambient, ", "));
@@ -175,7 +189,8 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
 
 void keepConstructors(mlir::ModuleOp ir) {
   for (auto function : ir.getOps<mlir::func::FuncOp>())
-    if (function->hasAttr(exported) && !isForBuilding(function) && function.getSymName() != "rtsl_features")
+    if (function->hasAttr(exported) && !isForBuilding(function) &&
+        function.getSymName() != "rtsl_features")
       hide(function);
 }
 

@@ -7,7 +7,8 @@
 
 namespace rtsl {
 
-/// Keeps of a linked program what makes the objects of a scene: constructors, member defaults and bounds.
+/// Keeps of a linked program what makes the objects of a scene: constructors, member defaults and
+/// bounds.
 void keepConstructors(mlir::ModuleOp ir);
 
 /// Notes in a linked program what is the same in all objects of its scene, and takes out what made

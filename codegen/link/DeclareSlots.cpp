@@ -1,8 +1,8 @@
 //===- DeclareSlots.cpp - a unit without a scene --------------------------===//
 //
-// A file that is compiled alone calls through references what it does not know: each slot becomes the declaration of a
-// function, `@dispatch.rt_Texture.lookup`, that a linker fills. Attributes get places of their own, and ray types
-// numbers, in the order in which they are mentioned.
+// A file that is compiled alone calls through references what it does not know: each slot becomes
+// the declaration of a function, `@dispatch.rt_Texture.lookup`, that a linker fills. Attributes get
+// places of their own, and ray types numbers, in the order in which they are mentioned.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
@@ -24,7 +24,9 @@ void declareSlots(mlir::ModuleOp ir) {
   });
   linking::numberRayTypes(ir);
   mlir::SymbolTable symbols(ir);
-  linking::replaceSlots(ir, symbols, [](const linking::SlotCall &, mlir::func::FuncOp declaration) { declaration.setPrivate(); });
+  linking::replaceSlots(ir, symbols, [](const linking::SlotCall &, mlir::func::FuncOp declaration) {
+    declaration.setPrivate();
+  });
 }
 
 } // namespace rtsl

@@ -1,8 +1,9 @@
 //===- DropUnreached.cpp - keep the methods that something runs -----------===//
 //
-// What runs a method is another one that calls it, a ray that some method sends, the engine, or somebody who reads what it
-// computes of a hit. Beginning with what every sample runs, this follows all of these; the rest is erased. What is
-// computed of a program after this (types of rays, attributes, needs) rests on what is left.
+// What runs a method is another one that calls it, a ray that some method sends, the engine, or
+// somebody who reads what it computes of a hit. Beginning with what every sample runs, this follows
+// all of these; the rest is erased. What is computed of a program after this (types of rays,
+// attributes, needs) rests on what is left.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -101,10 +102,14 @@ private:
     const std::string name = shownName(function);
     const Reader reader = readerOf(context.symbols, function);
     function.walk([&](mlir::Operation *op) {
-      const auto by = [&](const char *does) { return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())}; };
+      const auto by = [&](const char *does) {
+        return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())};
+      };
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
-        const bool isDispatch = function.getSymName().starts_with(dispatchPrefix); // stands for those that call it
-        add(context.function(call.getCallee()), isDispatch ? reached.lookup(function) : by("called by"));
+        const bool isDispatch =
+            function.getSymName().starts_with(dispatchPrefix); // stands for those that call it
+        add(context.function(call.getCallee()),
+            isDispatch ? reached.lookup(function) : by("called by"));
       } else if (auto slot = llvm::dyn_cast<ir::CallMethodOp>(op)) { // not resolved yet
         const llvm::StringRef base =
             llvm::cast<ir::RefType>(slot.getObject().getType()).getClassName();
@@ -123,7 +128,8 @@ private:
         addMethods("rt_Miss", "miss." + type, by("for rays of"));
       } else if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op)) {
         const bool isOne = llvm::isa<ir::IlluminateOp>(op);
-        addMethods("rt_Light", "illumination", by(isOne ? "for `illuminate` in" : "for `illuminance` in"));
+        addMethods("rt_Light", "illumination",
+                   by(isOne ? "for `illuminate` in" : "for `illuminance` in"));
       }
       if (const std::uint32_t needs = needsOf(reader, op))
         addComputations(needs, by(llvm::isa<ir::StateOp>(op) ? "read by" : "for rays of"));
@@ -143,7 +149,7 @@ private:
   llvm::MapVector<mlir::Operation *, Cause> reached;
   std::size_t next = 0, rendering = 0;
   std::set<std::string> slots; // that are not resolved, and were followed
-  llvm::StringSet<> added; // roots and methods
+  llvm::StringSet<> added;     // roots and methods
 };
 
 /// "closestHit.Radiance" begins for a ray; "lookup" does not.
@@ -155,7 +161,8 @@ bool isStartedByRays(llvm::StringRef method) {
 bool traces(FuncOp function) {
   return function
       .walk([](mlir::Operation *op) {
-        const bool isTrace = llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
+        const bool isTrace =
+            llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
         return isTrace ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
       })
       .wasInterrupted();
@@ -188,8 +195,7 @@ void dropUnreached(LinkContext &context) {
   Reach reach(context);
   const llvm::MapVector<mlir::Operation *, Cause> reached = reach.run();
   for (auto &[name, finding] : context.dispatches)
-    if (FuncOp function = context.function(name);
-        function && reach.isReachedByRendering(function))
+    if (FuncOp function = context.function(name); function && reach.isReachedByRendering(function))
       context.findings.push_back(finding);
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
     const auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
@@ -206,7 +212,8 @@ void dropUnreached(LinkContext &context) {
         finding.reason = "runs while the scene is built, and what renders is without it";
         function->setAttr(whileBuilding, mlir::UnitAttr::get(function.getContext()));
       } else {
-        finding.reason = finding.item == Item::States ? "no ray of this scene starts it" : "nothing in this scene runs it";
+        finding.reason = finding.item == Item::States ? "no ray of this scene starts it"
+                                                      : "nothing in this scene runs it";
       }
       if (!finding.place.isKnown())
         finding.place = ir::placeOf(function.getLoc());

@@ -1,7 +1,7 @@
 //===- DropUnusedClasses.cpp - keep what the scene has objects of ---------===//
 //
-// Methods are lowered once for each class, inherited ones too, so that the functions of a class without objects are
-// never called. Its declaration stays: other classes may name it as their base.
+// Methods are lowered once for each class, inherited ones too, so that the functions of a class
+// without objects are never called. Its declaration stays: other classes may name it as their base.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -58,7 +58,9 @@ Finding describe(const LinkContext &context, const LinkedClass &linked, bool run
 
 void dropUnusedClasses(LinkContext &context) {
   const llvm::StringSet<> wanted = wantedOf(context.request);
-  const auto isWanted = [&](llvm::StringRef name) { return wanted.empty() || wanted.contains(name); };
+  const auto isWanted = [&](llvm::StringRef name) {
+    return wanted.empty() || wanted.contains(name);
+  };
   const bool isKept = context.request.keep.has(Item::Classes);
   for (const auto &info : context.module.classes) {
     LinkedClass linked;

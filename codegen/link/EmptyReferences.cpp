@@ -4,9 +4,10 @@
 //   rtsl.if (%bump is an object) { A } else { B }     rtsl.if false { } else { B }
 //   %c = rtsl.call_method "lookup" on %bump           %c = 0
 //
-// Where no object of a class has anything in an optional member, nothing is loaded or called there, and what runs only if
-// there were an object is gone before anybody counts what the program calls and reads. A method is lowered for each class
-// that has it, so the members of other classes, derived ones too, are their own affair.
+// Where no object of a class has anything in an optional member, nothing is loaded or called there,
+// and what runs only if there were an object is gone before anybody counts what the program calls
+// and reads. A method is lowered for each class that has it, so the members of other classes,
+// derived ones too, are their own affair.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Reflect.h"
@@ -32,13 +33,15 @@ Members emptyMembers(const LinkContext &context) {
   for (const LinkedClass &linked : context.classes)
     for (const typed::Member *member : allMembers(*linked.info))
       if (const auto given = context.request.givenMembers.find(linked.info->name);
-          member->isOptional && given != context.request.givenMembers.end() && !given->second.count(member->name))
+          member->isOptional && given != context.request.givenMembers.end() &&
+          !given->second.count(member->name))
         empty.insert({linked.info->name, member->name});
   return empty;
 }
 
 std::pair<std::string, std::string> keyOf(ir::MemberOp member) {
-  return {llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str(), member.getMember().str()};
+  return {llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str(),
+          member.getMember().str()};
 }
 
 /// What a constructor writes may be an object.
@@ -46,7 +49,8 @@ void removeWritten(mlir::ModuleOp ir, Members &empty) {
   for (auto function : ir.getOps<FuncOp>())
     if (function->hasAttr("rtsl.constructor"))
       function.walk([&](ir::MemberOp member) {
-        if (llvm::any_of(member->getUsers(), [](mlir::Operation *user) { return !llvm::isa<ir::LoadOp>(user); }))
+        if (llvm::any_of(member->getUsers(),
+                         [](mlir::Operation *user) { return !llvm::isa<ir::LoadOp>(user); }))
           empty.erase(keyOf(member));
       });
 }
@@ -55,9 +59,11 @@ void removeWritten(mlir::ModuleOp ir, Members &empty) {
 bool emptyLoads(Value address) {
   bool found = false;
   for (mlir::Operation *user : llvm::make_early_inc_range(address.getUsers())) {
-    if (auto load = llvm::dyn_cast<ir::LoadOp>(user); load && llvm::isa<ir::RefType>(load.getType())) {
+    if (auto load = llvm::dyn_cast<ir::LoadOp>(user);
+        load && llvm::isa<ir::RefType>(load.getType())) {
       mlir::OpBuilder builder(load);
-      load.replaceAllUsesWith(ir::NullRefOp::create(builder, load.getLoc(), load.getType()).getResult());
+      load.replaceAllUsesWith(
+          ir::NullRefOp::create(builder, load.getLoc(), load.getType()).getResult());
       load.erase();
       found = true;
     } else if (auto element = llvm::dyn_cast<ir::ElementOp>(user)) {
@@ -80,7 +86,8 @@ std::optional<bool> known(Value condition) {
     return !constant.isZero();
   mlir::Operation *op = condition.getDefiningOp();
   if (auto equal = llvm::dyn_cast_or_null<ir::EqualRefOp>(op))
-    return isNull(equal->getOperand(0)) && isNull(equal->getOperand(1)) ? std::optional(true) : std::nullopt;
+    return isNull(equal->getOperand(0)) && isNull(equal->getOperand(1)) ? std::optional(true)
+                                                                        : std::nullopt;
   if (!llvm::isa_and_nonnull<mlir::arith::XOrIOp, mlir::arith::AndIOp, mlir::arith::OrIOp>(op))
     return std::nullopt;
   const std::optional<bool> left = known(op->getOperand(0)), right = known(op->getOperand(1));

@@ -1,8 +1,9 @@
 //===- EndlessRays.cpp - rays that nothing but the limit of depth ends ----===//
 //
-// A shader that always traces, whatever it finds, is no mistake where other materials end its rays. Where every material of
-// a scene that answers a kind of rays sends another of that kind on each way through its program, only a ray that misses
-// everything ends by itself: each sample may run to the limit of depth, and that is worth a warning.
+// A shader that always traces, whatever it finds, is no mistake where other materials end its rays.
+// Where every material of a scene that answers a kind of rays sends another of that kind on each
+// way through its program, only a ray that misses everything ends by itself: each sample may run to
+// the limit of depth, and that is worth a warning.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -23,10 +24,12 @@ struct Untraced {
 class AlwaysTraces {
 public:
   /// For rays with this payload; null: rays for a color.
-  AlwaysTraces(const mlir::SymbolTable &symbols, mlir::Type payload) : symbols(symbols), payload(payload) {}
+  AlwaysTraces(const mlir::SymbolTable &symbols, mlir::Type payload)
+      : symbols(symbols), payload(payload) {}
 
   bool operator()(FuncOp function) {
-    const auto [known, isNew] = answers.try_emplace(function, false); // false while it is being asked
+    const auto [known, isNew] =
+        answers.try_emplace(function, false); // false while it is being asked
     if (!isNew || function.isExternal())
       return known->second;
     const Untraced ways = walk(function.getBody());
@@ -38,7 +41,8 @@ private:
     if (llvm::isa<ir::TraceOp>(op))
       return !payload;
     if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op))
-      return payload && llvm::cast<ir::PtrType>(trace.getPayload().getType()).getPointee() == payload;
+      return payload &&
+             llvm::cast<ir::PtrType>(trace.getPayload().getType()).getPointee() == payload;
     if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
       if (auto callee = symbols.lookup<FuncOp>(call.getCallee()))
         return (*this)(callee);
@@ -108,7 +112,8 @@ private:
   llvm::DenseMap<mlir::Operation *, bool> answers;
 };
 
-void check(LinkContext &context, const std::string &method, mlir::Type payload, const std::string &what) {
+void check(LinkContext &context, const std::string &method, mlir::Type payload,
+           const std::string &what) {
   AlwaysTraces alwaysTraces(context.symbols, payload);
   std::string names;
   SourceRange range;
@@ -127,7 +132,8 @@ void check(LinkContext &context, const std::string &method, mlir::Type payload, 
   context.diagnostics
       .report(Code::sceneWarning, range,
               "each material of this scene sends another " + what + " whatever it finds: " + names)
-      .note("only the limit of depth ends such rays, or what misses everything; end some of them by chance (`rand`), where "
+      .note("only the limit of depth ends such rays, or what misses everything; end some of them "
+            "by chance (`rand`), where "
             "their weight is small, or by `rt_Depth`");
 }
 

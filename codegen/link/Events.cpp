@@ -1,7 +1,8 @@
 //===- Events.cpp - what programs do beside colors ------------------------===//
 //
-// Exceptions and prints exist in programs that were asked for them: @rtsl_features says so to runtime/device, as a
-// constant. Every `print` has a number, and the runtime is told what stands in it.
+// Exceptions and prints exist in programs that were asked for them: @rtsl_features says so to
+// runtime/device, as a constant. Every `print` has a number, and the runtime is told what stands in
+// it.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -35,7 +36,8 @@ void makeFeatures(LinkContext &context) {
   context.symbols.insert(function);
   builder.setInsertionPointToEnd(function.addEntryBlock());
   const mlir::Value features = mlir::arith::ConstantOp::create(
-      builder, location, builder.getI32IntegerAttr(static_cast<std::int32_t>(context.request.features)));
+      builder, location,
+      builder.getI32IntegerAttr(static_cast<std::int32_t>(context.request.features)));
   ir::ReturnOp::create(builder, location, features);
   function->setAttr("rtsl.export", builder.getUnitAttr());
 }
@@ -45,7 +47,8 @@ std::vector<runtime::PrintFormat> numberPrints(mlir::ModuleOp ir) {
   ir.walk([&](ir::PrintOp print) {
     print.setFormat(static_cast<std::uint32_t>(formats.size()));
     runtime::PrintFormat format;
-    for (auto [item, words] : llvm::zip(print.getItems().getAsRange<mlir::StringAttr>(), print.getWords()))
+    for (auto [item, words] :
+         llvm::zip(print.getItems().getAsRange<mlir::StringAttr>(), print.getWords()))
       format.push_back({item.str(), kindOf(item.getValue()), static_cast<std::uint32_t>(words)});
     formats.push_back(std::move(format));
   });

@@ -1,8 +1,9 @@
 //===- FindNeeds.cpp - what of a hit is read ------------------------------===//
 //
-// Normals, texture coordinates, derivatives and transforms cost time at every hit. What no function of the program reads is not
-// computed at all; what neither the methods of a material nor those of the objects behind it read is not computed where
-// that material was hit. Which objects these are the scene knows (Scene.cpp).
+// Normals, texture coordinates, derivatives and transforms cost time at every hit. What no function
+// of the program reads is not computed at all; what neither the methods of a material nor those of
+// the objects behind it read is not computed where that material was hit. Which objects these are
+// the scene knows (Scene.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -30,15 +31,16 @@ std::uint32_t needsOf(llvm::StringRef state) {
       .Default(0);
 }
 
-/// Whether the function may run before the ray is known to hit the primitive, for `intersect`; what it then reads of the
-/// hit has to be there for each candidate.
+/// Whether the function may run before the ray is known to hit the primitive, for `intersect`; what
+/// it then reads of the hit has to be there for each candidate.
 bool mayRunForCandidates(const Reader &reader) {
   const auto method = reader.function->getAttrOfType<mlir::StringAttr>("rtsl.method");
   return (reader.root.empty() || reader.root == "rt_Primitive" || reader.root == ir::helperRoot) &&
-         !(method && llvm::StringSwitch<bool>(method.getValue())
-                         .Cases({"computeNormal", "computeTextureCoordinates", "computeDerivatives"}, true)
-                         .Cases({"generateSample", "samplePDF"}, true)
-                         .Default(false));
+         !(method &&
+           llvm::StringSwitch<bool>(method.getValue())
+               .Cases({"computeNormal", "computeTextureCoordinates", "computeDerivatives"}, true)
+               .Cases({"generateSample", "samplePDF"}, true)
+               .Default(false));
 }
 
 /// Whether reading this is reading of a candidate.
@@ -53,8 +55,8 @@ bool isOfCandidate(llvm::StringRef state, const Reader &reader) {
          mayRunForCandidates(reader);
 }
 
-/// Whether rays that the function sends may begin where something was hit. How far from there they begin to see rests
-/// on the normal and on how exact the hit is (runtime/device/ray/Spawn.h).
+/// Whether rays that the function sends may begin where something was hit. How far from there they
+/// begin to see rests on the normal and on how exact the hit is (runtime/device/ray/Spawn.h).
 bool mayStartAtHits(const Reader &reader) {
   return reader.root.empty() || reader.root == "rt_Material" || reader.root == ir::helperRoot;
 }
@@ -69,10 +71,10 @@ std::uint32_t needsOf(const LinkContext &context, mlir::func::FuncOp function) {
   return needs;
 }
 
-/// What functions and all that they call read. With `onItself`, calls through references are left out. `isLit`, if not null,
-/// becomes true if they ask for lights.
-std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const LinkContext &context, bool onItself,
-                               bool *isLit = nullptr) {
+/// What functions and all that they call read. With `onItself`, calls through references are left
+/// out. `isLit`, if not null, becomes true if they ask for lights.
+std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const LinkContext &context,
+                               bool onItself, bool *isLit = nullptr) {
   std::uint32_t needs = 0;
   std::set<mlir::Operation *> seen(pending.begin(), pending.end());
   while (!pending.empty()) {
@@ -80,7 +82,9 @@ std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const Li
     pending.pop_back();
     needs |= needsOf(context, function);
     if (isLit)
-      function.walk([&](mlir::Operation *op) { *isLit |= llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op); });
+      function.walk([&](mlir::Operation *op) {
+        *isLit |= llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op);
+      });
     function.walk([&](mlir::func::CallOp call) {
       if (onItself && call.getCallee().starts_with(dispatchPrefix))
         return;
@@ -102,13 +106,15 @@ Reader readerOf(const mlir::SymbolTable &symbols, mlir::func::FuncOp function) {
 
 std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   if (auto state = llvm::dyn_cast<ir::StateOp>(op)) {
-    const bool isRead =
-        llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
+    const bool isRead = llvm::any_of(
+        state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
     if (!isRead)
       return 0;
-    return needsOf(state.getName()) | (isOfCandidate(state.getName(), reader) ? RTSL_NEEDS_CANDIDATE : 0);
+    return needsOf(state.getName()) |
+           (isOfCandidate(state.getName(), reader) ? RTSL_NEEDS_CANDIDATE : 0);
   }
-  if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op); trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
+  if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op);
+      trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);
   const bool sendsRay =
       llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
@@ -125,7 +131,8 @@ std::uint32_t findNeeds(const LinkContext &context) {
 namespace {
 
 /// What the methods of this name of all classes below `root` read.
-std::uint32_t needsOfMethods(const LinkContext &context, llvm::StringRef root, const std::string &method) {
+std::uint32_t needsOfMethods(const LinkContext &context, llvm::StringRef root,
+                             const std::string &method) {
   std::vector<mlir::func::FuncOp> methods;
   for (const LinkedClass &linked : context.classes)
     if ((linked.isUsed || root != "rt_Light") && linked.info->root == root)
@@ -148,12 +155,14 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
   // Whoever computes one of these may read another.
   const std::uint32_t ofDerivatives = needsOfMethods(context, "rt_Primitive", "computeDerivatives");
   const std::uint32_t ofNormals = needsOfMethods(context, "rt_Primitive", "computeNormal");
-  const std::uint32_t ofCoordinates = needsOfMethods(context, "rt_Primitive", "computeTextureCoordinates");
+  const std::uint32_t ofCoordinates =
+      needsOfMethods(context, "rt_Primitive", "computeTextureCoordinates");
 
   std::vector<std::uint32_t> all;
   for (const LinkedClass &linked : context.classes) {
     bool isLit = false;
-    std::uint32_t needs = needsReachedFrom(methods.lookup(linked.info->name), context, /*onItself=*/true, &isLit);
+    std::uint32_t needs =
+        needsReachedFrom(methods.lookup(linked.info->name), context, /*onItself=*/true, &isLit);
     if (isLit)
       needs |= ofLights;
     if (needs & RTSL_NEEDS_DERIVATIVES)

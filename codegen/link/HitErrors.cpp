@@ -1,8 +1,8 @@
 //===- HitErrors.cpp - how exact the hits of primitives are ---------------===//
 //
 // Where a ray leaves a primitive of the author's, the runtime has to know how far off t may be
-// (runtime/device/ray/HitError.h). For the primitives with a material that sends rays it is derived here,
-// and where that cannot be done, the author is told to state it.
+// (runtime/device/ray/HitError.h). For the primitives with a material that sends rays it is derived
+// here, and where that cannot be done, the author is told to state it.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -17,7 +17,8 @@
 namespace rtsl {
 
 /// The `hit(t)` that begins there; no place if there is none.
-static SourceRange findHit(const typed::Module &module, const SourceManager &sources, const ir::SourcePlace &place) {
+static SourceRange findHit(const typed::Module &module, const SourceManager &sources,
+                           const ir::SourcePlace &place) {
   SourceRange range;
   const auto look = [&](const typed::Function &function) {
     if (!function.body)
@@ -27,7 +28,8 @@ static SourceRange findHit(const typed::Module &module, const SourceManager &sou
       if (!call || call->builtin != typed::Builtin::Hit || range.isValid())
         return;
       const ShownPlace shown = shownBegin(sources, call->range);
-      if (shown.file == place.file && shown.at.line == place.line && shown.at.column == place.column)
+      if (shown.file == place.file && shown.at.line == place.line &&
+          shown.at.column == place.column)
         range = call->range;
     });
   };
@@ -39,11 +41,13 @@ static SourceRange findHit(const typed::Module &module, const SourceManager &sou
   return range;
 }
 
-void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module, Diagnostics &diagnostics) {
+void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module,
+                       Diagnostics &diagnostics) {
   for (const DerivedHitError &one : derived)
     for (const UnboundHit &hit : one.unbound)
       diagnostics
-          .report(Code::hitErrorUnknown, findHit(module, diagnostics.sources(), ir::placeOf(hit.place)), hit.reason)
+          .report(Code::hitErrorUnknown,
+                  findHit(module, diagnostics.sources(), ir::placeOf(hit.place)), hit.reason)
           .note("state how far off t may be at most: `hit(t, error)`");
 }
 
@@ -65,7 +69,8 @@ std::set<std::string> findSenders(const LinkContext &context) {
 }
 
 /// By primitive: a material on it that sends rays.
-std::map<std::string, std::string> findSendersOn(const LinkContext &context, const std::set<std::string> &senders) {
+std::map<std::string, std::string> findSendersOn(const LinkContext &context,
+                                                 const std::set<std::string> &senders) {
   std::map<std::string, std::string> found;
   for (const auto &[primitive, material] : context.request.surfaces)
     if (senders.count(material))
@@ -90,22 +95,30 @@ void deriveHitErrors(LinkContext &context) {
     const auto sender = sendersOn.find(name);
     const bool isLeft = sender != sendersOn.end();
     const std::string subject = "bound of the error of t in " + name + ".intersect";
-    findings[name] = {Item::Outputs, subject, isLeft, isLeft ? "rays of `" + sender->second + "` leave it" : "no ray leaves it", {}};
-    if ((isLeft && !context.isWithout(Item::Outputs, subject)) || context.request.keep.has(Item::Outputs))
+    findings[name] = {Item::Outputs,
+                      subject,
+                      isLeft,
+                      isLeft ? "rays of `" + sender->second + "` leave it" : "no ray leaves it",
+                      {}};
+    if ((isLeft && !context.isWithout(Item::Outputs, subject)) ||
+        context.request.keep.has(Item::Outputs))
       left.push_back(name);
   }
-  std::vector<DerivedHitError> derived = rtsl::deriveHitErrors(context.ir, context.symbols, left, context.elementaryErrors);
+  std::vector<DerivedHitError> derived =
+      rtsl::deriveHitErrors(context.ir, context.symbols, left, context.elementaryErrors);
   for (const DerivedHitError &one : derived)
     if (!one.hasFunction && findings[one.className].isNeeded) {
       findings[one.className].isNeeded = false;
-      findings[one.className].reason = one.unbound.empty() ? "the author states it" : "none is known";
+      findings[one.className].reason =
+          one.unbound.empty() ? "the author states it" : "none is known";
     }
   for (auto &[name, finding] : findings)
     context.findings.push_back(std::move(finding));
   // What is kept although no ray leaves it is nobody's mistake.
-  derived.erase(std::remove_if(derived.begin(), derived.end(),
-                               [&](const DerivedHitError &one) { return !sendersOn.count(one.className); }),
-                derived.end());
+  derived.erase(
+      std::remove_if(derived.begin(), derived.end(),
+                     [&](const DerivedHitError &one) { return !sendersOn.count(one.className); }),
+      derived.end());
   warnOfUnboundHits(derived, context.module, context.diagnostics);
 }
 

@@ -14,8 +14,12 @@ constexpr Text texts[] = {
 
 } // namespace
 
-const char *nameOf(Item item) { return texts[static_cast<std::size_t>(item)].name; }
-const char *titleOf(Item item) { return texts[static_cast<std::size_t>(item)].title; }
+const char *nameOf(Item item) {
+  return texts[static_cast<std::size_t>(item)].name;
+}
+const char *titleOf(Item item) {
+  return texts[static_cast<std::size_t>(item)].title;
+}
 
 std::optional<Item> itemNamed(std::string_view name) {
   for (Item item : allItems)

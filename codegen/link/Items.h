@@ -1,7 +1,8 @@
 //===- Items.h - what can be left out of a program, and what was ----------===//
 //
-// Each pass that leaves something out because the scene does not need it looks here whether it may, and notes what it
-// did and why: `rtslc explain` (docs/explain.md) shows these notes and judges nothing itself.
+// Each pass that leaves something out because the scene does not need it looks here whether it may,
+// and notes what it did and why: `rtslc explain` (docs/explain.md) shows these notes and judges
+// nothing itself.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -52,8 +53,8 @@ struct Finding {
   Item item;
   std::string subject; // as an author would name it: "Solid.lookup"
   bool isNeeded = false;
-  std::string reason;     // why, in a few words
-  ir::SourcePlace place;  // of what needs it, or of what is left out; may be unknown
+  std::string reason;    // why, in a few words
+  ir::SourcePlace place; // of what needs it, or of what is left out; may be unknown
 };
 
 using Findings = std::vector<Finding>;

@@ -9,18 +9,29 @@
 
 namespace rtsl {
 
-std::string initializeSymbol(const std::string &className) { return className + ".initialize"; }
-std::string constructSymbol(const std::string &className) { return className + ".construct"; }
-std::string intersectSymbol(const std::string &className) { return className + ".intersect"; }
+std::string initializeSymbol(const std::string &className) {
+  return className + ".initialize";
+}
+std::string constructSymbol(const std::string &className) {
+  return className + ".construct";
+}
+std::string intersectSymbol(const std::string &className) {
+  return className + ".intersect";
+}
 
 ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint) {
   return floatingPoint == FloatingPoint::Fast ? fastErrors : strictErrors;
 }
 
-bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, runtime::Program &program, Findings *findings, FloatingPoint floatingPoint) {
+bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
+          std::uint32_t colorComponents, Diagnostics &diagnostics, runtime::Program &program,
+          Findings *findings, FloatingPoint floatingPoint) {
   Findings unasked;
-  linking::LinkContext context{ir, module, request, diagnostics, findings ? *findings : unasked,
+  linking::LinkContext context{ir,
+                               module,
+                               request,
+                               diagnostics,
+                               findings ? *findings : unasked,
                                elementaryErrorsOf(floatingPoint)};
   linking::dropUnusedClasses(context);
   linking::emptyReferences(context);

@@ -38,16 +38,18 @@
 
 namespace rtsl {
 
-/// Links level 1 IR in place. Reports through `diagnostics` and returns false on errors. Fills `classes` and `needs` of
-/// `program` (without code addresses). `colorComponents` is what the module was lowered with, `floatingPoint` what becomes
-/// of its arithmetic. Adds to `findings`, if given.
-bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request, std::uint32_t colorComponents,
-          Diagnostics &diagnostics, runtime::Program &program, Findings *findings = nullptr,
-          FloatingPoint floatingPoint = FloatingPoint::Strict);
+/// Links level 1 IR in place. Reports through `diagnostics` and returns false on errors. Fills
+/// `classes` and `needs` of `program` (without code addresses). `colorComponents` is what the
+/// module was lowered with, `floatingPoint` what becomes of its arithmetic. Adds to `findings`, if
+/// given.
+bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
+          std::uint32_t colorComponents, Diagnostics &diagnostics, runtime::Program &program,
+          Findings *findings = nullptr, FloatingPoint floatingPoint = FloatingPoint::Strict);
 
 struct DerivedHitError;
 /// Tells the author which hits of primitives that rays leave have no bound of their error.
-void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module, Diagnostics &diagnostics);
+void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module,
+                       Diagnostics &diagnostics);
 /// How far the elementary functions of a program are off.
 ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint);
 

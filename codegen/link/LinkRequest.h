@@ -24,24 +24,26 @@ struct ScenePart {
   }; // named materials and textures are there for others alone
   Role role = Role::Root;
   std::string name; // for people: "material clay"
-  std::vector<std::string>
-      classes; // of the object, and of those that are written in place inside of it
+  // of the object, and of those that are written in place inside of it
+  std::vector<std::string> classes;
   std::vector<std::size_t> refersTo; // indices of parts
   ir::SourcePlace place;
 };
 
 /// What a scene tells the linker.
 struct LinkRequest {
-  /// The classes that the scene has objects of; only these are kept. Empty: all classes of the module.
+  /// The classes that the scene has objects of; only these are kept. Empty: all classes of the
+  /// module.
   std::vector<std::string> classes;
   /// The objects of the scene and what they refer to: the code of classes whose objects no ray can
   /// come to is left out. Empty: all are used.
   std::vector<ScenePart> parts = {};
-  /// Which material meets which primitive, as (primitive class, material class); the primitive class is empty for a
-  /// triangle mesh. Attributes are matched along these.
+  /// Which material meets which primitive, as (primitive class, material class); the primitive
+  /// class is empty for a triangle mesh. Attributes are matched along these.
   std::vector<std::pair<std::string, std::string>> surfaces = {};
-  /// The members that the scene sets in some object of a class, by class. An optional one that is not among them is empty
-  /// in all objects; a class that is not there is one of which nothing is known.
+  /// The members that the scene sets in some object of a class, by class. An optional one that is
+  /// not among them is empty in all objects; a class that is not there is one of which nothing is
+  /// known.
   std::map<std::string, std::set<std::string>> givenMembers = {};
   runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints

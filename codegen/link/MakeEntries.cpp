@@ -1,7 +1,8 @@
 //===- MakeEntries.cpp - the ways into a program --------------------------===//
 //
-// The runtime calls a program in four ways: a slot of Slots.def or SamplingSlots.def on an object, the `intersect` of a class that it knows,
-// the defaults of a class on a new record, and the constructor of a class on packed arguments:
+// The runtime calls a program in four ways: a slot of Slots.def or SamplingSlots.def on an object,
+// the `intersect` of a class that it knows, the defaults of a class on a new record, and the
+// constructor of a class on packed arguments:
 //
 //   func.func @Glass.construct(%self: !rtsl.ref<"Glass">, %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
 //
@@ -38,8 +39,11 @@ void makeSlot(LinkContext &context, const Slot &slot) {
     if (linked.isUsed && linked.info->root == slot.base)
       classes.push_back(&linked);
   const std::string subject = std::string(slot.base) + "." + slot.method;
-  const bool isNoted = llvm::any_of(context.findings, [&](const Finding &finding) { return finding.subject == subject; });
-  const auto hasMethod = [&](const LinkedClass *linked) { return findMethod(context, *linked, slot.method); };
+  const bool isNoted = llvm::any_of(
+      context.findings, [&](const Finding &finding) { return finding.subject == subject; });
+  const auto hasMethod = [&](const LinkedClass *linked) {
+    return findMethod(context, *linked, slot.method);
+  };
   const bool isForBuilding = std::string_view(slot.method) == "computeBounds";
   const bool isDerived = slot.method == hitErrorMethod; // no author has made a choice
   if (!isNoted && !isForBuilding && !isDerived && llvm::any_of(classes, hasMethod))
@@ -55,7 +59,8 @@ void makeSlot(LinkContext &context, const Slot &slot) {
   exportFunction(function);
 }
 
-/// A constructor that takes its arguments from memory, so that the runtime can call it without knowing its signature.
+/// A constructor that takes its arguments from memory, so that the runtime can call it without
+/// knowing its signature.
 void makeConstruct(LinkContext &context, LinkedClass &linked) {
   const typed::Function *constructor = findConstructor(*linked.info);
   mlir::func::FuncOp target = constructor ? findMethod(context, linked, "constructor") : nullptr;
@@ -67,18 +72,21 @@ void makeConstruct(LinkContext &context, LinkedClass &linked) {
   llvm::SmallVector<mlir::Type> types;
   for (std::size_t i = 0; i < constructor->parameters.size(); ++i) {
     const std::string &name = constructor->parameters[i]->name;
-    names.push_back(mlir::StringAttr::get(mlirContext, name.empty() ? "unnamed" + std::to_string(i) : name));
+    names.push_back(
+        mlir::StringAttr::get(mlirContext, name.empty() ? "unnamed" + std::to_string(i) : name));
     const mlir::Type type = target.getArgumentTypes()[i + 1];
     const auto address = mlir::dyn_cast<ir::PtrType>(type); // of an aggregate
     types.push_back(address ? address.getPointee() : type);
   }
-  linked.parameters = ir::StructType::get(mlirContext, linked.info->name + ".arguments", names, types);
+  linked.parameters =
+      ir::StructType::get(mlirContext, linked.info->name + ".arguments", names, types);
 
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
   const mlir::Location location = target.getLoc();
   auto function = mlir::func::FuncOp::create(
       builder, location, constructSymbol(linked.info->name),
-      builder.getFunctionType({target.getArgumentTypes().front(), ir::PtrType::get(linked.parameters)}, {}));
+      builder.getFunctionType(
+          {target.getArgumentTypes().front(), ir::PtrType::get(linked.parameters)}, {}));
   context.symbols.insert(function);
   function->setAttr("rtsl.constructor", mlir::UnitAttr::get(mlirContext));
 
@@ -86,9 +94,11 @@ void makeConstruct(LinkContext &context, LinkedClass &linked) {
   builder.setInsertionPointToEnd(entry);
   llvm::SmallVector<mlir::Value> arguments = {entry->getArgument(0)};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const mlir::Value address = ir::FieldOp::create(builder, location, entry->getArgument(1), names[i].getValue());
+    const mlir::Value address =
+        ir::FieldOp::create(builder, location, entry->getArgument(1), names[i].getValue());
     const bool byAddress = mlir::isa<ir::PtrType>(target.getArgumentTypes()[i + 1]);
-    arguments.push_back(byAddress ? address : ir::LoadOp::create(builder, location, address).getResult());
+    arguments.push_back(byAddress ? address
+                                  : ir::LoadOp::create(builder, location, address).getResult());
   }
   mlir::func::CallOp::create(builder, location, target, arguments);
   ir::ReturnOp::create(builder, location, mlir::ValueRange());

@@ -1,8 +1,9 @@
 //===- Outputs.cpp - results that nobody reads ----------------------------===//
 //
-// What a method computes goes to state: `computeTextureCoordinates` writes TextureUV and TextureUVW. Whether the method
-// runs at all is a matter of RTSL_NEEDS_* (FindNeeds.cpp); here single results that no function of the program reads are
-// not written, and what was computed for them alone goes with them.
+// What a method computes goes to state: `computeTextureCoordinates` writes TextureUV and
+// TextureUVW. Whether the method runs at all is a matter of RTSL_NEEDS_* (FindNeeds.cpp); here
+// single results that no function of the program reads are not written, and what was computed for
+// them alone goes with them.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -16,8 +17,9 @@ namespace {
 
 using mlir::func::FuncOp;
 
-/// State that methods write for other methods alone. The runtime reads the rest, and both normals where one is asked for:
-/// if the author leaves one out it is the other. `isSampled`: the host reads what sampling gives.
+/// State that methods write for other methods alone. The runtime reads the rest, and both normals
+/// where one is asked for: if the author leaves one out it is the other. `isSampled`: the host
+/// reads what sampling gives.
 bool isOnlyForMethods(llvm::StringRef state, bool isSampled) {
   return llvm::StringSwitch<bool>(state)
       .Cases({"TextureUV", "TextureUVW", "TextureColor", "FloatTextureValue"}, true)
@@ -46,7 +48,8 @@ constexpr Computed computed[] = {
     {RTSL_NEEDS_TIME, "rt_Time, rt_TimeSeed"},
     {RTSL_NEEDS_LAUNCH, "rt_LaunchIndex, rt_LaunchSize"},
     {RTSL_NEEDS_LENS, "rt_LensCoord"},
-    {RTSL_NEEDS_CANDIDATE, "rt_BoundMin, rt_BoundMax and what else `intersect` knows of its object"},
+    {RTSL_NEEDS_CANDIDATE,
+     "rt_BoundMin, rt_BoundMax and what else `intersect` knows of its object"},
 };
 
 /// Notes who reads it first, or that nobody does.
@@ -59,7 +62,9 @@ Finding findReader(const LinkContext &context, const Computed &one) {
         return mlir::WalkResult::advance();
       finding.isNeeded = true;
       finding.reason =
-          (llvm::isa<ir::StateOp>(op) ? "read by `" : "where rays begin to see that leave the hit: `") + shownName(function) + "`";
+          (llvm::isa<ir::StateOp>(op) ? "read by `"
+                                      : "where rays begin to see that leave the hit: `") +
+          shownName(function) + "`";
       finding.place = ir::placeOf(op->getLoc());
       return mlir::WalkResult::interrupt();
     });
@@ -87,7 +92,8 @@ void dropUnreadOutputs(LinkContext &context) {
   context.ir.walk([&](ir::StateOp state) {
     if (!isOnlyForMethods(state.getName(), context.request.isSampled))
       return;
-    const bool isRead = llvm::any_of(state->getUsers(), [](mlir::Operation *user) { return !llvm::isa<ir::StoreOp>(user); });
+    const bool isRead = llvm::any_of(
+        state->getUsers(), [](mlir::Operation *user) { return !llvm::isa<ir::StoreOp>(user); });
     Output &output = outputs[state.getNameAttr()];
     output.isRead |= isRead;
     if (!isRead && !state->use_empty())
@@ -98,8 +104,8 @@ void dropUnreadOutputs(LinkContext &context) {
       continue;
     for (ir::StateOp state : output.written) {
       const auto function = state->getParentOfType<FuncOp>();
-      context.findings.push_back({Item::Outputs, "rt_" + name.str() + " of " + shownName(function), false, "nobody reads it",
-                                  ir::placeOf(state->getLoc())});
+      context.findings.push_back({Item::Outputs, "rt_" + name.str() + " of " + shownName(function),
+                                  false, "nobody reads it", ir::placeOf(state->getLoc())});
       if (context.request.keep.has(Item::Outputs))
         continue;
       for (mlir::Operation *user : llvm::make_early_inc_range(state->getUsers()))

@@ -1,8 +1,8 @@
 //===- PlaceAttributes.cpp - where scratch members of a hit lie -----------===//
 //
-// A primitive's scratch members are attributes of its hits; a material reads those that it declares itself, matched by
-// name and type. Two attributes may share a place if no primitive has both. What nobody reads has no place, and is not
-// stored.
+// A primitive's scratch members are attributes of its hits; a material reads those that it declares
+// itself, matched by name and type. Two attributes may share a place if no primitive has both. What
+// nobody reads has no place, and is not stored.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
@@ -38,9 +38,10 @@ const typed::Member *findScratch(const typed::Class &info, const std::string &na
   return nullptr;
 }
 
-/// Every scratch member that the material declares must be one of the primitive's, of the same type.
-void matchSurface(LinkContext &context, const ClassesByName &classes, const std::string &primitiveName,
-                  const typed::Class &material) {
+/// Every scratch member that the material declares must be one of the primitive's, of the same
+/// type.
+void matchSurface(LinkContext &context, const ClassesByName &classes,
+                  const std::string &primitiveName, const typed::Class &material) {
   const typed::Class *primitive = findClass(classes, primitiveName);
   const std::string shownName = primitive ? primitiveName : "mesh";
   for (const typed::Member *read : allMembers(material)) {
@@ -48,16 +49,18 @@ void matchSurface(LinkContext &context, const ClassesByName &classes, const std:
       continue;
     const typed::Member *written = primitive ? findScratch(*primitive, read->name) : nullptr;
     if (!written) {
-      Diagnostic &error =
-          context.diagnostics.report(Code::attributeMissing, read->range, material.name, read->name, shownName);
+      Diagnostic &error = context.diagnostics.report(Code::attributeMissing, read->range,
+                                                     material.name, read->name, shownName);
       if (primitive)
-        error.label(primitive->range, fmt::format("the scene gives `{}` to this primitive", material.name));
+        error.label(primitive->range,
+                    fmt::format("the scene gives `{}` to this primitive", material.name));
       else
-        error.note("the triangles of a mesh have no attributes but their normals and texture coordinates");
+        error.note(
+            "the triangles of a mesh have no attributes but their normals and texture coordinates");
     } else if (written->type != read->type) {
       context.diagnostics
-          .report(Code::attributeTypeMismatch, read->range, material.name, read->name, toString(read->type),
-                  shownName, toString(written->type))
+          .report(Code::attributeTypeMismatch, read->range, material.name, read->name,
+                  toString(read->type), shownName, toString(written->type))
           .label(written->range, fmt::format("written here as `{}`", toString(written->type)));
     }
   }
@@ -74,7 +77,8 @@ struct Attribute {
 };
 
 bool isRead(ir::AttributeOp op) {
-  return std::any_of(op->user_begin(), op->user_end(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
+  return std::any_of(op->user_begin(), op->user_end(),
+                     [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
 }
 
 /// All attributes of the module, in the order in which they are first mentioned.
@@ -103,13 +107,16 @@ std::vector<Attribute> collect(mlir::ModuleOp ir) {
 }
 
 void note(LinkContext &context, const Attribute &attribute) {
-  ir::AttributeOp use = *std::find_if(attribute.uses.begin(), attribute.uses.end(),
-                                      [&](ir::AttributeOp op) { return isRead(op) == attribute.isRead; });
+  ir::AttributeOp use =
+      *std::find_if(attribute.uses.begin(), attribute.uses.end(),
+                    [&](ir::AttributeOp op) { return isRead(op) == attribute.isRead; });
   const std::string function = shownName(use->getParentOfType<mlir::func::FuncOp>());
-  context.findings.push_back({Item::Attributes, attribute.name, attribute.isRead,
-                              attribute.isRead ? fmt::format("{} bytes of the hit, read by `{}`", 4 * attribute.words, function)
-                                               : fmt::format("`{}` writes it and nobody reads it", function),
-                              ir::placeOf(use.getLoc())});
+  context.findings.push_back(
+      {Item::Attributes, attribute.name, attribute.isRead,
+       attribute.isRead
+           ? fmt::format("{} bytes of the hit, read by `{}`", 4 * attribute.words, function)
+           : fmt::format("`{}` writes it and nobody reads it", function),
+       ir::placeOf(use.getLoc())});
 }
 
 bool shareAPrimitive(const Attribute &a, const Attribute &b) {
@@ -150,7 +157,8 @@ void placeAttributes(LinkContext &context) {
   const ClassesByName classes = classesOf(context);
   std::set<std::pair<std::string, std::string>> seen;
   for (const auto &[primitive, material] : context.request.surfaces)
-    if (const typed::Class *info = findClass(classes, material); info && seen.insert({primitive, material}).second)
+    if (const typed::Class *info = findClass(classes, material);
+        info && seen.insert({primitive, material}).second)
       matchSurface(context, classes, primitive, *info);
 
   std::vector<Attribute> attributes = collect(context.ir);

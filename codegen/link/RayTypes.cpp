@@ -1,13 +1,15 @@
 //===- RayTypes.cpp - payloads, and who answers them ----------------------===//
 //
-// The type of a payload is the type of its ray. Here the types that a scene traces get numbers, which a ray carries, and
-// it is found out how their hits have to be searched for:
+// The type of a payload is the type of its ray. Here the types that a scene traces get numbers,
+// which a ray carries, and it is found out how their hits have to be searched for:
 //
-// - no material has `closestHit` for the type: any hit is as good as the nearest, and the first ends the search;
-// - some material has `anyHit`: hits may be refused. In which order materials are asked must not show. It does not if
-//   they write nothing of the payload, draw no random numbers, and do not end the search before the nearest hit where
-//   somebody wants to know it. Nor does it where each of them either refuses, or writes the same constants and ends the
-//   search, and no `closestHit` follows. Everywhere else they are asked in the order of hits.
+// - no material has `closestHit` for the type: any hit is as good as the nearest, and the first
+//   ends the search;
+// - some material has `anyHit`: hits may be refused. In which order materials are asked must not
+//   show. It does not if they write nothing of the payload, draw no random numbers, and do not end
+//   the search before the nearest hit where somebody wants to know it. Nor does it where each of
+//   them either refuses, or writes the same constants and ends the search, and no `closestHit`
+//   follows. Everywhere else they are asked in the order of hits.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -26,7 +28,8 @@ namespace {
 using mlir::func::FuncOp;
 
 /// The methods of this name that the classes of the program have for a payload.
-std::vector<FuncOp> programsFor(const LinkContext &context, const RayType &type, const std::string &method) {
+std::vector<FuncOp> programsFor(const LinkContext &context, const RayType &type,
+                                const std::string &method) {
   std::vector<FuncOp> programs;
   for (const LinkedClass &linked : context.classes)
     if (FuncOp program =
@@ -108,8 +111,9 @@ std::string pathInPayload(mlir::Value address) {
 
 using ConstantStores = std::map<std::string, mlir::Attribute>;
 
-/// Whether each way through the method ends in a refusal without stores, or in the end of the search with these stores
-/// of constants (all of them in front of the answer, in its block). `stores` is filled by the first that is seen.
+/// Whether each way through the method ends in a refusal without stores, or in the end of the
+/// search with these stores of constants (all of them in front of the answer, in its block).
+/// `stores` is filled by the first that is seen.
 bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
   bool isAlike = true;
   anyHit.walk([&](ir::ReturnOp end) {
@@ -120,7 +124,8 @@ bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
     if (pathInPayload(store.getAddress()).empty())
       return;
     auto end = llvm::dyn_cast<ir::ReturnOp>(store->getBlock()->back());
-    auto answer = end ? llvm::dyn_cast_or_null<ir::AnswerHitOp>(end->getPrevNode()) : ir::AnswerHitOp();
+    auto answer =
+        end ? llvm::dyn_cast_or_null<ir::AnswerHitOp>(end->getPrevNode()) : ir::AnswerHitOp();
     isAlike &= answer && answer.getAnswer() == ir::HitAnswer::Terminate;
   });
   anyHit.walk([&](ir::AnswerHitOp answer) {
@@ -166,7 +171,8 @@ bool writesShowNoOrder(const LinkContext &context, const std::vector<FuncOp> &an
   return true;
 }
 
-bool orderShows(const LinkContext &context, const std::vector<FuncOp> &anyHits, bool hasClosestHit) {
+bool orderShows(const LinkContext &context, const std::vector<FuncOp> &anyHits,
+                bool hasClosestHit) {
   const Asking asking = askingOf(reachedFrom(anyHits, context));
   if (asking.draws || (asking.terminates && hasClosestHit))
     return true;
@@ -199,7 +205,8 @@ std::uint32_t searchFor(LinkContext &context, const RayType &type) {
   return how;
 }
 
-/// @rtsl_rt_Material_closestHit_payload(%object): the method for the ray's type, of the object's class.
+/// @rtsl_rt_Material_closestHit_payload(%object): the method for the ray's type, of the object's
+/// class.
 void makePayloadSlot(LinkContext &context, const std::string &base, const std::string &method) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
   const mlir::Location location = builder.getUnknownLoc();
@@ -255,9 +262,10 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
 std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
   std::vector<RayType> types;
   auto number = [&](auto ray) {
-    const auto payload =
-        llvm::cast<ir::StructType>(llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee());
-    auto known = std::find_if(types.begin(), types.end(), [&](const RayType &type) { return type.payload == payload; });
+    const auto payload = llvm::cast<ir::StructType>(
+        llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee());
+    auto known = std::find_if(types.begin(), types.end(),
+                              [&](const RayType &type) { return type.payload == payload; });
     if (known == types.end()) {
       types.push_back({payload, static_cast<std::uint32_t>(types.size()) + 1});
       known = types.end() - 1;

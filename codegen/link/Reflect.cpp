@@ -14,14 +14,19 @@ using ValueKind = runtime::ValueType::Kind;
 
 ValueKind scalarKind(const Type *scalar) {
   switch (scalar->kind) {
-  case TypeKind::Bool: return ValueKind::Bool;
-  case TypeKind::Int: return ValueKind::Int;
-  case TypeKind::UInt: return ValueKind::UInt;
-  default: return ValueKind::Float;
+  case TypeKind::Bool:
+    return ValueKind::Bool;
+  case TypeKind::Int:
+    return ValueKind::Int;
+  case TypeKind::UInt:
+    return ValueKind::UInt;
+  default:
+    return ValueKind::Float;
   }
 }
 
-runtime::MemberInfo reflectMember(const std::string &name, const Type *type, std::uint32_t offset, mlir::Type irType) {
+runtime::MemberInfo reflectMember(const std::string &name, const Type *type, std::uint32_t offset,
+                                  mlir::Type irType) {
   runtime::MemberInfo info;
   info.name = name;
   info.type = reflect(type, irType);
@@ -63,8 +68,8 @@ runtime::ValueType reflect(const Type *type, mlir::Type irType) {
     for (unsigned i = 0; i < type->structure->fields.size(); ++i) {
       const auto layout = mlir::cast<ir::StructType>(irType);
       const typed::Field &field = type->structure->fields[i];
-      value.fields.push_back(
-          reflectMember(field.name, field.type, ir::fieldOffset(layout, i), layout.getFieldTypes()[i]));
+      value.fields.push_back(reflectMember(field.name, field.type, ir::fieldOffset(layout, i),
+                                           layout.getFieldTypes()[i]));
     }
     break;
   case TypeKind::Class:
@@ -78,7 +83,8 @@ runtime::ValueType reflect(const Type *type, mlir::Type irType) {
   return value;
 }
 
-runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters) {
+runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record,
+                           ir::StructType parameters) {
   runtime::ClassInfo result;
   result.name = info.name;
   result.root = info.root;
@@ -89,8 +95,8 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
     const std::optional<std::uint32_t> offset = ir::memberOffset(record, member->name);
     if (!offset) // scratch and const members are not in the record
       continue;
-    runtime::MemberInfo described =
-        reflectMember(member->name, member->type, *offset, record.findMember(member->name).getType());
+    runtime::MemberInfo described = reflectMember(member->name, member->type, *offset,
+                                                  record.findMember(member->name).getType());
     described.isPublic = member->access == ast::Access::Public;
     described.hasDefault = member->init != nullptr || member->isOptional; // no object
     result.members.push_back(std::move(described));
@@ -100,8 +106,9 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
     result.hasConstructor = true;
     result.parameterSize = ir::sizeInBytes(parameters);
     for (unsigned i = 0; i < constructor->parameters.size(); ++i)
-      result.parameters.push_back(reflectMember(parameters.getFieldNames()[i].str(), constructor->parameters[i]->type,
-                                                ir::fieldOffset(parameters, i), parameters.getFieldTypes()[i]));
+      result.parameters.push_back(
+          reflectMember(parameters.getFieldNames()[i].str(), constructor->parameters[i]->type,
+                        ir::fieldOffset(parameters, i), parameters.getFieldTypes()[i]));
   }
 
   std::set<std::string> methods;

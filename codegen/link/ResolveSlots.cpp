@@ -3,7 +3,8 @@
 //   %c = rtsl.call_method "weight" on %t(%x) : !rtsl.ref<"rt_Texture">, (f32) -> f32
 // becomes a call of
 //   func.func private @dispatch.rt_Texture.weight(%object, %x) -> f32
-// which switches over the classes below rt_Texture that the scene uses; with one class it is a direct call.
+// which switches over the classes below rt_Texture that the scene uses; with one class it is a
+// direct call.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Separate.h"
@@ -19,7 +20,8 @@ void buildCall(mlir::OpBuilder &builder, const LinkedClass &linked, mlir::func::
                mlir::func::FuncOp function) {
   const mlir::Location location = function.getLoc();
   mlir::Block &entry = function.getBody().front();
-  llvm::SmallVector<mlir::Value> arguments(entry.getArguments().begin(), entry.getArguments().end());
+  llvm::SmallVector<mlir::Value> arguments(entry.getArguments().begin(),
+                                           entry.getArguments().end());
   const auto exact = ir::RefType::get(builder.getContext(), linked.info->name);
   if (arguments.front().getType() != exact)
     arguments.front() = ir::CastRefOp::create(builder, location, exact, arguments.front());
@@ -59,7 +61,8 @@ Finding describeDispatch(const std::string &subject,
           place};
 }
 
-mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method) {
+mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked,
+                              const std::string &method) {
   return context.function(linked.info->name + "." + method);
 }
 
@@ -75,7 +78,8 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
                    bool mayBeNone) {
   const llvm::StringRef base =
       llvm::cast<ir::RefType>(function.getArgumentTypes().front()).getClassName();
-  if ((classes.size() > 1 || mayBeNone) && context.isWithout(Item::Dispatch, (base + "." + method).str()))
+  if ((classes.size() > 1 || mayBeNone) &&
+      context.isWithout(Item::Dispatch, (base + "." + method).str()))
     return buildDispatch(context, function, {classes.front()}, method, false);
   std::vector<std::pair<const LinkedClass *, mlir::func::FuncOp>> targets;
   for (const LinkedClass *linked : classes)
@@ -142,7 +146,8 @@ void resolveSlots(LinkContext &context) {
       if (linked.isUsed)
         classes.push_back(&linked);
       if (linked.hasObjects && !findMethod(context, linked, slot.method))
-        context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method, linked.info->name);
+        context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method,
+                                   linked.info->name);
     }
     if (!classes.empty())
       context.dispatches[function.getSymName().str()] = describeDispatch(

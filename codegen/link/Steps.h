@@ -22,7 +22,7 @@ struct LinkedClass {
   bool isUsed =
       true; // an object of it may be met by a ray; otherwise its constructor alone is of use
   ir::ClassOp record;
-  std::uint32_t id = 0; // from 1, in the order of the module
+  std::uint32_t id = 0;      // from 1, in the order of the module
   ir::StructType parameters; // packed arguments of the constructor; null: it has none
 };
 
@@ -42,13 +42,16 @@ struct LinkContext {
   Findings &findings; // what the steps leave out, and what not
   ElementaryErrors elementaryErrors;
   std::vector<LinkedClass> classes = {};
-  std::map<std::string, Finding>
-      dispatches = {}; // of the functions of this name, to be noted if something runs them
+  std::map<std::string, Finding> dispatches =
+      {}; // of the functions of this name, to be noted if something runs them
   std::vector<RayType> rayTypes = {};
-  /// Of `ir`. Who adds or erases a function does it through this, so that every name is found at once.
+  /// Of `ir`. Who adds or erases a function does it through this, so that every name is found at
+  /// once.
   mlir::SymbolTable symbols = mlir::SymbolTable(ir);
 
-  mlir::func::FuncOp function(llvm::StringRef name) const { return symbols.lookup<mlir::func::FuncOp>(name); }
+  mlir::func::FuncOp function(llvm::StringRef name) const {
+    return symbols.lookup<mlir::func::FuncOp>(name);
+  }
 
   /// LinkRequest::without.
   bool isWithout(Item item, const std::string &subject) const {
@@ -56,7 +59,8 @@ struct LinkContext {
   }
 };
 
-/// Keeps the classes that are asked for: fills `context.classes` and erases the functions of the others.
+/// Keeps the classes that are asked for: fills `context.classes` and erases the functions of the
+/// others.
 void dropUnusedClasses(LinkContext &context);
 
 /// UsedObjects.cpp: finds out which objects of the scene something refers to: LinkedClass::isUsed.
@@ -68,7 +72,8 @@ bool asksForLights(const LinkContext &context);
 /// Notes which classes the program has, once it is known which methods run.
 void noteClasses(LinkContext &context);
 
-/// Takes optional members that no object of the scene sets for empty, with all that is done only if they are not.
+/// Takes optional members that no object of the scene sets for empty, with all that is done only if
+/// they are not.
 void emptyReferences(LinkContext &context);
 
 /// HitErrors.cpp: bounds of the error of t for the primitives that rays leave.
@@ -86,13 +91,15 @@ constexpr llvm::StringLiteral whileBuilding = "rtsl.while_building";
 /// A function as an author would name it: "Painted.closestHit(Radiance)".
 std::string shownName(mlir::func::FuncOp function);
 
-/// Erases stores of state that nobody reads, and notes what is computed of hits and samples, for whom.
+/// Erases stores of state that nobody reads, and notes what is computed of hits and samples, for
+/// whom.
 void dropUnreadOutputs(LinkContext &context);
 
 /// RTSL_NEEDS_* of what LinkRequest::without names.
 std::uint32_t needsLeftOut(const LinkContext &context);
 
-/// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody reads.
+/// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody
+/// reads.
 void placeAttributes(LinkContext &context);
 
 /// How the functions begin that a call through a reference becomes: `@dispatch.rt_Texture.lookup`.
@@ -104,8 +111,8 @@ struct SlotCall {
   std::string method;
 };
 
-/// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`. `define` is given each such function once,
-/// without a body.
+/// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`. `define` is given
+/// each such function once, without a body.
 void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
                   llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define);
 
@@ -119,10 +126,12 @@ void resolveSlots(LinkContext &context);
 /// Numbers the types of payloads that the module traces.
 std::vector<RayType> numberRayTypes(mlir::ModuleOp ir);
 
-/// The same for a program, and finds out how hits are to be searched for. Warns where nobody answers.
+/// The same for a program, and finds out how hits are to be searched for. Warns where nobody
+/// answers.
 void resolveRayTypes(LinkContext &context);
 
-/// EndlessRays.cpp: warns where every material that answers a kind of rays sends another, whatever it finds.
+/// EndlessRays.cpp: warns where every material that answers a kind of rays sends another, whatever
+/// it finds.
 void warnOfEndlessRays(LinkContext &context);
 
 /// Adds the entries of language/PayloadSlots.def.
@@ -137,7 +146,8 @@ void makeFeatures(LinkContext &context);
 /// Numbers the prints of the module and says what stands in them.
 std::vector<runtime::PrintFormat> numberPrints(mlir::ModuleOp ir);
 
-/// Adds the entries of language/Slots.def and those that make objects; everything else becomes private.
+/// Adds the entries of language/Slots.def and those that make objects; everything else becomes
+/// private.
 void makeEntries(LinkContext &context);
 
 /// A function, and the rt_ class below which its class is: empty for a function of no class.
@@ -154,7 +164,8 @@ std::uint32_t findNeeds(const LinkContext &context);
 std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context);
 
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
-mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked, const std::string &method);
+mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked,
+                              const std::string &method);
 
 /// Says between which classes a call through a reference or from the runtime chooses; there is one
 /// at least.

@@ -5,10 +5,11 @@
 //     { call @dispatch.Layer.at(%inner, ...) }         ==>   func @dispatch.Layer.at.2  { call @Mixed.at.2 }
 //                                                            func @Mixed.at.2           { 0 }
 //
-// A GPU has no room for recursion whose depth only the scene says; and what calls itself is inlined nowhere. Each time round
-// such a cycle a call goes through a reference, to an object that is further down a chain of references
-// (docs/language.md, func.recursion), and how long these chains are is known when the objects are made. What traces has
-// frames of its own (codegen/passes/continuation/calls/CallFrames.cpp).
+// A GPU has no room for recursion whose depth only the scene says; and what calls itself is inlined
+// nowhere. Each time round such a cycle a call goes through a reference, to an object that is
+// further down a chain of references (docs/language.md, func.recursion), and how long these chains
+// are is known when the objects are made. What traces has frames of its own
+// (codegen/passes/continuation/calls/CallFrames.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/UnrollRecursion.h"
@@ -84,7 +85,8 @@ public:
   }
 
 private:
-  /// Calls of the cycle's functions lead to the copies of the same level, and through references to those below.
+  /// Calls of the cycle's functions lead to the copies of the same level, and through references to
+  /// those below.
   void redirect(FuncOp function, std::uint32_t level) {
     function.walk([&](CallOp call) {
       mlir::Operation *callee = symbols.lookup(call.getCallee());
@@ -132,9 +134,11 @@ void unrollRecursion(mlir::ModuleOp ir, std::uint32_t referenceChain) {
   for (const Cycle &cycle : findCycles(ir)) {
     if (traces(cycle, ir))
       continue;
-    // Between two calls through the same references a member has led on; other references may have been used meanwhile.
+    // Between two calls through the same references a member has led on; other references may have
+    // been used meanwhile.
     const auto dispatches = static_cast<std::uint32_t>(llvm::count_if(cycle, isDispatch));
-    const std::uint64_t levels = std::uint64_t(std::max(1u, referenceChain)) * std::max(1u, dispatches);
+    const std::uint64_t levels =
+        std::uint64_t(std::max(1u, referenceChain)) * std::max(1u, dispatches);
     if (levels <= mostRecursionLevels)
       Unroller(ir, cycle, static_cast<std::uint32_t>(levels)).run();
   }

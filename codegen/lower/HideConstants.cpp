@@ -9,7 +9,9 @@ namespace rtsl::lowering {
 
 namespace arith = mlir::arith;
 
-static bool isFloat(mlir::Type type) { return mlir::getElementTypeOrSelf(type).isF32(); }
+static bool isFloat(mlir::Type type) {
+  return mlir::getElementTypeOrSelf(type).isF32();
+}
 
 static void hideResult(mlir::Operation *op) {
   mlir::OpBuilder builder(op->getContext());
@@ -28,7 +30,8 @@ static void hideOperands(mlir::Operation *op) {
 void hideConstants(mlir::ModuleOp module) {
   llvm::SmallVector<mlir::Operation *> sources, functions;
   module.walk([&](mlir::Operation *op) {
-    if (llvm::isa<arith::ConstantOp, arith::BitcastOp, ir::LoadOp>(op) && isFloat(op->getResult(0).getType()))
+    if (llvm::isa<arith::ConstantOp, arith::BitcastOp, ir::LoadOp>(op) &&
+        isFloat(op->getResult(0).getType()))
       sources.push_back(op);
     else if (llvm::isa<arith::SIToFPOp, arith::UIToFPOp, ir::ElementaryOp, ir::RefractOp>(op))
       functions.push_back(op); // of integers, and of variables that turn out to be zero

@@ -247,7 +247,8 @@ std::optional<Parts> FunctionLowering::lowerGeometricBuiltin(const typed::Builti
     return result(reflect(operand(0), operand(1)));
   case Builtin::Refract:
     evaluate();
-    return result(num(emitter.fold<ir::RefractOp>(operand(0).type(), operand(0), operand(1), operand(2))));
+    return result(
+        num(emitter.fold<ir::RefractOp>(operand(0).type(), operand(0), operand(1), operand(2))));
   case Builtin::PerpendicularTo:
     evaluate();
     return result(module.library.perpendicularTo(operand(0)));

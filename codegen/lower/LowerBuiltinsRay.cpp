@@ -1,6 +1,6 @@
 //===- LowerBuiltinsRay.cpp - trace, hit, rand and ambient ----------------===//
-#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
+#include "sema/typed/Analysis.h"
 
 #include "runtime/device/ray/Abi.h"
 #include "sema/typed/Casting.h"
@@ -57,7 +57,8 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
   }
 }
 
-// Whether there are to be shadows is mostly written out. The ray state has no word for it: no cosine says it (Abi.h).
+// Whether there are to be shadows is mostly written out. The ray state has no word for it: no
+// cosine says it (Abi.h).
 Parts FunctionLowering::lowerIlluminate(const typed::BuiltinExpr &expr) {
   Value light = value(*expr.args[0]), point = value(*expr.args[1]);
   Value shadows = expr.args.size() > 2 ? value(*expr.args[2]) : emitter.boolConstant(true);
@@ -66,7 +67,8 @@ Parts FunctionLowering::lowerIlluminate(const typed::BuiltinExpr &expr) {
   auto ask = [&](bool withShadows) {
     Value normal = withShadows ? Value() : point;
     Value cosine = withShadows ? Value() : emitter.constant(emitter.getF32Type(), RTSL_NO_SHADOWS);
-    emitter.store(emitter.make<ir::IlluminateOp>(emitter.getI1Type(), light, point, normal, cosine), lit);
+    emitter.store(emitter.make<ir::IlluminateOp>(emitter.getI1Type(), light, point, normal, cosine),
+                  lit);
   };
   emitter.ifThen(shadows, [&] { ask(true); }, [&] { ask(false); });
   return {emitter.load(lit)};
@@ -83,9 +85,10 @@ void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
       continue;
     }
     target = place(*expr.args[i]);
-    const bool isOfItsOwn = llvm::isa_and_nonnull<ir::VarOp, ir::PayloadOp>(target.address.getDefiningOp());
-    const bool isLeftAlone =
-        std::none_of(expr.args.begin() + first, expr.args.end(), [](const auto &arg) { return hasSideEffects(*arg); });
+    const bool isOfItsOwn =
+        llvm::isa_and_nonnull<ir::VarOp, ir::PayloadOp>(target.address.getDefiningOp());
+    const bool isLeftAlone = std::none_of(expr.args.begin() + first, expr.args.end(),
+                                          [](const auto &arg) { return hasSideEffects(*arg); });
     if (module.options.source && isOfItsOwn && isLeftAlone) { // in its own place: nobody else looks
       arguments.push_back(target.address);
       continue;

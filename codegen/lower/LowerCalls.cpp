@@ -6,8 +6,8 @@
 // copied back, again from left to right. So what overlaps is harmless.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
+#include "sema/typed/Analysis.h"
 
 #include "sema/typed/Casting.h"
 
@@ -30,12 +30,15 @@ static bool canShare(const typed::Expr &arg, const std::vector<typed::ExprPtr> &
   return true;
 }
 
-// For people to read, what stays whole goes to a method that traces as it is, if nobody else looks at it meanwhile.
-bool FunctionLowering::canHandOver(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
+// For people to read, what stays whole goes to a method that traces as it is, if nobody else looks
+// at it meanwhile.
+bool FunctionLowering::canHandOver(const typed::Function &callee,
+                                   const std::vector<typed::ExprPtr> &args,
                                    std::size_t index) const {
   auto *variable = dynCast<typed::VariableExpr>(args[index].get());
-  if (!module.options.source || !variable || variable->variable->kind == typed::Variable::Kind::Global ||
-      !livesInMemory(variable->type) || callee.parameters[index]->direction != ast::Direction::InOut)
+  if (!module.options.source || !variable ||
+      variable->variable->kind == typed::Variable::Kind::Global || !livesInMemory(variable->type) ||
+      callee.parameters[index]->direction != ast::Direction::InOut)
     return false;
   for (std::size_t other = 0; other < args.size(); ++other) {
     if (other > index && hasSideEffects(*args[other]))
@@ -98,10 +101,12 @@ void FunctionLowering::copyOut(const std::vector<CopyOut> &outputs) {
     store(loadFrom(output.from, output.target.type), output.target);
 }
 
-/// Does it call what objects of the class do not run otherwise, or what the engine calls in another way?
+/// Does it call what objects of the class do not run otherwise, or what the engine calls in another
+/// way?
 bool FunctionLowering::isHidden(const typed::CallExpr &expr) const {
   const typed::Function &callee = *expr.function;
-  return expr.isOfBase && (callee.isStateMethod || callee.isConstructor || &resolve(callee, key.concrete) != &callee);
+  return expr.isOfBase && (callee.isStateMethod || callee.isConstructor ||
+                           &resolve(callee, key.concrete) != &callee);
 }
 
 Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
@@ -138,7 +143,8 @@ Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
 }
 
 // A texture leaves what it finds in two state variables. They are cleared before, so that what it
-// sets nothing of is zero and not what another one has set. One that looks up another keeps its own:
+// sets nothing of is zero and not what another one has set. One that looks up another keeps its
+// own:
 //
 //   %mine = rtsl.load TextureColor      only where the caller may itself be looked up
 //   rtsl.store 0, TextureColor

@@ -2,14 +2,15 @@
 //
 // Symbols: a free function keeps its name, `f`, or has its parameters' types behind it where the
 // name is overloaded, `f.vec3.float`. A method is `Class.method`, of the class whose objects run
-// it; `Class.Base.method` is the definition of a base class that `Base::method()` calls. What a call of `intersect` needs a second version of is `Class.helper.intersect`
-// (LowerFunction.cpp says why).
+// it; `Class.Base.method` is the definition of a base class that `Base::method()` calls. What a
+// call of `intersect` needs a second version of is `Class.helper.intersect` (LowerFunction.cpp says
+// why).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/lower/Lowering.h"
 
-#include "sema/typed/Analysis.h"
 #include "frontend/source/Expansion.h"
+#include "sema/typed/Analysis.h"
 
 #include <algorithm>
 
@@ -26,7 +27,8 @@ mlir::Location ModuleLowering::location(SourceRange range) {
   if (!range.isValid())
     return mlir::UnknownLoc::get(context());
   const auto [file, at] = shownBegin(options.diagnostics->sources(), range);
-  return mlir::FileLineColLoc::get(context(), llvm::StringRef(file.data(), file.size()), at.line, at.column);
+  return mlir::FileLineColLoc::get(context(), llvm::StringRef(file.data(), file.size()), at.line,
+                                   at.column);
 }
 
 void ModuleLowering::reportUnsupported(SourceRange range, const std::string &what) {
@@ -45,7 +47,8 @@ std::string ModuleLowering::symbolOf(const FunctionKey &key) {
   const typed::Function &function = *key.function;
   std::string name;
   if (key.concrete) {
-    name = key.concrete->name + "." + (key.isHidden ? function.owner->name + "." : "") + slotName(function);
+    name = key.concrete->name + "." + (key.isHidden ? function.owner->name + "." : "") +
+           slotName(function);
   } else {
     auto overloads = std::count_if(source.functions.begin(), source.functions.end(),
                                    [&](const auto &other) { return other->name == function.name; });

@@ -2,12 +2,13 @@
 //
 // For C++ (SourceTable.h), of what cannot be an expression of values (LowerSource.cpp).
 //
-// Structs, arrays and matrices stay whole, and so does what a call writes through its parameters: the operation has their
-// addresses. A number or a vector that is written so is a variable of its own for the time, under the same name.
+// Structs, arrays and matrices stay whole, and so does what a call writes through its parameters:
+// the operation has their addresses. A number or a vector that is written so is a variable of its
+// own for the time, under the same name.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
+#include "sema/typed/Analysis.h"
 
 #include "sema/typed/Casting.h"
 
@@ -169,7 +170,8 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
     return;
   }
   case ExprKind::State:
-    if (!evaluation.isNested && !livesInMemory(expr.type) && !evaluation.states.count(cast<typed::StateExpr>(expr).variable))
+    if (!evaluation.isNested && !livesInMemory(expr.type) &&
+        !evaluation.states.count(cast<typed::StateExpr>(expr).variable))
       leaf(value(expr));
     return;
   default:
@@ -211,11 +213,13 @@ std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, 
   return makeEvaluation(expr, evaluation, into);
 }
 
-Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation &evaluation, Value into) {
+Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation &evaluation,
+                                       Value into) {
   emitter.setLoc(module.location(expr.range));
   SourceTable &table = *module.options.source;
   const auto number = static_cast<std::uint32_t>(table.entries.size());
-  table.entries.push_back({into ? SourceTable::Kind::Into : SourceTable::Kind::Value, &expr, evaluation.leaves});
+  table.entries.push_back(
+      {into ? SourceTable::Kind::Into : SourceTable::Kind::Value, &expr, evaluation.leaves});
   const bool isCall = expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall;
   mlir::ArrayAttr writes;
   std::vector<std::string> names;
@@ -238,7 +242,8 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
     op->setAttr("rtsl.into", emitter.getUnitAttr());
   if (!evaluation.changed.empty())
     op->setAttr("rtsl.changes", emitter.getDenseI32ArrayAttr(evaluation.changed));
-  const bool isPrint = expr.kind == ExprKind::Builtin && cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
+  const bool isPrint = expr.kind == ExprKind::Builtin &&
+                       cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
   if (evaluation.isNested)
     op->setAttr("rtsl.nested", emitter.getUnitAttr());
   else if (!isPrint && (!isCall || isKept(expr))) // nothing but these variables is touched
@@ -257,8 +262,9 @@ static bool isBetweenRays(const typed::Expr &expr, const SourceTable &table) {
   bool found = true;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
-      found = found && (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
-                        builtin->builtin == typed::Builtin::Print || typed::drawsRandom(builtin->builtin));
+      found = found &&
+              (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
+               builtin->builtin == typed::Builtin::Print || typed::drawsRandom(builtin->builtin));
     else if (auto *call = dynCast<typed::CallExpr>(&inner))
       found = found && !table.mayTrace(*call->function);
     else if (auto *method = dynCast<typed::MethodCallExpr>(&inner))
@@ -267,9 +273,11 @@ static bool isBetweenRays(const typed::Expr &expr, const SourceTable &table) {
   return found;
 }
 
-/// One part changes what another looks at: the author's expression stays as it is, nested effects and all, and the printer
-/// puts it in order. Numbers and vectors that it writes are variables of their own for the time.
-std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool hasResult, Value into) {
+/// One part changes what another looks at: the author's expression stays as it is, nested effects
+/// and all, and the printer puts it in order. Numbers and vectors that it writes are variables of
+/// their own for the time.
+std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool hasResult,
+                                                   Value into) {
   if (!module.options.source || !isBetweenRays(expr, *module.options.source))
     return std::nullopt;
   if (hasResult && !into && livesInMemory(expr.type)) {
@@ -283,7 +291,8 @@ std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool
   const std::set<const typed::Variable *> assigned = assignedVariables(expr);
   forEachExpr(expr, [&](const typed::Expr &inner) {
     auto *named = dynCast<typed::VariableExpr>(&inner);
-    if (!named || !isLocal(inner) || !assigned.count(named->variable) || evaluation.places.count(named->variable))
+    if (!named || !isLocal(inner) || !assigned.count(named->variable) ||
+        evaluation.places.count(named->variable))
       return;
     const Place where = place(inner);
     evaluation.places[named->variable] = where.address;
@@ -330,7 +339,8 @@ std::optional<Parts> FunctionLowering::lowerOneByOne(const typed::Expr &expr, Va
     parts = {convert->operand.get()};
   else if (auto *construct = dynCast<typed::ConstructExpr>(&expr))
     all(construct->args);
-  else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr); builtin && typed::isPure(builtin->builtin))
+  else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+           builtin && typed::isPure(builtin->builtin))
     all(builtin->args);
   else if (auto *call = dynCast<typed::CallExpr>(&expr); call && isKept(expr))
     all(call->args);
@@ -351,7 +361,8 @@ std::optional<Parts> FunctionLowering::lowerOneByOne(const typed::Expr &expr, Va
   if (staysInMemory)
     return makeEvaluation(expr, evaluation, into);
   emitter.setLoc(module.location(expr.range));
-  return Parts{wholeExpression(SourceTable::Kind::Value, expr, parts, evaluation.operands, module.type(expr.type))};
+  return Parts{wholeExpression(SourceTable::Kind::Value, expr, parts, evaluation.operands,
+                               module.type(expr.type))};
 }
 
 } // namespace rtsl::lowering

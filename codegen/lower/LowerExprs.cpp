@@ -4,12 +4,12 @@
 // value, then the store.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Analysis.h"
 #include "codegen/formulas/Color.h"
 #include "codegen/lower/Lowering.h"
+#include "sema/typed/Analysis.h"
 
-#include "sema/typed/Casting.h"
 #include "sema/fold/ConstantFold.h"
+#include "sema/typed/Casting.h"
 #include "sema/typed/TypeProperties.h"
 #include "sema/typed/Walk.h"
 
@@ -136,7 +136,8 @@ void FunctionLowering::lowerInto(const typed::Expr &expr, Value address) {
     }
     if (module.options.source && (lowerEvaluation(expr, address) || lowerOneByOne(expr, address)))
       return;
-    if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && isAggregate(expr.type)) {
+    if (auto *construct = dynCast<typed::ConstructExpr>(&expr);
+        construct && isAggregate(expr.type)) {
       if (ir::leafCount(module.type(expr.type)) > mostStores)
         if (Value constant = tableOf(expr, "constant"))
           return emitter.copy(constant, address);
@@ -176,7 +177,8 @@ static void wordsOf(const Type *type, const typed::Constant::Scalar *&next,
       words.push_back(type->scalar()->is(TypeKind::Bool) ? next->b : next->i);
 }
 
-Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &constant, llvm::StringRef name) {
+Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &constant,
+                                     llvm::StringRef name) {
   auto scalar = [&](const Type *scalarType, typed::Constant::Scalar value) -> Value {
     switch (scalarType->kind) {
     case TypeKind::Float:
@@ -231,18 +233,20 @@ Value FunctionLowering::atStart(llvm::function_ref<Value()> make) {
 }
 
 // Made once, at the start of the function.
-Value FunctionLowering::table(llvm::StringRef name, const Type *type, llvm::ArrayRef<std::int32_t> words) {
+Value FunctionLowering::table(llvm::StringRef name, const Type *type,
+                              llvm::ArrayRef<std::int32_t> words) {
   const mlir::Type pointer = module.pointer(type);
   Value &known = tables[{pointer, emitter.getDenseI32ArrayAttr(words)}];
-  return known ? known : known = atStart([&] { return emitter.make<ir::TableOp>(pointer, name, words); });
+  return known ? known
+               : known = atStart([&] { return emitter.make<ir::TableOp>(pointer, name, words); });
 }
 
 /// The bits of a constant, a word a scalar; false if `value` is none.
 static bool wordsOf(Value value, llvm::SmallVectorImpl<std::int32_t> &words) {
   auto append = [&](mlir::Attribute scalar) {
     const auto number = llvm::dyn_cast<mlir::FloatAttr>(scalar);
-    const llvm::APInt bits =
-        number ? number.getValue().bitcastToAPInt() : llvm::cast<mlir::IntegerAttr>(scalar).getValue();
+    const llvm::APInt bits = number ? number.getValue().bitcastToAPInt()
+                                    : llvm::cast<mlir::IntegerAttr>(scalar).getValue();
     words.push_back(static_cast<std::int32_t>(bits.getZExtValue()));
   };
   mlir::Attribute constant;
@@ -257,13 +261,15 @@ static bool wordsOf(Value value, llvm::SmallVectorImpl<std::int32_t> &words) {
   return true;
 }
 
-bool FunctionLowering::appendWords(const typed::Expr &expr, llvm::SmallVectorImpl<std::int32_t> &words) {
+bool FunctionLowering::appendWords(const typed::Expr &expr,
+                                   llvm::SmallVectorImpl<std::int32_t> &words) {
   // In what is printed for people no operations stay of a matrix that turns out to be no constant.
   const bool isPrinted = module.options.source && expr.type->isMatrix();
   if (!isAggregate(expr.type) && !isPrinted)
     return llvm::all_of(lower(expr), [&](Value part) { return wordsOf(part, words); });
   if (auto *construct = dynCast<typed::ConstructExpr>(&expr); construct && !isPrinted)
-    return llvm::all_of(construct->args, [&](const typed::ExprPtr &arg) { return appendWords(*arg, words); });
+    return llvm::all_of(construct->args,
+                        [&](const typed::ExprPtr &arg) { return appendWords(*arg, words); });
   if (isComputedWhenRun(expr))
     return false;
   const std::optional<typed::Constant> constant = evaluate(expr);
@@ -278,7 +284,9 @@ bool FunctionLowering::isComputedWhenRun(const typed::Expr &constant) {
   if (!module.options.isWidenedLater)
     return false;
   if (auto *literal = dynCast<typed::LiteralExpr>(&constant)) {
-    const typed::Expr *init = literal->variable ? literal->variable->init.get() : literal->member ? literal->member->init.get() : nullptr;
+    const typed::Expr *init = literal->variable ? literal->variable->init.get()
+                              : literal->member ? literal->member->init.get()
+                                                : nullptr;
     return init && isComputedWhenRun(*init);
   }
   auto [known, isNew] = computedWhenRun.try_emplace(&constant, false);
@@ -289,7 +297,8 @@ bool FunctionLowering::isComputedWhenRun(const typed::Expr &constant) {
     if (expr.kind == ExprKind::Literal)
       isComputed = isComputed || isComputedWhenRun(expr);
     else
-      isComputed = isComputed || contains(expr.type, TypeKind::Float) || contains(expr.type, TypeKind::Color);
+      isComputed = isComputed || contains(expr.type, TypeKind::Float) ||
+                   contains(expr.type, TypeKind::Color);
   });
   return computedWhenRun[&constant] = isComputed;
 }
@@ -308,7 +317,8 @@ Parts FunctionLowering::computedOnce(const void *constant, const typed::Expr &va
 Value FunctionLowering::tableOf(const typed::Expr &expr, llvm::StringRef name) {
   llvm::SmallVector<std::int32_t> words;
   const typed::Expr *obstacle = nullptr;
-  if (!isAggregate(expr.type) || !isConstantExpression(expr, &obstacle) || !appendWords(expr, words))
+  if (!isAggregate(expr.type) || !isConstantExpression(expr, &obstacle) ||
+      !appendWords(expr, words))
     return nullptr;
   return table(name, expr.type, words);
 }

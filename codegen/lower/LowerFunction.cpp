@@ -1,10 +1,11 @@
 //===- LowerFunction.cpp - entry and exit of functions --------------------===//
 //
 // Scratch members of a primitive. In `intersect` they are variables of that call: what one
-// candidate without a hit computes must not touch what the best hit so far has stored. Each `hit(t)`
-// that is accepted is remembered, and where `intersect` returns after one, the scratch members are
-// stored as attributes of the hit. If a hit that does not win has stored its own, traversal runs
-// `intersect` of the winner again (findLostAttributes in runtime/device/traverse/Traverse.h):
+// candidate without a hit computes must not touch what the best hit so far has stored. Each
+// `hit(t)` that is accepted is remembered, and where `intersect` returns after one, the scratch
+// members are stored as attributes of the hit. If a hit that does not win has stored its own,
+// traversal runs `intersect` of the winner again (findLostAttributes in
+// runtime/device/traverse/Traverse.h):
 //
 //   %n = rtsl.var "n"                       a variable for each scratch member
 //   %accepted = rtsl.var "accepted"
@@ -19,8 +20,8 @@
 // that won.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
+#include "sema/typed/Analysis.h"
 
 namespace rtsl::lowering {
 

@@ -1,10 +1,10 @@
 //===- LowerPlaces.cpp - places in memory: what can be read and assigned --===//
-#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
+#include "sema/typed/Analysis.h"
 
 #include "runtime/device/ray/Abi.h"
-#include "sema/typed/Casting.h"
 #include "sema/fold/ConstantFold.h"
+#include "sema/typed/Casting.h"
 
 namespace rtsl::lowering {
 

@@ -1,12 +1,12 @@
 //===- LowerSource.cpp - expressions that are kept whole ------------------===//
 //
 // For C++ (SourceTable.h). An expression becomes one operation whose operands are what in it may
-// change: variables, the ray's state, and parts that have effects, which are lowered first, from left
-// to right. Members and constants stay inside.
+// change: variables, the ray's state, and parts that have effects, which are lowered first, from
+// left to right. Members and constants stay inside.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Analysis.h"
 #include "codegen/lower/Lowering.h"
+#include "sema/typed/Analysis.h"
 
 #include "sema/typed/Casting.h"
 
@@ -110,13 +110,15 @@ bool FunctionLowering::collectLeaves(const typed::Expr &expr,
 }
 
 /// About how many instructions the expression takes.
-static std::int32_t costOf(const typed::Expr &expr, const std::vector<const typed::Expr *> &leaves) {
+static std::int32_t costOf(const typed::Expr &expr,
+                           const std::vector<const typed::Expr *> &leaves) {
   std::int32_t cost = 0;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (std::find(leaves.begin(), leaves.end(), &inner) != leaves.end())
       return;
     const auto width = static_cast<std::int32_t>(
-        livesInMemory(inner.type) || inner.type->is(TypeKind::Void) || inner.type->is(TypeKind::Class)
+        livesInMemory(inner.type) || inner.type->is(TypeKind::Void) ||
+                inner.type->is(TypeKind::Class)
             ? 1u
             : std::max(1u, inner.type->is(TypeKind::Color) ? 3u : inner.type->componentCount()));
     switch (inner.kind) {
@@ -168,8 +170,8 @@ std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
   auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
   if (builtin && builtin->builtin == typed::Builtin::Print && !module.options.prints)
     return Parts();
-  if ((isCall && !isKept(expr)) ||
-      (builtin && (outputsOf(builtin->builtin).second != 0 || builtin->builtin == typed::Builtin::Print)))
+  if ((isCall && !isKept(expr)) || (builtin && (outputsOf(builtin->builtin).second != 0 ||
+                                                builtin->builtin == typed::Builtin::Print)))
     return lowerEvaluation(expr);
   if (expr.type->is(TypeKind::Void) ||
       (expr.kind == ExprKind::Literal && expr.type->is(TypeKind::Bool)))
@@ -184,7 +186,8 @@ std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
     return read ? read : lowerOneByOne(expr);
   }
   if (std::any_of(leaves.begin(), leaves.end(), [&](const auto *leaf) {
-        return (leaf->kind == ExprKind::Field || leaf->kind == ExprKind::Index) && mentionsMemory(*leaf);
+        return (leaf->kind == ExprKind::Field || leaf->kind == ExprKind::Index) &&
+               mentionsMemory(*leaf);
       })) {
     std::optional<Parts> read = lowerEvaluation(expr);
     return read ? read : lowerOneByOne(expr);
@@ -193,8 +196,8 @@ std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
   for (const typed::Expr *leaf : leaves)
     operands.push_back(value(*leaf));
   emitter.setLoc(module.location(expr.range));
-  return Parts{wholeExpression(SourceTable::Kind::Value, expr, leaves, operands,
-                               module.type(expr.type))};
+  return Parts{
+      wholeExpression(SourceTable::Kind::Value, expr, leaves, operands, module.type(expr.type))};
 }
 
 } // namespace rtsl::lowering

@@ -7,10 +7,10 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/ir/Rtsl.h"
-#include "sema/typed/Analysis.h"
 #include "codegen/formulas/Library.h"
+#include "codegen/ir/Rtsl.h"
 #include "codegen/lower/Lower.h"
+#include "sema/typed/Analysis.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "llvm/ADT/DenseMap.h"
@@ -142,7 +142,8 @@ private:
   Num number(const typed::Expr &expr) { return {emitter, value(expr)}; }
   /// Evaluates into memory that nothing else refers to.
   void lowerInto(const typed::Expr &expr, Value address);
-  Parts lowerLiteral(const Type *type, const typed::Constant &constant, llvm::StringRef name = "constant");
+  Parts lowerLiteral(const Type *type, const typed::Constant &constant,
+                     llvm::StringRef name = "constant");
   /// The address of a constant struct or array whose memory is known; `name` is for people.
   Value table(llvm::StringRef name, const Type *type, llvm::ArrayRef<std::int32_t> words);
   /// The same for an expression; null if it is no constant struct or array.
@@ -151,7 +152,8 @@ private:
   bool appendWords(const typed::Expr &expr, llvm::SmallVectorImpl<std::int32_t> &words);
   /// Calls `make` at the start of the function, and returns what it returns.
   Value atStart(llvm::function_ref<Value()> make);
-  /// Whether a constant expression is arithmetic that is widened later, so that what the checker has made of it does not count.
+  /// Whether a constant expression is arithmetic that is widened later, so that what the checker
+  /// has made of it does not count.
   bool isComputedWhenRun(const typed::Expr &constant);
   /// The value of such a constant, made at the start of the function.
   Parts computedOnce(const void *constant, const typed::Expr &value);
@@ -183,15 +185,15 @@ private:
 
     std::vector<const typed::Expr *> leaves;
     llvm::SmallVector<Value, 8> operands;
-    llvm::SmallVector<std::int32_t, 4> changed; // numbers of operands
+    llvm::SmallVector<std::int32_t, 4> changed;            // numbers of operands
     llvm::DenseMap<const typed::Variable *, Value> places; // of variables that are written
     std::set<typed::StateVariable> states;                 // that are written
     std::vector<std::pair<Place, Value>> outputs;
     bool isNested = false; // parts with effects stay where they are
     bool hasResult = true;
   };
-  /// The expression as one operation that reads and writes variables where they lie; nothing if that is not possible. With
-  /// `into` its value goes there.
+  /// The expression as one operation that reads and writes variables where they lie; nothing if
+  /// that is not possible. With `into` its value goes there.
   std::optional<Parts> lowerEvaluation(const typed::Expr &expr, Value into = nullptr);
   Parts makeEvaluation(const typed::Expr &expr, const Evaluation &evaluation, Value into);
   /// The same for parts that change what others look at; nothing if the expression traces.
@@ -200,7 +202,8 @@ private:
   bool openPlaces(const typed::Expr &expr, Evaluation &evaluation);
   void gather(const typed::Expr &expr, Evaluation &evaluation, bool isTop);
   bool mentionsMemory(const typed::Expr &expr);
-  /// Is it a constant matrix? Expressions have it under its name, as they have constant structs and arrays.
+  /// Is it a constant matrix? Expressions have it under its name, as they have constant structs and
+  /// arrays.
   static bool isNamedMatrix(const typed::Variable &variable);
   bool staysWhole(const typed::Expr &target);
   /// An expression whose value nobody asks for.
@@ -251,7 +254,8 @@ private:
   void passArguments(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
                      llvm::SmallVectorImpl<Value> &values, std::vector<CopyOut> &outputs,
                      bool isDispatched);
-  bool canHandOver(const typed::Function &callee, const std::vector<typed::ExprPtr> &args, std::size_t index) const;
+  bool canHandOver(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
+                   std::size_t index) const;
   void copyOut(const std::vector<CopyOut> &outputs);
 
   // LowerBuiltins.cpp, LowerBuiltinsInteger.cpp, LowerBuiltinsRay.cpp
@@ -299,7 +303,8 @@ private:
 
   // Constant structs and arrays, made once at the start of the function.
   llvm::DenseMap<std::pair<mlir::Type, mlir::Attribute>, Value> tables;
-  std::map<const typed::Variable *, Value> globalAggregates; // constants of the file that are no literals
+  std::map<const typed::Variable *, Value>
+      globalAggregates;                            // constants of the file that are no literals
   std::map<const void *, Parts> computedConstants; // by variable or member
   std::map<const typed::Expr *, bool> computedWhenRun;
   mlir::Operation *lastAtStart = nullptr; // of what makes them

@@ -1,7 +1,7 @@
 //===- SourceTable.h - expressions that the IR keeps whole ----------------===//
 //
-// Lowering with a table (LowerOptions::source) makes one `rtsl.expression` of an expression instead of the operations that
-// compute it. Whoever prints the IR for people finds the author's tree here.
+// Lowering with a table (LowerOptions::source) makes one `rtsl.expression` of an expression instead
+// of the operations that compute it. Whoever prints the IR for people finds the author's tree here.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,8 +18,8 @@ namespace rtsl {
 struct SourceTable {
   enum class Kind : std::uint8_t {
     Value,
-    Compound,   // the new value of the target of `target op= value`
-    Step,       // that of `++target`
+    Compound,    // the new value of the target of `target op= value`
+    Step,        // that of `++target`
     AngleCosine, // the cosine of the angle of an `illuminance`
     Into         // the value goes to a variable that stays whole, the first operand
   };
@@ -36,8 +36,8 @@ struct SourceTable {
   std::function<bool(const typed::Function &)> isPure;
   /// May a call trace, whichever class the object is of?
   std::function<bool(const typed::Function &)> mayTrace;
-  /// Is it made states, or part of some, in each class that has it? So it is even where nothing in it traces: by what a
-  /// class overrides, or because that is never reached.
+  /// Is it made states, or part of some, in each class that has it? So it is even where nothing in
+  /// it traces: by what a class overrides, or because that is never reached.
   std::function<bool(const typed::Function &)> becomesStates;
   /// The state variables that a call may change; nothing: any.
   std::function<std::optional<std::vector<std::string>>(const typed::Expr &call)> writes;

@@ -23,7 +23,8 @@ namespace {
 
 using Words = llvm::ArrayRef<int32_t>;
 
-/// Bytes of a member that is worth a table of its own. Tables are to fit into the nearest cache beside everything else.
+/// Bytes of a member that is worth a table of its own. Tables are to fit into the nearest cache
+/// beside everything else.
 constexpr size_t largestTable = 4096;
 
 /// One scalar of a value from its word; null for a reference, which no constant stands for.
@@ -123,10 +124,13 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
     const mlir::Type type = llvm::cast<ir::PtrType>(member.getType()).getPointee();
     if (!words || !ir::isNumbers(type) || words->size() * sizeof(int32_t) > largestTable)
       return;
-    if (llvm::none_of(member->getUsers(), [](mlir::Operation *user) { return llvm::isa<ir::ElementOp, ir::FieldOp>(user) && !user->use_empty(); }))
+    if (llvm::none_of(member->getUsers(), [](mlir::Operation *user) {
+          return llvm::isa<ir::ElementOp, ir::FieldOp>(user) && !user->use_empty();
+        }))
       return;
     OpBuilder builder(member);
-    member->replaceAllUsesWith(ir::TableOp::create(builder, member.getLoc(), member.getType(), member.getMember(), *words));
+    member->replaceAllUsesWith(ir::TableOp::create(builder, member.getLoc(), member.getType(),
+                                                   member.getMember(), *words));
     member->erase();
   }
 

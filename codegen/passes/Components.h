@@ -12,8 +12,8 @@
 
 namespace rtsl {
 
-/// The components of a part of a graph, those first that others lead to (Tarjan, "Depth-first search and linear graph
-/// algorithms", 1972).
+/// The components of a part of a graph, those first that others lead to (Tarjan, "Depth-first
+/// search and linear graph algorithms", 1972).
 template <typename Node>
 class Components {
 public:

@@ -34,7 +34,8 @@ bool isSmall(mlir::Type type) {
   return ir::leafCount(type) <= mostLeaves && !holdsBuffer(type);
 }
 
-/// With expressions kept whole, for people to read, so are variables; but for what rays carry, whose fields the passes look at.
+/// With expressions kept whole, for people to read, so are variables; but for what rays carry,
+/// whose fields the passes look at.
 bool staysWhole(Value address) {
   address = ir::baseAddress(address);
   if (llvm::isa_and_nonnull<ir::PayloadOp>(address.getDefiningOp()))

@@ -16,9 +16,11 @@ using llvm::APFloat;
 struct FoldFma : mlir::OpRewritePattern<mlir::math::FmaOp> {
   using OpRewritePattern::OpRewritePattern;
 
-  mlir::LogicalResult matchAndRewrite(mlir::math::FmaOp op, mlir::PatternRewriter &rewriter) const override {
+  mlir::LogicalResult matchAndRewrite(mlir::math::FmaOp op,
+                                      mlir::PatternRewriter &rewriter) const override {
     mlir::Attribute a, b, c;
-    if (!mlir::matchPattern(op.getA(), mlir::m_Constant(&a)) || !mlir::matchPattern(op.getB(), mlir::m_Constant(&b)) ||
+    if (!mlir::matchPattern(op.getA(), mlir::m_Constant(&a)) ||
+        !mlir::matchPattern(op.getB(), mlir::m_Constant(&b)) ||
         !mlir::matchPattern(op.getC(), mlir::m_Constant(&c)))
       return mlir::failure();
     llvm::SmallVector<APFloat, 4> x = components(a), y = components(b), z = components(c);

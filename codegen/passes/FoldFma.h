@@ -7,8 +7,8 @@ class RewritePatternSet;
 
 namespace rtsl::codegen {
 
-/// Adds a pattern that computes math.fma of constants, scalars and vectors, which MLIR itself leaves
-/// alone.
+/// Adds a pattern that computes math.fma of constants, scalars and vectors, which MLIR itself
+/// leaves alone.
 void addFmaFolding(mlir::RewritePatternSet &patterns);
 
 } // namespace rtsl::codegen

@@ -16,7 +16,8 @@ namespace {
 
 /// Functions of at most this many operations are inlined wherever they are called.
 constexpr unsigned smallFunction = 60;
-/// With arithmetic in double, what crosses a call in memory is rounded: only what would make programs grow without end is called.
+/// With arithmetic in double, what crosses a call in memory is rounded: only what would make
+/// programs grow without end is called.
 constexpr unsigned smallFunctionInDouble = 20000;
 /// Functions that trace, at most this many: a frame of their own costs more than copies of the
 /// code, up to here.
@@ -59,7 +60,9 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
     if (inlinesAll)
       return true;
     const bool isDouble = getOperation()->hasAttr(ir::computesInDouble);
-    unsigned limit = isDouble ? smallFunctionInDouble : traces(callee) ? smallTracingFunction : smallFunction;
+    unsigned limit = isDouble         ? smallFunctionInDouble
+                     : traces(callee) ? smallTracingFunction
+                                      : smallFunction;
     if (operationCount(callee, limit) <= limit)
       return true;
     return callee.isPrivate() && useCount.lookup(callee.getSymNameAttr()) == 1;
@@ -67,8 +70,8 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
 
   void runOnOperation() override {
     // Counted once: callees are treated before their callers, so that what is called once has been
-    // inlined before anything could copy the call. Asking for the uses of each callee would walk the
-    // whole module each time.
+    // inlined before anything could copy the call. Asking for the uses of each callee would walk
+    // the whole module each time.
     useCount.clear();
     if (auto uses = mlir::SymbolTable::getSymbolUses(getOperation()))
       for (const mlir::SymbolTable::SymbolUse &use : *uses)

@@ -17,7 +17,8 @@ namespace {
 
 using mlir::Value;
 
-/// The variable that the operation loads, stores or clears as a whole, if it does nothing else with one.
+/// The variable that the operation loads, stores or clears as a whole, if it does nothing else with
+/// one.
 ir::VarOp accessedBy(mlir::Operation *op) {
   Value address;
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op))
@@ -31,7 +32,8 @@ ir::VarOp accessedBy(mlir::Operation *op) {
 
 bool isPromotable(ir::VarOp variable) {
   return !variable.getPromotableSlots().empty() &&
-         llvm::all_of(variable->getUsers(), [&](mlir::Operation *user) { return accessedBy(user) == variable; });
+         llvm::all_of(variable->getUsers(),
+                      [&](mlir::Operation *user) { return accessedBy(user) == variable; });
 }
 
 /// Braun et al., with the blocks and their edges known from the start.
@@ -49,7 +51,8 @@ public:
     llvm::DenseMap<Value, Value> values;
     for (auto [load, variable] : first)
       values[load.getResult()] = atStart(load->getBlock(), variable);
-    for (std::size_t i = 0; i < arguments.size(); ++i) // in order, for so are the arguments of a block; there may come more
+    for (std::size_t i = 0; i < arguments.size();
+         ++i) // in order, for so are the arguments of a block; there may come more
       complete(arguments[i].first, arguments[i].second);
     for (auto [load, variable] : first) {
       Value value = load.getResult();
@@ -127,7 +130,8 @@ private:
   /// Passes on what the variable holds at the end of each block that leads to the argument's.
   void complete(mlir::BlockArgument argument, ir::VarOp variable) {
     mlir::Block *block = argument.getOwner();
-    for (mlir::Block *predecessor : llvm::SmallSetVector<mlir::Block *, 4>(block->pred_begin(), block->pred_end())) {
+    for (mlir::Block *predecessor :
+         llvm::SmallSetVector<mlir::Block *, 4>(block->pred_begin(), block->pred_end())) {
       auto end = ends.find({predecessor, variable});
       const Value value = end != ends.end() ? end->second : atStart(predecessor, variable);
       auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
@@ -141,12 +145,15 @@ private:
   llvm::ArrayRef<ir::VarOp> variables;
   llvm::SmallPtrSet<mlir::Operation *, 32> promoted;
   mlir::OpBuilder builder;
-  llvm::DenseMap<Place, Value> starts, ends; // where it is known; ends of blocks that access the variable
-  llvm::SmallVector<std::pair<ir::LoadOp, ir::VarOp>> first; // what these give is what their blocks begin with
+  llvm::DenseMap<Place, Value> starts,
+      ends; // where it is known; ends of blocks that access the variable
+  // what these give is what their blocks begin with
+  llvm::SmallVector<std::pair<ir::LoadOp, ir::VarOp>> first;
   llvm::SmallVector<std::pair<mlir::BlockArgument, ir::VarOp>> arguments;
 };
 
-struct PromoteVariables : mlir::PassWrapper<PromoteVariables, mlir::OperationPass<mlir::func::FuncOp>> {
+struct PromoteVariables
+    : mlir::PassWrapper<PromoteVariables, mlir::OperationPass<mlir::func::FuncOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(PromoteVariables)
   explicit PromoteVariables(unsigned fewest) : fewest(fewest) {}
   llvm::StringRef getArgument() const override { return "rtsl-promote-vars"; }
@@ -162,7 +169,8 @@ struct PromoteVariables : mlir::PassWrapper<PromoteVariables, mlir::OperationPas
     if (variables.size() < fewest)
       return;
     mlir::IRRewriter rewriter(&getContext());
-    (void)mlir::eraseUnreachableBlocks(rewriter, getOperation()->getRegions()); // which may lead in a circle
+    (void)mlir::eraseUnreachableBlocks(rewriter,
+                                       getOperation()->getRegions()); // which may lead in a circle
     Promotion(getOperation(), variables).run();
   }
 

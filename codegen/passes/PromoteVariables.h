@@ -1,9 +1,9 @@
 //===- PromoteVariables.h - all variables of a function become values -----===//
 //
-// MLIR's mem2reg walks over the whole function for each variable, which takes the square of the time
-// where both are many. This makes values of all variables that are only loaded, stored and cleared,
-// in one walk over the function and one step for each block that a value passes (Braun et al.,
-// "Simple and Efficient Construction of Static Single Assignment Form", 2013).
+// MLIR's mem2reg walks over the whole function for each variable, which takes the square of the
+// time where both are many. This makes values of all variables that are only loaded, stored and
+// cleared, in one walk over the function and one step for each block that a value passes (Braun et
+// al., "Simple and Efficient Construction of Static Single Assignment Form", 2013).
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -19,9 +19,10 @@ namespace dataflow = mlir::dataflow;
 
 namespace {
 
-/// MLIR's analysis folds operations with operands that are constant as far as it knows yet, and takes back what folding
-/// has changed in the operation only if it gives no result. `vector.extract` with an index that is taken for constant gets
-/// the index built in and then gives a result: MLIR 22 leaves the index there although it is not constant after all
+/// MLIR's analysis folds operations with operands that are constant as far as it knows yet, and
+/// takes back what folding has changed in the operation only if it gives no result.
+/// `vector.extract` with an index that is taken for constant gets the index built in and then gives
+/// a result: MLIR 22 leaves the index there although it is not constant after all
 /// (https://github.com/llvm/llvm-project/pull/213933). So here everything is taken back.
 class ConstantPropagation : public dataflow::SparseConstantPropagation {
 public:
@@ -32,7 +33,8 @@ public:
                                      llvm::ArrayRef<Value *> results) override {
     const llvm::SmallVector<mlir::Value, 4> operandsBefore(op->getOperands());
     const mlir::DictionaryAttr attributesBefore = op->getAttrDictionary();
-    const mlir::LogicalResult visited = SparseConstantPropagation::visitOperation(op, operands, results);
+    const mlir::LogicalResult visited =
+        SparseConstantPropagation::visitOperation(op, operands, results);
     if (!llvm::equal(op->getOperands(), operandsBefore))
       op->setOperands(operandsBefore);
     if (op->getAttrDictionary() != attributesBefore)
@@ -44,8 +46,9 @@ public:
 /// More edges than these do not lead to one block while constants are propagated.
 constexpr std::size_t mostEdges = 32;
 
-/// The analysis looks at all edges to a block whenever one of them comes to be executed. Where thousands do, as from the
-/// cases of a switch, they come together in steps; simplification takes these back.
+/// The analysis looks at all edges to a block whenever one of them comes to be executed. Where
+/// thousands do, as from the cases of a switch, they come together in steps; simplification takes
+/// these back.
 void joinInSteps(mlir::Block &join) {
   llvm::SmallVector<std::pair<mlir::Operation *, unsigned>> edges;
   while (true) {
@@ -61,7 +64,8 @@ void joinInSteps(mlir::Block &join) {
     if (edges.size() <= mostEdges)
       return;
     const mlir::Location location = join.front().getLoc();
-    for (auto rest = llvm::ArrayRef(edges); !rest.empty(); rest = rest.drop_front(std::min(rest.size(), mostEdges))) {
+    for (auto rest = llvm::ArrayRef(edges); !rest.empty();
+         rest = rest.drop_front(std::min(rest.size(), mostEdges))) {
       auto *step = new mlir::Block;
       join.getParent()->getBlocks().insert(join.getIterator(), step);
       for (mlir::BlockArgument argument : join.getArguments())
@@ -74,10 +78,13 @@ void joinInSteps(mlir::Block &join) {
   }
 }
 
-struct PropagateConstants : mlir::PassWrapper<PropagateConstants, mlir::OperationPass<mlir::func::FuncOp>> {
+struct PropagateConstants
+    : mlir::PassWrapper<PropagateConstants, mlir::OperationPass<mlir::func::FuncOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(PropagateConstants)
   llvm::StringRef getArgument() const override { return "rtsl-propagate-constants"; }
-  llvm::StringRef getDescription() const override { return "finds constants through branches and loops"; }
+  llvm::StringRef getDescription() const override {
+    return "finds constants through branches and loops";
+  }
 
   void runOnOperation() override {
     mlir::func::FuncOp function = getOperation();
@@ -104,8 +111,8 @@ struct PropagateConstants : mlir::PassWrapper<PropagateConstants, mlir::Operatio
       if (!known.getConstantValue())
         return;
       mlir::Value constant =
-          constants.getOrCreateConstant(&function.getBody().front(), known.getConstantDialect(), known.getConstantValue(),
-                                        value.getType());
+          constants.getOrCreateConstant(&function.getBody().front(), known.getConstantDialect(),
+                                        known.getConstantValue(), value.getType());
       if (constant && constant != value)
         value.replaceAllUsesWith(constant);
     };

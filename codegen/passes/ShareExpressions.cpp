@@ -18,15 +18,17 @@ namespace {
 struct SameOperation : llvm::DenseMapInfo<mlir::Operation *> {
   using Equivalence = mlir::OperationEquivalence;
   static unsigned getHashValue(const mlir::Operation *op) {
-    return Equivalence::computeHash(const_cast<mlir::Operation *>(op), Equivalence::directHashValue, Equivalence::ignoreHashValue,
-                                    Equivalence::IgnoreLocations);
+    return Equivalence::computeHash(const_cast<mlir::Operation *>(op), Equivalence::directHashValue,
+                                    Equivalence::ignoreHashValue, Equivalence::IgnoreLocations);
   }
   static bool isEqual(const mlir::Operation *left, const mlir::Operation *right) {
     if (left == right)
       return true;
-    if (left == getTombstoneKey() || left == getEmptyKey() || right == getTombstoneKey() || right == getEmptyKey())
+    if (left == getTombstoneKey() || left == getEmptyKey() || right == getTombstoneKey() ||
+        right == getEmptyKey())
       return false;
-    return Equivalence::isEquivalentTo(const_cast<mlir::Operation *>(left), const_cast<mlir::Operation *>(right),
+    return Equivalence::isEquivalentTo(const_cast<mlir::Operation *>(left),
+                                       const_cast<mlir::Operation *>(right),
                                        Equivalence::IgnoreLocations);
   }
 };
@@ -59,7 +61,8 @@ private:
   /// The blocks that one dominates, without recursion: a function may have thousands in a row.
   void shareBelow(mlir::DominanceInfoNode *root) {
     struct Level {
-      Level(Known &known, mlir::DominanceInfoNode *node) : scope(known), node(node), next(node->begin()) {}
+      Level(Known &known, mlir::DominanceInfoNode *node)
+          : scope(known), node(node), next(node->begin()) {}
       Scope scope;
       mlir::DominanceInfoNode *node;
       mlir::DominanceInfoNode::const_iterator next;
@@ -132,7 +135,9 @@ private:
 struct ShareExpressions : mlir::PassWrapper<ShareExpressions, mlir::OperationPass<>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(ShareExpressions)
   llvm::StringRef getArgument() const override { return "rtsl-share-expressions"; }
-  llvm::StringRef getDescription() const override { return "what is computed twice is computed once"; }
+  llvm::StringRef getDescription() const override {
+    return "what is computed twice is computed once";
+  }
   void runOnOperation() override {
     for (mlir::Region &region : getOperation()->getRegions())
       for (auto function : region.getOps<mlir::FunctionOpInterface>()) {

@@ -1,9 +1,9 @@
 //===- ShareExpressions.h - what is computed twice is computed once -------===//
 //
 // Common subexpressions over the tree of dominators, as mlir::eliminateCommonSubExpressions finds
-// them: pure operations wherever the first one dominates, reads within a block if nothing is written
-// in between. MLIR's looks for such a write from the first read on at each read that equals it,
-// which takes the square of the time in a long block; this counts writes as it goes.
+// them: pure operations wherever the first one dominates, reads within a block if nothing is
+// written in between. MLIR's looks for such a write from the first read on at each read that equals
+// it, which takes the square of the time in a long block; this counts writes as it goes.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -164,13 +164,15 @@ static bool mergeChains(mlir::IRRewriter &rewriter, mlir::Region &body) {
 void Simplify::run(mlir::func::FuncOp function) const {
   mlir::IRRewriter rewriter(function.getContext());
   mlir::GreedyRewriteConfig config;
-  config.setRegionSimplificationLevel(mlir::GreedySimplifyRegionLevel::Disabled); // below, once a round
+  config.setRegionSimplificationLevel(
+      mlir::GreedySimplifyRegionLevel::Disabled); // below, once a round
   bool changed = true;
   for (int round = 0; changed && round < 10; ++round) { // each folds what the one before uncovered
     changed = false;
     (void)mlir::eraseUnreachableBlocks(rewriter, function->getRegions());
     (void)mlir::applyPatternsGreedily(function, patterns, config, &changed);
-    changed |= mlir::succeeded(mlir::simplifyRegions(rewriter, function->getRegions(), /*mergeBlocks=*/false));
+    changed |= mlir::succeeded(
+        mlir::simplifyRegions(rewriter, function->getRegions(), /*mergeBlocks=*/false));
     bool folded = true;
     while (folded) {
       folded = foldBranches(rewriter, function.getBody());

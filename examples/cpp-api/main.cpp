@@ -23,10 +23,10 @@ int main(int argc, char **argv) try {
     return make("Lambert", {{"albedo", Value::reference(texture)}});
   };
 
-  scene.setCamera(construct("PinholeCamera", {{0, 2.2, 7.5}, {0, 1, 0}, {0, -0.19, -1},
-                                              {-1.6, -0.9}, {1.6, 0.9}, 2.7}));
-  RtslRef checks = make("Checker", {{"scale", 8}, {"even", {0.85, 0.83, 0.78}},
-                                    {"odd", {0.12, 0.14, 0.2}}});
+  scene.setCamera(construct(
+      "PinholeCamera", {{0, 2.2, 7.5}, {0, 1, 0}, {0, -0.19, -1}, {-1.6, -0.9}, {1.6, 0.9}, 2.7}));
+  RtslRef checks =
+      make("Checker", {{"scale", 8}, {"even", {0.85, 0.83, 0.78}}, {"odd", {0.12, 0.14, 0.2}}});
   RtslRef floor = construct("Parallelogram", {{-8, 0, 6}, {16, 0, 0}, {0, 0, -16}});
   scene.addPrimitive(floor, lambert(checks));
   scene.addPrimitive(make("Sphere", {{"center", {-1.1, 1, 0.6}}}),
@@ -38,8 +38,10 @@ int main(int argc, char **argv) try {
   scene.addMeshInstance(scene.addMesh(std::move(knot)),
                         lambert(make("Solid", {{"value", {0.8, 0.35, 0.2}}})));
 
-  scene.addLight(make("BallLight", {{"position", {4, 6, 4}}, {"radius", 0.4}, {"intensity", {38, 36, 33}}}));
-  scene.addLight(make("BallLight", {{"position", {-5, 4, 2}}, {"radius", 0.4}, {"intensity", {6, 7, 9}}}));
+  scene.addLight(
+      make("BallLight", {{"position", {4, 6, 4}}, {"radius", 0.4}, {"intensity", {38, 36, 33}}}));
+  scene.addLight(
+      make("BallLight", {{"position", {-5, 4, 2}}, {"radius", 0.4}, {"intensity", {6, 7, 9}}}));
   scene.setAmbient({0.12f, 0.13f, 0.16f});
   scene.setBackground(make("Sky", {}));
 

@@ -16,16 +16,21 @@ Json positionJson(LineColumn at, std::uint32_t offset) {
 Json rangeJson(const SourceManager &sources, SourceRange range) {
   if (!range.isValid())
     return nullptr;
-  const auto shown = [&](std::uint32_t offset) { return positionJson(sources.shown(range.file, offset).at, offset); };
+  const auto shown = [&](std::uint32_t offset) {
+    return positionJson(sources.shown(range.file, offset).at, offset);
+  };
   const auto real = [&](std::uint32_t offset) {
     return positionJson(sources.lineColumn(range.file, offset), offset);
   };
   const std::string_view file = sources.shown(range.file, range.begin).file;
-  Json result = {{"file", std::string(file)}, {"begin", shown(range.begin)}, {"end", shown(range.end)}};
+  Json result = {
+      {"file", std::string(file)}, {"begin", shown(range.begin)}, {"end", shown(range.end)}};
   // `#line` changed what is reported; an editor wants to know the file that the text lies in.
-  if (const Json begin = real(range.begin); file != sources.name(range.file) || begin != result["begin"])
-    result["written"] = {
-        {"file", std::string(sources.name(range.file))}, {"begin", begin}, {"end", real(range.end)}};
+  if (const Json begin = real(range.begin);
+      file != sources.name(range.file) || begin != result["begin"])
+    result["written"] = {{"file", std::string(sources.name(range.file))},
+                         {"begin", begin},
+                         {"end", real(range.end)}};
   return result;
 }
 

@@ -34,9 +34,9 @@ Diagnostic &Diagnostics::add(Diagnostic diagnostic) {
   const auto code = static_cast<int>(diagnostic.code);
   // What a macro makes twice of one argument, and what is included twice, is one mistake.
   const WrittenRange place = sourceManager.written(diagnostic.range);
-  std::string key = diagnostic.range.isValid()
-                        ? fmt::format("{} {} {} {}", code, place.range.file, place.range.begin, place.range.end)
-                        : fmt::format("{} {}", code, diagnostic.message);
+  std::string key = diagnostic.range.isValid() ? fmt::format("{} {} {} {}", code, place.range.file,
+                                                             place.range.begin, place.range.end)
+                                               : fmt::format("{} {}", code, diagnostic.message);
   if (!place.macros.empty())
     key += diagnostic.message;
   const bool isNew = seen.insert(std::move(key)).second;
@@ -77,15 +77,18 @@ bool overlap(const Fix &a, const Fix &b) {
 
 } // namespace
 
-void explainOrigin(Diagnostic &diagnostic, const WrittenRange &place, const SourceManager &sources) {
+void explainOrigin(Diagnostic &diagnostic, const WrittenRange &place,
+                   const SourceManager &sources) {
   if (!place.macros.empty())
-    diagnostic.label(place.range, fmt::format("in this use of macro `{}`", place.macros.front().macro));
+    diagnostic.label(place.range,
+                     fmt::format("in this use of macro `{}`", place.macros.front().macro));
   // Of a long way its beginning and its end.
   constexpr std::size_t shown = 4;
   const std::size_t size = place.macros.size();
   for (std::size_t i = 0; i < size; ++i)
     if (i < shown || i + shown >= size)
-      diagnostic.label(place.macros[i].range, fmt::format("expanded from macro `{}`", place.macros[i].macro));
+      diagnostic.label(place.macros[i].range,
+                       fmt::format("expanded from macro `{}`", place.macros[i].macro));
   if (size > 2 * shown)
     diagnostic.note(fmt::format("{} macros in between are not shown", size - 2 * shown));
   for (const SourceRange &include : place.includes) {

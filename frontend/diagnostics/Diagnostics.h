@@ -142,9 +142,10 @@ private:
   std::size_t numHidden = 0;
 };
 
-/// The message as its author can follow it: all ranges lie in files. What came from a macro is shown where the macro is
-/// used, with labels in the definitions that it went through; what came from an included file names the files that led to
-/// it. A fix stays sure only if it changes a text that means the same wherever it is used: outside of macros and includes.
+/// The message as its author can follow it: all ranges lie in files. What came from a macro is
+/// shown where the macro is used, with labels in the definitions that it went through; what came
+/// from an included file names the files that led to it. A fix stays sure only if it changes a text
+/// that means the same wherever it is used: outside of macros and includes.
 Diagnostic asWritten(const Diagnostic &diagnostic, const SourceManager &sources);
 
 /// Adds to a message at `place.range` the labels and notes that say how the text came from there.

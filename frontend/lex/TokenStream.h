@@ -1,8 +1,8 @@
 //===- TokenStream.h - words as the parser reads them ---------------------===//
 #pragma once
 
-#include "frontend/source/Source.h"
 #include "frontend/lex/Token.h"
+#include "frontend/source/Source.h"
 
 #include <Token.h>
 #include <TokenStream.h>

@@ -220,7 +220,8 @@ Diagnostic *reportIfNotText(FileId file, Diagnostics &diagnostics) {
   const std::string_view text = diagnostics.sources().text(file);
   const auto report = [&](std::size_t begin, std::size_t size, const std::string &why) {
     const auto at = static_cast<std::uint32_t>(begin);
-    return &diagnostics.report(Code::notText, SourceRange{file, at, at + static_cast<std::uint32_t>(size)}, why);
+    return &diagnostics.report(Code::notText,
+                               SourceRange{file, at, at + static_cast<std::uint32_t>(size)}, why);
   };
   if (text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF")
     return &report(0, 2, "it is encoded in UTF-16")->note("save it as UTF-8");
@@ -229,8 +230,9 @@ Diagnostic *reportIfNotText(FileId file, Diagnostics &diagnostics) {
   if (nul < invalid)
     return report(nul, 1, "it holds a NUL byte");
   if (invalid != std::string_view::npos)
-    return report(invalid, 1,
-                  fmt::format("the byte \\x{:02X} is not UTF-8", static_cast<unsigned char>(text[invalid])));
+    return report(
+        invalid, 1,
+        fmt::format("the byte \\x{:02X} is not UTF-8", static_cast<unsigned char>(text[invalid])));
   return nullptr;
 }
 

@@ -6,7 +6,8 @@
 
 namespace rtsl {
 
-/// Reports a text that cannot be RTSL: NUL bytes, or bytes that are not UTF-8. Gives the message, or null.
+/// Reports a text that cannot be RTSL: NUL bytes, or bytes that are not UTF-8. Gives the message,
+/// or null.
 Diagnostic *reportIfNotText(FileId file, Diagnostics &diagnostics);
 
 /// Splits a text into words by grammar/RtslLexer.g4 and reports what is none: text that is not

@@ -15,9 +15,12 @@ std::string folderOf(std::string_view file) {
   return folder.empty() ? "." : folder;
 }
 
-std::optional<std::string> findFile(const std::string &name, const std::vector<std::string> &folders) {
+std::optional<std::string> findFile(const std::string &name,
+                                    const std::vector<std::string> &folders) {
   std::error_code error;
-  const auto isFile = [&](const fs::path &path) { return fs::exists(path, error) && !fs::is_directory(path, error); };
+  const auto isFile = [&](const fs::path &path) {
+    return fs::exists(path, error) && !fs::is_directory(path, error);
+  };
   if (fs::path(name).is_absolute())
     return isFile(name) ? std::optional(name) : std::nullopt;
   for (const std::string &folder : folders) {
@@ -28,8 +31,8 @@ std::optional<std::string> findFile(const std::string &name, const std::vector<s
   return std::nullopt;
 }
 
-void explainSearch(Diagnostic &diagnostic, const std::string &name, const std::vector<std::string> &folders,
-                   SourceRange place) {
+void explainSearch(Diagnostic &diagnostic, const std::string &name,
+                   const std::vector<std::string> &folders, SourceRange place) {
   const fs::path path(name);
   std::vector<std::string> searched, siblings;
   for (const std::string &folder : path.is_absolute() ? std::vector<std::string>{"/"} : folders) {
@@ -37,7 +40,8 @@ void explainSearch(Diagnostic &diagnostic, const std::string &name, const std::v
       searched.push_back(folder);
     std::error_code error;
     const fs::path parent = fs::path(folder) / path.parent_path();
-    for (fs::directory_iterator at(parent, error), end; !error && at != end && siblings.size() < 10000; at.increment(error))
+    for (fs::directory_iterator at(parent, error), end;
+         !error && at != end && siblings.size() < 10000; at.increment(error))
       siblings.push_back(at->path().filename().string());
   }
   // The order in which a folder lists its files is the file system's.
@@ -46,8 +50,9 @@ void explainSearch(Diagnostic &diagnostic, const std::string &name, const std::v
     std::string list;
     for (const std::string &folder : searched)
       list += fmt::format("{}`{}`", list.empty() ? "" : ", ", folder);
-    diagnostic.note(searched.empty() ? "no folder was given with `-I`, and `<...>` looks nowhere else"
-                                     : "looked in " + list);
+    diagnostic.note(searched.empty()
+                        ? "no folder was given with `-I`, and `<...>` looks nowhere else"
+                        : "looked in " + list);
   }
   const std::string closest = closestName(path.filename().string(), siblings);
   if (closest.empty())

@@ -31,13 +31,16 @@ namespace {
 std::string argument(const clang::Diagnostic &info, unsigned index) {
   using Engine = clang::DiagnosticsEngine;
   switch (info.getArgKind(index)) {
-  case Engine::ak_std_string: return info.getArgStdStr(index);
-  case Engine::ak_c_string: return info.getArgCStr(index);
+  case Engine::ak_std_string:
+    return info.getArgStdStr(index);
+  case Engine::ak_c_string:
+    return info.getArgCStr(index);
   case Engine::ak_identifierinfo: {
     const auto *name = reinterpret_cast<const clang::IdentifierInfo *>(info.getRawArg(index));
     return name ? name->getName().str() : std::string();
   }
-  default: return {};
+  default:
+    return {};
   }
 }
 
@@ -87,10 +90,12 @@ bool Messages::reportFile(const clang::Diagnostic &info, const Place &at) {
   }
   case diag::err_pp_error_opening_file:
   case diag::err_cannot_open_file: {
-    const bool isNoFile = argument(info, 1) == std::make_error_code(std::errc::invalid_argument).message();
+    const bool isNoFile =
+        argument(info, 1) == std::make_error_code(std::errc::invalid_argument).message();
     const std::string path = argument(info, 0);
     unreadable = at.origin.range;
-    session->report(Code::includeUnreadable, at.origin, path.compare(0, 2, "./") == 0 ? path.substr(2) : path,
+    session->report(Code::includeUnreadable, at.origin,
+                    path.compare(0, 2, "./") == 0 ? path.substr(2) : path,
                     isNoFile ? "it is not a regular file" : argument(info, 1));
     session->isUsable = false;
     return true;
@@ -109,7 +114,8 @@ bool Messages::reportFile(const clang::Diagnostic &info, const Place &at) {
     session->report(Code::includesTooMuch, at.origin, fmt::format("{} MB", maxIncludedBytes >> 20));
     session->stop();
     return true;
-  default: return false;
+  default:
+    return false;
   }
 }
 
@@ -117,7 +123,8 @@ bool Messages::reportFile(const clang::Diagnostic &info, const Place &at) {
 bool Messages::reportConditional(const clang::Diagnostic &info, const Place &at) {
   switch (info.getID()) {
   case diag::err_pp_unterminated_conditional: {
-    const auto size = static_cast<std::uint32_t>(session->sources.text(at.origin.range.file).size());
+    const auto size =
+        static_cast<std::uint32_t>(session->sources.text(at.origin.range.file).size());
     session->report(Code::unterminatedCondition, at.origin, at.text)
         .label({at.origin.range.file, size, size}, "the file ends here");
     session->isUsable = false;
@@ -133,13 +140,15 @@ bool Messages::reportConditional(const clang::Diagnostic &info, const Place &at)
   case diag::pp_err_elif_after_else: {
     Diagnostic &diagnostic = session->report(Code::behindElse, at.origin, at.text);
     const clang::SourceLocation opened = watcher->innermostIf();
-    if (const clang::SourceLocation earlier = watcher->elseOf(opened); earlier.isValid() && earlier != info.getLocation())
+    if (const clang::SourceLocation earlier = watcher->elseOf(opened);
+        earlier.isValid() && earlier != info.getLocation())
       diagnostic.label(session->origins.of(earlier).range, "the `#else`");
     if (opened.isValid())
       diagnostic.label(session->origins.of(opened).range, "the `#if`");
     return true;
   }
-  default: return false;
+  default:
+    return false;
   }
 }
 
@@ -167,30 +176,57 @@ bool Messages::reportCondition(const clang::Diagnostic &info, const Place &at) {
       diagnostic.note(fmt::format("`defined({})` asks whether it is one", name));
     return true;
   }
-  case diag::err_pp_expected_value_in_expr: bad("a value is missing"); return true;
-  case diag::err_pp_expr_bad_token_start_expr: bad(fmt::format("`{}` begins no value", at.text)); return true;
-  case diag::err_pp_expr_bad_token_binop: bad(fmt::format("`{}` is no operator here", at.text)); return true;
+  case diag::err_pp_expected_value_in_expr:
+    bad("a value is missing");
+    return true;
+  case diag::err_pp_expr_bad_token_start_expr:
+    bad(fmt::format("`{}` begins no value", at.text));
+    return true;
+  case diag::err_pp_expr_bad_token_binop:
+    bad(fmt::format("`{}` is no operator here", at.text));
+    return true;
   case diag::err_pp_expr_bad_token_lparen:
     if (!(undefined == at.origin.range))
       bad(fmt::format("there is no macro `{}` with arguments", argument(info, 0)));
     return true;
-  case diag::err_pp_expected_rparen: bad("`)` is missing"); return true;
+  case diag::err_pp_expected_rparen:
+    bad("`)` is missing");
+    return true;
   case diag::err_pp_expected_after:
     bad("`defined` takes a name, or a name in parentheses");
     return true;
-  case diag::err_pp_expected_eol: bad("it goes on behind its end"); return true;
+  case diag::err_pp_expected_eol:
+    bad("it goes on behind its end");
+    return true;
   case diag::err_pp_division_by_zero:
-  case diag::err_pp_remainder_by_zero: bad("it divides by zero"); return true;
-  case diag::err_pp_illegal_floating_literal: bad("its numbers are integers"); return true;
-  case diag::err_pp_colon_without_question: bad("`:` has no `?`"); return true;
-  case diag::ext_pp_comma_expr: bad("`,` is no operator here"); return true;
-  case diag::err_expected: bad("`:` is missing"); return true;
+  case diag::err_pp_remainder_by_zero:
+    bad("it divides by zero");
+    return true;
+  case diag::err_pp_illegal_floating_literal:
+    bad("its numbers are integers");
+    return true;
+  case diag::err_pp_colon_without_question:
+    bad("`:` has no `?`");
+    return true;
+  case diag::ext_pp_comma_expr:
+    bad("`,` is no operator here");
+    return true;
+  case diag::err_expected:
+    bad("`:` is missing");
+    return true;
   case diag::warn_pp_expr_overflow:
   case diag::ext_integer_literal_too_large_for_signed:
-  case diag::err_integer_literal_too_large: bad("it does not fit into 64 bits"); return true;
-  case diag::err_invalid_suffix_constant: bad(fmt::format("`{}` is not a number", at.text)); return true;
-  case diag::err_invalid_digit: bad("a number has digits that it cannot have"); return true;
-  default: return false;
+  case diag::err_integer_literal_too_large:
+    bad("it does not fit into 64 bits");
+    return true;
+  case diag::err_invalid_suffix_constant:
+    bad(fmt::format("`{}` is not a number", at.text));
+    return true;
+  case diag::err_invalid_digit:
+    bad("a number has digits that it cannot have");
+    return true;
+  default:
+    return false;
   }
 }
 
@@ -221,7 +257,8 @@ bool Messages::reportDefinition(const clang::Diagnostic &info, const Place &at) 
     session->report(Code::badMacroName, at.origin, "`defined` cannot be the name of a macro");
     return true;
   case diag::err_pp_macro_not_identifier:
-    session->report(Code::badMacroName, at.origin, fmt::format("`{}` cannot be the name of a macro", at.text));
+    session->report(Code::badMacroName, at.origin,
+                    fmt::format("`{}` cannot be the name of a macro", at.text));
     return true;
   case diag::err_pp_missing_macro_name:
     session->report(Code::badMacroName, at.origin, "the name of a macro is missing");
@@ -229,19 +266,31 @@ bool Messages::reportDefinition(const clang::Diagnostic &info, const Place &at) 
   case diag::ext_c99_whitespace_required_after_macro_name:
   case diag::ext_missing_whitespace_after_macro_name:
   case diag::warn_missing_whitespace_after_macro_name:
-    session->report(Code::badMacroName, at.origin, "a space is missing behind the name of the macro");
+    session->report(Code::badMacroName, at.origin,
+                    "a space is missing behind the name of the macro");
     return true;
-  case diag::err_pp_missing_rparen_in_macro_def: return parameters("`)` is missing");
-  case diag::err_pp_expected_ident_in_arg_list: return parameters("a name is missing");
-  case diag::err_pp_expected_comma_in_arg_list: return parameters("`,` is missing");
-  case diag::err_pp_invalid_tok_in_arg_list: return parameters("something other than names stands");
-  case diag::err_pp_duplicate_name_in_arg_list: return parameters("a name stands twice");
-  case diag::ext_named_variadic_macro: return parameters("`...` stands behind a name");
-  case diag::err_pp_stringize_not_parameter: return body("`#` stands in front of something that is no parameter");
-  case diag::err_paste_at_start: return body("`##` has nothing in front of it");
-  case diag::err_paste_at_end: return body("`##` has nothing behind it");
-  case diag::ext_pp_bad_vaargs_use: return body("`__VA_ARGS__` belongs to macros with `...`");
-  default: return false;
+  case diag::err_pp_missing_rparen_in_macro_def:
+    return parameters("`)` is missing");
+  case diag::err_pp_expected_ident_in_arg_list:
+    return parameters("a name is missing");
+  case diag::err_pp_expected_comma_in_arg_list:
+    return parameters("`,` is missing");
+  case diag::err_pp_invalid_tok_in_arg_list:
+    return parameters("something other than names stands");
+  case diag::err_pp_duplicate_name_in_arg_list:
+    return parameters("a name stands twice");
+  case diag::ext_named_variadic_macro:
+    return parameters("`...` stands behind a name");
+  case diag::err_pp_stringize_not_parameter:
+    return body("`#` stands in front of something that is no parameter");
+  case diag::err_paste_at_start:
+    return body("`##` has nothing in front of it");
+  case diag::err_paste_at_end:
+    return body("`##` has nothing behind it");
+  case diag::ext_pp_bad_vaargs_use:
+    return body("`__VA_ARGS__` belongs to macros with `...`");
+  default:
+    return false;
   }
 }
 
@@ -255,14 +304,17 @@ bool Messages::reportUse(const clang::Diagnostic &info, const Place &at) {
     misused = at.origin;
     session->isUsable = false;
     return true;
-  case diag::err_pp_bad_paste: session->report(Code::badPaste, at.origin, argument(info, 0)); return true;
+  case diag::err_pp_bad_paste:
+    session->report(Code::badPaste, at.origin, argument(info, 0));
+    return true;
   case diag::ext_embedded_directive:
   case diag::err_embedded_directive:
     session->report(Code::directiveInArguments, directiveAround(at.origin),
                     session->sources.text(directiveAround(at.origin).range));
     session->stop();
     return true;
-  default: return false;
+  default:
+    return false;
   }
 }
 
@@ -274,7 +326,8 @@ void Messages::addNote(const clang::Diagnostic &info) {
     last->label(place.range, "defined here first");
   } else if (info.getID() == diag::note_macro_here && misuse) {
     const std::string name = argument(info, 0);
-    const clang::MacroInfo *macro = session->preprocessor.getMacroInfo(session->preprocessor.getIdentifierInfo(name));
+    const clang::MacroInfo *macro =
+        session->preprocessor.getMacroInfo(session->preprocessor.getIdentifierInfo(name));
     Diagnostic *diagnostic = nullptr;
     if (misuse == diag::err_unterm_macro_invoc) {
       diagnostic = &session->report(Code::unterminatedMacroCall, misused, name);
@@ -282,8 +335,9 @@ void Messages::addNote(const clang::Diagnostic &info) {
       const std::size_t taken = macro ? macro->getNumParams() : 0;
       diagnostic = &session->report(Code::macroArgumentCount, misused, name,
                                     fmt::format("{} argument{}", taken, taken == 1 ? "" : "s"),
-                                    misuse == diag::err_too_many_args_in_macro_invoc ? "this is one too many"
-                                                                                     : "here is one too few");
+                                    misuse == diag::err_too_many_args_in_macro_invoc
+                                        ? "this is one too many"
+                                        : "here is one too few");
     }
     if (isShown)
       diagnostic->label(place.range, "defined here");
@@ -298,20 +352,23 @@ Origin Messages::directiveAround(const Origin &place) const {
   const std::size_t hash = std::min(text.find('#', lineBegin), text.size());
   const std::size_t begin = std::min(text.find_first_not_of(" \t", hash + 1), text.size());
   const std::size_t end = std::min(text.find_first_of(" \t\r\n\"</(", begin), text.size());
-  return {{place.range.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)}, place.expansion};
+  return {{place.range.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)},
+          place.expansion};
 }
 
 void Messages::reportUnknownDirective(const Origin &word) {
   const std::string name(session->sources.text(word.range));
   Diagnostic &diagnostic = session->report(Code::unknownDirective, word, name);
-  static const std::vector<std::string> directives = {"define", "undef", "if",   "ifdef", "ifndef",  "elif",  "else",
-                                                      "endif",  "include", "line", "error", "warning", "pragma"};
+  static const std::vector<std::string> directives = {
+      "define", "undef",   "if",   "ifdef", "ifndef",  "elif",  "else",
+      "endif",  "include", "line", "error", "warning", "pragma"};
   if (name == "version" || name == "extension") {
     const std::string_view text = session->sources.text(word.range.file);
     const std::size_t begin = text.rfind('#', word.range.begin);
     const std::size_t end = std::min(text.find('\n', word.range.end), text.size());
     diagnostic.note("RTSL has one version and no extensions")
-        .fix({word.range.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)}, "", true);
+        .fix({word.range.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)},
+             "", true);
   } else if (name == "import") {
     diagnostic.note("write `import \"file.rtsl\";`, without `#`");
   } else if (name.find_first_not_of("0123456789") == std::string::npos) {
@@ -324,28 +381,35 @@ void Messages::reportUnknownDirective(const Origin &word) {
 /// Other directives, and what stands where none can be.
 bool Messages::reportDirective(const clang::Diagnostic &info, const Place &at) {
   switch (info.getID()) {
-  case diag::err_pp_invalid_directive: reportUnknownDirective(at.origin); return true;
+  case diag::err_pp_invalid_directive:
+    reportUnknownDirective(at.origin);
+    return true;
   case diag::ext_c23_pp_directive:
     session->report(Code::unknownDirective, at.origin, at.text)
         .note(fmt::format("write `#elif {}defined(NAME)`", at.text == "elifndef" ? "!" : ""));
     return true;
   case diag::err_pp_hash_error:
-    session->report(Code::userError, at.origin, argument(info, 0).empty() ? "#error" : argument(info, 0));
+    session->report(Code::userError, at.origin,
+                    argument(info, 0).empty() ? "#error" : argument(info, 0));
     return true;
   case diag::pp_hash_warning:
-    session->report(Code::userWarning, at.origin, argument(info, 0).empty() ? "#warning" : argument(info, 0));
+    session->report(Code::userWarning, at.origin,
+                    argument(info, 0).empty() ? "#warning" : argument(info, 0));
     return true;
   case diag::ext_pp_extra_tokens_at_eol: {
     const std::string_view text = session->sources.text(at.origin.range.file);
     std::uint32_t end = restOfLine(text, at.origin.range.begin);
-    session->report(Code::extraAfterDirective, at.to(std::max(end, at.origin.range.end)), argument(info, 0));
+    session->report(Code::extraAfterDirective, at.to(std::max(end, at.origin.range.end)),
+                    argument(info, 0));
     return true;
   }
   case diag::err_pp_line_requires_integer:
   case diag::err_pp_line_digit_sequence:
   case diag::err_pp_line_invalid_filename:
   case diag::ext_pp_line_zero:
-  case diag::ext_pp_line_too_big: session->report(Code::badLineDirective, at.origin); return true;
+  case diag::ext_pp_line_too_big:
+    session->report(Code::badLineDirective, at.origin);
+    return true;
   case diag::ext_pp_gnu_line_directive:
     reportUnknownDirective(directiveAround(at.origin));
     session->stop();
@@ -357,11 +421,13 @@ bool Messages::reportDirective(const clang::Diagnostic &info, const Place &at) {
     session->isUsable = false;
     return true;
   }
-  default: return false;
+  default:
+    return false;
   }
 }
 
-void Messages::HandleDiagnostic(clang::DiagnosticsEngine::Level level, const clang::Diagnostic &info) {
+void Messages::HandleDiagnostic(clang::DiagnosticsEngine::Level level,
+                                const clang::Diagnostic &info) {
   DiagnosticConsumer::HandleDiagnostic(level, info);
   if (!session || session->isStopped || info.getLocation().isInvalid())
     return;
@@ -374,8 +440,8 @@ void Messages::HandleDiagnostic(clang::DiagnosticsEngine::Level level, const cla
   if (at.origin.range.file == 0)
     return;
   at.text = session->sources.text(at.origin.range);
-  if (reportFile(info, at) || reportConditional(info, at) || reportCondition(info, at) || reportDefinition(info, at) ||
-      reportUse(info, at) || reportDirective(info, at))
+  if (reportFile(info, at) || reportConditional(info, at) || reportCondition(info, at) ||
+      reportDefinition(info, at) || reportUse(info, at) || reportDirective(info, at))
     return;
 
   switch (info.getID()) {
@@ -383,7 +449,8 @@ void Messages::HandleDiagnostic(clang::DiagnosticsEngine::Level level, const cla
   case diag::err_character_not_allowed_identifier:
   case diag::err_invalid_utf8:
     return;
-  default: break;
+  default:
+    break;
   }
   if (level < clang::DiagnosticsEngine::Error)
     return;

@@ -8,15 +8,16 @@
 
 namespace rtsl {
 
-/// Turns clang's diagnostics into messages of DiagnosticCodes.def. What clang says of words that our own lexer reads again
-/// (numbers, strings, characters) is left to that one.
+/// Turns clang's diagnostics into messages of DiagnosticCodes.def. What clang says of words that
+/// our own lexer reads again (numbers, strings, characters) is left to that one.
 class Messages final : public clang::DiagnosticConsumer {
 public:
   void start(Session &session, const Watcher &watcher) {
     this->session = &session;
     this->watcher = &watcher;
   }
-  void HandleDiagnostic(clang::DiagnosticsEngine::Level level, const clang::Diagnostic &info) override;
+  void HandleDiagnostic(clang::DiagnosticsEngine::Level level,
+                        const clang::Diagnostic &info) override;
 
 private:
   struct Place; // of what clang speaks of
@@ -36,8 +37,8 @@ private:
   Diagnostic *last = nullptr; // the redefinition that a note may belong to
   unsigned misuse = 0;        // of a macro: what clang said about it; 0: nothing
   Origin misused;
-  SourceRange unreadable;     // where the last file was included that cannot be read
-  SourceRange undefined;      // the last name in a condition that is no macro
+  SourceRange unreadable; // where the last file was included that cannot be read
+  SourceRange undefined;  // the last name in a condition that is no macro
 };
 
 } // namespace rtsl

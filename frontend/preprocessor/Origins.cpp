@@ -1,8 +1,9 @@
 //===- Origins.cpp - from clang's locations to ours -----------------------===//
 //
-// Clang gives each use of a macro, and each run of words of an argument that took the place of a parameter, a range of
-// locations of its own, which it calls by a FileID as it does with files. Words that `##`, `#` and `__LINE__` make stand in a
-// text of clang's ("scratch space"); for these, what they were made of is shown.
+// Clang gives each use of a macro, and each run of words of an argument that took the place of a
+// parameter, a range of locations of its own, which it calls by a FileID as it does with files.
+// Words that `##`, `#` and `__LINE__` make stand in a text of clang's ("scratch space"); for these,
+// what they were made of is shown.
 //
 //===----------------------------------------------------------------------===//
 #include "Origins.h"
@@ -45,17 +46,20 @@ Origin Origins::of(clang::SourceLocation location, std::uint32_t size) {
   const clang::SourceLocation spelling = locations.getImmediateSpellingLoc(location);
   // An argument belongs to the macro in whose body the parameter stands.
   const auto name = [&] {
-    return clang::Lexer::getImmediateMacroName(info.isMacroArgExpansion() ? info.getExpansionLocStart() : location,
-                                               locations, language)
+    return clang::Lexer::getImmediateMacroName(
+               info.isMacroArgExpansion() ? info.getExpansionLocStart() : location, locations,
+               language)
         .str();
   };
   if (info.isMacroArgExpansion()) {
     const Origin argument = of(spelling, size);
     auto found = known.find(place.first);
     if (found == known.end()) {
-      Expansion expansion{Expansion::Argument, name(), of(info.getExpansionLocStart()), argument.expansion};
+      Expansion expansion{Expansion::Argument, name(), of(info.getExpansionLocStart()),
+                          argument.expansion};
       expansions.push_back(std::move(expansion));
-      found = known.try_emplace(place.first, static_cast<std::uint32_t>(expansions.size() - 1)).first;
+      found =
+          known.try_emplace(place.first, static_cast<std::uint32_t>(expansions.size() - 1)).first;
     }
     return {argument.range, found->second};
   }
@@ -64,7 +68,8 @@ Origin Origins::of(clang::SourceLocation location, std::uint32_t size) {
     return of(info.getExpansionLocStart(), info.getExpansionLocEnd());
   auto found = known.find(place.first);
   if (found == known.end()) {
-    Expansion expansion{Expansion::Macro, name(), of(info.getExpansionLocStart(), info.getExpansionLocEnd()), 0};
+    Expansion expansion{Expansion::Macro, name(),
+                        of(info.getExpansionLocStart(), info.getExpansionLocEnd()), 0};
     expansions.push_back(std::move(expansion));
     found = known.try_emplace(place.first, static_cast<std::uint32_t>(expansions.size() - 1)).first;
   }
@@ -76,7 +81,8 @@ Origin Origins::of(clang::SourceLocation first, clang::SourceLocation last) {
   if (first == last)
     return begin;
   const Origin end = of(last);
-  if (begin.expansion == end.expansion && begin.range.file == end.range.file && begin.range.begin <= end.range.end)
+  if (begin.expansion == end.expansion && begin.range.file == end.range.file &&
+      begin.range.begin <= end.range.end)
     begin.range.end = end.range.end;
   return begin;
 }

@@ -11,11 +11,12 @@
 
 namespace rtsl {
 
-/// Says where the words that clang's preprocessor gives were written, and collects the ways that they took.
+/// Says where the words that clang's preprocessor gives were written, and collects the ways that
+/// they took.
 class Origins {
 public:
-  Origins(const clang::SourceManager &locations, const clang::LangOptions &language, const SourceFileSystem &files,
-          SourceManager &sources)
+  Origins(const clang::SourceManager &locations, const clang::LangOptions &language,
+          const SourceFileSystem &files, SourceManager &sources)
       : locations(locations), language(language), files(files), sources(sources) {}
 
   /// Of the word of `size` bytes at a location, in a file or in the expansion of a macro.
@@ -43,7 +44,8 @@ private:
   const SourceFileSystem &files;
   SourceManager &sources;
   llvm::DenseMap<clang::FileID, FileId> fileIds;
-  llvm::DenseMap<clang::FileID, std::uint32_t> known; // expansions and includes by clang's name for them
+  // expansions and includes by clang's name for them
+  llvm::DenseMap<clang::FileID, std::uint32_t> known;
 };
 
 } // namespace rtsl

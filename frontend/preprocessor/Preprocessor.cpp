@@ -4,8 +4,8 @@
 #include "Messages.h"
 #include "Session.h"
 #include "Watcher.h"
-#include "frontend/preprocessor/FileSearch.h"
 #include "frontend/lex/Tokenizer.h"
+#include "frontend/preprocessor/FileSearch.h"
 
 #include <clang/Basic/DiagnosticOptions.h>
 #include <clang/Basic/FileManager.h>
@@ -23,7 +23,9 @@ namespace {
 /// What clang wants to know of a machine: nothing that shows in a text.
 class NoTarget final : public clang::TargetInfo {
 public:
-  NoTarget() : TargetInfo(llvm::Triple("x86_64-unknown-linux")) { resetDataLayout("e-m:e-i64:64-n8:16:32:64"); }
+  NoTarget() : TargetInfo(llvm::Triple("x86_64-unknown-linux")) {
+    resetDataLayout("e-m:e-i64:64-n8:16:32:64");
+  }
   void getTargetDefines(const clang::LangOptions &, clang::MacroBuilder &) const override {}
   llvm::SmallVector<clang::Builtin::InfosShard> getTargetBuiltins() const override { return {}; }
   BuiltinVaListKind getBuiltinVaListKind() const override { return VoidPtrBuiltinVaList; }
@@ -37,10 +39,12 @@ public:
 constexpr const char *languageMacros = "#define __VERSION__ 460\n"
                                        "#define __RTSL__ 100\n";
 
-/// Every directive and macro needs one of these characters; names with two underscores are the language's.
+/// Every directive and macro needs one of these characters; names with two underscores are the
+/// language's.
 bool mayNeedPreprocessing(std::string_view text) {
   return text.find('#') != std::string_view::npos || text.find("__") != std::string_view::npos ||
-         text.find("\\\n") != std::string_view::npos || text.find("\\\r\n") != std::string_view::npos;
+         text.find("\\\n") != std::string_view::npos ||
+         text.find("\\\r\n") != std::string_view::npos;
 }
 
 /// Each in a line of its own, in the order of the command line.
@@ -70,7 +74,8 @@ clang::LangOptions languageOptions() {
 } // namespace
 
 bool isOfTheLanguage(std::string_view macro) {
-  return macro == "__LINE__" || macro == "__FILE__" || macro == "__VERSION__" || macro == "__RTSL__";
+  return macro == "__LINE__" || macro == "__FILE__" || macro == "__VERSION__" ||
+         macro == "__RTSL__";
 }
 
 PreprocessedFile preprocess(FileId file, SourceManager &sources, const PreprocessorOptions &options,
@@ -87,7 +92,8 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
 
   Messages messages;
   clang::DiagnosticOptions diagnosticOptions;
-  clang::DiagnosticsEngine engine(llvm::makeIntrusiveRefCnt<clang::DiagnosticIDs>(), diagnosticOptions, &messages,
+  clang::DiagnosticsEngine engine(llvm::makeIntrusiveRefCnt<clang::DiagnosticIDs>(),
+                                  diagnosticOptions, &messages,
                                   /*ShouldOwnClient=*/false);
   engine.setEnableAllWarnings(true); // Messages.cpp chooses
   engine.setFatalsAsError(true);
@@ -101,23 +107,28 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
   const clang::HeaderSearchOptions searchOptions;
   clang::HeaderSearch search(searchOptions, locations, engine, language, &target);
   for (const std::string &folder : options.includeFolders)
-    if (const clang::OptionalDirectoryEntryRef directory = fileManager.getOptionalDirectoryRef(folder))
-      search.AddSearchPath(clang::DirectoryLookup(*directory, clang::SrcMgr::C_User, /*isFramework=*/false),
-                           /*isAngled=*/true);
+    if (const clang::OptionalDirectoryEntryRef directory =
+            fileManager.getOptionalDirectoryRef(folder))
+      search.AddSearchPath(
+          clang::DirectoryLookup(*directory, clang::SrcMgr::C_User, /*isFramework=*/false),
+          /*isAngled=*/true);
   const clang::PreprocessorOptions preprocessorOptions;
   clang::TrivialModuleLoader modules;
-  clang::Preprocessor preprocessor(preprocessorOptions, engine, language, locations, search, modules);
+  clang::Preprocessor preprocessor(preprocessorOptions, engine, language, locations, search,
+                                   modules);
   preprocessor.Initialize(target);
   preprocessor.SetCommentRetentionState(/*KeepComments=*/true, /*KeepMacroComments=*/false);
 
   const std::string_view name = sources.name(file);
-  const clang::OptionalFileEntryRef entry = fileManager.getOptionalFileRef(llvm::StringRef(name.data(), name.size()));
+  const clang::OptionalFileEntryRef entry =
+      fileManager.getOptionalFileRef(llvm::StringRef(name.data(), name.size()));
   if (!entry) { // the file has gone since it was read
     diagnostics.report(Code::cannotReadSource, SourceRange{}, name, "it has changed");
     result.isUsable = false;
     return result;
   }
-  const clang::FileID mainFile = locations.createFileID(*entry, clang::SourceLocation(), clang::SrcMgr::C_User);
+  const clang::FileID mainFile =
+      locations.createFileID(*entry, clang::SourceLocation(), clang::SrcMgr::C_User);
   locations.setMainFileID(mainFile);
   const std::string definitions = macroDefinitions(options);
   preprocessor.setPredefines(definitions);
@@ -150,7 +161,8 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
   result.includes = std::move(session.includes);
   result.text = sources.addExpanded(builder.finish(mainFile));
   // That a text is empty is no news when a mistake explains it.
-  const bool isBlank = sources.text(result.text).find_first_not_of(" \t\r\n") == std::string_view::npos;
+  const bool isBlank =
+      sources.text(result.text).find_first_not_of(" \t\r\n") == std::string_view::npos;
   result.isUsable = session.isUsable && !(isBlank && diagnostics.errorCount() > errorsBefore);
   return result;
 }

@@ -32,7 +32,8 @@ std::string printPreprocessed(FileId text, const SourceManager &sources) {
   for (std::size_t begin = 0; begin < all.size();) {
     const std::size_t end = std::min(all.find('\n', begin), all.size());
     const std::string_view content = all.substr(begin, end - begin);
-    const auto word = static_cast<std::uint32_t>(std::min(content.find_first_not_of(" \t\r"), content.size()) + begin);
+    const auto word = static_cast<std::uint32_t>(
+        std::min(content.find_first_not_of(" \t\r"), content.size()) + begin);
     if (!isBlank(content)) {
       const ShownPlace place = shownBegin(sources, {text, word, word + 1});
       // Some empty lines read better than a directive.

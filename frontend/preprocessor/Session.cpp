@@ -15,8 +15,8 @@ void Session::undefineMacros(const std::vector<std::string_view> &kept) {
       macros.push_back(preprocessor.getIdentifierInfo(name->getName()));
   const clang::SourceLocation start = locations.getLocForStartOfFile(locations.getMainFileID());
   for (clang::IdentifierInfo *name : macros)
-    preprocessor.appendMacroDirective(
-        name, new (preprocessor.getPreprocessorAllocator()) clang::UndefMacroDirective(start));
+    preprocessor.appendMacroDirective(name, new (preprocessor.getPreprocessorAllocator())
+                                                clang::UndefMacroDirective(start));
 }
 
 void Session::stop() {

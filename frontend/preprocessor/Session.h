@@ -38,8 +38,8 @@ struct Session {
 
   void undefineMacros(const std::vector<std::string_view> &kept = {});
 
-  /// Ends the run: no macro is expanded any more, and what is included is taken as empty. Clang cannot be interrupted where
-  /// it is, but what it still does is bounded by what it holds.
+  /// Ends the run: no macro is expanded any more, and what is included is taken as empty. Clang
+  /// cannot be interrupted where it is, but what it still does is bounded by what it holds.
   void stop();
 
   /// Where `#include "..."`, or `<...>`, in the file at hand looks for a file.

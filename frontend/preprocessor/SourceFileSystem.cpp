@@ -17,8 +17,8 @@ public:
   SourceText(llvm::vfs::Status info, llvm::StringRef text) : info(std::move(info)), text(text) {}
 
   llvm::ErrorOr<llvm::vfs::Status> status() override { return info; }
-  llvm::ErrorOr<std::unique_ptr<llvm::MemoryBuffer>> getBuffer(const llvm::Twine &name, std::int64_t, bool,
-                                                               bool) override {
+  llvm::ErrorOr<std::unique_ptr<llvm::MemoryBuffer>> getBuffer(const llvm::Twine &name,
+                                                               std::int64_t, bool, bool) override {
     return llvm::MemoryBuffer::getMemBuffer(text, name.str());
   }
   std::error_code close() override { return {}; }
@@ -57,15 +57,18 @@ FileId SourceFileSystem::fileOf(llvm::sys::fs::UniqueID id) const {
 llvm::ErrorOr<llvm::vfs::Status> SourceFileSystem::status(const llvm::Twine &path) {
   const FileId file = find(path);
   llvm::ErrorOr<llvm::vfs::Status> info = disk->status(path);
-  if (!file || (info && info->getType() == llvm::sys::fs::file_type::regular_file && info->getSize() == sources.text(file).size()))
+  if (!file || (info && info->getType() == llvm::sys::fs::file_type::regular_file &&
+                info->getSize() == sources.text(file).size()))
     return info;
   // Standard input, and texts that were never on a disk or have changed there since they were read.
-  const llvm::sys::fs::UniqueID id = info ? info->getUniqueID() : llvm::sys::fs::UniqueID(~std::uint64_t{0}, file);
-  return llvm::vfs::Status(path, id, {}, 0, 0, sources.text(file).size(), llvm::sys::fs::file_type::regular_file,
-                           llvm::sys::fs::perms::all_read);
+  const llvm::sys::fs::UniqueID id =
+      info ? info->getUniqueID() : llvm::sys::fs::UniqueID(~std::uint64_t{0}, file);
+  return llvm::vfs::Status(path, id, {}, 0, 0, sources.text(file).size(),
+                           llvm::sys::fs::file_type::regular_file, llvm::sys::fs::perms::all_read);
 }
 
-llvm::ErrorOr<std::unique_ptr<llvm::vfs::File>> SourceFileSystem::openFileForRead(const llvm::Twine &path) {
+llvm::ErrorOr<std::unique_ptr<llvm::vfs::File>>
+SourceFileSystem::openFileForRead(const llvm::Twine &path) {
   llvm::ErrorOr<llvm::vfs::Status> info = status(path);
   if (!info)
     return info.getError();
@@ -83,8 +86,8 @@ llvm::ErrorOr<std::unique_ptr<llvm::vfs::File>> SourceFileSystem::openFileForRea
   }
   opened[{info->getUniqueID().getDevice(), info->getUniqueID().getFile()}] = file;
   const std::string_view text = sources.text(file);
-  llvm::vfs::Status known(info->getName(), info->getUniqueID(), info->getLastModificationTime(), 0, 0, text.size(),
-                          info->getType(), info->getPermissions());
+  llvm::vfs::Status known(info->getName(), info->getUniqueID(), info->getLastModificationTime(), 0,
+                          0, text.size(), info->getType(), info->getPermissions());
   return std::make_unique<SourceText>(std::move(known), llvm::StringRef(text.data(), text.size()));
 }
 

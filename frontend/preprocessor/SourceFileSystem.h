@@ -11,8 +11,9 @@
 
 namespace rtsl {
 
-/// The disk, with the texts of a `SourceManager` in front of it: what is read goes into the manager, once, and what is in
-/// the manager is not read again. So messages show the very bytes that were preprocessed.
+/// The disk, with the texts of a `SourceManager` in front of it: what is read goes into the
+/// manager, once, and what is in the manager is not read again. So messages show the very bytes
+/// that were preprocessed.
 class SourceFileSystem final : public llvm::vfs::FileSystem {
 public:
   /// `main` may be a text without a file, such as standard input.
@@ -23,13 +24,16 @@ public:
 
   llvm::ErrorOr<llvm::vfs::Status> status(const llvm::Twine &path) override;
   llvm::ErrorOr<std::unique_ptr<llvm::vfs::File>> openFileForRead(const llvm::Twine &path) override;
-  llvm::vfs::directory_iterator dir_begin(const llvm::Twine &path, std::error_code &error) override {
+  llvm::vfs::directory_iterator dir_begin(const llvm::Twine &path,
+                                          std::error_code &error) override {
     return disk->dir_begin(path, error);
   }
   std::error_code setCurrentWorkingDirectory(const llvm::Twine &path) override {
     return disk->setCurrentWorkingDirectory(path);
   }
-  llvm::ErrorOr<std::string> getCurrentWorkingDirectory() const override { return disk->getCurrentWorkingDirectory(); }
+  llvm::ErrorOr<std::string> getCurrentWorkingDirectory() const override {
+    return disk->getCurrentWorkingDirectory();
+  }
 
 private:
   FileId find(const llvm::Twine &path) const;

@@ -1,7 +1,8 @@
 //===- TextBuilder.cpp - words to an expanded text ------------------------===//
 //
-// Between two words of a file lie spaces, and also what the preprocessor dropped: directives, the parts that `#if` left out,
-// uses of macros that were empty. Comments are words here, so that a `#` between two words always begins a directive.
+// Between two words of a file lie spaces, and also what the preprocessor dropped: directives, the
+// parts that `#if` left out, uses of macros that were empty. Comments are words here, so that a `#`
+// between two words always begins a directive.
 //
 //===----------------------------------------------------------------------===//
 #include "TextBuilder.h"
@@ -15,8 +16,8 @@ namespace rtsl {
 namespace {
 
 bool isWordCharacter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' ||
-         static_cast<unsigned char>(c) >= 0x80;
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '.' || static_cast<unsigned char>(c) >= 0x80;
 }
 
 bool isSpace(char c) {
@@ -45,9 +46,10 @@ std::uint32_t continuationAt(std::string_view text, std::uint32_t at) {
 
 } // namespace
 
-TextBuilder::TextBuilder(const clang::Preprocessor &preprocessor, Origins &origins, const SourceManager &sources,
-                         FileId file)
-    : preprocessor(preprocessor), locations(preprocessor.getSourceManager()), origins(origins), sources(sources) {
+TextBuilder::TextBuilder(const clang::Preprocessor &preprocessor, Origins &origins,
+                         const SourceManager &sources, FileId file)
+    : preprocessor(preprocessor), locations(preprocessor.getSourceManager()), origins(origins),
+      sources(sources) {
   result.file = file;
   result.text.reserve(sources.text(file).size());
   result.pieces.push_back({0, {{file, 0, 0}, 0}, true});
@@ -69,8 +71,8 @@ TextBuilder::Progress &TextBuilder::progressIn(clang::FileID id) {
 /// True if the text ends with what stands in front of `begin` in a file.
 bool TextBuilder::continuesAt(const Progress &progress, std::uint32_t begin) const {
   const Piece &last = result.pieces.back();
-  return last.isVerbatim && last.origin.range.file == progress.file && last.origin.expansion == progress.include &&
-         last.origin.range.end == begin &&
+  return last.isVerbatim && last.origin.range.file == progress.file &&
+         last.origin.expansion == progress.include && last.origin.range.end == begin &&
          result.text.size() - last.begin == last.origin.range.end - last.origin.range.begin;
 }
 
@@ -81,8 +83,9 @@ void TextBuilder::append(const Progress &progress, std::uint32_t begin, std::uin
   if (continuesAt(progress, begin))
     result.pieces.back().origin.range.end = end;
   else
-    result.pieces.push_back(
-        {static_cast<std::uint32_t>(result.text.size()), {{progress.file, begin, end}, progress.include}, true});
+    result.pieces.push_back({static_cast<std::uint32_t>(result.text.size()),
+                             {{progress.file, begin, end}, progress.include},
+                             true});
   result.text += sources.text({progress.file, begin, end});
 }
 
@@ -104,14 +107,15 @@ void TextBuilder::addGap(clang::SourceLocation begin, clang::SourceLocation end,
     return;
   Progress &progress = progressIn(first.first);
   // The condition of an `#if` is read before it is known what is left out.
-  const auto at = std::upper_bound(progress.gaps.begin() + static_cast<std::ptrdiff_t>(progress.nextGap),
-                                   progress.gaps.end(), first.second,
-                                   [](std::uint32_t offset, const Gap &gap) { return offset < gap.begin; });
+  const auto at = std::upper_bound(
+      progress.gaps.begin() + static_cast<std::ptrdiff_t>(progress.nextGap), progress.gaps.end(),
+      first.second, [](std::uint32_t offset, const Gap &gap) { return offset < gap.begin; });
   progress.gaps.insert(at, {first.second, last.second, isDirective});
 }
 
 /// Passes over a directive, to the end of its line, and what it leaves out.
-std::uint32_t TextBuilder::skipDirective(Progress &progress, std::string_view text, std::uint32_t at, std::uint32_t to) {
+std::uint32_t TextBuilder::skipDirective(Progress &progress, std::string_view text,
+                                         std::uint32_t at, std::uint32_t to) {
   while (at < to && text[at] != '\n') {
     while (progress.nextGap < progress.gaps.size() && progress.gaps[progress.nextGap].begin < at)
       ++progress.nextGap;
@@ -142,7 +146,8 @@ void TextBuilder::advance(Progress &progress, std::uint32_t to) {
   const auto drop = [&](std::uint32_t begin, std::uint32_t end) {
     append(progress, taken, begin);
     const std::string_view dropped = text.substr(begin, end - begin);
-    result.text.append(static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), '\n')), '\n');
+    result.text.append(static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), '\n')),
+                       '\n');
     taken = end;
   };
   for (std::uint32_t at = progress.end; at < to;) {
@@ -198,7 +203,8 @@ void TextBuilder::add(const clang::Token &token) {
   if (isFirst) {
     advance(progress, begin.second);
     const clang::FileIDAndOffset end = locations.getDecomposedLoc(written.getEnd());
-    const std::uint32_t size = location.isFileID() ? token.getLength() : origins.sizeAt(written.getEnd());
+    const std::uint32_t size =
+        location.isFileID() ? token.getLength() : origins.sizeAt(written.getEnd());
     progress.end = std::max(progress.end, end.second + size);
     use = location.isFileID() ? clang::SourceLocation() : written.getBegin();
   }
@@ -213,7 +219,8 @@ void TextBuilder::add(const clang::Token &token) {
 
 ExpandedText TextBuilder::finish(clang::FileID mainFile) {
   Progress &progress = progressIn(mainFile);
-  if (lastFile.isValid() && lastFile != mainFile && !result.text.empty() && result.text.back() != '\n')
+  if (lastFile.isValid() && lastFile != mainFile && !result.text.empty() &&
+      result.text.back() != '\n')
     result.text += '\n';
   advance(progress, static_cast<std::uint32_t>(sources.text(progress.file).size()));
   result.expansions = std::move(origins.expansions);

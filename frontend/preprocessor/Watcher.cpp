@@ -1,8 +1,8 @@
 //===- Watcher.cpp - what happens while the preprocessor runs -------------===//
 #include "Watcher.h"
 
-#include "frontend/preprocessor/FileSearch.h"
 #include "frontend/lex/Tokenizer.h"
+#include "frontend/preprocessor/FileSearch.h"
 
 #include <clang/Lex/Lexer.h>
 #include <clang/Lex/MacroArgs.h>
@@ -20,7 +20,8 @@ namespace rtsl {
 std::size_t Watcher::depthOfIncludes(clang::FileID file) const {
   std::size_t depth = 0;
   for (clang::SourceLocation from = session.locations.getIncludeLoc(file); from.isValid();
-       from = session.locations.getIncludeLoc(session.locations.getFileID(session.locations.getExpansionLoc(from))))
+       from = session.locations.getIncludeLoc(
+           session.locations.getFileID(session.locations.getExpansionLoc(from))))
     ++depth;
   return depth;
 }
@@ -29,7 +30,8 @@ std::size_t Watcher::depthOfIncludes(clang::FileID file) const {
 void Watcher::checkConditions(clang::FileID id) {
   const FileId file = session.origins.fileOf(id);
   const std::string_view text = session.sources.text(file);
-  for (std::size_t hash = text.find('#'); hash != std::string_view::npos; hash = text.find('#', hash + 1)) {
+  for (std::size_t hash = text.find('#'); hash != std::string_view::npos;
+       hash = text.find('#', hash + 1)) {
     const std::size_t word = std::min(text.find_first_not_of(" \t", hash + 1), text.size());
     if (text.substr(word, 2) != "if" && text.substr(word, 4) != "elif")
       continue;
@@ -41,8 +43,10 @@ void Watcher::checkConditions(clang::FileID id) {
         operators += std::string_view("(!~-+").find(text[at]) != std::string_view::npos;
       if (operators > maxConditionOperators) {
         const auto begin = static_cast<std::uint32_t>(word);
-        session.report(Code::badCondition, {{file, begin, begin + (text[word] == 'i' ? 2 : 4)}, session.origins.includeOf(id)},
-                       fmt::format("it has more than {} parentheses and signs", maxConditionOperators));
+        session.report(
+            Code::badCondition,
+            {{file, begin, begin + (text[word] == 'i' ? 2 : 4)}, session.origins.includeOf(id)},
+            fmt::format("it has more than {} parentheses and signs", maxConditionOperators));
         session.stop();
         return;
       }
@@ -50,8 +54,9 @@ void Watcher::checkConditions(clang::FileID id) {
   }
 }
 
-void Watcher::LexedFileChanged(clang::FileID id, LexedFileChangeReason reason, clang::SrcMgr::CharacteristicKind,
-                               clang::FileID, clang::SourceLocation) {
+void Watcher::LexedFileChanged(clang::FileID id, LexedFileChangeReason reason,
+                               clang::SrcMgr::CharacteristicKind, clang::FileID,
+                               clang::SourceLocation) {
   if (reason != LexedFileChangeReason::EnterFile)
     return;
   const FileId file = session.origins.fileOf(id);
@@ -62,7 +67,8 @@ void Watcher::LexedFileChanged(clang::FileID id, LexedFileChangeReason reason, c
       checkConditions(id);
     } else if (depthOfIncludes(id) > maxIncludeDepth) {
       // All of the way would be a hundred notes: where it began, and what comes back.
-      Diagnostic &diagnostic = session.report(Code::includesTooDeep, session.origins.of(from), maxIncludeDepth);
+      Diagnostic &diagnostic =
+          session.report(Code::includesTooDeep, session.origins.of(from), maxIncludeDepth);
       std::vector<std::string> &notes = diagnostic.notes;
       constexpr std::size_t shown = 4;
       if (notes.size() > 2 * shown)
@@ -76,12 +82,15 @@ void Watcher::LexedFileChanged(clang::FileID id, LexedFileChangeReason reason, c
       session.stop();
     } else if (Diagnostic *diagnostic = reportIfNotText(file, session.diagnostics)) {
       if (diagnostic->notes.empty())
-        explainOrigin(*diagnostic, written(session.origins.expansions, {{file, 0, 0}, session.origins.includeOf(id)}),
-                      session.sources);
+        explainOrigin(
+            *diagnostic,
+            written(session.origins.expansions, {{file, 0, 0}, session.origins.includeOf(id)}),
+            session.sources);
       session.stop();
     } else {
       const std::string name(session.sources.name(file));
-      if (std::find(session.includes.begin(), session.includes.end(), name) == session.includes.end())
+      if (std::find(session.includes.begin(), session.includes.end(), name) ==
+          session.includes.end())
         session.includes.push_back(name);
       checkConditions(id);
     }
@@ -92,14 +101,16 @@ void Watcher::LexedFileChanged(clang::FileID id, LexedFileChangeReason reason, c
   }
 }
 
-void Watcher::FileChanged(clang::SourceLocation location, FileChangeReason reason, clang::SrcMgr::CharacteristicKind,
-                          clang::FileID) {
+void Watcher::FileChanged(clang::SourceLocation location, FileChangeReason reason,
+                          clang::SrcMgr::CharacteristicKind, clang::FileID) {
   if (reason != RenameFile || session.isStopped)
     return;
   // `#line` speaks of the next line.
-  const clang::FileIDAndOffset place = session.locations.getDecomposedLoc(session.locations.getFileLoc(location));
+  const clang::FileIDAndOffset place =
+      session.locations.getDecomposedLoc(session.locations.getFileLoc(location));
   const FileId file = session.origins.fileOf(place.first);
-  const std::size_t end = session.sources.text(file).find('\n', place.second > 0 ? place.second - 1 : 0);
+  const std::size_t end =
+      session.sources.text(file).find('\n', place.second > 0 ? place.second - 1 : 0);
   if (file == 0 || end == std::string_view::npos)
     return;
   const auto next = static_cast<std::uint32_t>(end + 1);
@@ -109,32 +120,36 @@ void Watcher::FileChanged(clang::SourceLocation location, FileChangeReason reaso
     session.sources.setLine(file, next, shown.getLine(), shown.getFilename());
 }
 
-void Watcher::InclusionDirective(clang::SourceLocation, const clang::Token &directive, llvm::StringRef, bool,
-                                 clang::CharSourceRange, clang::OptionalFileEntryRef file, llvm::StringRef,
-                                 llvm::StringRef, const clang::Module *, bool, clang::SrcMgr::CharacteristicKind) {
+void Watcher::InclusionDirective(clang::SourceLocation, const clang::Token &directive,
+                                 llvm::StringRef, bool, clang::CharSourceRange,
+                                 clang::OptionalFileEntryRef file, llvm::StringRef, llvm::StringRef,
+                                 const clang::Module *, bool, clang::SrcMgr::CharacteristicKind) {
   if (session.isStopped)
     return;
   const std::string name = session.preprocessor.getSpelling(directive);
   if (name != "include") {
-    Diagnostic &diagnostic = session.report(Code::unknownDirective, session.origins.of(directive.getLocation()), name);
+    Diagnostic &diagnostic =
+        session.report(Code::unknownDirective, session.origins.of(directive.getLocation()), name);
     if (name == "import")
       diagnostic.note("write `import \"file.rtsl\";`, without `#`");
     session.stop();
   }
 }
 
-void Watcher::EmbedDirective(clang::SourceLocation hash, llvm::StringRef, bool, clang::OptionalFileEntryRef,
-                             const clang::LexEmbedParametersResult &) {
+void Watcher::EmbedDirective(clang::SourceLocation hash, llvm::StringRef, bool,
+                             clang::OptionalFileEntryRef, const clang::LexEmbedParametersResult &) {
   if (session.isStopped)
     return;
   session.report(Code::unknownDirective, session.origins.of(hash), "embed");
   session.stop();
 }
 
-void Watcher::MacroUndefined(const clang::Token &name, const clang::MacroDefinition &, const clang::MacroDirective *) {
+void Watcher::MacroUndefined(const clang::Token &name, const clang::MacroDefinition &,
+                             const clang::MacroDirective *) {
   const Origin word = session.origins.of(name.getLocation());
-  if (word.range.file != 0 && isOfTheLanguage(session.sources.text(word.range)) && !session.isStopped &&
-      name.getIdentifierInfo()->getName() != "__LINE__" && name.getIdentifierInfo()->getName() != "__FILE__")
+  if (word.range.file != 0 && isOfTheLanguage(session.sources.text(word.range)) &&
+      !session.isStopped && name.getIdentifierInfo()->getName() != "__LINE__" &&
+      name.getIdentifierInfo()->getName() != "__FILE__")
     session.report(Code::predefinedMacro, word, session.sources.text(word.range));
 }
 
@@ -142,12 +157,14 @@ void Watcher::Ident(clang::SourceLocation location, llvm::StringRef) {
   session.report(Code::unknownDirective, session.origins.of(location), "ident");
 }
 
-/// RTSL knows `#pragma once`. Clang knows more, which would change what a text means: the rest of the line is passed over.
+/// RTSL knows `#pragma once`. Clang knows more, which would change what a text means: the rest of
+/// the line is passed over.
 void Watcher::PragmaDirective(clang::SourceLocation location, clang::PragmaIntroducerKind) {
   auto *lexer = static_cast<clang::Lexer *>(session.preprocessor.getCurrentFileLexer());
   if (!lexer || session.isStopped)
     return;
-  const clang::FileIDAndOffset place = session.locations.getDecomposedLoc(session.locations.getFileLoc(location));
+  const clang::FileIDAndOffset place =
+      session.locations.getDecomposedLoc(session.locations.getFileLoc(location));
   const FileId file = session.origins.fileOf(place.first);
   const std::string_view text = session.sources.text(file);
   const std::size_t lineEnd = std::min(text.find('\n', place.second), text.size());
@@ -163,10 +180,11 @@ void Watcher::PragmaDirective(clang::SourceLocation location, clang::PragmaIntro
   const std::string_view name = text.substr(begin, end - begin);
   if (name == "once")
     return;
-  session.report(Code::unknownPragma,
-                 {{file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(std::max(end, begin))},
-                  session.origins.includeOf(place.first)},
-                 name);
+  session.report(
+      Code::unknownPragma,
+      {{file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(std::max(end, begin))},
+       session.origins.includeOf(place.first)},
+      name);
   lexer->seek(static_cast<unsigned>(lineEnd), /*IsAtStartOfLine=*/false);
 }
 
@@ -182,9 +200,10 @@ void Watcher::If(clang::SourceLocation location, clang::SourceRange, ConditionVa
 //===----------------------------------------------------------------------===//
 // Macros
 //
-// How much a macro makes cannot be seen from the words that come out: the arguments of a macro are expanded before they
-// take the places of its parameters, and F(F(F(x))) doubles what it holds with each level before the first word is out. So
-// each use is counted where it begins, times the copies that the uses around it will make of it.
+// How much a macro makes cannot be seen from the words that come out: the arguments of a macro are
+// expanded before they take the places of its parameters, and F(F(F(x))) doubles what it holds with
+// each level before the first word is out. So each use is counted where it begins, times the copies
+// that the uses around it will make of it.
 //===----------------------------------------------------------------------===//
 
 /// The number of macros around a location: a use in a body in a body ...
@@ -209,14 +228,15 @@ bool Watcher::isArgumentOf(const Call &call, clang::SourceLocation name) const {
   }
 }
 
-void Watcher::MacroExpands(const clang::Token &name, const clang::MacroDefinition &definition, clang::SourceRange range,
-                           const clang::MacroArgs *arguments) {
+void Watcher::MacroExpands(const clang::Token &name, const clang::MacroDefinition &definition,
+                           clang::SourceRange range, const clang::MacroArgs *arguments) {
   const clang::MacroInfo *macro = definition.getMacroInfo();
   const clang::SourceLocation location = name.getLocation();
   if (location.isFileID())
     session.builder.addGap(
         location,
-        session.locations.getFileLoc(range.getEnd()).getLocWithOffset(static_cast<int>(session.origins.sizeAt(range.getEnd()))),
+        session.locations.getFileLoc(range.getEnd())
+            .getLocWithOffset(static_cast<int>(session.origins.sizeAt(range.getEnd()))),
         /*isDirective=*/false);
   if (session.isStopped || !macro || macro->isBuiltinMacro())
     return;
@@ -231,8 +251,9 @@ void Watcher::MacroExpands(const clang::Token &name, const clang::MacroDefinitio
     for (unsigned i = 0; i < macro->getNumParams(); ++i) {
       const clang::IdentifierInfo *parameter = macro->params()[i];
       const auto uses = static_cast<std::size_t>(
-          std::count_if(macro->tokens_begin(), macro->tokens_end(),
-                        [&](const clang::Token &word) { return word.getIdentifierInfo() == parameter; }));
+          std::count_if(macro->tokens_begin(), macro->tokens_end(), [&](const clang::Token &word) {
+            return word.getIdentifierInfo() == parameter;
+          }));
       const clang::Token *word = arguments->getUnexpArgument(i);
       std::size_t size = 0;
       for (; word->isNot(clang::tok::eof); ++word, ++size)

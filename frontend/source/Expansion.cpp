@@ -12,7 +12,8 @@ struct Path {
   struct Step {
     std::uint32_t expansion; // of the macro's body
     std::string_view macro;
-    SourceRange range; // in the definition: the word, the parameter for which it stands, or the use of the next macro
+    // in the definition: the word, the parameter for which it stands, or the use of the next macro
+    SourceRange range;
   };
   Origin word;             // in a file: the word or the use of the macro that it came from
   Origin use;              // in a file: the use of the outermost macro; `word` if there is none
@@ -54,14 +55,17 @@ SourceRange join(SourceRange first, SourceRange last) {
 }
 
 /// From the word at the end of `first` to that at the end of `last`.
-WrittenRange between(const std::vector<Expansion> &expansions, const Path &first, const Path &last) {
+WrittenRange between(const std::vector<Expansion> &expansions, const Path &first,
+                     const Path &last) {
   WrittenRange result;
-  const bool isOneUse = !first.steps.empty() && !last.steps.empty() && first.use.range == last.use.range &&
+  const bool isOneUse = !first.steps.empty() && !last.steps.empty() &&
+                        first.use.range == last.use.range &&
                         first.use.expansion == last.use.expansion;
   if (!isOneUse) {
     result.range = join(first.use.range, last.use.range);
   } else if (first.word.range == last.word.range ||
-             (first.isArgument() && last.isArgument() && first.word.range.end <= last.word.range.begin)) {
+             (first.isArgument() && last.isArgument() &&
+              first.word.range.end <= last.word.range.begin)) {
     result.range = join(first.word.range, last.word.range);
   } else {
     result.range = first.use.range;
@@ -86,7 +90,8 @@ WrittenRange between(const std::vector<Expansion> &expansions, const Path &first
 Origin originOf(const Piece &piece, std::uint32_t offset) {
   Origin origin = piece.origin;
   if (piece.isVerbatim)
-    origin.range.begin = origin.range.end = std::min(origin.range.begin + (offset - piece.begin), origin.range.end);
+    origin.range.begin = origin.range.end =
+        std::min(origin.range.begin + (offset - piece.begin), origin.range.end);
   return origin;
 }
 
@@ -104,11 +109,13 @@ WrittenRange written(const ExpandedText &text, std::uint32_t begin, std::uint32_
   begin = std::min(begin, size);
   end = std::clamp(end, begin, size);
   const auto pieceOf = [&](std::uint32_t offset) {
-    const auto next = std::upper_bound(text.pieces.begin(), text.pieces.end(), offset,
-                                       [](std::uint32_t o, const Piece &piece) { return o < piece.begin; });
+    const auto next =
+        std::upper_bound(text.pieces.begin(), text.pieces.end(), offset,
+                         [](std::uint32_t o, const Piece &piece) { return o < piece.begin; });
     return std::prev(next);
   };
-  if (begin == end) { // behind the byte in front, unless that came from a macro and the one behind did not
+  if (begin ==
+      end) { // behind the byte in front, unless that came from a macro and the one behind did not
     const auto after = pieceOf(begin);
     const auto before = begin > 0 ? pieceOf(begin - 1) : after;
     const Piece &piece = !before->isVerbatim && after->isVerbatim ? *after : *before;
@@ -121,7 +128,8 @@ WrittenRange written(const ExpandedText &text, std::uint32_t begin, std::uint32_
   Origin from = originOf(*first, begin), to = originOf(*last, end);
   from.range.end = first == last ? to.range.end : first->origin.range.end;
   to.range.begin = first == last ? from.range.begin : last->origin.range.begin;
-  WrittenRange result = between(text.expansions, pathOf(text.expansions, from), pathOf(text.expansions, to));
+  WrittenRange result =
+      between(text.expansions, pathOf(text.expansions, from), pathOf(text.expansions, to));
   result.isVerbatim = first == last && first->isVerbatim;
   return result;
 }

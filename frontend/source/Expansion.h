@@ -1,8 +1,9 @@
 //===- Expansion.h - texts that the preprocessor made, and where they come from -===//
 //
-// The preprocessor makes one text of a file, its includes and its macros. The text consists of pieces; each of them knows
-// the range of a file that it was written at, and how it came from there: through `#include`, as part of the body of a
-// macro, or as its argument. These ways are a tree of `Expansion`s, with the file itself at the root.
+// The preprocessor makes one text of a file, its includes and its macros. The text consists of
+// pieces; each of them knows the range of a file that it was written at, and how it came from
+// there: through `#include`, as part of the body of a macro, or as its argument. These ways are a
+// tree of `Expansion`s, with the file itself at the root.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -30,7 +31,8 @@ struct Expansion {
   std::uint32_t writtenIn = 0; // Argument: the expansion in which the argument stands
 };
 
-/// A part of an expanded text, up to the beginning of the next one. The spaces at its end may be the preprocessor's.
+/// A part of an expanded text, up to the beginning of the next one. The spaces at its end may be
+/// the preprocessor's.
 struct Piece {
   std::uint32_t begin = 0;
   Origin origin;
@@ -46,7 +48,8 @@ struct ExpandedText {
 
 /// Where a range of an expanded text was written.
 struct WrittenRange {
-  /// In a file: the words themselves, the arguments that they came from, or the use of the macro that they came from.
+  /// In a file: the words themselves, the arguments that they came from, or the use of the macro
+  /// that they came from.
   SourceRange range;
   /// The bytes at `range` are those that were asked for.
   bool isVerbatim = true;
@@ -56,7 +59,8 @@ struct WrittenRange {
     std::string_view macro;
     SourceRange range;
   };
-  /// From the macro used at `range` to the one whose body holds the words; empty for what came from no macro.
+  /// From the macro used at `range` to the one whose body holds the words; empty for what came from
+  /// no macro.
   std::vector<MacroPlace> macros;
   /// The `#include`s that led to the file of `range`, the innermost first.
   std::vector<SourceRange> includes;

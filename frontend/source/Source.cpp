@@ -34,12 +34,15 @@ WrittenRange SourceManager::written(SourceRange range) const {
   return result;
 }
 
-void SourceManager::setLine(FileId file, std::uint32_t offset, std::uint32_t line, std::string name) {
+void SourceManager::setLine(FileId file, std::uint32_t offset, std::uint32_t line,
+                            std::string name) {
   assert(file != 0 && file <= files.size());
   std::vector<LineMark> &marks = files[file - 1].lineMarks;
-  const auto at = std::lower_bound(marks.begin(), marks.end(), offset,
-                                   [](const LineMark &mark, std::uint32_t o) { return mark.offset < o; });
-  if (at == marks.end() || at->offset != offset) // a file that is included twice says the same twice
+  const auto at =
+      std::lower_bound(marks.begin(), marks.end(), offset,
+                       [](const LineMark &mark, std::uint32_t o) { return mark.offset < o; });
+  if (at == marks.end() ||
+      at->offset != offset) // a file that is included twice says the same twice
     marks.insert(at, {offset, line, std::move(name)});
 }
 
@@ -138,8 +141,9 @@ LineColumn SourceManager::lineColumn(FileId file, std::uint32_t offset) const {
 ShownPlace SourceManager::shown(FileId file, std::uint32_t offset) const {
   const File &source = get(file);
   const LineColumn at = lineColumn(file, offset);
-  const auto next = std::upper_bound(source.lineMarks.begin(), source.lineMarks.end(), offset,
-                                     [](std::uint32_t o, const LineMark &mark) { return o < mark.offset; });
+  const auto next =
+      std::upper_bound(source.lineMarks.begin(), source.lineMarks.end(), offset,
+                       [](std::uint32_t o, const LineMark &mark) { return o < mark.offset; });
   if (next == source.lineMarks.begin())
     return {source.name, at};
   const LineMark &mark = *std::prev(next);

@@ -4,8 +4,9 @@
 // `SourceManager`. A position is a file and a byte offset; lines and columns are computed only when
 // a message is shown.
 //
-// What the preprocessor made of a file is a text as well (Expansion.h): all later stages read that one, and their positions
-// lie in it. Where the author wrote something is asked for when a message is shown: `written`.
+// What the preprocessor made of a file is a text as well (Expansion.h): all later stages read that
+// one, and their positions lie in it. Where the author wrote something is asked for when a message
+// is shown: `written`.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -74,8 +75,8 @@ public:
   /// Where a range of any text was written.
   WrittenRange written(SourceRange range) const;
 
-  /// From `offset`, where a line begins, the lines of a file are shown with the numbers from `line` on and as those of the
-  /// file `name`: `#line`.
+  /// From `offset`, where a line begins, the lines of a file are shown with the numbers from `line`
+  /// on and as those of the file `name`: `#line`.
   void setLine(FileId file, std::uint32_t offset, std::uint32_t line, std::string name);
 
   std::string_view name(FileId file) const;
@@ -98,8 +99,8 @@ private:
   struct File {
     std::string name;
     std::string text;
-    std::shared_ptr<const ExpandedText> expanded; // `text` is empty then
-    std::vector<LineMark> lineMarks;              // by offset
+    std::shared_ptr<const ExpandedText> expanded;  // `text` is empty then
+    std::vector<LineMark> lineMarks;               // by offset
     mutable std::vector<std::uint32_t> lineStarts; // filled at the first question
   };
   const File &get(FileId file) const;

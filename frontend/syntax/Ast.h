@@ -1,8 +1,8 @@
 //===- Ast.h - the syntax tree of an RTSL file ----------------------------===//
 //
-// What the author wrote, and nothing that was concluded from it: names are text, types are as spelled, parentheses
-// and comments above declarations are kept (the C++ printer shows them again). `sema` turns it into the typed tree of
-// sema/typed/TypedAst.h.
+// What the author wrote, and nothing that was concluded from it: names are text, types are as
+// spelled, parentheses and comments above declarations are kept (the C++ printer shows them again).
+// `sema` turns it into the typed tree of sema/typed/TypedAst.h.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -99,7 +99,16 @@ struct ParenExpr : ExprOf<ExprKind::Paren> {
   ExprPtr inner;
 };
 
-enum class UnaryOp { Plus, Minus, Not, BitNot, PreIncrement, PreDecrement, PostIncrement, PostDecrement };
+enum class UnaryOp {
+  Plus,
+  Minus,
+  Not,
+  BitNot,
+  PreIncrement,
+  PreDecrement,
+  PostIncrement,
+  PostDecrement
+};
 struct UnaryExpr : ExprOf<ExprKind::Unary> {
   UnaryOp op{};
   SourceRange opRange;
@@ -107,8 +116,25 @@ struct UnaryExpr : ExprOf<ExprKind::Unary> {
 };
 
 enum class BinaryOp {
-  Mul, Div, Mod, Add, Sub, Shl, Shr, Less, Greater, LessEqual, GreaterEqual, Equal, NotEqual,
-  BitAnd, BitXor, BitOr, LogicalAnd, LogicalXor, LogicalOr
+  Mul,
+  Div,
+  Mod,
+  Add,
+  Sub,
+  Shl,
+  Shr,
+  Less,
+  Greater,
+  LessEqual,
+  GreaterEqual,
+  Equal,
+  NotEqual,
+  BitAnd,
+  BitXor,
+  BitOr,
+  LogicalAnd,
+  LogicalXor,
+  LogicalOr
 };
 struct BinaryExpr : ExprOf<ExprKind::Binary> {
   BinaryOp op{};
@@ -130,8 +156,8 @@ struct CommaExpr : ExprOf<ExprKind::Comma> {
   ExprPtr left, right;
 };
 
-/// `callee(args)`, `receiver.callee(args)` or `Base::callee(args)`. The callee may turn out to be a type (`vec3(...)`,
-/// `Ray(...)`).
+/// `callee(args)`, `receiver.callee(args)` or `Base::callee(args)`. The callee may turn out to be a
+/// type (`vec3(...)`, `Ray(...)`).
 struct CallExpr : ExprOf<ExprKind::Call> {
   ExprPtr receiver; // null: a plain call
   Name base;        // whose definition is called; empty text: that of the object's own class
@@ -161,10 +187,11 @@ struct ErrorExpr : ExprOf<ExprKind::Error> {};
 // Declarations of variables
 //===----------------------------------------------------------------------===//
 
-enum class Access { None, Public, Private, Scratch };        // of members
-enum class Direction { In, Out, InOut };                      // of parameters
+enum class Access { None, Public, Private, Scratch }; // of members
+enum class Direction { In, Out, InOut };              // of parameters
 
-/// One declarator: a local, a member, a field of a struct or a parameter. `float a = 1, b[3];` gives two.
+/// One declarator: a local, a member, a field of a struct or a parameter. `float a = 1, b[3];`
+/// gives two.
 struct VariableDecl {
   std::string comment; // the comment directly above, with its markers; empty: none
   Access access = Access::None;
@@ -172,9 +199,9 @@ struct VariableDecl {
   bool isConst = false;
   SourceRange optionalRange;           // of `optional`, of a member; not valid: it is not there
   Direction direction = Direction::In; // parameters only
-  TypeName type;                       // dimensions behind the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
-  Name name;                           // empty text: an unnamed parameter
-  ExprPtr init;                        // null: none
+  TypeName type; // dimensions behind the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
+  Name name;     // empty text: an unnamed parameter
+  ExprPtr init;  // null: none
   SourceRange range;
 };
 
@@ -183,8 +210,20 @@ struct VariableDecl {
 //===----------------------------------------------------------------------===//
 
 enum class StmtKind {
-  Compound, Declaration, Expression, If, For, While, DoWhile, Switch, Case, Break, Continue, Return,
-  Illuminance, Empty
+  Compound,
+  Declaration,
+  Expression,
+  If,
+  For,
+  While,
+  DoWhile,
+  Switch,
+  Case,
+  Break,
+  Continue,
+  Return,
+  Illuminance,
+  Empty
 };
 
 struct Stmt {
@@ -217,7 +256,7 @@ struct IfStmt : StmtOf<StmtKind::If> {
   StmtPtr thenStmt, elseStmt; // else may be null
 };
 struct ForStmt : StmtOf<StmtKind::For> {
-  StmtPtr init; // declaration, expression or empty
+  StmtPtr init;            // declaration, expression or empty
   ExprPtr condition, step; // may be null
   StmtPtr body;
 };

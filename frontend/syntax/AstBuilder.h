@@ -1,9 +1,9 @@
 //===- AstBuilder.h - parse tree to syntax tree ---------------------------===//
 #pragma once
 
-#include "frontend/syntax/Ast.h"
 #include "frontend/diagnostics/Diagnostics.h"
 #include "frontend/lex/Token.h"
+#include "frontend/syntax/Ast.h"
 
 #include "grammar/RtslParser.h"
 

@@ -84,9 +84,10 @@ void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
       diagnostics
           .report(Code::classWithoutBase, SourceRange(range(context->CLASS())).to(range(names[0])),
                   text(range(names[0])))
-          .note(fmt::format("`class {0} : rt_Material;`, or `class {0} {{ ... }};` for a class that "
-                            "others refer to and the engine does not know",
-                            text(range(names[0]))));
+          .note(
+              fmt::format("`class {0} : rt_Material;`, or `class {0} {{ ... }};` for a class that "
+                          "others refer to and the engine does not know",
+                          text(range(names[0]))));
     return;
   }
   ClassDecl declared;

@@ -446,8 +446,7 @@ void Dumper::unit(const TranslationUnit &unit) {
   for (const ClassDecl &declared : unit.classes) {
     comment(declared.comment);
     line(fmt::format("class {}{}{}{}", declared.name.text, declared.base.text.empty() ? "" : " : ",
-                     declared.base.text,
-                     declared.fileForm ? " (to the end of the file)" : ""));
+                     declared.base.text, declared.fileForm ? " (to the end of the file)" : ""));
     const Indent inner(depth);
     for (const VariableDecl &member : declared.members)
       variable("member", member);

@@ -5,10 +5,10 @@
 //
 //===----------------------------------------------------------------------===//
 #include "frontend/syntax/Parser.h"
+#include "frontend/lex/Tokenizer.h"
 #include "frontend/syntax/AstBuilder.h"
 #include "frontend/syntax/SyntaxErrors.h"
 #include "frontend/syntax/TokenCheck.h"
-#include "frontend/lex/Tokenizer.h"
 
 #include "grammar/RtslParser.h"
 

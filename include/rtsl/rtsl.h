@@ -43,7 +43,8 @@ RtslObject rtslSceneAddObject(RtslScene *scene, const char *className);
 /* What rays can hit. */
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material);
 /* A mesh file (OBJ, PLY, glTF), moved by `transform`: 12 numbers, four columns of three, or null. */
-int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform, RtslObject material);
+int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,
+                         RtslObject material);
 /* Triangles: 3 floats a vertex, 3 indices a triangle. */
 int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t vertexCount,
                           const uint32_t *indices, size_t triangleCount, RtslObject material);
@@ -86,7 +87,8 @@ typedef struct RtslRenderFacts {
 RtslRenderFacts rtslLastRendering(void);
 
 /* Gives `take` each line that shaders (printed with --print) have printed since the last time, in the order of pixels. */
-int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context), void *context);
+int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context),
+                    void *context);
 
 #ifdef __cplusplus
 }

@@ -1,15 +1,15 @@
 //===- runtime.h - scenes and pictures of compiled shaders ----------------===//
 //
-// The whole C++ interface of the runtime library: rtsl::runtime::Scene, Mesh, render, writeImage and
-// what they throw. examples/cpp-api shows it at work.
+// The whole C++ interface of the runtime library: rtsl::runtime::Scene, Mesh, render, writeImage
+// and what they throw. examples/cpp-api shows it at work.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "rtsl/program.h"
-#include "support/Error.h"
-#include "runtime/image/Image.h"
 #include "runtime/geometry/Mesh.h"
+#include "runtime/image/Image.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/Renderer.h"
 #include "runtime/scene/Scene.h"
+#include "support/Error.h"

@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/scene/Scene.h"
 #include "runtime/device/ray/Abi.h"
+#include "runtime/scene/Scene.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 //===- TriangleBlock.h - eight triangles, tested at once ------------------===//
 //
 // What lies in a leaf of the host's tree. All eight are tested by the operations of
-// runtime/device/traverse/Triangle.h and moveIntoBox (runtime/device/traverse/Traverse.h), in the same order, and so
-// with the same bits. Where those take another course for numbers of unusual size, or near the
-// ray's origin, the triangle is tested by their own functions.
+// runtime/device/traverse/Triangle.h and moveIntoBox (runtime/device/traverse/Traverse.h), in the
+// same order, and so with the same bits. Where those take another course for numbers of unusual
+// size, or near the ray's origin, the triangle is tested by their own functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

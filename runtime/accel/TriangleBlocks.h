@@ -1,8 +1,8 @@
 //===- TriangleBlocks.h - the triangles of a scene in blocks --------------===//
 #pragma once
 
-#include "support/LargeArray.h"
 #include "runtime/accel/TriangleBlock.h"
+#include "support/LargeArray.h"
 
 #include <embree3/rtcore.h>
 

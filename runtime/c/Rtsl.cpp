@@ -63,8 +63,8 @@ runtime::Image render(const RtslScene *scene, const RtslRenderSettings *settings
   runtime::RenderStatistics statistics;
   lastRendering() = {};
   runtime::Image image = runtime::render(scene->scene, optionsOf(settings), &statistics);
-  lastRendering() = {statistics.samples, statistics.samplesNotFinite, statistics.pixelsWithoutSample, statistics.raysTooDeep,
-                     statistics.badRays};
+  lastRendering() = {statistics.samples, statistics.samplesNotFinite,
+                     statistics.pixelsWithoutSample, statistics.raysTooDeep, statistics.badRays};
   return image;
 }
 
@@ -72,7 +72,9 @@ runtime::Image render(const RtslScene *scene, const RtslRenderSettings *settings
 
 extern "C" {
 
-const char *rtslError(void) { return lastError().c_str(); }
+const char *rtslError(void) {
+  return lastError().c_str();
+}
 
 RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   return guarded<RtslScene *>(nullptr, [&] {
@@ -82,7 +84,9 @@ RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   });
 }
 
-void rtslSceneDestroy(RtslScene *scene) { delete scene; }
+void rtslSceneDestroy(RtslScene *scene) {
+  delete scene;
+}
 
 int rtslArgument(RtslScene *scene, const char *parameter, const double *numbers, size_t count) {
   return guarded(0, [&] {
@@ -131,7 +135,8 @@ int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject mat
   });
 }
 
-int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform, RtslObject material) {
+int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,
+                         RtslObject material) {
   return guarded(0, [&] {
     runtime::Mesh mesh = runtime::loadMesh(path);
     if (transform) {
@@ -207,10 +212,13 @@ int rtslSceneSetAmbient(RtslScene *scene, const float *color, size_t count) {
 
 RtslRenderSettings rtslRenderDefaults(void) {
   const runtime::RenderOptions defaults;
-  return {defaults.width, defaults.height, defaults.samplesPerPixel, defaults.maxDepth, defaults.seed, defaults.threads};
+  return {defaults.width,    defaults.height, defaults.samplesPerPixel,
+          defaults.maxDepth, defaults.seed,   defaults.threads};
 }
 
-uint32_t rtslSceneChannels(const RtslScene *scene) { return scene->scene.program().colorComponents; }
+uint32_t rtslSceneChannels(const RtslScene *scene) {
+  return scene->scene.program().colorComponents;
+}
 
 int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels) {
   return guarded(0, [&] {
@@ -228,9 +236,12 @@ int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings,
   });
 }
 
-RtslRenderFacts rtslLastRendering(void) { return lastRendering(); }
+RtslRenderFacts rtslLastRendering(void) {
+  return lastRendering();
+}
 
-int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context), void *context) {
+int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context),
+                    void *context) {
   return guarded(0, [&] {
     for (const std::string &line : runtime::takePrintLog().texts(scene->scene.program().prints))
       take(line.c_str(), context);

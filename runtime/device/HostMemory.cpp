@@ -1,8 +1,8 @@
 //===- HostMemory.cpp - memory functions for code that has no library -----===//
 //
 // Code generation calls these of its own accord. For machine code of the host in a package, which
-// refers to nothing outside; in a process that compiles, the C library's are used. The compiler knows
-// these names and does not make a loop a call of itself.
+// refers to nothing outside; in a process that compiles, the C library's are used. The compiler
+// knows these names and does not make a loop a call of itself.
 //
 //===----------------------------------------------------------------------===//
 #include <stddef.h>

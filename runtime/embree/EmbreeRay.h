@@ -6,11 +6,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/embree/EmbreeScene.h"
-#include "runtime/embree/LastOccluders.h"
 #include "runtime/accel/TriangleBlocks.h"
 #include "runtime/device/ray/Hit.h"
 #include "runtime/device/traverse/Traverse.h"
+#include "runtime/embree/EmbreeScene.h"
+#include "runtime/embree/LastOccluders.h"
 
 #include <embree3/rtcore.h>
 
@@ -31,8 +31,9 @@ struct EmbreeContext {
   const device::TriangleRay *ray;
   const EmbreeScene::Implementation *scene;
   const EmbreeVisitor *visitor; // null: what is found is tested, and committed if it wins
-  float toEmbree;         // a power of two that turns our t into Embree's
-  mutable std::uint32_t occluder; // of a ray for which any hit will do: the block in which one was found
+  float toEmbree;               // a power of two that turns our t into Embree's
+  // of a ray for which any hit will do: the block in which one was found
+  mutable std::uint32_t occluder;
 
   static constexpr std::uint32_t noBlock = ~0u;
 
@@ -62,7 +63,8 @@ struct EmbreeScene::Implementation {
   LargeArray<TriangleBlock> blocks;
   std::vector<EmbreePrimitive> primitives;
   void (*intersect)(RtslState *, RtslRef) = nullptr; // of any class
-  mutable std::vector<std::unique_ptr<EmbreeLevel>> levels; // by largestOrigin; the first one is built
+  // by largestOrigin; the first one is built
+  mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
   RTCError error = RTC_ERROR_NONE;
   std::string errorText;
 
@@ -72,13 +74,15 @@ struct EmbreeScene::Implementation {
 
   /// The tree for rays from there.
   RTCScene treeFor(const float *origin) const {
-    float size = __builtin_fabsf(origin[0]) + __builtin_fabsf(origin[1]) + __builtin_fabsf(origin[2]);
+    float size =
+        __builtin_fabsf(origin[0]) + __builtin_fabsf(origin[1]) + __builtin_fabsf(origin[2]);
     return size <= levels[0]->largestOrigin ? levels[0]->scene : treeForFar(size);
   }
   RTCScene treeForFar(float origin) const;
 
   /// Embree's ray of the state's. What a factor of 1 multiplies is copied.
-  static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree, float end) {
+  static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree,
+                   float end) {
     std::memcpy(&ray.org_x, state.RayOrigin, sizeof state.RayOrigin);
     if (fromEmbree == 1) {
       std::memcpy(&ray.dir_x, state.RayDirection, sizeof state.RayDirection);
@@ -87,8 +91,7 @@ struct EmbreeScene::Implementation {
       ray.dir_y = state.RayDirection[1] * fromEmbree;
       ray.dir_z = state.RayDirection[2] * fromEmbree;
     }
-    ray.tnear =
-        device::maximum(state.Epsilon * toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
+    ray.tnear = device::maximum(state.Epsilon * toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
     ray.tfar = end;
     ray.time = 0;
     ray.mask = ~0u;
@@ -112,7 +115,9 @@ struct EmbreeScene::Implementation {
     const RTCScene tree = treeFor(state.RayOrigin);
     if (anyHit) {
       LastOccluders &last = LastOccluders::towards(state.RayDirection);
-      const auto meets = [&](std::uint32_t block) { return testBlock(state, triangleRay, blocks[block], true); };
+      const auto meets = [&](std::uint32_t block) {
+        return testBlock(state, triangleRay, blocks[block], true);
+      };
       if (last.isMet(number, meets))
         return device::endSearch(state);
       context.occluder = EmbreeContext::noBlock;

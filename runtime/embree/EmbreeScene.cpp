@@ -30,8 +30,8 @@ const EmbreeContext &contextOf(const Arguments *arguments) {
 bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &item) {
   const EmbreeVisitor &visitor = *context.visitor;
   const bool isOver = visitor.visit(visitor.self, item);
-  ray.tfar = isOver ? -std::numeric_limits<float>::infinity()
-                    : context.end(visitor.limit(visitor.self));
+  ray.tfar =
+      isOver ? -std::numeric_limits<float>::infinity() : context.end(visitor.limit(visitor.self));
   return !isOver;
 }
 
@@ -85,9 +85,9 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
 // Boxes
 //===----------------------------------------------------------------------===//
 
-/// Embree computes distances to the sides of boxes as products of coordinates, and for a hit a ray may
-/// pass a box by what bvhSlack allows: together less than this share of the coordinates of both. See
-/// TravRay and intersectNode in kernels/bvh/node_intersector1.h of Embree 3.13.
+/// Embree computes distances to the sides of boxes as products of coordinates, and for a hit a ray
+/// may pass a box by what bvhSlack allows: together less than this share of the coordinates of
+/// both. See TravRay and intersectNode in kernels/bvh/node_intersector1.h of Embree 3.13.
 constexpr float boxShare = 32 * device::roundingUnit;
 /// Embree leaves out primitives whose boxes are larger.
 constexpr float largestSide = 1.8e18f;
@@ -143,14 +143,14 @@ void noteError(void *self, RTCError code, const char *text) {
 
 void check(const Implementation &implementation) {
   if (implementation.error == RTC_ERROR_OUT_OF_MEMORY)
-    throw Error(ErrorCode::OutOfMemory,
-                "not enough memory for the scene's acceleration structure");
+    throw Error(ErrorCode::OutOfMemory, "not enough memory for the scene's acceleration structure");
   if (implementation.error != RTC_ERROR_NONE)
     throw Error(ErrorCode::Internal, fmt::format("Embree fails: {}", implementation.errorText));
 }
 
 void attach(const Implementation &owner, EmbreeLevel &level, std::size_t count,
-            RTCBoundsFunction bounds, RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
+            RTCBoundsFunction bounds, RTCIntersectFunctionN intersect,
+            RTCOccludedFunctionN occluded) {
   if (count == 0)
     return;
   RTCGeometry geometry = rtcNewGeometry(owner.device, RTC_GEOMETRY_TYPE_USER);
@@ -175,8 +175,8 @@ void buildLevel(const Implementation &owner, EmbreeLevel &level) {
   check(owner);
 }
 
-/// Levels for origins up to 4 times what half of the things in the scene reach, then 64 times as far
-/// each. An infinite plane must not make all boxes large.
+/// Levels for origins up to 4 times what half of the things in the scene reach, then 64 times as
+/// far each. An infinite plane must not make all boxes large.
 void addLevels(Implementation &self) {
   std::vector<float> reaches;
   for (const TriangleBlock &block : self.blocks)
@@ -229,8 +229,8 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
     : self(std::make_unique<Implementation>()) {
   static std::atomic<std::uint64_t> scenes = 0;
   self->number = ++scenes;
-  // With AVX-512 Embree orders the children of a node by instructions whose results a single ray waits
-  // for: its code for AVX2 takes 0.92 to 0.98 of the time (Zen 5).
+  // With AVX-512 Embree orders the children of a node by instructions whose results a single ray
+  // waits for: its code for AVX2 takes 0.92 to 0.98 of the time (Zen 5).
   std::string config = "max_isa=avx2";
   if (threads)
     config += fmt::format(",threads={}", threads);

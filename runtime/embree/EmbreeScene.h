@@ -1,9 +1,9 @@
 //===- EmbreeScene.h - a scene in Embree, and rays through it -------------===//
 //
-// Embree finds the boxes that a ray meets; what is in them is tested by the same functions as in our
-// own tree, so that both find the same hits, to the bit. Embree's own triangles would not do: near
-// edges, between coincident triangles and for needles its test decides by roundings of its own. So
-// triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower. RTSL
+// Embree finds the boxes that a ray meets; what is in them is tested by the same functions as in
+// our own tree, so that both find the same hits, to the bit. Embree's own triangles would not do:
+// near edges, between coincident triangles and for needles its test decides by roundings of its
+// own. So triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower. RTSL
 // primitives are user geometry as well.
 //
 // Embree's boxes are compared with roundings that depend on how far the origin of a ray lies out.
@@ -17,9 +17,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/scene/Scene.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/traverse/Triangle.h"
+#include "runtime/scene/Scene.h"
 
 #include <cstdint>
 #include <memory>
@@ -51,7 +51,8 @@ public:
   std::uint32_t traverseEasy(RtslState &state, bool anyHit) const;
 
   /// Calls `visitor` for what the ray may hit. It must be one that it can follow.
-  void visit(const RtslState &state, const device::TriangleRay &ray, const EmbreeVisitor &visitor) const;
+  void visit(const RtslState &state, const device::TriangleRay &ray,
+             const EmbreeVisitor &visitor) const;
 
   struct Implementation;
 
@@ -92,10 +93,9 @@ struct EmbreeTree {
       Limit &limit;
       Visit &visit;
     } both{limit, visit};
-    EmbreeVisitor visitor{[](void *self, const RtslLeafItem &item) {
-                            return static_cast<Both *>(self)->visit(item);
-                          },
-                          [](void *self) { return static_cast<Both *>(self)->limit(); }, &both};
+    EmbreeVisitor visitor{
+        [](void *self, const RtslLeafItem &item) { return static_cast<Both *>(self)->visit(item); },
+        [](void *self) { return static_cast<Both *>(self)->limit(); }, &both};
     scene.visit(state, ray, visitor);
   }
 };

@@ -24,8 +24,8 @@ class HostScene : public ProgramHost {
 public:
   HostScene(const Scene &scene, bool useEmbree, unsigned threads);
 
-  /// The launch with our own tree. With Embree it is built when it is asked for, by a ray that Embree
-  /// cannot follow, say (EmbreeScene::canFollow).
+  /// The launch with our own tree. With Embree it is built when it is asked for, by a ray that
+  /// Embree cannot follow, say (EmbreeScene::canFollow).
   const RtslLaunch &deviceLaunch() const;
 
   /// Has somebody asked for it, or some ray needed it?

@@ -1,8 +1,8 @@
 //===- HostTraversal.cpp - rtsl_traverse on the host ----------------------===//
 #include "runtime/embree/HostScene.h"
 
-#include "runtime/embree/EmbreeRay.h"
 #include "runtime/device/traverse/AnyHit.h"
+#include "runtime/embree/EmbreeRay.h"
 
 namespace rtsl::runtime {
 
@@ -52,7 +52,8 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
 }
 
 /// Any ray: also those whose hits may be refused, and those for which some instances are not there.
-[[gnu::cold, gnu::noinline]] std::uint32_t HostScene::traverseAny(RtslState &state, std::uint32_t how) const {
+[[gnu::cold, gnu::noinline]] std::uint32_t HostScene::traverseAny(RtslState &state,
+                                                                  std::uint32_t how) const {
   if (!device::isGoodRay(state)) {
     ++rayCounters().badRays;
     return RTSL_BAD_RAY;

@@ -1,9 +1,9 @@
 //===- LastOccluders.h - what was in the way of shadow rays before --------===//
 //
 // Shadow rays of one sample and the next go to the same lights from places that lie together: what
-// was in the way of one is likely to be in the way of the other, and then one test does instead of a
-// search (Pearce and Jevans, "Exploiting shadow coherence in ray tracing", Graphics Interface 1991).
-// Whether there is a hit at all does not depend on where it was looked for first.
+// was in the way of one is likely to be in the way of the other, and then one test does instead of
+// a search (Pearce and Jevans, "Exploiting shadow coherence in ray tracing", Graphics Interface
+// 1991). Whether there is a hit at all does not depend on where it was looked for first.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -20,7 +20,8 @@ public:
   /// Of this thread, by the signs of the ray's direction: lights lie on different sides.
   static LastOccluders &towards(const float direction[3]) {
     static thread_local std::array<LastOccluders, 8> all;
-    return all[unsigned(direction[0] < 0) | unsigned(direction[1] < 0) << 1 | unsigned(direction[2] < 0) << 2];
+    return all[unsigned(direction[0] < 0) | unsigned(direction[1] < 0) << 1 |
+               unsigned(direction[2] < 0) << 2];
   }
 
   /// Does a ray meet one of them? `test` says it of a block of the scene with this number, which is

@@ -41,9 +41,9 @@ struct Mesh {
   void apply(const Transform &transform);
 };
 
-/// Reads an OBJ, PLY or glTF file (or whatever else the installed assimp reads). All meshes of the file
-/// become one; polygons are triangulated, points and lines left out. Throws Error: FileNotFound,
-/// FileUnreadable, UnsupportedFormat, BadMesh.
+/// Reads an OBJ, PLY or glTF file (or whatever else the installed assimp reads). All meshes of the
+/// file become one; polygons are triangulated, points and lines left out. Throws Error:
+/// FileNotFound, FileUnreadable, UnsupportedFormat, BadMesh.
 Mesh loadMesh(const std::string &path);
 
 /// Throws BadMesh if the mesh is empty, has a coordinate that is not finite, an index out of range,

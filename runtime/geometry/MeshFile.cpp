@@ -5,11 +5,11 @@
 // left: other formats, rare features, and whatever is damaged, which it describes.
 //
 //===----------------------------------------------------------------------===//
-#include "support/AtomicFile.h"
-#include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/AssimpFile.h"
+#include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 

@@ -112,7 +112,8 @@ void CudaDevice::open() {
                      version(driver), version(oldestDriver)));
   const int status = f.init(0);
   int count = 0;
-  if (status == NoDevice || (status == Success && (f.deviceGetCount(&count) != Success || count == 0)))
+  if (status == NoDevice ||
+      (status == Success && (f.deviceGetCount(&count) != Success || count == 0)))
     fail("there is a CUDA driver, but no device");
   check(status, "cuInit");
   check(f.deviceGet(&device, 0), "cuDeviceGet");
@@ -152,7 +153,8 @@ void CudaDevice::check(int status, const char *call) const {
   const char *text = nullptr;
   if (functions->getErrorString(status, &text) != Success || !text)
     text = "unknown error";
-  const std::string message = fmt::format("the GPU failed in {}: {} (status {})", call, text, status);
+  const std::string message =
+      fmt::format("the GPU failed in {}: {} (status {})", call, text, status);
   if (status == runtime::OutOfMemory)
     throw Error(ErrorCode::OutOfMemory, message);
   throw Error(ErrorCode::Internal, message);
@@ -169,8 +171,8 @@ CudaDevice::Address CudaDevice::allocate(std::size_t bytes, const char *what) {
   const int status = functions->memoryAllocate(&address, std::max<std::size_t>(bytes, 1));
   if (status == runtime::OutOfMemory)
     throw Error(ErrorCode::OutOfMemory,
-                fmt::format("not enough GPU memory for {}: {:.1f} MiB, of which {:.1f} are free", what,
-                            double(bytes) / (1 << 20), double(freeMemory()) / (1 << 20)));
+                fmt::format("not enough GPU memory for {}: {:.1f} MiB, of which {:.1f} are free",
+                            what, double(bytes) / (1 << 20), double(freeMemory()) / (1 << 20)));
   check(status, "cuMemAlloc");
   return address;
 }

@@ -36,7 +36,8 @@ public:
   void upload(Address to, const void *from, std::size_t bytes);
   void download(void *to, Address from, std::size_t bytes);
 
-  /// Compiles PTX for the device; one module at a time. `maxRegisters` 0: as many as the code wants.
+  /// Compiles PTX for the device; one module at a time. `maxRegisters` 0: as many as the code
+  /// wants.
   void load(const std::string &ptx, unsigned maxRegisters = 0);
 
   struct Kernel {

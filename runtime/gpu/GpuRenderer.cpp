@@ -1,7 +1,7 @@
 #include "runtime/gpu/GpuRenderer.h"
 
-#include "runtime/render/HostMegakernel.h"
 #include "runtime/gpu/CudaDriver.h"
+#include "runtime/render/HostMegakernel.h"
 
 #include <fmt/format.h>
 
@@ -17,8 +17,8 @@ using Clock = std::chrono::steady_clock;
 /// Four warps: few enough that the last lanes of a block do not hold many others up.
 constexpr unsigned threadsPerBlock = 128;
 
-/// Registers a thread, if nobody says otherwise. More lanes that run at once are worth more than what does not fit into
-/// these; docs/gpu.md has the figures.
+/// Registers a thread, if nobody says otherwise. More lanes that run at once are worth more than
+/// what does not fit into these; docs/gpu.md has the figures.
 constexpr unsigned defaultRegisters = 80;
 
 double secondsSince(Clock::time_point start) {
@@ -29,18 +29,19 @@ double secondsSince(Clock::time_point start) {
 /// none.
 unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel,
                     std::uint64_t pixels, std::uint64_t laneBytes) {
-  const std::uint64_t running =
-      std::uint64_t(device.blocksAtOnce(kernel, threadsPerBlock)) * unsigned(device.multiprocessors());
+  const std::uint64_t running = std::uint64_t(device.blocksAtOnce(kernel, threadsPerBlock)) *
+                                unsigned(device.multiprocessors());
   const std::uint64_t wanted = (pixels + threadsPerBlock - 1) / threadsPerBlock;
   // The driver takes memory of its own for each thread's local arrays when the kernel starts.
   const std::uint64_t affordable = device.freeMemory() / 10 * 8 / (threadsPerBlock * laneBytes);
   const std::uint64_t blocks = std::min({running, wanted, affordable});
   if (blocks == 0)
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("not enough GPU memory for rays in flight: {:.1f} MiB for {} of them, and "
-                            "{:.1f} are free",
-                            double(threadsPerBlock * laneBytes) / (1 << 20), threadsPerBlock,
-                            double(device.freeMemory()) / (1 << 20)));
+    throw Error(
+        ErrorCode::OutOfMemory,
+        fmt::format("not enough GPU memory for rays in flight: {:.1f} MiB for {} of them, and "
+                    "{:.1f} are free",
+                    double(threadsPerBlock * laneBytes) / (1 << 20), threadsPerBlock,
+                    double(device.freeMemory()) / (1 << 20)));
   return unsigned(blocks);
 }
 
@@ -80,9 +81,10 @@ Image renderOnGpu(const Package &package, const RenderOptions &options, unsigned
   job.samplesPerPixel = options.samplesPerPixel;
   gpu.laneBytes = job.laneBytes;
   gpu.threadsPerBlock = threadsPerBlock;
-  gpu.blocks = blockCount(device, kernel, std::uint64_t(options.width) * options.height, job.laneBytes);
-  job.lanes = reinterpret_cast<std::uint8_t *>(
-      device.allocate(std::uint64_t(gpu.blocks) * threadsPerBlock * job.laneBytes, "rays in flight"));
+  gpu.blocks =
+      blockCount(device, kernel, std::uint64_t(options.width) * options.height, job.laneBytes);
+  job.lanes = reinterpret_cast<std::uint8_t *>(device.allocate(
+      std::uint64_t(gpu.blocks) * threadsPerBlock * job.laneBytes, "rays in flight"));
   CudaDevice::Address jobAddress = device.allocate(sizeof job, "the launch");
   device.upload(jobAddress, &job, sizeof job);
 

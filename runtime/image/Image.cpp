@@ -1,8 +1,8 @@
 #include "runtime/image/Image.h"
 
-#include "support/AtomicFile.h"
 #include "language/ColorBasis.h"
 #include "runtime/image/ImageFormats.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 

@@ -20,8 +20,9 @@ NativeCode::NativeCode(const NativeImage &image)
   if (::mprotect(memory, size, PROT_READ | PROT_EXEC) != 0) {
     const int error = errno;
     ::munmap(memory, size);
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("the system refuses to run the package's code: {}", std::strerror(error)));
+    throw Error(
+        ErrorCode::NotSupported,
+        fmt::format("the system refuses to run the package's code: {}", std::strerror(error)));
   }
 }
 

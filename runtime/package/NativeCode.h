@@ -1,8 +1,8 @@
 //===- NativeCode.h - machine code of a package in this process -----------===//
 #pragma once
 
-#include "runtime/program/Program.h"
 #include "runtime/package/Package.h"
+#include "runtime/program/Program.h"
 
 namespace rtsl::runtime {
 

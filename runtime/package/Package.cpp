@@ -30,9 +30,9 @@ struct Header {
 static_assert(sizeof(Header) == 64);
 
 enum class SectionKind : std::uint32_t { Info = 1, Ptx, HostCode, Scene, Pointers, LaneBytes };
-constexpr SectionKind allKinds[] = {SectionKind::Info, SectionKind::Ptx, SectionKind::HostCode,
-                                    SectionKind::Scene, SectionKind::Pointers,
-                                    SectionKind::LaneBytes};
+constexpr SectionKind allKinds[] = {SectionKind::Info,     SectionKind::Ptx,
+                                    SectionKind::HostCode, SectionKind::Scene,
+                                    SectionKind::Pointers, SectionKind::LaneBytes};
 
 struct Section {
   std::uint32_t kind;
@@ -100,7 +100,8 @@ Info infoOf(const Package &package) {
 std::string serialize(const Package &package) {
   const Info info = infoOf(package);
   const std::string_view contents[] = {
-      bytesOf(&info, sizeof info), package.ptx,
+      bytesOf(&info, sizeof info),
+      package.ptx,
       bytesOf(package.host.bytes.data(), package.host.bytes.size()),
       bytesOf(package.scene.bytes.data(), package.scene.bytes.size()),
       bytesOf(package.scene.pointers.data(), package.scene.pointers.size() * 8),
@@ -153,9 +154,10 @@ public:
 private:
   template <typename... Arguments>
   [[noreturn]] void refuse(fmt::format_string<Arguments...> text, Arguments &&...arguments) const {
-    throw Error(ErrorCode::BadPackage,
-                fmt::format("`{}` {}", name, fmt::format(text, std::forward<Arguments>(arguments)...)),
-                Place{name});
+    throw Error(
+        ErrorCode::BadPackage,
+        fmt::format("`{}` {}", name, fmt::format(text, std::forward<Arguments>(arguments)...)),
+        Place{name});
   }
   [[noreturn]] void refuseDamaged() const { refuse("is damaged: pack the scene again"); }
 
@@ -169,7 +171,8 @@ private:
     std::memcpy(&header, file.data(), sizeof header);
     if (header.version != formatVersion)
       refuse("is a package of format {}, and this program reads format {}: {}", header.version,
-             formatVersion, header.version > formatVersion ? "use a newer rtsl-run" : "pack the scene again");
+             formatVersion,
+             header.version > formatVersion ? "use a newer rtsl-run" : "pack the scene again");
     if (file.size() < header.fileBytes)
       refuse("is truncated: it has {} bytes of {}", file.size(), header.fileBytes);
     if (file.size() > header.fileBytes)

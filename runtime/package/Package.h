@@ -1,7 +1,7 @@
 //===- Package.h - a scene and its compiled code in one file --------------===//
 //
-// What `rtslc pack` writes and `rtsl-run` renders: PTX for GPUs, machine code for CPUs, and the flat
-// scene. docs/packages.md describes the file.
+// What `rtslc pack` writes and `rtsl-run` renders: PTX for GPUs, machine code for CPUs, and the
+// flat scene. docs/packages.md describes the file.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -25,8 +25,8 @@ struct NativeImage {
 };
 
 struct Package {
-  std::string compiler; // "rtslc 0.1.0", at most 31 bytes
-  RenderOptions options; // the scene's own size, samples, depth and seed
+  std::string compiler;                         // "rtslc 0.1.0", at most 31 bytes
+  RenderOptions options;                        // the scene's own size, samples, depth and seed
   std::uint32_t stateCount = 0, frameBytes = 0; // of the largest frame
   /// What rtsl_lane_bytes of its code says, for each limit of depth from 0 on.
   std::array<std::uint32_t, maxRayDepth + 1> laneBytes{};

@@ -2,10 +2,10 @@
 //
 // A program that was compiled with checks calls rtsl_check_number for every number that a shader
 // computes or stores, with the number of its place in the source and what it was computed from. A
-// sample that is infinite or not a number is rendered again by such a program, again and again: each
-// time one more of the places that made a number not finite gives some finite number instead, the
-// latest first, until the sample is finite. The last of these places is the answer: without it, and
-// what came after, the sample would be all right.
+// sample that is infinite or not a number is rendered again by such a program, again and again:
+// each time one more of the places that made a number not finite gives some finite number instead,
+// the latest first, until the sample is finite. The last of these places is the answer: without it,
+// and what came after, the sample would be all right.
 //
 // Many numbers are rightly infinite, an inverse direction say. They come earlier than what spoils
 // the sample, or make no difference to it.

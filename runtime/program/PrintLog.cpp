@@ -54,10 +54,12 @@ std::string itemsText(const PrintFormat &format, const std::uint32_t *words) {
 }
 
 std::string lineText(const PrintedLine &line, const std::vector<PrintFormat> &formats) {
-  const std::string where = line.sample == PrintedLine::noSample
-                                ? "scene:"
-                                : fmt::format("pixel {},{} sample {}:", line.x, line.y, line.sample);
-  return where + (line.text.empty() ? itemsText(formats.at(line.format), line.words.data()) : line.text);
+  const std::string where =
+      line.sample == PrintedLine::noSample
+          ? "scene:"
+          : fmt::format("pixel {},{} sample {}:", line.x, line.y, line.sample);
+  return where +
+         (line.text.empty() ? itemsText(formats.at(line.format), line.words.data()) : line.text);
 }
 
 } // namespace

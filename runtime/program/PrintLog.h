@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "support/FirstFew.h"
 #include "runtime/program/Program.h"
+#include "support/FirstFew.h"
 
 #include <cstdint>
 #include <string>

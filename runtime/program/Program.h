@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "support/Error.h"
 #include "runtime/device/ray/Abi.h"
+#include "support/Error.h"
 
 #include <cstdint>
 #include <functional>
@@ -38,7 +38,7 @@ struct MemberInfo {
   ValueType type;
   std::uint32_t offset =
       0; // bytes from the start of the record (members) or of the packed arguments (parameters)
-  bool isPublic = false; // the scene may set it
+  bool isPublic = false;   // the scene may set it
   bool hasDefault = false; // of a reference: it may stay empty
 };
 
@@ -52,11 +52,12 @@ struct ClassInfo {
   bool hasConstructor = false;
   std::vector<MemberInfo> parameters; // of the constructor
   std::uint32_t parameterSize = 0;    // bytes of the packed arguments
-  std::vector<std::string> methods;   // defined or inherited; with a payload: `closestHit(Radiance)`
-  /// What its methods read of a hit (of a material: those that run at hits, and the lights), without
-  /// what they call on objects that they refer to.
+  std::vector<std::string> methods; // defined or inherited; with a payload: `closestHit(Radiance)`
+  /// What its methods read of a hit (of a material: those that run at hits, and the lights),
+  /// without what they call on objects that they refer to.
   std::uint32_t needs = RTSL_NEEDS_ALL;
-  std::uint32_t anyHit = 0; // of a material: rtslRayTypeBit of the payloads for which it has `anyHit`
+  std::uint32_t anyHit =
+      0; // of a material: rtslRayTypeBit of the payloads for which it has `anyHit`
   /// Writes member defaults into the record at `object`. Null: there are none.
   void (*initialize)(RtslState *state, RtslRef object) = nullptr;
   /// Runs the constructor on the record at `object`. Null: there is none.
@@ -86,10 +87,12 @@ struct SceneFacts {
   std::uint32_t referenceChain = ~0u;
 };
 
-/// Where a sample begins: with the camera's ray, or with `generate`. Either: with `generate` if the scene has a ray generation.
+/// Where a sample begins: with the camera's ray, or with `generate`. Either: with `generate` if the
+/// scene has a ray generation.
 enum class Engine : std::uint8_t { Classic, Programs, Either };
 
-/// Code that renders a flat scene and needs nobody else (device/Megakernel.h); null if there is none.
+/// Code that renders a flat scene and needs nobody else (device/Megakernel.h); null if there is
+/// none.
 struct MegakernelCode {
   std::uint64_t (*laneBytes)(std::uint32_t maxDepth, std::uint32_t referenceChain) = nullptr;
   void (*runLane)(const RtslJob *, std::uint32_t lane) = nullptr;
@@ -101,24 +104,28 @@ struct Program {
   std::vector<ClassInfo> classes;
   std::uint32_t colorComponents = 3;
 
-  /// Entries of Slots.def and SamplingSlots.def; a slot that no class of the scene fills may be null.
+  /// Entries of Slots.def and SamplingSlots.def; a slot that no class of the scene fills may be
+  /// null.
   struct Slots {
 #define RTSL_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
 #include "language/Slots.def"
-#define RTSL_PAYLOAD_SLOT(base, method) void (*base##_##method##_payload)(RtslState *, RtslRef) = nullptr;
+#define RTSL_PAYLOAD_SLOT(base, method)                                                            \
+  void (*base##_##method##_payload)(RtslState *, RtslRef) = nullptr;
 #include "language/PayloadSlots.def"
 #define RTSL_SAMPLING_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
 #include "language/SamplingSlots.def"
 
-    /// Of shaders in C++ that were split at their traces: what the machine asks for (runtime/device/engines/Machine.h).
-    /// Without `run` traces are calls.
+    /// Of shaders in C++ that were split at their traces: what the machine asks for
+    /// (runtime/device/engines/Machine.h). Without `run` traces are calls.
     struct States {
       std::int32_t (*run)(RtslState *, std::int32_t number, RtslRef object, void *frame) = nullptr;
-      std::int32_t frameSize = 0;                  // bytes of the largest frame of a method that the runtime starts
-      std::uint32_t calledMethods = 0;             // that are called through references, on frames of their own,
-      std::uint32_t calledFrameSize = 0;           // bytes of the largest of these, a multiple of 8
+      std::int32_t frameSize = 0; // bytes of the largest frame of a method that the runtime starts
+      std::uint32_t calledMethods =
+          0; // that are called through references, on frames of their own,
+      std::uint32_t calledFrameSize = 0; // bytes of the largest of these, a multiple of 8
       // The states in which methods begin; 0: there is none.
-      std::int32_t shadeFirst = 0, missFirst = 0, closestHitFirst = 0, missWithPayloadFirst = 0, generateFirst = 0;
+      std::int32_t shadeFirst = 0, missFirst = 0, closestHitFirst = 0, missWithPayloadFirst = 0,
+                   generateFirst = 0;
     } states;
 
     std::uint32_t features = 0; // of shaders in C++: what rtsl_features says, RTSL_FEATURE_*

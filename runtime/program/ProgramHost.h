@@ -5,12 +5,14 @@
 
 namespace rtsl::runtime {
 
-/// RtslLaunch::host leads to one when the program calls its methods through its slots; the host's own things may follow.
+/// RtslLaunch::host leads to one when the program calls its methods through its slots; the host's
+/// own things may follow.
 struct ProgramHost {
   Program::Slots slots;
 };
 
-/// The slots, for device code that calls methods: where no class of the scene has one, nothing happens.
+/// The slots, for device code that calls methods: where no class of the scene has one, nothing
+/// happens.
 struct FilledSlots {
   const Program::Slots &slots;
 #define RTSL_SLOT(base, method)                                                                    \

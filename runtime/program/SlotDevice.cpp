@@ -19,7 +19,9 @@ namespace {
 const rtsl::runtime::Program::Slots &slotsOf(const RtslLaunch *launch) {
   return static_cast<const rtsl::runtime::ProgramHost *>(launch->host)->slots;
 }
-const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) { return slotsOf(state->launch); }
+const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) {
+  return slotsOf(state->launch);
+}
 
 /// What stands where the frame of a method begins that was called.
 struct CallHeader {
@@ -27,15 +29,18 @@ struct CallHeader {
   RtslRef object; // the caller's
   uint32_t below; // bytes from the beginning of the caller's frame
 };
-static_assert(offsetof(CallHeader, resume) == RTSL_CALL_RESUME && offsetof(CallHeader, object) == RTSL_CALL_OBJECT &&
-              offsetof(CallHeader, below) == RTSL_CALL_BELOW && sizeof(CallHeader) <= RTSL_CALL_HEADER);
+static_assert(offsetof(CallHeader, resume) == RTSL_CALL_RESUME &&
+              offsetof(CallHeader, object) == RTSL_CALL_OBJECT &&
+              offsetof(CallHeader, below) == RTSL_CALL_BELOW &&
+              sizeof(CallHeader) <= RTSL_CALL_HEADER);
 
-/// Bytes of all frames of a level. Calls that lead round in a circle go down a chain of references, so each method may be
-/// there once for each object of the longest.
+/// Bytes of all frames of a level. Calls that lead round in a circle go down a chain of references,
+/// so each method may be there once for each object of the longest.
 uint64_t frameBytes(const RtslLaunch *launch) {
   const auto &states = slotsOf(launch).states;
   const uint64_t own = (uint64_t(states.frameSize) + 7) / 8 * 8;
-  return own + (uint64_t(launch->referenceChain) + 1) * states.calledMethods * states.calledFrameSize;
+  return own +
+         (uint64_t(launch->referenceChain) + 1) * states.calledMethods * states.calledFrameSize;
 }
 
 } // namespace
@@ -55,7 +60,8 @@ extern "C" {
 #include "language/Slots.def"
 
 uint32_t rtsl_features(RtslState *state) {
-  return state->launch->host ? slotsOf(state).features : 0; // while a scene is built there is no host
+  return state->launch->host ? slotsOf(state).features
+                             : 0; // while a scene is built there is no host
 }
 
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {
@@ -87,7 +93,8 @@ int32_t rtsl_rt_Material_shade_first(RtslState *state) {
 int32_t rtsl_rt_Miss_miss_first(RtslState *state) {
   return slotsOf(state).states.missFirst;
 }
-// A shader in C++ may send rays that others answer, and so on: one kind of ray, which sends its like.
+// A shader in C++ may send rays that others answer, and so on: one kind of ray, which sends its
+// like.
 int32_t rtsl_ray_kinds(RtslState *) {
   return 1;
 }
@@ -119,11 +126,13 @@ int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state) {
 void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
   if (!slotsOf(launch).states.run)
-    return launch->rayGeneration ? rtsl_generate(launch, x, y, sample, color) : rtsl_sample(launch, x, y, sample, color);
+    return launch->rayGeneration ? rtsl_generate(launch, x, y, sample, color)
+                                 : rtsl_sample(launch, x, y, sample, color);
   const uint64_t levels = uint64_t(launch->maxDepth) + (launch->rayGeneration ? 2 : 1);
   RtslState none;
   none.launch = launch;
-  void *stack = rtsl_machine_stack(levels * device::levelSize(frameBytes(launch), device::keptWords(&none)));
+  void *stack =
+      rtsl_machine_stack(levels * device::levelSize(frameBytes(launch), device::keptWords(&none)));
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);
   else

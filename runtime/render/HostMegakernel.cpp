@@ -30,7 +30,8 @@ using Memory = std::unique_ptr<std::uint8_t, Free>;
 Memory allocate(std::uint64_t bytes, const char *what) {
   Memory memory(static_cast<std::uint8_t *>(std::aligned_alloc(cacheLine, inLines(bytes))));
   if (!memory)
-    throw Error(ErrorCode::OutOfMemory, fmt::format("not enough memory for {}: {} bytes", what, bytes));
+    throw Error(ErrorCode::OutOfMemory,
+                fmt::format("not enough memory for {}: {} bytes", what, bytes));
   return memory;
 }
 

@@ -1,7 +1,7 @@
 #include "runtime/render/Renderer.h"
 
-#include "support/FirstFew.h"
 #include "runtime/embree/HostScene.h"
+#include "support/FirstFew.h"
 #include "support/WorkerThreads.h"
 
 #include <algorithm>
@@ -82,10 +82,10 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
                                              threadCount(options));
     if (options.traversal == Traversal::Device)
       self->launch = self->host->deviceLaunch();
-    self->image = newImage(options.width, options.height, program.colorComponents); // while little was done
+    self->image =
+        newImage(options.width, options.height, program.colorComponents); // while little was done
   } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory,
-                "not enough memory for the scene's acceleration structure");
+    throw Error(ErrorCode::OutOfMemory, "not enough memory for the scene's acceleration structure");
   }
   self->launch.host = self->host.get();
   self->launch.width = options.width;
@@ -102,8 +102,8 @@ const RtslLaunch &Renderer::launch() const {
 }
 
 /// Sums of a pixel are taken in the order of its samples, whoever takes them. A sample that is not
-/// finite is left out of the mean, for it would take the whole pixel with it. A number of components
-/// that is a constant makes no loops of them.
+/// finite is left out of the mean, for it would take the whole pixel with it. A number of
+/// components that is a constant makes no loops of them.
 template <typename Count>
 void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Count components) {
   auto sample = scene.program().sample;

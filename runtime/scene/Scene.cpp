@@ -1,9 +1,9 @@
 #include "runtime/scene/Scene.h"
 
-#include "support/ErrorCollector.h"
-#include "runtime/scene/ValueStore.h"
 #include "runtime/device/ray/Random.h"
+#include "runtime/scene/ValueStore.h"
 #include "support/ClosestName.h"
+#include "support/ErrorCollector.h"
 
 #include <fmt/format.h>
 
@@ -172,8 +172,8 @@ struct Scene::Implementation {
   std::vector<RtslRef> reachedFrom(std::vector<RtslRef> objects) const;
   /// RtslInstance::needs of whatever has this material: what it reads, and the objects behind it.
   std::uint32_t needsAt(RtslRef material) const;
-  /// Counts the references that lead on from an object that is complete. Those that it refers to were
-  /// made before it.
+  /// Counts the references that lead on from an object that is complete. Those that it refers to
+  /// were made before it.
   void measureChain(const ObjectInfo &object);
   bool isClassic() const { return program->engine == Engine::Classic; }
   void dropMeshAttributes();
@@ -539,8 +539,17 @@ std::uint32_t Scene::Implementation::addInstance(RtslRef primitive, std::uint32_
   requireRole(material, "rt_Material", ifClassic("shade"));
   if (primitiveTotal + primitives > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
-  instances.push_back({primitive, material, mesh, std::uint32_t(primitiveTotal), needsAt(material),
-                       mask, info(material).classInfo->anyHit, {}, {}, {}, {}});
+  instances.push_back({primitive,
+                       material,
+                       mesh,
+                       std::uint32_t(primitiveTotal),
+                       needsAt(material),
+                       mask,
+                       info(material).classInfo->anyHit,
+                       {},
+                       {},
+                       {},
+                       {}});
   primitiveTotal += primitives;
   instanceNames.push_back(std::move(name));
   return std::uint32_t(instances.size() - 1);

@@ -99,7 +99,8 @@ public:
   const std::vector<Warning> &warnings() const;
 
   /// The launch that describes this scene, with width, height, seed, depth and the traversal left
-  /// at 0. It stays valid until the scene changes. Throws IncompleteScene if there is no camera, or ray generation.
+  /// at 0. It stays valid until the scene changes. Throws IncompleteScene if there is no camera, or
+  /// ray generation.
   RtslLaunch launch() const;
 
   /// Bytes of all records, from RtslLaunch::records.

@@ -1,8 +1,8 @@
 //===- Value.h - what a scene gives to a member or a parameter ------------===//
 #pragma once
 
-#include "support/Error.h"
 #include "runtime/device/ray/Abi.h"
+#include "support/Error.h"
 
 #include <initializer_list>
 #include <optional>

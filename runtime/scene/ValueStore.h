@@ -19,8 +19,9 @@ struct StoreContext {
   std::function<const std::string *(RtslRef object, const std::string &className)> classMismatch;
 };
 
-/// The components of a color from as many numbers, from red, green and blue (language/ColorBasis.h),
-/// or from one number for all. Empty if there is another number of numbers.
+/// The components of a color from as many numbers, from red, green and blue
+/// (language/ColorBasis.h), or from one number for all. Empty if there is another number of
+/// numbers.
 std::vector<float> colorFromNumbers(const std::vector<float> &numbers, std::uint32_t components);
 
 /// Writes `value` as a `type` to `to`. `what` names the member or parameter in messages ("member

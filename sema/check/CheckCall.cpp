@@ -222,7 +222,8 @@ int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature
   if (std::any_of(argTypes.begin(), argTypes.end(),
                   [](const Type *type) { return type->is(TypeKind::Color); }) &&
       places.empty())
-    diagnostic.note(fmt::format("of the built-in functions, a color has `{}`", fmt::join(colorFunctionNames(), "`, `")));
+    diagnostic.note(fmt::format("of the built-in functions, a color has `{}`",
+                                fmt::join(colorFunctionNames(), "`, `")));
   return -1;
 }
 
@@ -309,7 +310,8 @@ bool FunctionChecker::requireSameMethod(const typed::Function &callee, SourceRan
   const bool isSame = function && function->name == callee.name &&
                       (callee.isConstructor || sameParameters(callee, *function));
   if (!isSame)
-    diagnostics.report(Code::baseMethodElsewhere, range, callee.owner->name, callee.name, callee.name)
+    diagnostics
+        .report(Code::baseMethodElsewhere, range, callee.owner->name, callee.name, callee.name)
         .label(callee.range, "defined here")
         .note(callee.isConstructor ? "the constructor runs once, when the scene makes the object"
                                    : "put what both need into a function of its own");

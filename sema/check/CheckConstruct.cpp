@@ -1,6 +1,6 @@
 //===- CheckConstruct.cpp - constructors and initialisers -----------------===//
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/FunctionChecker.h"
+#include "sema/fold/ConstantFold.h"
 
 namespace rtsl {
 

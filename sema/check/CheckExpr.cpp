@@ -1,6 +1,6 @@
 //===- CheckExpr.cpp - expressions: the common part, literals, conversions ===//
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/FunctionChecker.h"
+#include "sema/fold/ConstantFold.h"
 
 #include <charconv>
 #include <cmath>

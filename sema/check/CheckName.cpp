@@ -1,7 +1,7 @@
 //===- CheckName.cpp - names, fields, swizzles and indices ----------------===//
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/FunctionChecker.h"
 #include "sema/check/Suggest.h"
+#include "sema/fold/ConstantFold.h"
 
 #include <algorithm>
 
@@ -51,16 +51,16 @@ bool FunctionChecker::recordSpecial(Ability ability, const std::string &what, So
   use.what = what;
   use.range = range;
   use.member = member;
-  if (facts &&
-      (ability == Ability::Trace ||
-       (ability == Ability::Illuminance && (what == "illuminance" || what == "illuminate"))))
+  if (facts && (ability == Ability::Trace || (ability == Ability::Illuminance &&
+                                              (what == "illuminance" || what == "illuminate"))))
     facts->traces = true;
   return record(std::move(use));
 }
 
 std::string FunctionChecker::whyNotHere(const std::string &name) const {
   typed::StateVariable variable;
-  const bool isState = name.compare(0, 3, "rt_") == 0 && findStateVariable(name.substr(3), variable);
+  const bool isState =
+      name.compare(0, 3, "rt_") == 0 && findStateVariable(name.substr(3), variable);
   const std::optional<Ability> ability = abilityNeeded(name.substr(0, name.find('(')));
   if (!isState && !ability)
     return {};
@@ -71,16 +71,14 @@ std::string FunctionChecker::whyNotHere(const std::string &name) const {
   const MethodModel allowed = rules ? *rules : unionOfMethods(*scope->root);
   if (isState && !allowed.reads.has(variable))
     return "`" + name + "`, which may be meant, " +
-           (scope->root->sees.has(variable)
-                ? "has no value in `" + allowed.name + "`"
-                : "belongs to " + classesThatSee(variable));
+           (scope->root->sees.has(variable) ? "has no value in `" + allowed.name + "`"
+                                            : "belongs to " + classesThatSee(variable));
   if (ability && !allowed.abilities.has(*ability))
     return "`" + name + "`, which may be meant, stands in " + methodsWith(*ability);
   return {};
 }
 
-std::vector<std::string>
-FunctionChecker::whatMayStandHere(std::vector<std::string> names) const {
+std::vector<std::string> FunctionChecker::whatMayStandHere(std::vector<std::string> names) const {
   const auto isMisplaced = [this](const std::string &name) { return !whyNotHere(name).empty(); };
   names.erase(std::remove_if(names.begin(), names.end(), isMisplaced), names.end());
   return names;
@@ -428,8 +426,8 @@ bool FunctionChecker::requireTarget(const ast::Expr &source, const typed::Expr &
       break;
   }
   const bool isStored = at->kind == typed::ExprKind::Variable ||
-                        at->kind == typed::ExprKind::Member ||
-                        at->kind == typed::ExprKind::State || at->type->isError();
+                        at->kind == typed::ExprKind::Member || at->kind == typed::ExprKind::State ||
+                        at->type->isError();
   if (!namesAPlace(source) || !isStored) {
     diagnostics.report(Code::notATarget, target.range, action);
     return false;

@@ -1,6 +1,6 @@
 //===- CheckOperators.cpp - operators and assignment ----------------------===//
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/FunctionChecker.h"
+#include "sema/fold/ConstantFold.h"
 #include "sema/typed/TypeProperties.h"
 
 #include <algorithm>

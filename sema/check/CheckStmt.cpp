@@ -1,6 +1,6 @@
 //===- CheckStmt.cpp - statements -----------------------------------------===//
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/FunctionChecker.h"
+#include "sema/fold/ConstantFold.h"
 #include "sema/typed/TypeProperties.h"
 
 #include <unordered_map>

@@ -1,7 +1,7 @@
 //===- CheckType.cpp - types as the author spells them --------------------===//
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/FunctionChecker.h"
 #include "sema/check/Suggest.h"
+#include "sema/fold/ConstantFold.h"
 #include "sema/typed/TypeProperties.h"
 
 #include <algorithm>

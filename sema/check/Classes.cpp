@@ -133,15 +133,17 @@ std::vector<ClassScope *> Program::classesBaseFirst() {
   return order;
 }
 
-/// Refuses the first class of a chain that has too many bases. What derives from it is as wrong, and says nothing.
+/// Refuses the first class of a chain that has too many bases. What derives from it is as wrong,
+/// and says nothing.
 void Program::limitInheritance() {
   std::unordered_map<const ClassScope *, unsigned> basesOf;
   for (const ClassScope *scope : baseFirst) {
     const unsigned bases = scope->base ? basesOf[scope->base] + 1 : 0;
     basesOf[scope] = bases;
     if (bases == maxInheritanceDepth + 1)
-      diagnostics.report(Code::inheritanceTooDeep, scope->declaration->name.range, scope->definition->name,
-                         maxInheritanceDepth)
+      diagnostics
+          .report(Code::inheritanceTooDeep, scope->declaration->name.range, scope->definition->name,
+                  maxInheritanceDepth)
           .label(scope->declaration->base.range, "this base has as many as there may be");
   }
 }
@@ -245,10 +247,11 @@ void Program::checkMemberQualifiers(const ClassScope &scope, const ast::Variable
     const Type *element = type;
     while (element->is(TypeKind::Array) || element->is(TypeKind::Buffer))
       element = element->element;
-    const char *reason = !element->is(TypeKind::Class) ? "only references are"
-                         : declaration.access != ast::Access::Public
-                             ? "only what the scene sets is; a `private` reference may be empty in any case"
-                             : nullptr;
+    const char *reason =
+        !element->is(TypeKind::Class) ? "only references are"
+        : declaration.access != ast::Access::Public
+            ? "only what the scene sets is; a `private` reference may be empty in any case"
+            : nullptr;
     if (reason)
       diagnostics.report(Code::misplacedOptional, declaration.optionalRange, name, reason);
   }

@@ -10,9 +10,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "sema/model/Conversion.h"
 #include "sema/check/Program.h"
 #include "sema/check/Scope.h"
+#include "sema/model/Conversion.h"
 
 #include <unordered_set>
 
@@ -148,16 +148,15 @@ private:
   typed::ExprPtr checkTracePayload(const ast::CallExpr &expr);
   typed::ExprPtr checkPrint(const ast::CallExpr &expr);
   void reportUnknownFunction(const ast::Name &callee, SourceRange call);
-  /// What candidates with `count` parameters do with argument `index`: written, if all of them write
-  /// it; else it is read until one has been chosen.
+  /// What candidates with `count` parameters do with argument `index`: written, if all of them
+  /// write it; else it is read until one has been chosen.
   static Access accessOf(const std::vector<Signature> &candidates, std::size_t count,
                          std::size_t index);
   std::vector<typed::ExprPtr> checkArguments(const std::vector<ast::ExprPtr> &args,
                                              const std::vector<Signature> &candidates);
   /// Checks those arguments again, as targets, that the chosen candidate writes and others read.
-  void checkWritten(const std::vector<ast::ExprPtr> &args,
-                    const std::vector<Signature> &candidates, int chosen,
-                    std::vector<typed::ExprPtr> &values);
+  void checkWritten(const std::vector<ast::ExprPtr> &args, const std::vector<Signature> &candidates,
+                    int chosen, std::vector<typed::ExprPtr> &values);
   /// The chosen candidate, or -1 after a report (silent if an argument is broken).
   int choose(const ast::Name &callee, const std::vector<Signature> &candidates,
              const std::vector<typed::ExprPtr> &args, const std::vector<SourceRange> &places,

@@ -153,13 +153,14 @@ void Program::checkTableMethod(const ClassScope &scope, const ast::FunctionDecl 
   }
   if (fits)
     return;
-  Diagnostic &diagnostic = diagnostics.report(
-      Code::badMethodSignature, function.range, function.name,
-      function.isConstructor ? "every class" : withArticle(scope.root->name));
+  Diagnostic &diagnostic =
+      diagnostics.report(Code::badMethodSignature, function.range, function.name,
+                         function.isConstructor ? "every class" : withArticle(scope.root->name));
   diagnostic.note("expected " + expected);
   if (function.name == "anyHit" && parameters.empty())
-    diagnostic.note("shadow rays of `illuminance` carry no payload, and no material answers them: "
-                    "light a point by `illuminate(i, P, false)`, and trace a payload towards the light");
+    diagnostic.note(
+        "shadow rays of `illuminance` carry no payload, and no material answers them: "
+        "light a point by `illuminate(i, P, false)`, and trace a payload towards the light");
 }
 
 /// A function that overrides one of a base looks the same from outside.

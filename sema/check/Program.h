@@ -7,9 +7,9 @@
 #pragma once
 
 #include "frontend/diagnostics/Diagnostics.h"
+#include "sema/check/ImportResolver.h"
 #include "sema/model/Builtins.h"
 #include "sema/model/ClassModel.h"
-#include "sema/check/ImportResolver.h"
 
 #include <string>
 #include <unordered_map>
@@ -24,7 +24,8 @@ constexpr unsigned maxRecursion = 1000;
 /// Depth of an expression tree. Chains of binary operators lean to the left and are walked without
 /// recursion, but everything behind the checker may recurse over what it made.
 constexpr unsigned maxTreeDepth = 2000;
-/// Bases of a class, their own bases included. A class has all their functions, and each is lowered again for each class.
+/// Bases of a class, their own bases included. A class has all their functions, and each is lowered
+/// again for each class.
 constexpr unsigned maxInheritanceDepth = 256;
 
 /// A place in a function where something stands that not every method may do.
@@ -49,8 +50,8 @@ struct CallEdge {
 };
 
 struct FunctionFacts {
-  std::vector<Use>
-      uses; // that calls decide about; those of methods of the table were judged at once
+  // that calls decide about; those of methods of the table were judged at once
+  std::vector<Use> uses;
   std::vector<CallEdge> calls;
   bool traces = false; // trace or illuminance stand in it
 };

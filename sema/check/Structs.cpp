@@ -1,6 +1,6 @@
 //===- Structs.cpp - structs and constants at file level ------------------===//
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/FunctionChecker.h"
+#include "sema/fold/ConstantFold.h"
 #include "sema/typed/TypeProperties.h"
 
 namespace rtsl {

@@ -1,8 +1,9 @@
 //===- CallGraph.cpp - what follows from who calls whom -------------------===//
 //
 // Functions must not call themselves, but on objects that members refer to: objects do not refer to
-// each other in a circle, so that ends, and the scene says how deep it goes. A function may trace if something that it calls does, and a helper may use what the methods
-// that lead to it may use. All walks are loops: chains of calls may be long.
+// each other in a circle, so that ends, and the scene says how deep it goes. A function may trace
+// if something that it calls does, and a helper may use what the methods that lead to it may use.
+// All walks are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/check/Program.h"
@@ -22,26 +23,30 @@ static std::string inMethod(const MethodModel &method) {
 }
 
 /// Why a variable that the class sees has no value in this method, and what has one.
-static void explainNoValue(Diagnostic &diagnostic, typed::StateVariable variable, const RootModel &root,
-                           const MethodModel &method) {
+static void explainNoValue(Diagnostic &diagnostic, typed::StateVariable variable,
+                           const RootModel &root, const MethodModel &method) {
   using S = typed::StateVariable;
   if (method.name == "constructor") {
     diagnostic.note("the constructor runs when the scene is built: there is no ray yet");
   } else if (method.name == "computeBounds") {
-    diagnostic.note("`computeBounds` runs when the acceleration structure is built: there is no ray yet");
+    diagnostic.note(
+        "`computeBounds` runs when the acceleration structure is built: there is no ray yet");
   } else if (method.name == "generateRay") {
-    diagnostic.note("`generateRay` makes the ray; use `1.0 / direction` of the direction that it writes");
+    diagnostic.note(
+        "`generateRay` makes the ray; use `1.0 / direction` of the direction that it writes");
   } else if (variable == S::HitPoint) {
-    diagnostic.note("nothing has been hit yet; the point at parameter `t` is `rt_RayOrigin + t * rt_RayDirection`");
+    diagnostic.note("nothing has been hit yet; the point at parameter `t` is `rt_RayOrigin + t * "
+                    "rt_RayDirection`");
   } else if (variable == S::PDF) {
-    diagnostic.note("`rt_PDF` is what `generateSample` and `samplePDF` write; no point has been sampled here");
+    diagnostic.note(
+        "`rt_PDF` is what `generateSample` and `samplePDF` write; no point has been sampled here");
   } else if (variable == S::SampleColor) {
     diagnostic.note("no ray of the classic engine is under way here");
   } else {
     for (const MethodModel &other : root.methods)
       if (other.name != "generateSample" && other.writes.has(variable))
-        diagnostic.note("`" + other.name + "` writes it for the hit that won, later than `" + method.name +
-                        "`; a function that both call can compute it for both");
+        diagnostic.note("`" + other.name + "` writes it for the hit that won, later than `" +
+                        method.name + "`; a function that both call can compute it for both");
   }
 }
 

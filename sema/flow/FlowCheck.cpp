@@ -6,9 +6,9 @@
 // been written, for the walk does not come back.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Casting.h"
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/Program.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/typed/Casting.h"
 #include "sema/typed/Walk.h"
 
 #include <unordered_set>

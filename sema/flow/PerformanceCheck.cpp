@@ -4,9 +4,9 @@
 // replace. How much is saved over a `trace` shows only after splitting; codegen/driver says that.
 //
 //===----------------------------------------------------------------------===//
-#include "sema/typed/Casting.h"
-#include "sema/fold/ConstantFold.h"
 #include "sema/check/Program.h"
+#include "sema/fold/ConstantFold.h"
+#include "sema/typed/Casting.h"
 #include "sema/typed/TypeProperties.h"
 #include "sema/typed/Walk.h"
 
@@ -185,8 +185,7 @@ private:
       if (isLast)
         visitLast(*expression->expr);
     } else {
-      forEachChild(
-          stmt, [this](const Stmt &child) { visit(child, false); }, [](const Expr &) {});
+      forEachChild(stmt, [this](const Stmt &child) { visit(child, false); }, [](const Expr &) {});
     }
   }
 

@@ -200,8 +200,9 @@ static bool isLinearAlgebra(BinaryOp op, const Type *left, const Type *right) {
                                  (left->isVector() && right->isMatrix()));
 }
 
-/// Colors fold only where the result does not depend on how many components the target gives them, to the last bit: grey
-/// with grey or with a number. The components of another color are rounded after the conversion.
+/// Colors fold only where the result does not depend on how many components the target gives them,
+/// to the last bit: grey with grey or with a number. The components of another color are rounded
+/// after the conversion.
 static std::optional<Constant> foldColor(BinaryOp op, const Constant &left, const Constant &right) {
   if (left.scalars.size() != 1 || right.scalars.size() != 1)
     return std::nullopt;

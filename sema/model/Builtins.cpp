@@ -40,7 +40,8 @@ bool isOutArgument(Builtin builtin, std::size_t index) {
   for (const Row &row : allRows())
     if (row.builtin == builtin) { // "F F >F": the result, and a letter a parameter
       const std::string_view signature = row.signature;
-      for (std::size_t at = signature.find(' '); at != signature.npos; at = signature.find(' ', at + 1))
+      for (std::size_t at = signature.find(' '); at != signature.npos;
+           at = signature.find(' ', at + 1))
         if (index-- == 0)
           return signature[at + 1] == '>';
       return false;

@@ -27,8 +27,9 @@ static constexpr StateSet textureCoordinates = {S::TextureUV, S::TextureUVW};
 static constexpr StateSet normals = {S::GeometricNormal, S::ShadingNormal};
 
 static RootModel cameraModel() {
-  const StateSet known = everyRay | StateSet{S::RayOrigin,   S::RayDirection, S::Epsilon, S::HitDistance,
-                                             S::ScreenCoord, S::LensCoord,    S::du,      S::dv};
+  const StateSet known =
+      everyRay | StateSet{S::RayOrigin,   S::RayDirection, S::Epsilon, S::HitDistance,
+                          S::ScreenCoord, S::LensCoord,    S::du,      S::dv};
   return {"rt_Camera",
           known | ray,
           {{"generateRay", known, {S::RayOrigin, S::RayDirection}, {A::Random}}},
@@ -44,21 +45,22 @@ static RootModel primitiveModel() {
   const StateSet withDerivatives = withCoordinates | surfaceDerivatives | textureDerivatives;
   const StateSet sees = withDerivatives | StateSet{S::PDF};
   const AbilitySet ofAHit = {A::Random, A::ReadScratch};
-  return {"rt_Primitive",
-          sees,
-          {
-              {"intersect", candidate, {}, ofAHit | AbilitySet{A::Hit, A::WriteScratch}},
-              // Runs while the acceleration structure is built: there is no ray.
-              {"computeBounds", bounds, bounds, {}},
-              {"computeNormal", withNormals, normals, ofAHit},
-              {"computeTextureCoordinates", withCoordinates, textureCoordinates, ofAHit},
-              {"computeDerivatives", withDerivatives, surfaceDerivatives | textureDerivatives, ofAHit},
-              // These two choose and weigh a point on the primitive: there is no hit that could
-              // have left scratch values.
-              {"generateSample", sees, {S::HitPoint, S::GeometricNormal, S::PDF}, {A::Random}},
-              {"samplePDF", sees, {S::PDF}, {A::Random}},
-          },
-          true};
+  return {
+      "rt_Primitive",
+      sees,
+      {
+          {"intersect", candidate, {}, ofAHit | AbilitySet{A::Hit, A::WriteScratch}},
+          // Runs while the acceleration structure is built: there is no ray.
+          {"computeBounds", bounds, bounds, {}},
+          {"computeNormal", withNormals, normals, ofAHit},
+          {"computeTextureCoordinates", withCoordinates, textureCoordinates, ofAHit},
+          {"computeDerivatives", withDerivatives, surfaceDerivatives | textureDerivatives, ofAHit},
+          // These two choose and weigh a point on the primitive: there is no hit that could
+          // have left scratch values.
+          {"generateSample", sees, {S::HitPoint, S::GeometricNormal, S::PDF}, {A::Random}},
+          {"samplePDF", sees, {S::PDF}, {A::Random}},
+      },
+      true};
 }
 
 static RootModel textureModel() {
@@ -133,7 +135,8 @@ static RootModel missModel() {
   return {"rt_Miss",
           classic,
           {
-              {"miss", classic, textureCoordinates | StateSet{S::SampleColor}, abilities, Payload::None},
+              {"miss", classic, textureCoordinates | StateSet{S::SampleColor}, abilities,
+               Payload::None},
               {"miss", withPayload, textureCoordinates, abilities, Payload::Required},
           },
           false};

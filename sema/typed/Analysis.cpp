@@ -190,7 +190,8 @@ static bool someExpression(const Module &module, const Condition &condition) {
   bool found = false;
   const auto look = [&](const Function &function) {
     if (function.body && !found)
-      forEachExpr(*function.body, [&](const Expr &expr) { found = found || condition(function, expr); });
+      forEachExpr(*function.body,
+                  [&](const Expr &expr) { found = found || condition(function, expr); });
   };
   for (const auto &function : module.functions)
     look(*function);
@@ -253,7 +254,8 @@ bool HitAnswers::mayAnswer(const Function &function, const Class *concrete) {
 }
 
 bool HitAnswers::mayAnswerOf(const Function &function) {
-  return hasAnswers && std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
+  return hasAnswers &&
+         std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
            return definition->derivesFrom(function.owner) &&
                   mayAnswer(resolve(function, definition.get()), definition.get());
          });

@@ -46,8 +46,8 @@ class HitAnswers {
 public:
   explicit HitAnswers(const Module &module);
 
-  /// For an object of class `concrete`, whose definitions calls on the object itself run; null for a
-  /// free function.
+  /// For an object of class `concrete`, whose definitions calls on the object itself run; null for
+  /// a free function.
   bool mayAnswer(const Function &function, const Class *concrete);
   /// For a call through a reference: whichever class below the function's has the object.
   bool mayAnswerOf(const Function &function);
@@ -76,7 +76,8 @@ bool sameParameters(const Function &a, const Function &b);
 /// The types of a function's parameters as a part of a symbol: `.vec3.float_4`.
 std::string parameterWords(const Function &function);
 
-/// What the IR calls a method, whatever class has it: its name, with its parameters' types where others have that name.
+/// What the IR calls a method, whatever class has it: its name, with its parameters' types where
+/// others have that name.
 std::string slotName(const Module &module, const Function &method);
 
 /// May a reference of the module refer to no object? The scene sets all public members, so that it

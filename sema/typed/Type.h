@@ -1,6 +1,7 @@
 //===- Type.h - the types of RTSL -----------------------------------------===//
 //
-// Types are unique: two equal types have one address, so comparison is of pointers. A `TypeContext` owns them.
+// Types are unique: two equal types have one address, so comparison is of pointers. A `TypeContext`
+// owns them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -20,7 +21,7 @@ struct Class;
 } // namespace typed
 
 enum class TypeKind : std::uint8_t {
-  Error,  // of an expression that was reported already: converts to everything, silently
+  Error, // of an expression that was reported already: converts to everything, silently
   Void,
   Bool,
   Int,
@@ -83,7 +84,8 @@ public:
 
 private:
   const Type *make(TypeKind kind, const Type *element = nullptr, std::uint32_t count = 0);
-  std::map<std::tuple<TypeKind, const void *, std::uint32_t, std::string>, std::unique_ptr<Type>> types;
+  std::map<std::tuple<TypeKind, const void *, std::uint32_t, std::string>, std::unique_ptr<Type>>
+      types;
 };
 
 /// As an author would write it: `vec3`, `float[2][3]`, `Sphere`.

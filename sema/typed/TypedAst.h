@@ -1,7 +1,8 @@
 //===- TypedAst.h - the program after checking ----------------------------===//
 //
-// Every name is resolved, every expression has a type, every implicit conversion is a node, every constant expression is
-// folded where a constant is required. Lowering needs no further look at the source; printers keep the author's names.
+// Every name is resolved, every expression has a type, every implicit conversion is a node, every
+// constant expression is folded where a constant is required. Lowering needs no further look at the
+// source; printers keep the author's names.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -45,7 +46,9 @@ inline bool isPure(Builtin builtin) {
   return effect == BuiltinEffect::Pure || effect == BuiltinEffect::Reads;
 }
 /// Whether it takes the next random number of the ray.
-inline bool drawsRandom(Builtin builtin) { return builtin == Builtin::Rand || builtin == Builtin::RandOpen; }
+inline bool drawsRandom(Builtin builtin) {
+  return builtin == Builtin::Rand || builtin == Builtin::RandOpen;
+}
 
 /// The rt_ variables; `RayOrigin` is rt_RayOrigin.
 enum class StateVariable : std::uint8_t {
@@ -54,8 +57,8 @@ enum class StateVariable : std::uint8_t {
 };
 const char *name(StateVariable variable); // without rt_
 
-/// A value known at compile time: the scalars of its type in order (vectors by component, matrices by column, structs
-/// and arrays by element; color one value, or three for an RGB triple).
+/// A value known at compile time: the scalars of its type in order (vectors by component, matrices
+/// by column, structs and arrays by element; color one value, or three for an RGB triple).
 struct Constant {
   union Scalar {
     float f;
@@ -78,9 +81,10 @@ struct Variable {
   const Type *type = nullptr;
   bool isConst = false;
   ast::Direction direction = ast::Direction::In; // parameters
-  std::unique_ptr<Constant> constant;            // const whose value is known: uses are literals, but of arrays and structs
-  ExprPtr init;                                  // globals: always a constant expression
-  SourceRange range;                             // of the name
+  std::unique_ptr<Constant>
+      constant;      // const whose value is known: uses are literals, but of arrays and structs
+  ExprPtr init;      // globals: always a constant expression
+  SourceRange range; // of the name
   std::string comment;
 };
 
@@ -103,7 +107,7 @@ struct Member {
   std::string name;
   const Type *type = nullptr;
   bool isConst = false;
-  bool isOptional = false;            // a public reference, or references, that the scene may leave empty
+  bool isOptional = false; // a public reference, or references, that the scene may leave empty
   std::unique_ptr<Constant> constant; // const members
   ExprPtr init;                       // default of a public or private member; null: none (zero)
   const Class *owner = nullptr;
@@ -119,10 +123,10 @@ struct Function {
   StmtPtr body;                                  // a CompoundStmt
   const Class *owner = nullptr;                  // methods
   bool isConstructor = false;
-  bool isStateMethod = false; // one of its base class's table: intersect, shade, ...
-  bool mayTrace = false;      // itself or through what it calls
+  bool isStateMethod = false;  // one of its base class's table: intersect, shade, ...
+  bool mayTrace = false;       // itself or through what it calls
   bool mayRunInLookup = false; // a texture's `lookup` leads to it
-  SourceRange range;          // of the name
+  SourceRange range;           // of the name
   std::string comment;
 };
 
@@ -138,7 +142,8 @@ struct Class {
   SourceRange range;
   std::string comment;
 
-  /// The definition that an object of this class uses, looking along the bases; null if there is none.
+  /// The definition that an object of this class uses, looking along the bases; null if there is
+  /// none.
   const Function *findMethod(const std::string &name) const;
   bool derivesFrom(const Class *other) const; // or is it
 };
@@ -148,8 +153,26 @@ struct Class {
 //===----------------------------------------------------------------------===//
 
 enum class ExprKind : std::uint8_t {
-  Literal, Variable, State, Member, Field, Swizzle, Index, Length, Unary, IncDec, Binary, Assign, Conditional, Comma,
-  Convert, Construct, Builtin, Call, MethodCall, String
+  Literal,
+  Variable,
+  State,
+  Member,
+  Field,
+  Swizzle,
+  Index,
+  Length,
+  Unary,
+  IncDec,
+  Binary,
+  Assign,
+  Conditional,
+  Comma,
+  Convert,
+  Construct,
+  Builtin,
+  Call,
+  MethodCall,
+  String
 };
 
 struct Expr {
@@ -194,7 +217,8 @@ struct SwizzleExpr : ExprOf<ExprKind::Swizzle> {
   ExprPtr base;
   std::vector<std::uint8_t> components; // 0 to 3
 };
-/// Of an array, a vector, a matrix (a column) or a buffer (of rank 1: an element; otherwise a buffer of rank - 1).
+/// Of an array, a vector, a matrix (a column) or a buffer (of rank 1: an element; otherwise a
+/// buffer of rank - 1).
 struct IndexExpr : ExprOf<ExprKind::Index> {
   ExprPtr base, index; // index: int or uint
 };
@@ -211,15 +235,16 @@ struct IncDecExpr : ExprOf<ExprKind::IncDec> {
   bool increment = true, prefix = true;
   ExprPtr target;
 };
-/// Both operands have the same scalar type (shifts excepted). Shapes: equal; scalar with vector, matrix or color
-/// (broadcast); for Mul also matrix*vector, vector*matrix, matrix*matrix in the sense of linear algebra. Equal and
-/// NotEqual compare whole values and give one bool. LogicalAnd and LogicalOr evaluate the right side only if needed.
+/// Both operands have the same scalar type (shifts excepted). Shapes: equal; scalar with vector,
+/// matrix or color (broadcast); for Mul also matrix*vector, vector*matrix, matrix*matrix in the
+/// sense of linear algebra. Equal and NotEqual compare whole values and give one bool. LogicalAnd
+/// and LogicalOr evaluate the right side only if needed.
 struct BinaryExpr : ExprOf<ExprKind::Binary> {
   ast::BinaryOp op{};
   ExprPtr left, right;
 };
-/// Value of the target after the store. Compound: target = target op value, the target's address evaluated once, and
-/// `value` as the right operand of a BinaryExpr would be.
+/// Value of the target after the store. Compound: target = target op value, the target's address
+/// evaluated once, and `value` as the right operand of a BinaryExpr would be.
 struct AssignExpr : ExprOf<ExprKind::Assign> {
   bool compound = false;
   ast::BinaryOp op{};
@@ -231,39 +256,43 @@ struct ConditionalExpr : ExprOf<ExprKind::Conditional> {
 struct CommaExpr : ExprOf<ExprKind::Comma> {
   ExprPtr left, right;
 };
-/// Change of scalar type, shape kept: int to float, bvec3 to vec3, ... ; or a reference to one of a base class, or to a
-/// bool: whether there is an object.
+/// Change of scalar type, shape kept: int to float, bvec3 to vec3, ... ; or a reference to one of a
+/// base class, or to a bool: whether there is an object.
 struct ConvertExpr : ExprOf<ExprKind::Convert> {
   bool isImplicit = true;
   ExprPtr operand;
 };
-/// Vector: one scalar (all components) or pieces whose scalars, taken in order, fill it (the last piece may have more).
-/// Matrix: one scalar (diagonal), one matrix (overlap, rest identity), or pieces by column. Struct: fields. Array:
-/// elements. Color: one float, or three floats that mean RGB. Scalar: the first component of the argument. The scalar
-/// types of arguments already are those of the result.
+/// Vector: one scalar (all components) or pieces whose scalars, taken in order, fill it (the last
+/// piece may have more). Matrix: one scalar (diagonal), one matrix (overlap, rest identity), or
+/// pieces by column. Struct: fields. Array: elements. Color: one float, or three floats that mean
+/// RGB. Scalar: the first component of the argument. The scalar types of arguments already are
+/// those of the result.
 struct ConstructExpr : ExprOf<ExprKind::Construct> {
   std::vector<ExprPtr> args;
 };
-/// Arguments are converted to the overload's types; those of `out` parameters (modf, frexp, uaddCarry, payloads) are
-/// lvalues. Scalar operands beside vectors (`min(v, s)`, `mix(v, w, s)`, `mod(v, s)`, `step(s, v)`, ...) stay scalar.
+/// Arguments are converted to the overload's types; those of `out` parameters (modf, frexp,
+/// uaddCarry, payloads) are lvalues. Scalar operands beside vectors (`min(v, s)`, `mix(v, w, s)`,
+/// `mod(v, s)`, `step(s, v)`, ...) stay scalar.
 struct BuiltinExpr : ExprOf<ExprKind::Builtin> {
   Builtin builtin{};
   std::vector<ExprPtr> args;
 };
-/// A free function, or a method of the object itself (`onSelf`): the most derived definition runs, or, of a call of a
-/// base class's (`Base::shade()`), `function` itself, which may be a method of the table or a constructor.
+/// A free function, or a method of the object itself (`onSelf`): the most derived definition runs,
+/// or, of a call of a base class's (`Base::shade()`), `function` itself, which may be a method of
+/// the table or a constructor.
 struct CallExpr : ExprOf<ExprKind::Call> {
   const Function *function = nullptr;
   bool onSelf = false;
   bool isOfBase = false;
   std::vector<ExprPtr> args; // of out and inout parameters: lvalues of exactly the parameter's type
 };
-/// `reference.method(args)`, dispatched on the object's class. `lookup()` gives TextureColor (a color) and
-/// `lookupFloat()` FloatTextureValue (a float): both call the texture's `lookup`.
+/// `reference.method(args)`, dispatched on the object's class. `lookup()` gives TextureColor (a
+/// color) and `lookupFloat()` FloatTextureValue (a float): both call the texture's `lookup`.
 struct MethodCallExpr : ExprOf<ExprKind::MethodCall> {
   ExprPtr receiver;
-  std::string method;              // "lookup", "lookupFloat", or a function of the user's
-  const Function *function = nullptr; // a user function as the static type sees it; null for the methods of the table
+  std::string method; // "lookup", "lookupFloat", or a function of the user's
+  const Function *function =
+      nullptr; // a user function as the static type sees it; null for the methods of the table
   std::vector<ExprPtr> args;
 };
 /// Only as an argument of print.
@@ -305,7 +334,7 @@ struct IfStmt : StmtOf<ast::StmtKind::If> {
   StmtPtr thenStmt, elseStmt;
 };
 struct ForStmt : StmtOf<ast::StmtKind::For> {
-  StmtPtr init; // may be null
+  StmtPtr init;            // may be null
   ExprPtr condition, step; // may be null
   StmtPtr body;
 };
@@ -333,7 +362,8 @@ struct ContinueStmt : StmtOf<ast::StmtKind::Continue> {};
 struct ReturnStmt : StmtOf<ast::StmtKind::Return> {
   ExprPtr value;
 };
-/// The body runs for each light that reaches `point`; with normal and angle only those within `angle` of the normal.
+/// The body runs for each light that reaches `point`; with normal and angle only those within
+/// `angle` of the normal.
 struct IlluminanceStmt : StmtOf<ast::StmtKind::Illuminance> {
   ExprPtr point, normal, angle; // normal and angle may be null
   StmtPtr body;
@@ -346,10 +376,10 @@ struct IlluminanceStmt : StmtOf<ast::StmtKind::Illuminance> {
 /// All files of a compilation, checked together.
 struct Module {
   TypeContext types;
-  std::vector<std::unique_ptr<Struct>> structs;       // a struct stands behind those that it contains
+  std::vector<std::unique_ptr<Struct>> structs; // a struct stands behind those that it contains
   std::vector<std::unique_ptr<Variable>> constants;
-  std::vector<std::unique_ptr<Function>> functions;   // free functions
-  std::vector<std::unique_ptr<Class>> classes;        // a class stands behind its base
+  std::vector<std::unique_ptr<Function>> functions; // free functions
+  std::vector<std::unique_ptr<Class>> classes;      // a class stands behind its base
 
   const Class *findClass(const std::string &name) const;
 };

@@ -133,8 +133,7 @@ void forEachExpr(const Stmt &stmt, const ExprVisitor &visit) {
 
 void forEachStmt(const Stmt &stmt, const StmtVisitor &visit) {
   visit(stmt);
-  forEachChild(
-      stmt, [&](const Stmt &child) { forEachStmt(child, visit); }, [](const Expr &) {});
+  forEachChild(stmt, [&](const Stmt &child) { forEachStmt(child, visit); }, [](const Expr &) {});
 }
 
 const Variable *rootVariable(const Expr &place) {

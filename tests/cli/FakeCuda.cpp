@@ -1,6 +1,6 @@
 // Stands in for libcuda.so.1: a device whose memory is the process's, and whose one kernel paints a
-// pattern after having checked that it was launched as rtsl_render has to be. FAKE_CUDA makes it fail in
-// one of the ways in which drivers and devices do.
+// pattern after having checked that it was launched as rtsl_render has to be. FAKE_CUDA makes it
+// fail in one of the ways in which drivers and devices do.
 #include "runtime/device/ray/Abi.h"
 
 #include <cstdint>
@@ -50,7 +50,9 @@ bool isAllocated(const void *address, std::size_t bytes) {
 
 extern "C" {
 
-int cuInit(unsigned) { return is("no-device") ? NoDevice : Success; }
+int cuInit(unsigned) {
+  return is("no-device") ? NoDevice : Success;
+}
 int cuDriverGetVersion(int *version) {
   *version = is("old-driver") ? 9020 : 12040;
   return Success;
@@ -85,7 +87,9 @@ int cuDevicePrimaryCtxRelease_v2(int) {
   allocations.clear();
   return Success;
 }
-int cuCtxSetCurrent(void *) { return Success; }
+int cuCtxSetCurrent(void *) {
+  return Success;
+}
 int cuMemGetInfo_v2(std::size_t *free, std::size_t *total) {
   *total = totalMemory();
   *free = *total - allocated;
@@ -120,7 +124,8 @@ int cuMemcpyDtoH_v2(void *to, std::uint64_t from, std::size_t bytes) {
   std::memcpy(to, reinterpret_cast<void *>(from), bytes);
   return Success;
 }
-int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *options, void **values) {
+int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *options,
+                       void **values) {
   if (is("old-ptx"))
     return UnsupportedPtxVersion;
   if (is("other-gpu")) {
@@ -133,7 +138,9 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
   *module = &allocations;
   return std::strstr(ptx, ".entry rtsl_render") ? Success : InvalidValue;
 }
-int cuModuleUnload(void *) { return Success; }
+int cuModuleUnload(void *) {
+  return Success;
+}
 int cuModuleGetFunction(void **function, void *, const char *name) {
   *function = &allocations;
   return std::strcmp(name, "rtsl_render") == 0 ? Success : InvalidValue;
@@ -147,9 +154,10 @@ int cuOccupancyMaxActiveBlocksPerMultiprocessor(int *blocks, void *, int, std::s
   return Success;
 }
 
-/// Paints (x, y, seed): the launch must have arrived, and every pointer of it must lead to device memory.
-int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned, unsigned, unsigned, void *,
-                   void **arguments, void **) {
+/// Paints (x, y, seed): the launch must have arrived, and every pointer of it must lead to device
+/// memory.
+int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned,
+                   unsigned, unsigned, void *, void **arguments, void **) {
   if (is("fault"))
     return Success; // it shows when the kernel is waited for
   const RtslJob &job = **static_cast<RtslJob **>(arguments[0]);
@@ -160,8 +168,10 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
   bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
   isFine &= isAllocated(job.lanes, blocks * threads * job.laneBytes);
   isFine &= isAllocated(job.pixels, pixels * launch.colorComponents * sizeof(float));
-  isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status && job.status->nextPixel == 0;
-  isFine &= isAllocated(launch.records, 16) && isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef));
+  isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
+            job.status->nextPixel == 0;
+  isFine &= isAllocated(launch.records, 16) &&
+            isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef));
   isFine &= isAllocated(launch.instances, launch.instanceCount * sizeof(RtslInstance));
   isFine &= isAllocated(launch.nodes, launch.nodeCount * sizeof(RtslBvhNode));
   for (std::uint32_t i = 0; i < launch.meshCount; ++i)
@@ -179,6 +189,8 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
     job.status->problem = RTSL_PROBLEM_STACK;
   return Success;
 }
-int cuCtxSynchronize() { return is("fault") ? IllegalAddress : Success; }
+int cuCtxSynchronize() {
+  return is("fault") ? IllegalAddress : Success;
+}
 
 } // extern "C"

@@ -1,12 +1,13 @@
 //===- FrontEnd.cpp - any bytes through preprocessor, parser, checker and messages ===//
 //
-// An input is one file, or several: a line `//@ NAME` begins the next one, which can be imported and included.
+// An input is one file, or several: a line `//@ NAME` begins the next one, which can be imported
+// and included.
 //
 //===----------------------------------------------------------------------===//
 #include "Target.h"
 
-#include "frontend/syntax/Parser.h"
 #include "frontend/preprocessor/Preprocessor.h"
+#include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
 #include <map>
@@ -50,7 +51,9 @@ public:
     diagnostics.warnings.apply("all");
     const FileId first = 1;
     const ast::TranslationUnit *main = load(first);
-    module = check({main}, [this](const ast::ImportDecl &import, FileId) { return resolve(import); }, diagnostics);
+    module = check(
+        {main}, [this](const ast::ImportDecl &import, FileId) { return resolve(import); },
+        diagnostics);
   }
 
   /// Looks at everything that a user can ask for.
@@ -100,7 +103,8 @@ private:
   }
 
   const ast::TranslationUnit *resolve(const ast::ImportDecl &import) {
-    if (const FileId file = sources.find(import.path); import.isFile && file != 0 && !sources.expanded(file))
+    if (const FileId file = sources.find(import.path);
+        import.isFile && file != 0 && !sources.expanded(file))
       return load(file);
     diagnostics.report(Code::unknownModule, import.range, import.path);
     return nullptr;

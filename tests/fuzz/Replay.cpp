@@ -2,8 +2,9 @@
 //
 //   TARGET FILE-OR-FOLDER...
 //
-// The first input that crashes, aborts or takes longer than ten seconds of processor time ends the run; its name is the last
-// line of the output. (Under sanitizers leaks fail it as well, at the end.)
+// The first input that crashes, aborts or takes longer than ten seconds of processor time ends the
+// run; its name is the last line of the output. (Under sanitizers leaks fail it as well, at the
+// end.)
 //
 //===----------------------------------------------------------------------===//
 #include "Target.h"

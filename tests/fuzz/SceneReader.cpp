@@ -5,8 +5,8 @@
 //===----------------------------------------------------------------------===//
 #include "Target.h"
 
-#include "support/Error.h"
 #include "scenefile/SceneFile.h"
+#include "support/Error.h"
 
 #include <algorithm>
 #include <string>
@@ -33,7 +33,8 @@ std::vector<std::string> takeOverrides(std::string_view &input) {
 void checkPlace(const Place &place, std::string_view text) {
   const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
   if (place.file == "scene.json")
-    require(place.line <= lines && (place.line == 0 || place.column > 0), "a place lies in the scene file");
+    require(place.line <= lines && (place.line == 0 || place.column > 0),
+            "a place lies in the scene file");
 }
 
 } // namespace
@@ -42,7 +43,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   std::string_view text(reinterpret_cast<const char *>(data), size);
   const std::vector<std::string> overrides = takeOverrides(text);
   try {
-    const scene::SceneDescription scene = scene::parseScene(std::string(text), "scene.json", overrides);
+    const scene::SceneDescription scene =
+        scene::parseScene(std::string(text), "scene.json", overrides);
     for (const std::string &name : scene::classesUsed(scene))
       require(!name.empty(), "a class has a name");
     for (const scene::LocatedName &mention : scene::classMentions(scene))

@@ -11,8 +11,8 @@ void rtsl::fuzz::require(bool holds, const char *what) {
   std::abort();
 }
 
-/// LLVM's allocators mark their memory themselves, in headers: the part of them that lies in Debian's library was built
-/// without a sanitizer and would never clear the marks again.
+/// LLVM's allocators mark their memory themselves, in headers: the part of them that lies in
+/// Debian's library was built without a sanitizer and would never clear the marks again.
 extern "C" const char *__asan_default_options() {
   return "allow_user_poisoning=0";
 }

@@ -55,14 +55,15 @@ NodePtr Generator::builtinCall(const Type *result, unsigned depth) {
     for (const Signature::Parameter &parameter : choice.signature->parameters)
       if (parameter.direction != ast::Direction::In)
         return nullptr;
-  return call(choice.name, *choice.signature, choice.overloads->signatures, choice.index, depth - 1);
+  return call(choice.name, *choice.signature, choice.overloads->signatures, choice.index,
+              depth - 1);
 }
 
 bool Generator::mayCall(const Function &function) const {
   return function.traces * context.weight <= context.traces &&
-         work + function.work * context.weight <= workLimit && isIn(function.reads, context.reads) &&
-         (context.rand || !function.draws) && (context.lookup || !function.looksUp) &&
-         (context.answers || !function.answers);
+         work + function.work * context.weight <= workLimit &&
+         isIn(function.reads, context.reads) && (context.rand || !function.draws) &&
+         (context.lookup || !function.looksUp) && (context.answers || !function.answers);
 }
 
 void Generator::account(const Function &function) {
@@ -98,7 +99,8 @@ NodePtr Generator::userCall(const Type *result, unsigned depth) {
       overloads.push_back(other.signature);
     }
   std::string callee = function.name;
-  if (ofClass && context.self->base && chance(40)) // the base's own, which calls none but earlier ones
+  if (ofClass && context.self->base &&
+      chance(40)) // the base's own, which calls none but earlier ones
     for (const Function &inherited : context.self->base->functions)
       if (inherited.name == function.name)
         callee = context.self->base->name + "::" + function.name;

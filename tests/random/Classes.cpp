@@ -30,8 +30,9 @@ StateSet common(StateSet a, StateSet b) {
 }
 
 bool isIn(StateSet part, StateSet all) {
-  return std::all_of(stateVariables().begin(), stateVariables().end(),
-                     [&](typed::StateVariable variable) { return all.has(variable) || !part.has(variable); });
+  return std::all_of(
+      stateVariables().begin(), stateVariables().end(),
+      [&](typed::StateVariable variable) { return all.has(variable) || !part.has(variable); });
 }
 
 /// Some of the state that has a value, and all that may be written.
@@ -40,11 +41,13 @@ std::vector<Variable> Generator::stateOf(StateSet reads, StateSet writes) {
   const unsigned percent = chance(25) ? 100 : 30;
   for (typed::StateVariable variable : stateVariables())
     if (writes.has(variable) || (reads.has(variable) && chance(percent)))
-      variables.push_back({std::string("rt_") + typed::name(variable), typeOf(variable, types), writes.has(variable)});
+      variables.push_back({std::string("rt_") + typed::name(variable), typeOf(variable, types),
+                           writes.has(variable)});
   return variables;
 }
 
-/// What a function may read that methods call: what has a value in one of them. Of a class below `root`, or of any.
+/// What a function may read that methods call: what has a value in one of them. Of a class below
+/// `root`, or of any.
 StateSet Generator::someReads(const std::string &root) {
   std::vector<const MethodModel *> methods;
   for (const RootModel &model : rootModels())
@@ -89,9 +92,13 @@ ClassPlan *Generator::startClass(const char *stem, const std::string &root, cons
   plan->base = base;
   NodePtr list = makeList();
   members = list.get();
-  program.tree->children.push_back(
-      makeNode(Role::Fixed, "class " + plan->name + (base ? " : " + base->name : root.empty() ? "" : " : " + root) + " {$};",
-               std::move(list)));
+  program.tree->children.push_back(makeNode(Role::Fixed,
+                                            "class " + plan->name +
+                                                (base           ? " : " + base->name
+                                                 : root.empty() ? ""
+                                                                : " : " + root) +
+                                                " {$};",
+                                            std::move(list)));
   plans.push_back(std::move(plan));
   return plans.back().get();
 }
@@ -122,8 +129,8 @@ void Generator::addMembers(ClassPlan &plan, Node &members, unsigned count) {
       members.children.push_back(declare(name, type, expression(type, 2), "public "));
       plan.members.push_back({name, type, false, false});
     } else {
-      members.children.push_back(makeNode(
-          Role::Fixed, (kind < 8 ? "public " : "private ") + toString(type) + " " + name + ";"));
+      members.children.push_back(makeNode(Role::Fixed, (kind < 8 ? "public " : "private ") +
+                                                           toString(type) + " " + name + ";"));
       plan.members.push_back({name, type, false, false});
     }
     context.constantOnly = false;
@@ -145,12 +152,13 @@ void Generator::addReferences(ClassPlan &plan, Node &members, const Targets &tar
     const std::string name = fresh("o");
     const unsigned form = below(4);
     const unsigned count = 1 + below(3);
-    members.children.push_back(makeNode(
-        Role::Fixed, std::string("public ") + (chance(30) ? "optional " : "") + target->name + " " + name +
-                         (form == 0   ? "[" + std::to_string(count) + "]"
-                          : form == 1 ? "[]"
-                                      : "") +
-                         ";"));
+    members.children.push_back(
+        makeNode(Role::Fixed, std::string("public ") + (chance(30) ? "optional " : "") +
+                                  target->name + " " + name +
+                                  (form == 0   ? "[" + std::to_string(count) + "]"
+                                   : form == 1 ? "[]"
+                                               : "") +
+                                  ";"));
     plan.references.push_back({name, target, form == 0 ? count : 0, form == 1});
   }
 }
@@ -169,7 +177,8 @@ void Generator::addConstructor(ClassPlan &plan, Node &members) {
   members.children.push_back(function(made, "constructor", visible));
 }
 
-void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces, bool answers) {
+void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces,
+                            bool answers) {
   Function made;
   made.remote = remote;
   made.reads = someReads(plan.root);
@@ -183,10 +192,9 @@ void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigne
     made.signature.result = types.color;
   for (unsigned n = below(4); n-- > 0;) {
     const Type *type = anyType();
-    made.signature.parameters.push_back(
-        {type, chance(60)   ? ast::Direction::In
-               : chance(50) ? ast::Direction::Out
-                            : ast::Direction::InOut});
+    made.signature.parameters.push_back({type, chance(60)   ? ast::Direction::In
+                                               : chance(50) ? ast::Direction::Out
+                                                            : ast::Direction::InOut});
   }
   made.name = fresh("g");
   context = contextOf(made, plan);
@@ -216,11 +224,11 @@ void Generator::addRecursion(ClassPlan &plan, Node &members) {
     scope.push_back({"x", types.floatType, true});
     value = expression(types.floatType, 2);
   } while (!pending.empty());
-  members.children.push_back(
-      makeNode(Role::Fixed,
-               "float " + made.name + "(float x) { float own = $; return " + next + " ? own + 0.5 * " + next + "." +
-                   made.name + "(0.75 * x) : own - x; }",
-               std::move(value)));
+  members.children.push_back(makeNode(Role::Fixed,
+                                      "float " + made.name + "(float x) { float own = $; return " +
+                                          next + " ? own + 0.5 * " + next + "." + made.name +
+                                          "(0.75 * x) : own - x; }",
+                                      std::move(value)));
   plan.references.push_back({next, &plan, 0, false});
   plan.functions.push_back(std::move(made));
 }
@@ -240,11 +248,11 @@ void Generator::overrideFunction(ClassPlan &plan, Node &members) {
 }
 
 /// A method of the engine's: some statements, then everything that they made, as one hash, then
-/// `result`, which makes the state that the method writes from it. What it may do is the checker's table; `rules` is what it
-/// does of that. `more` is what it sees beside state.
-void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &name, std::vector<Variable> more,
-                          const std::string &result, unsigned statementCount, Context rules,
-                          const std::string &parameters) {
+/// `result`, which makes the state that the method writes from it. What it may do is the checker's
+/// table; `rules` is what it does of that. `more` is what it sees beside state.
+void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &name,
+                          std::vector<Variable> more, const std::string &result,
+                          unsigned statementCount, Context rules, const std::string &parameters) {
   const MethodModel &model = *rootModel(plan.root)->method(name, !parameters.empty());
   context = rules;
   context.self = &plan;
@@ -272,8 +280,8 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   const std::size_t payload = parameters.find_last_of(' ') + 1; // its name
   const std::string method = name + parameters.substr(0, payload);
   if (plan.base && plan.base->methods.count(method) && chance(context.traces != 0 ? 25 : 50)) {
-    body->children.push_back(makeNode(
-        Role::Statement, plan.base->name + "::" + name + "(" + parameters.substr(payload) + ");"));
+    body->children.push_back(makeNode(Role::Statement, plan.base->name + "::" + name + "(" +
+                                                           parameters.substr(payload) + ");"));
     context.traces /= 2; // the base's rays are sent too
   }
   plan.methods.insert(method);
@@ -282,21 +290,23 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   for (const Variable &variable : state)
     if (variable.writable)
       body->children.push_back(hashed(variable));
-  members.children.push_back(
-      makeNode(Role::Fixed, "void " + name + "(" + parameters + ") {$  " + result + "}", std::move(body)));
+  members.children.push_back(makeNode(
+      Role::Fixed, "void " + name + "(" + parameters + ") {$  " + result + "}", std::move(body)));
 }
 
 /// A method that answers rays which carry a `payload`.
-void Generator::addPayloadMethod(ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
-                                 std::vector<Variable> state, Context rules) {
+void Generator::addPayloadMethod(ClassPlan &plan, Node &members, const std::string &name,
+                                 const Type *payload, std::vector<Variable> state, Context rules) {
   const std::string parameter = fresh("p");
   const bool asks = name == "anyHit";
-  const bool writes = !asks || chance(60); // if it does not, the order in which hits are asked for does not show
+  const bool writes =
+      !asks || chance(60); // if it does not, the order in which hits are asked for does not show
   state.push_back({parameter, payload, writes});
   std::string result = writes ? parameter + ".h = h; " : "";
   if (asks) // for some hits
     result += "if ((h & 3u) == 0u) ignoreIntersection(); if ((h & 12u) == 0u) terminateRay(); ";
-  addMethod(plan, members, name, std::move(state), result, 1 + below(4), rules, "inout " + toString(payload) + " " + parameter);
+  addMethod(plan, members, name, std::move(state), result, 1 + below(4), rules,
+            "inout " + toString(payload) + " " + parameter);
 }
 
 //===----------------------------------------------------------------------===//
@@ -312,7 +322,8 @@ void Generator::makeCamera(const Targets &targets) {
   if (likely(40))
     addFunction(*plan, *members, false, 0);
   addMethod(*plan, *members, "generateRay", {},
-            "rt_RayOrigin = toVector(h); rt_RayDirection = toVector(h * 2654435761u); ", below(2), Context());
+            "rt_RayOrigin = toVector(h); rt_RayDirection = toVector(h * 2654435761u); ", below(2),
+            Context());
   members->children.back()->children[0]->children.insert(
       members->children.back()->children[0]->children.begin() + 1,
       makeNode(Role::Statement, "h = hash_vec2(h, rt_ScreenCoord);"));
@@ -324,8 +335,8 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
   ClassPlan *plan = startClass("Primitive", "rt_Primitive", base, members);
   if (!base)
     for (const Variable &attribute : attributes)
-      members->children.push_back(makeNode(
-          Role::Fixed, "scratch " + toString(attribute.type) + " " + attribute.name + ";"));
+      members->children.push_back(makeNode(Role::Fixed, "scratch " + toString(attribute.type) +
+                                                            " " + attribute.name + ";"));
   addMembers(*plan, *members, some(below(3)));
   addReferences(*plan, *members, someOf(targets));
   if (!base && likely(40))
@@ -353,14 +364,14 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
         for (NodePtr &child : list->children)
           body.children.push_back(std::move(child));
         // The error of t is stated, or derived from arithmetic, or neither.
-        const char *t = chance(40) ? "abs(dot(rt_RayOrigin - vec3(0.5), rt_RayDirection)) / (0.25 + dot(rt_RayDirection, rt_RayDirection))"
+        const char *t = chance(40) ? "abs(dot(rt_RayOrigin - vec3(0.5), rt_RayDirection)) / (0.25 "
+                                     "+ dot(rt_RayDirection, rt_RayDirection))"
                                    : "0.125 + 4.0 * toUnit(h)";
         const char *error = chance(40) ? ", 0.5 * toUnit(h * 11u)" : "";
         body.children.push_back(makeNode(
             Role::Statement, std::string("bool won = (h & 3u) != 0u && hit(") + t + error + ");"));
       } else {
-        list->children.push_back(
-            makeNode(Role::Statement, "hit(0.5 + toUnit(h * 2654435761u));"));
+        list->children.push_back(makeNode(Role::Statement, "hit(0.5 + toUnit(h * 2654435761u));"));
         body.children.push_back(
             makeNode(Role::Statement, "if (!won && (h & 8u) != 0u) {$}", std::move(list)));
       }
@@ -371,25 +382,31 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
   std::vector<Variable> left;
   for (const Variable &attribute : attributes)
     left.push_back({attribute.name, attribute.type, false});
-  const auto add = [&](const char *name, const std::vector<Variable> &more, const std::string &result, unsigned count) {
+  const auto add = [&](const char *name, const std::vector<Variable> &more,
+                       const std::string &result, unsigned count) {
     addMethod(*plan, *members, name, more, result, count, Context());
   };
   add("computeNormal", left,
-      "rt_GeometricNormal = toVector(h); " + std::string(chance(50) ? "rt_ShadingNormal = toVector(h * 3u); " : ""),
+      "rt_GeometricNormal = toVector(h); " +
+          std::string(chance(50) ? "rt_ShadingNormal = toVector(h * 3u); " : ""),
       below(3));
   if (likely(60))
-    add("computeTextureCoordinates", left, "rt_TextureUVW = toVector(h); rt_TextureUV = vec2(toUnit(h), toUnit(h * 5u)); ",
-        below(3));
+    add("computeTextureCoordinates", left,
+        "rt_TextureUVW = toVector(h); rt_TextureUV = vec2(toUnit(h), toUnit(h * 5u)); ", below(3));
   if (likely(40))
     add("computeDerivatives", left,
-        "rt_dPdu = toVector(h); rt_dPdv = toVector(h * 7u); rt_dsdu = toUnit(h); rt_dtdv = toUnit(h * 9u); ", below(2));
+        "rt_dPdu = toVector(h); rt_dPdv = toVector(h * 7u); rt_dsdu = toUnit(h); rt_dtdv = "
+        "toUnit(h * 9u); ",
+        below(2));
   if (likely(25)) {
-    add("generateSample", {}, "rt_HitPoint = toVector(h); rt_GeometricNormal = toVector(h * 7u); rt_PDF = toUnit(h); ",
+    add("generateSample", {},
+        "rt_HitPoint = toVector(h); rt_GeometricNormal = toVector(h * 7u); rt_PDF = toUnit(h); ",
         1 + below(2));
     add("samplePDF", {}, "rt_PDF = toUnit(h); ", below(2));
   }
   if (likely(50))
-    add("computeBounds", {}, "rt_BoundMin = toVector(h); rt_BoundMax = toVector(h * 3u); ", below(2));
+    add("computeBounds", {}, "rt_BoundMin = toVector(h); rt_BoundMax = toVector(h * 3u); ",
+        below(2));
   program.primitives.push_back(plan->name);
   return plan;
 }
@@ -443,8 +460,9 @@ const ClassPlan *Generator::makeTexture(const ClassPlan *base, const Targets &ta
   if (!base || chance(40))
     addFunction(*plan, *members, true, 0);
   if (!base || chance(60))
-    addMethod(*plan, *members, "lookup", {}, "rt_TextureColor = toColor(h); rt_FloatTextureValue = toUnit(h); ",
-              1 + below(3), Context());
+    addMethod(*plan, *members, "lookup", {},
+              "rt_TextureColor = toColor(h); rt_FloatTextureValue = toUnit(h); ", 1 + below(3),
+              Context());
   program.textures.push_back(plan->name);
   return plan;
 }
@@ -475,8 +493,8 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
   if (!base) {
     for (const Variable &attribute : attributes)
       if (chance(50)) {
-        members->children.push_back(makeNode(
-            Role::Fixed, "scratch " + toString(attribute.type) + " " + attribute.name + ";"));
+        members->children.push_back(makeNode(Role::Fixed, "scratch " + toString(attribute.type) +
+                                                              " " + attribute.name + ";"));
         plan->scratch.push_back(attribute);
       }
     if (chance(40))
@@ -530,7 +548,8 @@ void Generator::addBsdf(ClassPlan &plan, Node &members) {
   auto add = [&](const char *name, const std::string &result) {
     addMethod(plan, members, name, attributesOfHit, result, 1 + below(3), rules);
   };
-  add("sampleBSDF", "rt_LightDirection = toVector(h); rt_BSDFValue = toColor(h); rt_PDF = toUnit(h); ");
+  add("sampleBSDF",
+      "rt_LightDirection = toVector(h); rt_BSDFValue = toColor(h); rt_PDF = toUnit(h); ");
   add("BSDF", "rt_BSDFValue = toColor(h); ");
   add("evaluatePDF", "rt_PDF = toUnit(h); ");
   if (chance(50))

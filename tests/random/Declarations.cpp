@@ -33,11 +33,11 @@ NodePtr Generator::function(Function &made, const std::string &head,
     const bool isIn = parameter.direction == ast::Direction::In;
     const bool isConst = isIn && chance(10);
     parameters += parameters.empty() ? "" : ", ";
-    parameters += isConst                                             ? "const "
+    parameters += isConst                                        ? "const "
                   : parameter.direction == ast::Direction::Out   ? "out "
                   : parameter.direction == ast::Direction::InOut ? "inout "
-                  : chance(20)                                        ? "in "
-                                                                      : "";
+                  : chance(20)                                   ? "in "
+                                                                 : "";
     parameters += toString(parameter.type) + " " + name;
     if (parameter.direction == ast::Direction::Out)
       add(*body, makeNode(Role::Statement, name + " = $;", literal(parameter.type)));

@@ -60,19 +60,24 @@ NodePtr Generator::adapted(const Type *type) {
 }
 
 std::string Generator::number(const Type *scalar) {
-  static const std::vector<std::string> floats = {
-      "0.0", "1.0", "0.5", "2.0", "3.25", "(-0.75)", "(-1.0)", "1e-3", "100.0", "0.1", "7.0", "(-2.5)"};
+  static const std::vector<std::string> floats = {"0.0",   "1.0",     "0.5",    "2.0",
+                                                  "3.25",  "(-0.75)", "(-1.0)", "1e-3",
+                                                  "100.0", "0.1",     "7.0",    "(-2.5)"};
   static const std::vector<std::string> extremeFloats = {
-      "1e30", "3.4028235e38", "(-1e38)", "1e-40", "1.4e-45", "1.17549435e-38", "(-0.0)", "(1.0 / 0.0)",
-      "(-1.0 / 0.0)", "(0.0 / 0.0)", "8388609.0", "2147483648.0", "4294967296.0", "0.49999997",
-      "(-2147483904.0)", "16777217.0", "0.99999994", "88.8", "(-104.0)", "1.5707964", "1e10"};
-  static const std::vector<std::string> ints = {"0", "1", "2", "3", "(-1)", "5", "7", "(-8)", "16", "100"};
-  static const std::vector<std::string> extremeInts = {"(-2147483648)", "2147483647", "31", "32", "33",
-                                                       "65536", "(-65)", "0x80000001", "0x7f800000",
-                                                       "1065353216", "0xffffffff"};
+      "1e30",         "3.4028235e38",   "(-1e38)",         "1e-40",
+      "1.4e-45",      "1.17549435e-38", "(-0.0)",          "(1.0 / 0.0)",
+      "(-1.0 / 0.0)", "(0.0 / 0.0)",    "8388609.0",       "2147483648.0",
+      "4294967296.0", "0.49999997",     "(-2147483904.0)", "16777217.0",
+      "0.99999994",   "88.8",           "(-104.0)",        "1.5707964",
+      "1e10"};
+  static const std::vector<std::string> ints = {"0", "1", "2",    "3",  "(-1)",
+                                                "5", "7", "(-8)", "16", "100"};
+  static const std::vector<std::string> extremeInts = {
+      "(-2147483648)", "2147483647", "31",         "32",         "33",        "65536",
+      "(-65)",         "0x80000001", "0x7f800000", "1065353216", "0xffffffff"};
   static const std::vector<std::string> uints = {"0u", "1u", "2u", "3u", "5u", "8u", "17u", "255u"};
-  static const std::vector<std::string> extremeUints = {"4294967295u", "0x80000000u", "31u", "32u", "40u",
-                                                        "65535u", "0x7fffffffu", "0x7fc00001u"};
+  static const std::vector<std::string> extremeUints = {
+      "4294967295u", "0x80000000u", "31u", "32u", "40u", "65535u", "0x7fffffffu", "0x7fc00001u"};
   const bool extreme = chance(10);
   if (scalar == types.floatType) {
     if (extreme)
@@ -200,7 +205,8 @@ NodePtr Generator::constructor(const Type *type, unsigned depth) {
       size = needed - filled;
     const Type *scalar = chance(60) ? type->scalar() : pick(vocabulary.scalars);
     node->text += filled ? ", $" : "$";
-    node->children.push_back(expression(size == 1 ? scalar : types.vector(scalar, size), depth - 1));
+    node->children.push_back(
+        expression(size == 1 ? scalar : types.vector(scalar, size), depth - 1));
     filled += size;
   }
   node->text += ")";
@@ -224,8 +230,7 @@ NodePtr Generator::partOfExpression(const Type *type, unsigned depth) {
       NodePtr base = expression(matrix, depth - 1);
       return make(type, "($)[$]", std::move(base), index(std::to_string(matrix->count)));
     }
-    return make(type, "($)." + swizzle,
-                expression(types.vector(type->scalar(), from), depth - 1));
+    return make(type, "($)." + swizzle, expression(types.vector(type->scalar(), from), depth - 1));
   }
   if (chance(50)) {
     for (const Type *structure : structs)
@@ -258,7 +263,8 @@ NodePtr Generator::effect(const Type *type, unsigned depth) {
     return make(type, forms[below(4)], std::move(place));
   }
   if (const char *op = chance(40) ? compoundOperator(type) : nullptr)
-    return make(type, std::string("($ ") + op + " $)", std::move(place), expression(type, depth - 1));
+    return make(type, std::string("($ ") + op + " $)", std::move(place),
+                expression(type, depth - 1));
   return make(type, "($ = $)", std::move(place), converted(type, depth - 1));
 }
 

@@ -26,14 +26,20 @@ Program Generator::run() {
   return std::move(program);
 }
 
-bool isInRange(std::uint32_t seed) { return seed % 5 != 4; }
-bool hasTraces(std::uint32_t seed) { return seed % 5 < 3 || seed % 10 == 4; }
+bool isInRange(std::uint32_t seed) {
+  return seed % 5 != 4;
+}
+bool hasTraces(std::uint32_t seed) {
+  return seed % 5 < 3 || seed % 10 == 4;
+}
 unsigned colorComponents(std::uint32_t seed) {
   static const unsigned counts[] = {3, 1, 4, 16};
   return counts[seed / 50 % 4];
 }
 
-Program generate(std::uint32_t seed) { return Generator(seed).run(); }
+Program generate(std::uint32_t seed) {
+  return Generator(seed).run();
+}
 
 //===----------------------------------------------------------------------===//
 // What programs share
@@ -49,7 +55,8 @@ struct Shared {
 static std::vector<Shared> sharedFunctions() {
   std::vector<Shared> all;
   auto hash = [&](const std::string &type, const std::string &body) {
-    all.push_back({"hash_" + type, "uint hash_" + type + "(uint h, " + type + " v) { " + body + " }"});
+    all.push_back(
+        {"hash_" + type, "uint hash_" + type + "(uint h, " + type + " v) { " + body + " }"});
   };
   hash("color", "h = hash_float(h, luminance(v)); h = hash_float(h, luminance(v * color(1.0, 0.0, "
                 "0.0))); return hash_float(h, luminance(v * color(0.0, 1.0, 0.0)));");
@@ -76,8 +83,9 @@ static std::vector<Shared> sharedFunctions() {
   hash("int", "return hash_uint(h, uint(v));");
   hash("bool", "return hash_uint(h, v ? 1u : 2u);");
   hash("uint", "return ((h ^ v) * 16777619u) ^ (h >> 15u);");
-  all.push_back({"toColor", "color toColor(uint h) { return color(toUnit(h), toUnit(h * 2654435761u), "
-                            "toUnit((h ^ (h >> 7u)) * 16777619u)); }"});
+  all.push_back({"toColor",
+                 "color toColor(uint h) { return color(toUnit(h), toUnit(h * 2654435761u), "
+                 "toUnit((h ^ (h >> 7u)) * 16777619u)); }"});
   all.push_back({"toVector", "vec3 toVector(uint h) { return vec3(toUnit(h) - 0.5, toUnit(h * "
                              "2654435761u) - 0.5, toUnit((h ^ (h >> 9u)) * 16777619u) - 0.5); }"});
   all.push_back({"toUnit", "float toUnit(uint h) { return float(h >> 8u) * 5.9604645e-8; }"});

@@ -34,10 +34,10 @@ bool isIn(StateSet part, StateSet all);
 struct Function {
   std::string name;
   Signature signature;
-  unsigned work = 0;   // about how many operations a call runs
-  unsigned traces = 0; // at most so many rays
-  bool remote = false; // may be called on another object
-  StateSet reads;      // at most this state
+  unsigned work = 0;                   // about how many operations a call runs
+  unsigned traces = 0;                 // at most so many rays
+  bool remote = false;                 // may be called on another object
+  StateSet reads;                      // at most this state
   bool draws = false, looksUp = false; // perhaps: random numbers, textures
   bool answers = false;                // may end `anyHit`
 };
@@ -57,7 +57,8 @@ struct ClassPlan {
   std::vector<Variable> scratch;
   std::vector<Reference> references;
   std::vector<Function> functions; // that methods of it may call
-  std::set<std::string> methods;   // that it has, inherited ones too: the name, and the payload's type behind it
+  // that it has, inherited ones too: the name, and the payload's type behind it
+  std::set<std::string> methods;
 };
 
 /// What may be done where code stands.
@@ -65,15 +66,15 @@ struct Context {
   bool constantOnly = false;
   StateSet reads; // what has a value
   bool rand = false, lookup = false, illuminance = false, print = false;
-  bool answers = false; // ignoreIntersection() and terminateRay() may stand here
-  unsigned traces = 0;                    // rays that may still be sent
-  const ClassPlan *self = nullptr;        // null: a free function
-  const Type *result = nullptr;           // of `return`; null: void
-  std::string onReturn;                   // what a method does before it returns
-  bool returns = true;                    // may return early
-  unsigned loops = 0, switches = 0;       // around
-  bool canContinue = false;               // breaks and continues have a target
-  unsigned weight = 1;                    // how often the place runs, at most
+  bool answers = false;             // ignoreIntersection() and terminateRay() may stand here
+  unsigned traces = 0;              // rays that may still be sent
+  const ClassPlan *self = nullptr;  // null: a free function
+  const Type *result = nullptr;     // of `return`; null: void
+  std::string onReturn;             // what a method does before it returns
+  bool returns = true;              // may return early
+  unsigned loops = 0, switches = 0; // around
+  bool canContinue = false;         // breaks and continues have a target
+  unsigned weight = 1;              // how often the place runs, at most
 };
 
 class Generator {
@@ -109,12 +110,13 @@ private:
 
   // Types (Types.cpp)
   const Type *numericScalar();
-  const Type *smallType();  // scalar, vector, sometimes a matrix or color
-  const Type *anyType();    // structs and arrays too
+  const Type *smallType(); // scalar, vector, sometimes a matrix or color
+  const Type *anyType();   // structs and arrays too
   const Type *withScalar(const Type *shape, const Type *scalar);
   bool hasColor(const Type *type) const;
   void makeStruct();
-  const Type *structure(std::vector<typed::Field> fields, unsigned more); // and `more` random fields
+  const Type *structure(std::vector<typed::Field> fields,
+                        unsigned more); // and `more` random fields
   void makePayload();
 
   // Expressions (Expressions.cpp)
@@ -191,23 +193,23 @@ private:
   void addMembers(ClassPlan &plan, Node &members, unsigned count);
   void addReferences(ClassPlan &plan, Node &members, const Targets &targets);
   void addConstructor(ClassPlan &plan, Node &members);
-  void addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces, bool answers = false);
+  void addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces,
+                   bool answers = false);
   StateSet someReads(const std::string &root);
   std::vector<Variable> stateOf(StateSet reads, StateSet writes);
   void overrideFunction(ClassPlan &plan, Node &members);
   void addMethod(ClassPlan &plan, Node &members, const std::string &name,
                  std::vector<Variable> more, const std::string &result, unsigned statementCount,
                  Context rules, const std::string &parameters = "");
-  void addPayloadMethod(ClassPlan &plan, Node &members, const std::string &name, const Type *payload,
-                        std::vector<Variable> state, Context rules);
+  void addPayloadMethod(ClassPlan &plan, Node &members, const std::string &name,
+                        const Type *payload, std::vector<Variable> state, Context rules);
   const ClassPlan *makeTexture(const ClassPlan *base, const Targets &targets);
   void makeCamera(const Targets &targets);
   const ClassPlan *makePrimitive(const ClassPlan *base, const Targets &targets);
   const ClassPlan *makeLight(const Targets &targets);
   void makeMiss(const Targets &targets);
   Targets someOf(const Targets &targets);
-  const ClassPlan *makeMaterial(const ClassPlan *base,
-                                const Targets &targets);
+  const ClassPlan *makeMaterial(const ClassPlan *base, const Targets &targets);
   void addBsdf(ClassPlan &plan, Node &members);
   const ClassPlan *makeHelper(const ClassPlan *base);
   void addRecursion(ClassPlan &plan, Node &members);

@@ -2,9 +2,10 @@
 //
 //   rtsl-random-keep --first 0 --count 300
 //
-// Programs that are bound to a random world, as those of scenes are: with everything left out that the world does not need, with
-// everything kept (--keep=all), and one in three with one item kept. All must say the same, bit for bit. Beside its own classes each
-// has those of the next seed, which no object uses. Exit status: 0 all agree, 1 some do not, 2 wrong arguments.
+// Programs that are bound to a random world, as those of scenes are: with everything left out that
+// the world does not need, with everything kept (--keep=all), and one in three with one item kept.
+// All must say the same, bit for bit. Beside its own classes each has those of the next seed, which
+// no object uses. Exit status: 0 all agree, 1 some do not, 2 wrong arguments.
 //
 //===----------------------------------------------------------------------===//
 #include "Program.h"
@@ -45,12 +46,13 @@ public:
     std::string text = program.text() + unused.text();
     text = prelude(text) + text;
     unit = parse(sources.add("random.rtsl", std::move(text)), diagnostics);
-    module = check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
+    module =
+        check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
     if (diagnostics.hasErrors())
       return;
     request.classes = {program.camera, program.miss};
-    for (const auto *names : {&program.helpers, &program.textures, &program.lights, &program.primitives, &program.materials,
-                              &program.meshMaterials})
+    for (const auto *names : {&program.helpers, &program.textures, &program.lights,
+                              &program.primitives, &program.materials, &program.meshMaterials})
       request.classes.insert(request.classes.end(), names->begin(), names->end());
     request.surfaces = World::surfaces(program);
     request.features = RTSL_FEATURE_PRINT;
@@ -107,8 +109,8 @@ bool differs(Subject &subject, std::uint32_t seed) {
     const Words words = subject.run(kept, isSplit);
     for (std::size_t i = 0; i != leftOut.size(); ++i)
       if (leftOut[i] != words[i]) {
-        fmt::print("seed {}{}: word {} is {:08x}, and with --keep={} {:08x}\n", seed, isSplit ? ", split" : "", i, leftOut[i],
-                   name, words[i]);
+        fmt::print("seed {}{}: word {} is {:08x}, and with --keep={} {:08x}\n", seed,
+                   isSplit ? ", split" : "", i, leftOut[i], name, words[i]);
         return true;
       }
   }
@@ -118,7 +120,8 @@ bool differs(Subject &subject, std::uint32_t seed) {
 } // namespace
 
 int main(int argc, char **argv) {
-  CLI::App app("Random programs with everything left out that is not needed, and with it kept: they agree.");
+  CLI::App app(
+      "Random programs with everything left out that is not needed, and with it kept: they agree.");
   std::uint32_t first = 0, count = 30;
   app.add_option("--first", first, "the first seed")->capture_default_str();
   app.add_option("--count", count, "run so many seeds")->capture_default_str();

@@ -4,8 +4,8 @@
 //   rtsl-random --first 0 --count 500 --threads 8   runs programs on every usual path and compares
 //   rtsl-random ... --shrink                        and makes those that fail as small as they go
 //
-// Exit status: 0 all agree, 1 some do not (or of fifty programs and more less than half sent a ray that met something: then
-// hardly a material ran), 2 wrong arguments.
+// Exit status: 0 all agree, 1 some do not (or of fifty programs and more less than half sent a ray
+// that met something: then hardly a material ran), 2 wrong arguments.
 //
 //===----------------------------------------------------------------------===//
 #include "Shrink.h"
@@ -28,11 +28,13 @@ std::string kindOf(const Finding &finding) {
   std::string kind = name(finding.failure);
   if (finding.failure == Failure::Rejected || finding.failure == Failure::Fault ||
       finding.failure == Failure::Crash)
-    kind += finding.detail.substr(0, std::min<std::size_t>(finding.detail.find_first_of(":\n`"), 60));
+    kind +=
+        finding.detail.substr(0, std::min<std::size_t>(finding.detail.find_first_of(":\n`"), 60));
   return kind;
 }
 
-void shrinkAndWrite(const FailedSeed &failed, const RunOptions &options, const std::string &folder) {
+void shrinkAndWrite(const FailedSeed &failed, const RunOptions &options,
+                    const std::string &folder) {
   Program program = generate(failed.seed);
   RunOptions alone = options;
   alone.secondsLimit = std::min(options.secondsLimit, 60u); // a compiler of C++ takes its time
@@ -44,8 +46,8 @@ void shrinkAndWrite(const FailedSeed &failed, const RunOptions &options, const s
   const std::size_t before = sizeOf(*program.tree);
   shrink(program, [&](const Program &smaller) { return kindOf(runAlone(smaller, alone)) == kind; });
   const std::string body = program.text();
-  const std::string text = fmt::format("// seed {}: {}\n{}{}", failed.seed, name(failed.finding.failure),
-                                       prelude(body), body);
+  const std::string text = fmt::format("// seed {}: {}\n{}{}", failed.seed,
+                                       name(failed.finding.failure), prelude(body), body);
   const std::string path = fmt::format("{}/seed-{}.rtsl", folder, failed.seed);
   std::ofstream(path) << text;
   fmt::print("seed {}, shrunk from {} to {} nodes, {}: {}\n{}\n", failed.seed, before,
@@ -72,14 +74,19 @@ int main(int argc, char **argv) {
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
   std::vector<std::string> &wanted = options.paths.wanted;
-  app.add_option("--paths", wanted, "compare the first path with these: " +
-                                               fmt::format("{}", fmt::join(pathNames(), ", ")))
+  app.add_option("--paths", wanted,
+                 "compare the first path with these: " +
+                     fmt::format("{}", fmt::join(pathNames(), ", ")))
       ->delimiter(',');
-  app.add_option("--also", options.paths.also, "and with these, beside those that are taken if nobody asks")->delimiter(',');
-  app.add_option("--compiler", options.paths.cpp.compiler, "what makes programs of C++, with its options; empty: they are only printed")
+  app.add_option("--also", options.paths.also,
+                 "and with these, beside those that are taken if nobody asks")
+      ->delimiter(',');
+  app.add_option("--compiler", options.paths.cpp.compiler,
+                 "what makes programs of C++, with its options; empty: they are only printed")
       ->type_name("COMMAND")
       ->capture_default_str();
-  app.add_option("--keep-cpp", options.paths.cpp.keep, "where to leave the last file of C++ that was compiled");
+  app.add_option("--keep-cpp", options.paths.cpp.keep,
+                 "where to leave the last file of C++ that was compiled");
   app.add_option("--seconds", options.secondsLimit, "a batch that takes longer hangs")
       ->capture_default_str();
   app.add_flag("--shrink", makeSmaller, "make programs that fail smaller, print and write them");
@@ -117,7 +124,8 @@ int main(int argc, char **argv) {
     fmt::print("seed {}: {}: {}\n", one.seed, name(one.finding.failure), one.finding.detail);
   for (const auto &[reason, seeds] : results.refused)
     fmt::print("{} programs not run, such as seed {}, {}\n", seeds.size(), seeds.front(), reason);
-  fmt::print("{} programs, {} failed, in {} a ray met something\n", count, failed.size(), results.hit);
+  fmt::print("{} programs, {} failed, in {} a ray met something\n", count, failed.size(),
+             results.hit);
   std::fflush(stdout);
   if (makeSmaller)
     for (std::size_t i = 0; i != failed.size() && i != shrinkAtMost; ++i)

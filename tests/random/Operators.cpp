@@ -7,7 +7,8 @@ namespace rtsl::random {
 
 /// `op=` whose right side has the type of the left; null if there is none.
 const char *Generator::compoundOperator(const Type *type) {
-  static const char *const integers[] = {"+=", "-=", "*=", "/=", "%=", "<<=", ">>=", "&=", "|=", "^="};
+  static const char *const integers[] = {
+      "+=", "-=", "*=", "/=", "%=", "<<=", ">>=", "&=", "|=", "^="};
   const Type *scalar = type->scalar();
   if (type->isMatrix())
     return type->columns() == type->rows() && chance(30) ? "*=" : (chance(50) ? "+=" : "-=");
@@ -62,8 +63,8 @@ NodePtr Generator::vectorOperation(const Type *type, unsigned depth) {
     if (type->isVector() && !isInteger) { // linear algebra
       const bool columnOnTheRight = chance(50);
       const unsigned inner = 2 + below(3);
-      const Type *matrix = columnOnTheRight ? types.matrix(inner, type->count)
-                                            : types.matrix(type->count, inner);
+      const Type *matrix =
+          columnOnTheRight ? types.matrix(inner, type->count) : types.matrix(type->count, inner);
       const Type *vector = types.vector(types.floatType, inner);
       NodePtr a = expression(columnOnTheRight ? matrix : vector, depth - 1);
       return make(type, "($ * $)", std::move(a),
@@ -79,8 +80,8 @@ NodePtr Generator::vectorOperation(const Type *type, unsigned depth) {
     if (type->isVector() && chance(30))
       other = scalar;
     if (chance(10) && scalar != types.intType)
-      other = withScalar(other, scalar == types.floatType && chance(50) ? types.uintType
-                                                                        : types.intType);
+      other = withScalar(other,
+                         scalar == types.floatType && chance(50) ? types.uintType : types.intType);
     const bool swap = chance(50);
     const char *op = ops[below(4)];
     NodePtr a = expression(swap ? other : type, depth - 1);

@@ -22,7 +22,8 @@ const char *name(Failure failure) {
 namespace {
 
 using Compile = std::function<std::shared_ptr<const runtime::Program>(
-    const typed::Module &, const LinkRequest &, unsigned colorComponents, const PathOptions &, Diagnostics &)>;
+    const typed::Module &, const LinkRequest &, unsigned colorComponents, const PathOptions &,
+    Diagnostics &)>;
 
 /// One way from a checked module to a program that runs.
 struct Path {
@@ -30,14 +31,14 @@ struct Path {
   bool checked;    // indices out of range are defined
   bool forTracing; // says nothing new of programs that do not trace
   Compile compile;
-  bool isAsked = false; // only by name, for it takes long
-  bool renders = false; // whole pictures, and no single samples
+  bool isAsked = false;   // only by name, for it takes long
+  bool renders = false;   // whole pictures, and no single samples
   bool isPrinted = false; // and runs only if there is a compiler
 };
 
 Compile compileWith(const CompileOptions &options) {
-  return [options](const typed::Module &module, const LinkRequest &request, unsigned colorComponents,
-                   const PathOptions &, Diagnostics &diagnostics) {
+  return [options](const typed::Module &module, const LinkRequest &request,
+                   unsigned colorComponents, const PathOptions &, Diagnostics &diagnostics) {
     CompileOptions ofColors = options;
     ofColors.colorComponents = colorComponents;
     return compileProgram(module, request, ofColors, diagnostics);
@@ -70,14 +71,15 @@ Compile megakernel(unsigned optimization) {
 }
 
 Compile printed(bool checked, TraceMode trace) {
-  return [=](const typed::Module &module, const LinkRequest &request, unsigned colorComponents, const PathOptions &options,
-                 Diagnostics &diagnostics) {
-    return compilePrinted(module, trace, checked, request.features, colorComponents, options.cpp, diagnostics);
+  return [=](const typed::Module &module, const LinkRequest &request, unsigned colorComponents,
+             const PathOptions &options, Diagnostics &diagnostics) {
+    return compilePrinted(module, trace, checked, request.features, colorComponents, options.cpp,
+                          diagnostics);
   };
 }
 
-/// The first is what the others are compared with; the last that can run a program and is not only asked for is farthest
-/// from it, and the one that is taken when nobody asks for others.
+/// The first is what the others are compared with; the last that can run a program and is not only
+/// asked for is farthest from it, and the one that is taken when nobody asks for others.
 const std::vector<Path> &allPaths() {
   constexpr TraceMode recurse = TraceMode::Recurse, split = TraceMode::Split;
   static const std::vector<Path> paths = {
@@ -91,9 +93,12 @@ const std::vector<Path> &allPaths() {
       {"jit-O2-split-unchecked", false, true, jit(2, false, split)},
       {"megakernel-O0", true, false, megakernel(0), /*isAsked=*/true, /*renders=*/true},
       {"megakernel-O2", true, false, megakernel(2), /*isAsked=*/true, /*renders=*/true},
-      {"cpp-recurse", true, false, printed(true, recurse), /*isAsked=*/true, /*renders=*/false, /*isPrinted=*/true},
-      {"cpp-recurse-unchecked", false, false, printed(false, recurse), /*isAsked=*/true, /*renders=*/false, /*isPrinted=*/true},
-      {"cpp-split", true, true, printed(true, split), /*isAsked=*/true, /*renders=*/false, /*isPrinted=*/true},
+      {"cpp-recurse", true, false, printed(true, recurse), /*isAsked=*/true, /*renders=*/false,
+       /*isPrinted=*/true},
+      {"cpp-recurse-unchecked", false, false, printed(false, recurse), /*isAsked=*/true,
+       /*renders=*/false, /*isPrinted=*/true},
+      {"cpp-split", true, true, printed(true, split), /*isAsked=*/true, /*renders=*/false,
+       /*isPrinted=*/true},
   };
   return paths;
 }
@@ -104,15 +109,15 @@ std::vector<const Path *> choosePaths(const PathOptions &options, bool inRange, 
   for (const Path &path : allPaths())
     if ((inRange || path.checked) && (traces || !path.forTracing))
       possible.push_back(&path);
-  const Path *farthest =
-      *std::find_if(possible.rbegin(), possible.rend(), [](const Path *path) { return !path->isAsked; });
+  const Path *farthest = *std::find_if(possible.rbegin(), possible.rend(),
+                                       [](const Path *path) { return !path->isAsked; });
   auto names = [](const std::vector<std::string> &list, const Path *path) {
     return std::find(list.begin(), list.end(), path->name) != list.end();
   };
   std::vector<const Path *> chosen = {possible.front()};
   for (const Path *path : possible)
-    if (path != chosen.front() && ((options.wanted.empty() && path == farthest) || names(options.wanted, path) ||
-                                   names(options.also, path)))
+    if (path != chosen.front() && ((options.wanted.empty() && path == farthest) ||
+                                   names(options.wanted, path) || names(options.also, path)))
       chosen.push_back(path);
   return chosen;
 }
@@ -126,7 +131,8 @@ struct Checked {
     text = prelude(text) + text;
     diagnostics.errorLimit = 3;
     unit = parse(sources.add("random.rtsl", std::move(text)), diagnostics);
-    module = check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
+    module =
+        check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
     for (const Program *program : programs)
       for (auto &[primitive, material] : World::surfaces(*program))
         if ((primitive.empty() || module->findClass(primitive)) && module->findClass(material))
@@ -173,7 +179,8 @@ std::string difference(const Words &expected, const Words &got) {
     return fmt::format("{} words, not {}", got.size(), expected.size());
   for (std::size_t i = 0; i != expected.size(); ++i)
     if (expected[i] != got[i])
-      return fmt::format("word {} of {}: {:08x}, not {:08x}", i, expected.size(), got[i], expected[i]);
+      return fmt::format("word {} of {}: {:08x}, not {:08x}", i, expected.size(), got[i],
+                         expected[i]);
   return "";
 }
 
@@ -221,19 +228,21 @@ void Comparison::fail(const Numbers &which, Failure failure, const std::string &
     }
 }
 
-/// Nothing that a program does depends on what nobody has written: the first path has one pattern there, the others have
-/// another one, or what happens to be there.
+/// Nothing that a program does depends on what nobody has written: the first path has one pattern
+/// there, the others have another one, or what happens to be there.
 std::uint32_t Comparison::undefinedOn(const Path &path) const {
   if (&path == &allPaths().front())
     return RTSL_FEATURE_UNDEFINED_BYTES;
   return programs.front()->seed / 100 % 3 == 2 ? 0 : RTSL_FEATURE_UNDEFINED_NAN;
 }
 
-Comparison::Code Comparison::compile(const Path &path, Checked &checked, const PathOptions &how) const {
+Comparison::Code Comparison::compile(const Path &path, Checked &checked,
+                                     const PathOptions &how) const {
   if (checked.diagnostics.hasErrors())
     return nullptr;
   checked.request.features = RTSL_FEATURE_PRINT | undefinedOn(path);
-  return path.compile(*checked.module, checked.request, programs.front()->colorComponents, how, checked.diagnostics);
+  return path.compile(*checked.module, checked.request, programs.front()->colorComponents, how,
+                      checked.diagnostics);
 }
 
 Comparison::Numbers Comparison::takenBy(const Path &path, const Numbers &which) {
@@ -255,8 +264,10 @@ void Comparison::compare(const Path &path, const runtime::Program &code, std::si
   World world(code, *programs[number]);
   world.reverseOrder();
   const Words words = path.renders ? world.render() : world.run();
-  if (const std::string what = difference((path.renders ? pictures : samples)[number], words); !what.empty())
-    fail({number}, Failure::Mismatch, fmt::format("{} against {}: {}", path.name, allPaths().front().name, what));
+  if (const std::string what = difference((path.renders ? pictures : samples)[number], words);
+      !what.empty())
+    fail({number}, Failure::Mismatch,
+         fmt::format("{} against {}: {}", path.name, allPaths().front().name, what));
 }
 
 void Comparison::runPath(const Path &path, const Numbers &which) {
@@ -279,12 +290,14 @@ void Comparison::runPath(const Path &path, const Numbers &which) {
     else
       fail(which, Failure::Rejected, fmt::format("{}: {}", path.name, checked.errors()));
   } catch (const CompilerRefuses &refuses) {
-    fail(which, Failure::Rejected, fmt::format("{} does not compile: {}", path.name, refuses.message));
+    fail(which, Failure::Rejected,
+         fmt::format("{} does not compile: {}", path.name, refuses.message));
   }
 }
 
 void Comparison::runReference(const std::vector<const Path *> &paths, const Numbers &all) {
-  const bool renders = std::any_of(paths.begin(), paths.end(), [](const Path *path) { return path->renders; });
+  const bool renders =
+      std::any_of(paths.begin(), paths.end(), [](const Path *path) { return path->renders; });
   Checked checked(select(all));
   const Code code = compile(*paths.front(), checked, options);
   if (!code)
@@ -301,9 +314,12 @@ void Comparison::runReference(const std::vector<const Path *> &paths, const Numb
 std::vector<Finding> Comparison::run() {
   Numbers all(programs.size());
   std::iota(all.begin(), all.end(), std::size_t(0));
-  const std::vector<const Path *> paths = choosePaths(
-      options, std::all_of(programs.begin(), programs.end(), [](const Program *program) { return program->inRange; }),
-      std::any_of(programs.begin(), programs.end(), [](const Program *program) { return program->traces; }));
+  const std::vector<const Path *> paths =
+      choosePaths(options,
+                  std::all_of(programs.begin(), programs.end(),
+                              [](const Program *program) { return program->inRange; }),
+                  std::any_of(programs.begin(), programs.end(),
+                              [](const Program *program) { return program->traces; }));
   try {
     runReference(paths, all);
     for (std::size_t i = 1; i != paths.size() && samples.size() == all.size(); ++i)
@@ -330,7 +346,8 @@ std::vector<std::string> pathsOf(std::uint32_t seed, const PathOptions &options)
   return names;
 }
 
-std::vector<Finding> compare(const std::vector<const Program *> &programs, const PathOptions &options) {
+std::vector<Finding> compare(const std::vector<const Program *> &programs,
+                             const PathOptions &options) {
   return Comparison(programs, options).run();
 }
 

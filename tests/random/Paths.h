@@ -35,11 +35,13 @@ struct PathOptions {
   CppOptions cpp;
 };
 
-/// Runs the programs, compiled together, on every wanted path that can run them, and compares with the
-/// first path. One finding a program; a Rejected or Fault of the whole stands at all of them.
-std::vector<Finding> compare(const std::vector<const Program *> &programs, const PathOptions &options);
+/// Runs the programs, compiled together, on every wanted path that can run them, and compares with
+/// the first path. One finding a program; a Rejected or Fault of the whole stands at all of them.
+std::vector<Finding> compare(const std::vector<const Program *> &programs,
+                             const PathOptions &options);
 
-/// The names of the paths on which the program of a seed runs: those that share them can be compiled together.
+/// The names of the paths on which the program of a seed runs: those that share them can be
+/// compiled together.
 std::vector<std::string> pathsOf(std::uint32_t seed, const PathOptions &options);
 
 std::vector<std::string> pathNames();

@@ -62,8 +62,7 @@ NodePtr Generator::index(const std::string &count) {
   if (chance(50))
     return makeNode(Role::Fixed, "uint($) % " + (isNumber ? count + "u" : "uint(" + count + ")"),
                     expression(types.intType, 1));
-  return makeNode(Role::Fixed,
-                  "int($ % " + (isNumber ? count + "u" : "uint(" + count + ")") + ")",
+  return makeNode(Role::Fixed, "int($ % " + (isNumber ? count + "u" : "uint(" + count + ")") + ")",
                   expression(types.uintType, 1));
 }
 
@@ -153,9 +152,9 @@ NodePtr Generator::referenceTo(const ClassPlan **plan, bool texture) {
   *plan = reference.target;
   if (reference.count == 0 && !reference.isBuffer)
     return makeNode(Role::Fixed, reference.text);
-  return makeNode(Role::Fixed, reference.text + "[$]",
-                  index(reference.isBuffer ? reference.text + ".length()"
-                                           : std::to_string(reference.count)));
+  return makeNode(
+      Role::Fixed, reference.text + "[$]",
+      index(reference.isBuffer ? reference.text + ".length()" : std::to_string(reference.count)));
 }
 
 } // namespace rtsl::random

@@ -50,7 +50,8 @@ std::string readFile(const std::filesystem::path &path) {
   return text.str();
 }
 
-/// Runs a command, which ends with this process at the latest; its messages go to a file. Its exit status.
+/// Runs a command, which ends with this process at the latest; its messages go to a file. Its exit
+/// status.
 int run(std::vector<std::string> words, const std::filesystem::path &messages) {
   std::vector<char *> arguments;
   for (std::string &word : words)
@@ -86,8 +87,10 @@ std::string firstError(const std::string &messages) {
 } // namespace
 
 std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &module, TraceMode trace,
-                                                       bool checkIndices, std::uint32_t features, unsigned colorComponents,
-                                                       const CppOptions &cpp, Diagnostics &diagnostics) {
+                                                       bool checkIndices, std::uint32_t features,
+                                                       unsigned colorComponents,
+                                                       const CppOptions &cpp,
+                                                       Diagnostics &diagnostics) {
   CompileOptions options;
   options.colorComponents = colorComponents;
   options.checkIndices = checkIndices;
@@ -108,7 +111,8 @@ std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &modu
   std::istringstream words(cpp.compiler);
   for (std::string word; words >> word;)
     command.push_back(word);
-  for (const char *word : {"-std=c++17", "-fPIC", "-shared", "-I" RTSL_SOURCE_FOLDER, "-I" RTSL_SOURCE_FOLDER "/include"})
+  for (const char *word : {"-std=c++17", "-fPIC", "-shared", "-I" RTSL_SOURCE_FOLDER,
+                           "-I" RTSL_SOURCE_FOLDER "/include"})
     command.emplace_back(word);
   command.insert(command.end(), {source, "-o", library});
   if (run(command, folder.path / "messages") != 0)
@@ -118,7 +122,8 @@ std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &modu
   void *opened = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!opened)
     throw std::runtime_error(fmt::format("cannot load printed C++: {}", dlerror()));
-  const auto shaders = reinterpret_cast<const RtslShaders *(*)()>(dlsym(opened, "programs_shaders"));
+  const auto shaders =
+      reinterpret_cast<const RtslShaders *(*)()>(dlsym(opened, "programs_shaders"));
   if (!shaders)
     throw std::runtime_error(fmt::format("printed C++ has no programs_shaders: {}", dlerror()));
   return program(shaders());

@@ -24,7 +24,8 @@ struct Program {
   /// The objects of the scene, by class; what refers to others stands behind them.
   std::vector<std::string> helpers, textures, lights, primitives, materials;
   std::string camera, miss; // miss may be empty
-  std::vector<std::string> meshMaterials; // those that ask nothing of a primitive that meshes have not
+  // those that ask nothing of a primitive that meshes have not
+  std::vector<std::string> meshMaterials;
 
   std::string text() const { return toText(*tree); }
 };

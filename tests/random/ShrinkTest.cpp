@@ -28,8 +28,8 @@ TEST(Random, ProgramsAreValidAndTheSameEveryTime) {
   }
 }
 
-// An oracle that is broken on purpose: it calls every program wrong that holds `construct`. What is left is
-// little more than that.
+// An oracle that is broken on purpose: it calls every program wrong that holds `construct`. What is
+// left is little more than that.
 TEST(Random, ShrinkingLeavesWhatFails) {
   unsigned shrunk = 0;
   for (std::uint32_t seed = 0; seed != 60 && shrunk != 5; ++seed) {

@@ -174,8 +174,9 @@ NodePtr Generator::loop(unsigned depth) {
     NodePtr body = block(1 + below(3), depth - 1);
     const std::string head = "for (int " + name + " = 0; " + name + limit;
     const std::string step = chance(50) ? "; ++" + name + ") {$}" : "; " + name + "++) {$}";
-    made = extra ? makeNode(Role::Statement, head + " && $" + step, std::move(extra), std::move(body))
-                 : makeNode(Role::Statement, head + step, std::move(body));
+    made = extra
+               ? makeNode(Role::Statement, head + " && $" + step, std::move(extra), std::move(body))
+               : makeNode(Role::Statement, head + step, std::move(body));
     break;
   }
   case 1: {
@@ -199,8 +200,7 @@ NodePtr Generator::loop(unsigned depth) {
   default: {
     const char *head = chance(50) ? "for (;;)" : "while (true)";
     made = makeNode(Role::Statement,
-                    std::string(head) + " { if (" + name +
-                        "++ >= " + bound + ") break; {$} }",
+                    std::string(head) + " { if (" + name + "++ >= " + bound + ") break; {$} }",
                     block(1 + below(3), depth - 1));
     break;
   }
@@ -216,8 +216,9 @@ NodePtr Generator::loop(unsigned depth) {
 NodePtr Generator::switchStatement(unsigned depth) {
   const Type *type = chance(60) ? types.intType : types.uintType;
   NodePtr value = expression(type, 2);
-  NodePtr node = makeNode(Role::Statement, type == types.intType ? "switch ($ % 5) {" : "switch ($ % 5u) {",
-                          std::move(value));
+  NodePtr node =
+      makeNode(Role::Statement, type == types.intType ? "switch ($ % 5) {" : "switch ($ % 5u) {",
+               std::move(value));
   const unsigned arms = 1 + below(3);
   const unsigned defaultArm = below(arms + 2);
   ++context.switches;
@@ -255,7 +256,9 @@ NodePtr Generator::jump() {
 
 /// Ends `anyHit` for some hits, from a function that it calls too.
 NodePtr Generator::answer() {
-  return makeNode(Role::Statement, chance(50) ? "if ($) ignoreIntersection();" : "if ($) terminateRay();", condition(2));
+  return makeNode(Role::Statement,
+                  chance(50) ? "if ($) ignoreIntersection();" : "if ($) terminateRay();",
+                  condition(2));
 }
 
 NodePtr Generator::illuminance(unsigned depth) {
@@ -280,10 +283,11 @@ NodePtr Generator::illuminance(unsigned depth) {
   context = outer;
   context.traces = traces;
   if (isOne && axis)
-    return makeNode(Role::Statement, "if (illuminate($, $, ($).x > 0.0)) {$}", std::move(number), std::move(point),
-                    std::move(axis), std::move(body));
+    return makeNode(Role::Statement, "if (illuminate($, $, ($).x > 0.0)) {$}", std::move(number),
+                    std::move(point), std::move(axis), std::move(body));
   if (isOne)
-    return makeNode(Role::Statement, "if (illuminate($, $)) {$}", std::move(number), std::move(point), std::move(body));
+    return makeNode(Role::Statement, "if (illuminate($, $)) {$}", std::move(number),
+                    std::move(point), std::move(body));
   if (!axis)
     return makeNode(Role::Statement, "illuminance ($) {$}", std::move(point), std::move(body));
   return makeNode(Role::Statement, "illuminance ($, $, $) {$}", std::move(point), std::move(axis),
@@ -311,8 +315,9 @@ NodePtr Generator::payloadRay() {
       }
     }
   }
-  NodePtr ray = makeNode(Role::Statement, "trace($, $, $, $, $" + more + ");", std::move(origin), std::move(direction),
-                         std::move(tMin), std::move(tMax), std::move(payload));
+  NodePtr ray =
+      makeNode(Role::Statement, "trace($, $, $, $, $" + more + ");", std::move(origin),
+               std::move(direction), std::move(tMin), std::move(tMax), std::move(payload));
   for (NodePtr &value : values)
     ray->children.push_back(std::move(value));
   return ray;

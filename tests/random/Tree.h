@@ -43,6 +43,8 @@ NodePtr makeNode(Role role, std::string text, Children... children) {
   (node->children.push_back(std::move(children)), ...);
   return node;
 }
-inline NodePtr makeList() { return makeNode(Role::List, ""); }
+inline NodePtr makeList() {
+  return makeNode(Role::List, "");
+}
 
 } // namespace rtsl::random

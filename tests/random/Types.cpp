@@ -6,7 +6,9 @@
 
 namespace rtsl::random {
 
-const Type *Generator::numericScalar() { return vocabulary.scalars[below(3)]; }
+const Type *Generator::numericScalar() {
+  return vocabulary.scalars[below(3)];
+}
 
 const Type *Generator::withScalar(const Type *shape, const Type *scalar) {
   return rtsl::withScalar(shape, scalar, types);
@@ -44,7 +46,9 @@ const Type *Generator::anyType() {
   return type;
 }
 
-bool Generator::hasColor(const Type *type) const { return contains(type, TypeKind::Color); }
+bool Generator::hasColor(const Type *type) const {
+  return contains(type, TypeKind::Color);
+}
 
 const Type *Generator::structure(std::vector<typed::Field> fields, unsigned more) {
   while (more-- > 0) {
@@ -60,7 +64,8 @@ const Type *Generator::structure(std::vector<typed::Field> fields, unsigned more
   const Type *type = vocabulary.structure(name, std::move(fields));
   // Constructors give every field, so a field cannot simply be deleted.
   list->role = Role::List;
-  program.tree->children.push_back(makeNode(Role::Fixed, "struct " + name + " {$};", std::move(list)));
+  program.tree->children.push_back(
+      makeNode(Role::Fixed, "struct " + name + " {$};", std::move(list)));
   return type;
 }
 

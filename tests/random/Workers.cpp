@@ -37,8 +37,8 @@ void write(int pipe, const std::string &text) {
   }
 }
 
-/// A finding is a letter for the failure, a large one if a ray met something, and two texts with a zero behind each: the
-/// detail, and why a path refused the program.
+/// A finding is a letter for the failure, a large one if a ray met something, and two texts with a
+/// zero behind each: the detail, and why a path refused the program.
 void report(int pipe, const std::vector<Finding> &findings) {
   std::string text;
   for (const Finding &finding : findings) {
@@ -104,7 +104,8 @@ bool read(Worker &worker) {
   return true;
 }
 
-std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds, const PathOptions &options) {
+std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds,
+                                  const PathOptions &options) {
   std::vector<Program> programs;
   for (std::uint32_t seed : seeds)
     programs.push_back(generate(seed));
@@ -115,11 +116,13 @@ std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds, const
 }
 
 /// Programs of a kind share a compilation: those that run on the same paths, with the same colors.
-std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count, const RunOptions &options) {
+std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count,
+                                                   const RunOptions &options) {
   std::deque<std::vector<std::uint32_t>> batches;
   std::map<std::pair<std::vector<std::string>, unsigned>, std::vector<std::uint32_t>> kinds;
   for (std::uint32_t seed = first; seed != first + count; ++seed) {
-    std::vector<std::uint32_t> &batch = kinds[{pathsOf(seed, options.paths), colorComponents(seed)}];
+    std::vector<std::uint32_t> &batch =
+        kinds[{pathsOf(seed, options.paths), colorComponents(seed)}];
     batch.push_back(seed);
     if (batch.size() == options.batch)
       batches.push_back(std::exchange(batch, {}));

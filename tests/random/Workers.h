@@ -10,7 +10,7 @@ namespace rtsl::random {
 
 struct RunOptions {
   unsigned processes = 1;
-  unsigned batch = 20;       // programs in one compilation
+  unsigned batch = 20;        // programs in one compilation
   unsigned secondsLimit = 60; // for one batch
   PathOptions paths;
 };
@@ -23,7 +23,8 @@ struct FailedSeed {
 struct Results {
   std::vector<FailedSeed> failed; // by seed
   std::size_t hit = 0;            // programs in which some ray met something
-  std::map<std::string, std::vector<std::uint32_t>> refused; // seeds that a path could not take yet, by reason
+  // seeds that a path could not take yet, by reason
+  std::map<std::string, std::vector<std::uint32_t>> refused;
 };
 
 /// Runs the programs of `count` seeds from `first` on. What crashes takes only its process along; a

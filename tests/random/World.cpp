@@ -1,9 +1,9 @@
 //===- World.cpp - a small scene that a random program runs in ------------===//
 #include "World.h"
 
-#include "runtime/program/PrintLog.h"
 #include "runtime/device/traverse/AnyHit.h"
 #include "runtime/device/traverse/Traverse.h"
+#include "runtime/program/PrintLog.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,8 @@ using rtsl::runtime::ValueType;
 
 /// All that was printed, as one number.
 static std::uint32_t printed = 0;
-static std::vector<std::uint32_t> formats; // of the program that runs, each as a number that every path gives it
+// of the program that runs, each as a number that every path gives it
+static std::vector<std::uint32_t> formats;
 static std::uint32_t raysThatHit = 0;
 
 static void note(std::uint32_t format, const std::uint32_t *words, std::size_t count) {
@@ -32,7 +33,8 @@ static void note(std::uint32_t format, const std::uint32_t *words, std::size_t c
     add(words[i]);
 }
 
-extern "C" void rtsl_print(RtslState *, std::uint32_t format, const std::uint32_t *words, std::uint32_t count) {
+extern "C" void rtsl_print(RtslState *, std::uint32_t format, const std::uint32_t *words,
+                           std::uint32_t count) {
   note(formats.at(format), words, count);
 }
 
@@ -68,7 +70,8 @@ extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
   const std::uint32_t answer =
       how & RTSL_ASK_ANY_HIT
           ? rtsl::device::traverseAsking(*state, how, rtsl::runtime::FilledSlots{slots})
-          : rtsl::device::traverseDevice(*state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect);
+          : rtsl::device::traverseDevice(*state, how & RTSL_FIRST_HIT,
+                                         slots.rt_Primitive_intersect);
   raysThatHit += answer == RTSL_HIT;
   return answer;
 }
@@ -81,7 +84,8 @@ static std::uint64_t stackBytes = 0;
 extern "C" void *rtsl_machine_stack(std::uint64_t bytes) {
   std::free(stackMemory);
   bytes = (bytes + 15) / 16 * 16;
-  stackMemory = static_cast<std::uint8_t *>(std::aligned_alloc(64, (bytes + guardBytes + 63) / 64 * 64));
+  stackMemory =
+      static_cast<std::uint8_t *>(std::aligned_alloc(64, (bytes + guardBytes + 63) / 64 * 64));
   std::memset(stackMemory, 0xa5, bytes + guardBytes);
   stackBytes = bytes;
   return stackMemory;
@@ -203,7 +207,8 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
     const ClassInfo *info = code.find(name);
     if (!info) // left out on the way to a smaller program
       continue;
-    const std::uint32_t key = mix(program.seed, hashOf(name) + static_cast<std::uint32_t>(objects.size()));
+    const std::uint32_t key =
+        mix(program.seed, hashOf(name) + static_cast<std::uint32_t>(objects.size()));
     const auto reference = static_cast<RtslRef>(4 * used);
     used += (info->recordSize + 15) / 16 * 4;
     auto *record = reinterpret_cast<std::uint8_t *>(records.data()) + reference;
@@ -213,7 +218,8 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
     if (info->initialize)
       info->initialize(&state, reference);
     for (const MemberInfo &member : info->members)
-      if (member.isPublic && (!member.hasDefault || key & 1 || member.type.bufferRank != 0)) // none is empty by chance
+      if (member.isPublic &&
+          (!member.hasDefault || key & 1 || member.type.bufferRank != 0)) // none is empty by chance
         fill(member.type, record + member.offset, mix(key, hashOf(member.name)));
     if (info->construct) {
       std::vector<std::uint32_t> arguments(info->parameterSize / 4 + 1);
@@ -246,7 +252,8 @@ void World::describeMaterial(RtslInstance &instance, const ClassInfo &material) 
   instance.anyHit = material.anyHit;
 }
 
-/// One in three is not there for some rays. Its bounds are what the primitive says, and never used to cull it.
+/// One in three is not there for some rays. Its bounds are what the primitive says, and never used
+/// to cull it.
 void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
   if (instance.primitive != 0 && code.slots.rt_Primitive_computeBounds) {
     RtslState state{};
@@ -269,7 +276,8 @@ void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
 
 /// Three triangles round where rays begin.
 static RtslMesh someMesh() {
-  static const float positions[] = {-2, -1, 0.7f, 2, -1, 0.7f, 0, 2, 0.7f, 0.9f, -3, -3, 0.9f, 3, -3, 0.9f, 0, 3};
+  static const float positions[] = {-2,   -1, 0.7f, 2,    -1, 0.7f, 0,    2, 0.7f,
+                                    0.9f, -3, -3,   0.9f, 3,  -3,   0.9f, 0, 3};
   static const float uvs[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
   static const std::uint32_t indices[] = {0, 1, 2, 3, 4, 5, 0, 4, 2};
   RtslMesh mesh{};
@@ -285,7 +293,8 @@ World::World(const runtime::Program &code, const Program &program)
     : code(code), program(program), host{code.slots}, mesh(someMesh()) {
   std::size_t words = used;
   std::vector<std::string> all = {program.camera, program.miss};
-  for (const auto *names : {&program.helpers, &program.textures, &program.lights, &program.primitives, &program.materials})
+  for (const auto *names : {&program.helpers, &program.textures, &program.lights,
+                            &program.primitives, &program.materials})
     all.insert(all.end(), names->begin(), names->end());
   for (const std::string &name : all)
     if (const ClassInfo *info = code.find(name))
@@ -312,8 +321,8 @@ World::World(const runtime::Program &code, const Program &program)
       addInstance(instance, 1 + static_cast<std::uint32_t>(i) % 2);
     }
     for (const Object &object : objects)
-      if (std::find(program.meshMaterials.begin(), program.meshMaterials.end(), object.info->name) !=
-          program.meshMaterials.end()) {
+      if (std::find(program.meshMaterials.begin(), program.meshMaterials.end(),
+                    object.info->name) != program.meshMaterials.end()) {
         RtslInstance instance{};
         instance.material = object.reference;
         instance.firstPrimitive = static_cast<std::uint32_t>(2 * count);
@@ -345,7 +354,8 @@ World::World(const runtime::Program &code, const Program &program)
 }
 
 World::World(const runtime::Program &bound, const World &made)
-    : code(bound), program(made.program), host{bound.slots}, instances(made.instances), mesh(made.mesh), launch(made.launch) {
+    : code(bound), program(made.program), host{bound.slots}, instances(made.instances),
+      mesh(made.mesh), launch(made.launch) {
   for (RtslInstance &instance : instances) {
     for (const Object &object : made.objects)
       if (object.reference == instance.material)
@@ -396,7 +406,9 @@ static void begin(const runtime::Program &code) {
     formats.push_back(hashOf(format));
 }
 
-static std::uint32_t wordOf(float component) { return std::isnan(component) ? 0x7fc00000u : bitsOf(component); }
+static std::uint32_t wordOf(float component) {
+  return std::isnan(component) ? 0x7fc00000u : bitsOf(component);
+}
 
 /// A state of a ray that hit something, with the bits of its variables made from a number.
 static RtslState someState(const RtslLaunch &launch, RtslEvents &events, std::uint32_t key) {
@@ -412,7 +424,8 @@ static RtslState someState(const RtslLaunch &launch, RtslEvents &events, std::ui
   };
 #define RTSL_STATE_VARIABLE(name, type) fill(&state.name, sizeof state.name);
 #include "language/StateVariables.def"
-  std::fill_n(state.attributes, RTSL_MAX_ATTRIBUTE_WORDS, 1u); // true, 1 or nearly 0, wherever the compiler put which
+  std::fill_n(state.attributes, RTSL_MAX_ATTRIBUTE_WORDS,
+              1u); // true, 1 or nearly 0, wherever the compiler put which
   return state;
 }
 
@@ -430,18 +443,20 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
     };
     note(state.BSDFValue, code.colorComponents);
     note(state.EmissionColor, code.colorComponents);
-    for (const float *vector : {state.LightDirection, state.HitPoint, state.GeometricNormal, state.BoundMin, state.BoundMax})
+    for (const float *vector : {state.LightDirection, state.HitPoint, state.GeometricNormal,
+                                state.BoundMin, state.BoundMax})
       note(vector, 3);
     note(&state.PDF, 1);
     words.push_back(printed);
   };
   for (std::uint32_t number = 0; number != 2; ++number) {
     for (RtslRef material : materials)
-      for (Method method : {slots.rt_Material_sampleBSDF, slots.rt_Material_BSDF, slots.rt_Material_evaluatePDF,
-                            slots.rt_Material_emission})
+      for (Method method : {slots.rt_Material_sampleBSDF, slots.rt_Material_BSDF,
+                            slots.rt_Material_evaluatePDF, slots.rt_Material_emission})
         call(method, material, number);
     for (RtslRef primitive : primitives)
-      for (Method method : {slots.rt_Primitive_generateSample, slots.rt_Primitive_samplePDF, slots.rt_Primitive_computeBounds})
+      for (Method method : {slots.rt_Primitive_generateSample, slots.rt_Primitive_samplePDF,
+                            slots.rt_Primitive_computeBounds})
         call(method, primitive, number);
   }
 }
@@ -470,7 +485,8 @@ void World::renderByLane(std::vector<float> &pixels) {
   RtslJob job{};
   job.launch = &launch;
   job.status = &status;
-  job.laneBytes = (code.megakernel.laneBytes(launch.maxDepth, launch.referenceChain) + 15) / 16 * 16;
+  job.laneBytes =
+      (code.megakernel.laneBytes(launch.maxDepth, launch.referenceChain) + 15) / 16 * 16;
   job.lanes = static_cast<std::uint8_t *>(rtsl_machine_stack(job.laneBytes));
   job.pixels = pixels.data();
   job.samplesPerPixel = 1;
@@ -484,7 +500,8 @@ void World::renderBySample(std::vector<float> &pixels) {
     float *color = &pixels[pixel * code.colorComponents];
     code.sample(&launch, pixel % launch.width, pixel / launch.width, 0, color);
     checkGuard();
-    if (!std::all_of(color, color + code.colorComponents, [](float component) { return std::isfinite(component); }))
+    if (!std::all_of(color, color + code.colorComponents,
+                     [](float component) { return std::isfinite(component); }))
       std::fill_n(color, code.colorComponents, 0.0f);
     for (unsigned i = 0; i != code.colorComponents; ++i)
       color[i] += 0.0f; // of a sum of samples, which is never -0
@@ -496,7 +513,8 @@ std::vector<std::uint32_t> World::render() {
   std::vector<std::uint32_t> words;
   for (std::uint32_t depth : {0u, 2u}) {
     launch.maxDepth = depth;
-    std::vector<float> pixels(static_cast<std::size_t>(launch.width) * launch.height * code.colorComponents);
+    std::vector<float> pixels(static_cast<std::size_t>(launch.width) * launch.height *
+                              code.colorComponents);
     if (code.megakernel.runLane)
       renderByLane(pixels);
     else

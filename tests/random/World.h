@@ -17,7 +17,8 @@ namespace rtsl::random {
 class World {
 public:
   World(const runtime::Program &code, const Program &program);
-  /// The world that `made` is, with a program that is bound to it. `made` stays, for its objects are used.
+  /// The world that `made` is, with a program that is bound to it. `made` stays, for its objects
+  /// are used.
   World(const runtime::Program &bound, const World &made);
   World(const World &) = delete;
 
@@ -28,10 +29,11 @@ public:
   runtime::SceneFacts facts() const;
 
   /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
-  /// are one), and what was printed until then. Behind them what methods leave that only the host calls.
+  /// are one), and what was printed until then. Behind them what methods leave that only the host
+  /// calls.
   std::vector<std::uint32_t> run();
-  /// The colors of a picture as whoever renders it makes it of one sample a pixel: a color that is not
-  /// finite is black. With it, what was printed until its end. The program may be a megakernel.
+  /// The colors of a picture as whoever renders it makes it of one sample a pixel: a color that is
+  /// not finite is black. With it, what was printed until its end. The program may be a megakernel.
   std::vector<std::uint32_t> render();
   /// Has some ray met something, so that a material ran?
   bool hitSomething() const;
@@ -45,7 +47,8 @@ private:
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void addInstance(RtslInstance instance, std::uint32_t primitives);
   void describeMaterial(RtslInstance &instance, const runtime::ClassInfo &material) const;
-  std::uint32_t needsOf(const runtime::ClassInfo &info, std::set<const runtime::ClassInfo *> &seen) const;
+  std::uint32_t needsOf(const runtime::ClassInfo &info,
+                        std::set<const runtime::ClassInfo *> &seen) const;
   RtslRef choose(const std::string &className, std::uint32_t key) const;
   bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
 

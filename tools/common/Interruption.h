@@ -5,8 +5,8 @@
 
 namespace rtsl::tool {
 
-/// From now on the first SIGINT or SIGTERM sets the flag that comes back, for renderings to stop at;
-/// the second ends the process at once.
+/// From now on the first SIGINT or SIGTERM sets the flag that comes back, for renderings to stop
+/// at; the second ends the process at once.
 const std::atomic<bool> *catchInterruptions();
 
 /// "SIGINT" or "SIGTERM"; null if neither has come.

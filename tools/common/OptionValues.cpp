@@ -16,8 +16,8 @@ std::string joined(const std::vector<std::string> &words) {
 
 void refuseWord(const std::string &option, const std::string &text,
                 const std::vector<std::string> &words) {
-  throw CLI::ValidationError(
-      option, fmt::format("`{}` is none of {}", text, fmt::join(words, ", ")));
+  throw CLI::ValidationError(option,
+                             fmt::format("`{}` is none of {}", text, fmt::join(words, ", ")));
 }
 
 CLI::Option *addChoice(CLI::App &command, const std::string &option, std::string &target,

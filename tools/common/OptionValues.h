@@ -18,7 +18,8 @@
 namespace rtsl::tool {
 
 /// The words of an option, each with what it stands for.
-template <typename Value> using Choices = std::vector<std::pair<std::string, Value>>;
+template <typename Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
 
 /// "a|b|c"
 std::string joined(const std::vector<std::string> &words);

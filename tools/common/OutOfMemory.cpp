@@ -36,7 +36,8 @@ const char *name = "";
 } // namespace
 
 bool isOutOfMemory(const std::exception &error) {
-  if (dynamic_cast<const std::bad_alloc *>(&error) || dynamic_cast<const std::length_error *>(&error))
+  if (dynamic_cast<const std::bad_alloc *>(&error) ||
+      dynamic_cast<const std::length_error *>(&error))
     return true;
   if (const auto *ours = dynamic_cast<const Error *>(&error))
     return ours->code == ErrorCode::OutOfMemory;

@@ -8,9 +8,10 @@
 namespace rtsl::tool {
 
 std::string notFiniteText(const runtime::RenderStatistics &statistics) {
-  std::string text = fmt::format("{} of {} samples were infinite or not a number, and are left out of "
-                                 "the means of their pixels",
-                                 statistics.samplesNotFinite, statistics.samples);
+  std::string text =
+      fmt::format("{} of {} samples were infinite or not a number, and are left out of "
+                  "the means of their pixels",
+                  statistics.samplesNotFinite, statistics.samples);
   if (statistics.pixelsWithoutSample)
     text += fmt::format("; {} pixels have no other samples and are black",
                         statistics.pixelsWithoutSample);
@@ -32,11 +33,12 @@ std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options) {
   const double pixels = double(options.width) * options.height;
   const char *const signal = interruption();
-  return fmt::format("stopped by {} after {:.1f} % of the samples: {} of {:.0f} pixels are done, and "
-                     "black is where nothing is",
-                     signal ? signal : "the caller",
-                     100 * double(statistics.samples) / (pixels * options.samplesPerPixel),
-                     statistics.pixels, pixels);
+  return fmt::format(
+      "stopped by {} after {:.1f} % of the samples: {} of {:.0f} pixels are done, and "
+      "black is where nothing is",
+      signal ? signal : "the caller",
+      100 * double(statistics.samples) / (pixels * options.samplesPerPixel), statistics.pixels,
+      pixels);
 }
 
 } // namespace rtsl::tool

@@ -12,7 +12,9 @@
 
 namespace rtsl::tool {
 
-void printOut(std::string_view text) { writeFileAtomically("-", text); }
+void printOut(std::string_view text) {
+  writeFileAtomically("-", text);
+}
 
 bool finishOutput(const char *program) {
   errno = 0;

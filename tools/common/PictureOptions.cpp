@@ -13,10 +13,12 @@ namespace {
 PictureSize parseSize(const std::string &text) {
   unsigned width = 0, height = 0;
   int used = 0;
-  const bool isSize = text.size() < 32 && std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) == 2 &&
+  const bool isSize = text.size() < 32 &&
+                      std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) == 2 &&
                       static_cast<std::size_t>(used) == text.size();
   if (!isSize || width < 1 || height < 1 || width > 65536 || height > 65536)
-    throw CLI::ValidationError("--size", "give WIDTHxHEIGHT in pixels, each from 1 to 65536, such as 960x540");
+    throw CLI::ValidationError(
+        "--size", "give WIDTHxHEIGHT in pixels, each from 1 to 65536, such as 960x540");
   return {width, height};
 }
 
@@ -42,10 +44,13 @@ void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFo
 void checkPictureName(const std::string &output, runtime::PictureFormat format) {
   const std::size_t dot = output.find_last_of("./");
   const bool hasEnding = dot != std::string::npos && output[dot] == '.';
-  const std::string ending = hasEnding ? CLI::detail::to_lower(output.substr(dot + 1)) : std::string();
-  if (format == runtime::PictureFormat::ByName && output != "-" && ending != "png" && ending != "exr")
-    throw CLI::ValidationError("--output", "a picture's name ends in .png or .exr, unless --format says what `" + output +
-                                               "` is to be");
+  const std::string ending =
+      hasEnding ? CLI::detail::to_lower(output.substr(dot + 1)) : std::string();
+  if (format == runtime::PictureFormat::ByName && output != "-" && ending != "png" &&
+      ending != "exr")
+    throw CLI::ValidationError(
+        "--output", "a picture's name ends in .png or .exr, unless --format says what `" + output +
+                        "` is to be");
 }
 
 } // namespace rtsl::tool

@@ -20,7 +20,8 @@ void Progress::update(double share) {
   constexpr int width = 30;
   const int filled = static_cast<int>(share * width);
   const double elapsed = std::chrono::duration<double>(now - start).count();
-  const std::string left = share > 0.01 ? fmt::format("{:.0f} s left", elapsed / share - elapsed) : "";
+  const std::string left =
+      share > 0.01 ? fmt::format("{:.0f} s left", elapsed / share - elapsed) : "";
   fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %  {}", what, std::string(filled, '#'),
              std::string(width - filled, '.'), share * 100, left);
   std::fflush(stderr);

@@ -7,10 +7,10 @@
 
 #include "codegen/explain/ReportJson.h"
 #include "codegen/explain/ReportText.h"
-#include "codegen/passes/continuation/suspend/CutJoins.h"
-#include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/Split.h"
+#include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/states/Steps.h"
+#include "codegen/passes/continuation/suspend/CutJoins.h"
 
 #include "mlir/Pass/Pass.h"
 #include "mlir/Pass/PassRegistry.h"
@@ -57,12 +57,18 @@ RTSL_FUNCTION_STEP(LastTracesPass, "rtsl-last-traces",
 struct CutJoinsPass : FunctionStep<CutJoinsPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(CutJoinsPass)
   static constexpr llvm::StringLiteral argument = "rtsl-cut-joins";
-  static constexpr llvm::StringLiteral description = "gives code that many states would copy a state of its own";
+  static constexpr llvm::StringLiteral description =
+      "gives code that many states would copy a state of its own";
   CutJoinsPass() = default;
   CutJoinsPass(const CutJoinsPass &other) : FunctionStep(other) {}
-  Option<unsigned> free{*this, "free", llvm::cl::desc("copies of operations that are always fine"), llvm::cl::init(4000)};
-  Option<unsigned> copies{*this, "copies", llvm::cl::desc("so many times the function's operations are fine"), llvm::cl::init(4)};
-  Option<unsigned> shortest{*this, "shortest", llvm::cl::desc("operations between two cuts, at least"), llvm::cl::init(16)};
+  Option<unsigned> free{*this, "free", llvm::cl::desc("copies of operations that are always fine"),
+                        llvm::cl::init(4000)};
+  Option<unsigned> copies{*this, "copies",
+                          llvm::cl::desc("so many times the function's operations are fine"),
+                          llvm::cl::init(4)};
+  Option<unsigned> shortest{*this, "shortest",
+                            llvm::cl::desc("operations between two cuts, at least"),
+                            llvm::cl::init(16)};
   mlir::LogicalResult step(FuncOp function) {
     JoinOptions options;
     options.free = free;
@@ -146,7 +152,8 @@ struct InlineTracingPass : ModuleStep<InlineTracingPass> {
 struct TrimPayloadsPass : ModuleStep<TrimPayloadsPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(TrimPayloadsPass)
   static constexpr llvm::StringLiteral argument = "rtsl-trim-payloads";
-  static constexpr llvm::StringLiteral description = "takes fields out of payloads that nobody reads";
+  static constexpr llvm::StringLiteral description =
+      "takes fields out of payloads that nobody reads";
   mlir::LogicalResult step(mlir::ModuleOp module) {
     trimPayloads(module);
     return mlir::success();

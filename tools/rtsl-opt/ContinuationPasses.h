@@ -3,8 +3,8 @@
 
 namespace rtsl {
 
-/// Makes the steps of codegen/passes/continuation known to a command line, each under its own name, and all together as
-/// `--rtsl-split`.
+/// Makes the steps of codegen/passes/continuation known to a command line, each under its own name,
+/// and all together as `--rtsl-split`.
 void registerContinuationPasses();
 
 } // namespace rtsl

@@ -6,9 +6,9 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
-#include "tools/rtsl-opt/ContinuationPasses.h"
 #include "codegen/passes/errors/BoundHitError.h"
 #include "codegen/passes/restructure/Restructure.h"
+#include "tools/rtsl-opt/ContinuationPasses.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlow.h"

@@ -1,16 +1,16 @@
 //===- Main.cpp - rtsl-run, which renders packages ------------------------===//
 //
 // A program without a compiler in it: it renders what `rtslc pack` wrote, on a GPU or on the CPU.
-// Exit status: 0 fine, 1 the package, the device or the picture is not as it must be, or there is no
-// memory or disk, 2 wrong arguments, 3 a fault of rtsl-run or of the code in the package; 130 and 143
-// if SIGINT or SIGTERM stopped it.
+// Exit status: 0 fine, 1 the package, the device or the picture is not as it must be, or there is
+// no memory or disk, 2 wrong arguments, 3 a fault of rtsl-run or of the code in the package; 130
+// and 143 if SIGINT or SIGTERM stopped it.
 //
 //===----------------------------------------------------------------------===//
-#include "support/AtomicFile.h"
-#include "runtime/render/HostMegakernel.h"
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
+#include "runtime/render/HostMegakernel.h"
+#include "support/AtomicFile.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/OutOfMemory.h"
@@ -61,28 +61,35 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
 std::string notFiniteJson(const std::vector<runtime::SampleId> &samples) {
   std::string text;
   for (const runtime::SampleId &one : samples)
-    text += fmt::format("{}{{\"pixel\": [{}, {}], \"sample\": {}}}", text.empty() ? "" : ", ", one.x, one.y, one.sample);
+    text += fmt::format("{}{{\"pixel\": [{}, {}], \"sample\": {}}}", text.empty() ? "" : ", ",
+                        one.x, one.y, one.sample);
   return "[" + text + "]";
 }
 
 std::string toJson(const runtime::Package &package, const runtime::RenderOptions &render,
-                   const runtime::RenderStatistics &statistics, const std::optional<runtime::GpuStatistics> &gpu) {
+                   const runtime::RenderStatistics &statistics,
+                   const std::optional<runtime::GpuStatistics> &gpu) {
   std::string text = fmt::format(
       "{{\"version\": 1, \"size\": [{}, {}], \"spp\": {}, \"seed\": {}, \"depth\": {},\n"
-      " \"renderSeconds\": {}, \"samplesPerSecond\": {}, \"samples\": {}, \"pixels\": {}, \"badRays\": {},\n"
-      " \"raysTooDeep\": {}, \"samplesNotFinite\": {}, \"pixelsWithoutSample\": {}, \"notFinite\": {},\n"
+      " \"renderSeconds\": {}, \"samplesPerSecond\": {}, \"samples\": {}, \"pixels\": {}, "
+      "\"badRays\": {},\n"
+      " \"raysTooDeep\": {}, \"samplesNotFinite\": {}, \"pixelsWithoutSample\": {}, \"notFinite\": "
+      "{},\n"
       " \"states\": {}, \"frameBytes\": {}, \"laneBytes\": {}",
-      render.width, render.height, render.samplesPerPixel, render.seed, render.maxDepth, statistics.renderSeconds,
-      double(statistics.samples) / statistics.renderSeconds, statistics.samples, statistics.pixels, statistics.badRays,
-      statistics.raysTooDeep, statistics.samplesNotFinite, statistics.pixelsWithoutSample,
-      notFiniteJson(statistics.notFinite), package.stateCount, package.frameBytes, package.laneBytes[render.maxDepth]);
+      render.width, render.height, render.samplesPerPixel, render.seed, render.maxDepth,
+      statistics.renderSeconds, double(statistics.samples) / statistics.renderSeconds,
+      statistics.samples, statistics.pixels, statistics.badRays, statistics.raysTooDeep,
+      statistics.samplesNotFinite, statistics.pixelsWithoutSample,
+      notFiniteJson(statistics.notFinite), package.stateCount, package.frameBytes,
+      package.laneBytes[render.maxDepth]);
   if (statistics.isUnfinished)
     text += fmt::format(",\n \"stoppedBy\": \"{}\"", tool::interruption());
   if (gpu)
-    text += fmt::format(",\n \"registers\": {}, \"localBytes\": {}, \"blocks\": {}, \"threadsPerBlock\": {},\n"
-                        " \"loadSeconds\": {}, \"uploadSeconds\": {}",
-                        gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->loadSeconds,
-                        gpu->uploadSeconds);
+    text += fmt::format(
+        ",\n \"registers\": {}, \"localBytes\": {}, \"blocks\": {}, \"threadsPerBlock\": {},\n"
+        " \"loadSeconds\": {}, \"uploadSeconds\": {}",
+        gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->loadSeconds,
+        gpu->uploadSeconds);
   return text + "}\n";
 }
 
@@ -100,39 +107,44 @@ void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics 
     fmt::print(stderr, "{}\n", tool::tooDeepText(statistics, render));
 }
 
-void report(const Options &options, const runtime::Package &package, const runtime::RenderOptions &render,
-            const runtime::RenderStatistics &statistics, const std::optional<runtime::GpuStatistics> &gpu) {
+void report(const Options &options, const runtime::Package &package,
+            const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics,
+            const std::optional<runtime::GpuStatistics> &gpu) {
   warn(render, statistics);
   if (options.json)
     return tool::printOut(toJson(package, render, statistics, gpu));
   if (options.quiet)
     return;
   fmt::print(stderr, "{}: {}x{}, {} spp; rendered in {:.3f} s ({:.2f} million samples/s)\n",
-             options.output == "-" ? "standard output" : options.output, render.width, render.height,
-             render.samplesPerPixel, statistics.renderSeconds,
+             options.output == "-" ? "standard output" : options.output, render.width,
+             render.height, render.samplesPerPixel, statistics.renderSeconds,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (gpu)
     fmt::print(stderr,
-               "{}: {} registers and {} local bytes a thread, {} blocks of {} threads, {} bytes for the rays of "
+               "{}: {} registers and {} local bytes a thread, {} blocks of {} threads, {} bytes "
+               "for the rays of "
                "each; code loaded in {:.0f} ms, scene in {:.0f} ms\n",
-               gpu->device, gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->laneBytes,
-               gpu->loadSeconds * 1e3, gpu->uploadSeconds * 1e3);
+               gpu->device, gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock,
+               gpu->laneBytes, gpu->loadSeconds * 1e3, gpu->uploadSeconds * 1e3);
   if (statistics.badRays)
-    fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n", statistics.badRays);
+    fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n",
+               statistics.badRays);
 }
 
-/// The picture to compare with, before time is spent on another one; nothing if that is not asked for.
+/// The picture to compare with, before time is spent on another one; nothing if that is not asked
+/// for.
 std::optional<runtime::Image> readReference(const Options &options, const runtime::Package &package,
                                             const runtime::RenderOptions &render) {
   if (options.reference.empty())
     return std::nullopt;
   runtime::Image reference = runtime::readImage(options.reference);
   const std::uint32_t channels = package.scene.launch().colorComponents;
-  if (reference.width != render.width || reference.height != render.height || reference.channels != channels)
+  if (reference.width != render.width || reference.height != render.height ||
+      reference.channels != channels)
     throw Error(ErrorCode::BadImage,
-                         fmt::format("`{}` has {}x{} pixels of {} channels, not {}x{} of {}", options.reference,
-                                     reference.width, reference.height, reference.channels, render.width, render.height,
-                                     channels));
+                fmt::format("`{}` has {}x{} pixels of {} channels, not {}x{} of {}",
+                            options.reference, reference.width, reference.height,
+                            reference.channels, render.width, render.height, channels));
   return reference;
 }
 
@@ -141,7 +153,8 @@ bool compare(const runtime::Image &image, const runtime::Image &reference, const
   std::size_t different = 0;
   const std::size_t channels = image.channels, count = image.pixels.size() / channels;
   for (std::size_t i = 0; i < count; ++i)
-    different += std::memcmp(&image.pixels[i * channels], &reference.pixels[i * channels], 4 * channels) != 0;
+    different += std::memcmp(&image.pixels[i * channels], &reference.pixels[i * channels],
+                             4 * channels) != 0;
   if (different == 0)
     fmt::print(stderr, "the bits of `{}`, all {} pixels\n", options.reference, count);
   else
@@ -175,9 +188,11 @@ int render(const Options &options) {
 
 void addOptions(CLI::App &app, Options &options) {
   app.set_version_flag("-V,--version", "rtsl-run " RTSL_VERSION);
-  app.add_option("PACKAGE", options.package, "what `rtslc pack` wrote; - is standard input")->required();
+  app.add_option("PACKAGE", options.package, "what `rtslc pack` wrote; - is standard input")
+      ->required();
   tool::addPictureOption(app, options.output, options.format);
-  tool::addChoice(app, "--target", options.target, tool::Choices<Target>{{"gpu", Target::Gpu}, {"host", Target::Host}},
+  tool::addChoice(app, "--target", options.target,
+                  tool::Choices<Target>{{"gpu", Target::Gpu}, {"host", Target::Host}},
                   "where to render: gpu, the first CUDA device; host, all cores");
   tool::addWhole(app, "--spp", options.samples, 1, runtime::mostSamplesPerPixel, "samples a pixel");
   tool::addSizeOption(app, options.size);
@@ -188,13 +203,16 @@ void addOptions(CLI::App &app, Options &options) {
                  "threads of the host; all cores if not given");
   tool::addWhole(app, "--registers", options.registers, 16, 255,
                  "let the GPU's driver use no more registers a thread than this");
-  app.add_option("--compare", options.reference, "a picture that must have the same bits; exit status 1: it has not")
+  app.add_option("--compare", options.reference,
+                 "a picture that must have the same bits; exit status 1: it has not")
       ->type_name("IMAGE");
   app.add_flag("--json", options.json, "write times and counts to standard output as JSON");
   app.add_flag("-q,--quiet", options.quiet, "no summary");
   app.footer("example:\n  rtsl-run glass.rtslpkg -o glass.png --target=host --spp 64\n"
-             "Exit status: 0 fine, 1 the package, the device or a file is not as it must be, or no memory or disk,\n"
-             "2 wrong arguments, 3 a fault of the program; 130 and 143: SIGINT (Ctrl-C) or SIGTERM stopped it.");
+             "Exit status: 0 fine, 1 the package, the device or a file is not as it must be, or no "
+             "memory or disk,\n"
+             "2 wrong arguments, 3 a fault of the program; 130 and 143: SIGINT (Ctrl-C) or SIGTERM "
+             "stopped it.");
   app.callback([&options] {
     tool::checkPictureName(options.output, options.format);
     if (options.json && options.output == "-")
@@ -224,7 +242,8 @@ int main(int argc, char **argv) {
     fmt::print(stderr, "rtsl-run: {}\n", error.what());
     if (error.code == ErrorCode::NoDevice)
       fmt::print(stderr, "`--target=host` renders on the CPU\n");
-    return tool::statusAfterInterruption(error.code == ErrorCode::Internal ? InternalError : Refused);
+    return tool::statusAfterInterruption(error.code == ErrorCode::Internal ? InternalError
+                                                                           : Refused);
   } catch (const std::exception &error) {
     if (tool::isOutOfMemory(error)) {
       tool::sayOutOfMemory("rtsl-run");

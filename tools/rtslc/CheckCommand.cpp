@@ -25,8 +25,8 @@ std::string count(std::size_t number, const char *noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
-/// Writes the mended texts back, all of them or, if one cannot be written, none. What came from standard input goes to
-/// standard output.
+/// Writes the mended texts back, all of them or, if one cannot be written, none. What came from
+/// standard input goes to standard output.
 void writeFixes(const Messages &messages) {
   const std::vector<FileId> files = filesToFix(messages.diagnostics);
   const auto path = [&](FileId file) { return std::string(messages.sources.name(file)); };
@@ -37,21 +37,24 @@ void writeFixes(const Messages &messages) {
     const FixedText fixed = applyFixes(messages.diagnostics, file);
     writeFileAtomically(path(file) == "<stdin>" ? "-" : path(file), fixed.text);
     fmt::print(stderr, "{}: {} fixed", path(file), count(fixed.applied, "mistake"));
-    fmt::print(stderr, fixed.skipped ? ", {} left that overlap with these: run again\n" : "\n", fixed.skipped);
+    fmt::print(stderr, fixed.skipped ? ", {} left that overlap with these: run again\n" : "\n",
+               fixed.skipped);
   }
 }
 
-/// Everything that happens to a scene before it is rendered: its shaders are checked and linked, its objects made.
-void checkScene(const std::string &file, const CheckOptions &options, SceneBuilder buildScene, Messages &messages,
-                std::vector<std::string> &filesRead) {
+/// Everything that happens to a scene before it is rendered: its shaders are checked and linked,
+/// its objects made.
+void checkScene(const std::string &file, const CheckOptions &options, SceneBuilder buildScene,
+                Messages &messages, std::vector<std::string> &filesRead) {
   const scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
+  const std::unique_ptr<typed::Module> module =
+      loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
   filesRead = withMeshes(description, filesRead);
   std::optional<runtime::Scene> scene;
-  emitScene(*module, linkRequest(description), Stage::Ir, options.common.compile, messages.diagnostics,
-            [&](const auto &constructors) {
+  emitScene(*module, linkRequest(description), Stage::Ir, options.common.compile,
+            messages.diagnostics, [&](const auto &constructors) {
               scene = buildScene(description, constructors);
               return scene->facts();
             });
@@ -60,8 +63,10 @@ void checkScene(const std::string &file, const CheckOptions &options, SceneBuild
       messages.report(warning);
 }
 
-/// All that is wrong with scenes and, checked together, with RTSL files. Gives the files that were read.
-std::vector<std::string> checkFiles(const CheckOptions &options, SceneBuilder buildScene, Messages &messages) {
+/// All that is wrong with scenes and, checked together, with RTSL files. Gives the files that were
+/// read.
+std::vector<std::string> checkFiles(const CheckOptions &options, SceneBuilder buildScene,
+                                    Messages &messages) {
   std::vector<std::string> sources, filesRead;
   for (const std::string &file : options.files) {
     if (!isScene(file)) {
@@ -111,16 +116,20 @@ void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   CLI::App *command = app.add_subcommand("check", "look for mistakes in RTSL files and scenes");
   command
       ->add_option("FILE", options->files,
-                   "RTSL files, which are checked together; - is standard input; and scenes (.json), each with its shaders")
+                   "RTSL files, which are checked together; - is standard input; and scenes "
+                   "(.json), each with its shaders")
       ->required();
-  command->add_flag("--fix", options->fix, "apply the fixes that are sure, and write the files back");
+  command->add_flag("--fix", options->fix,
+                    "apply the fixes that are sure, and write the files back");
   addSetOption(*command, options->overrides);
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addMessageOptions(*command, options->common);
-  command->footer("examples:\n  rtslc check --diagnostics=json Glass.rtsl Sphere.rtsl\n  rtslc check scene.json");
+  command->footer("examples:\n  rtslc check --diagnostics=json Glass.rtsl Sphere.rtsl\n  rtslc "
+                  "check scene.json");
   command->callback([options, buildScene, &action] {
-    if (!options->overrides.empty() && std::none_of(options->files.begin(), options->files.end(), isScene))
+    if (!options->overrides.empty() &&
+        std::none_of(options->files.begin(), options->files.end(), isScene))
       throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
     action = [options, buildScene] { return check(*options, buildScene); };
   });

@@ -1,13 +1,13 @@
 //===- CommandLine.cpp - what the commands of rtslc share -----------------===//
 #include "CommandLine.h"
 
+#include "codegen/driver/LlvmErrors.h"
+#include "runtime/device/ray/Abi.h"
+#include "support/ClosestName.h"
+#include "support/Error.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/OutOfMemory.h"
 #include "tools/common/Output.h"
-#include "codegen/driver/LlvmErrors.h"
-#include "support/Error.h"
-#include "runtime/device/ray/Abi.h"
-#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 
@@ -55,7 +55,8 @@ std::string withoutLimit(const std::string &text, std::uint32_t &largeLiveState)
   if (text.rfind(name + "=", 0) != 0)
     return text;
   const std::string digits = text.substr(name.size() + 1);
-  if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos)
+  if (digits.empty() || digits.size() > 9 ||
+      digits.find_first_not_of("0123456789") != std::string::npos)
     throw CLI::ValidationError("-W" + text, "give a number of bytes");
   largeLiveState = static_cast<std::uint32_t>(std::stoul(digits));
   return name;
@@ -71,7 +72,8 @@ void applyWarning(const std::string &text, WarningOptions &warnings) {
 }
 
 bool hasCommand(const CLI::App &app, const std::string &name) {
-  const std::vector<const CLI::App *> commands = app.get_subcommands([](const CLI::App *) { return true; });
+  const std::vector<const CLI::App *> commands =
+      app.get_subcommands([](const CLI::App *) { return true; });
   return std::any_of(commands.begin(), commands.end(),
                      [&](const CLI::App *command) { return command->get_name() == name; });
 }
@@ -79,10 +81,12 @@ bool hasCommand(const CLI::App &app, const std::string &name) {
 } // namespace
 
 void addMessageOptions(CLI::App &command, CommonOptions &options) {
-  addChoice(command, "--diagnostics", options.jsonDiagnostics, Choices<bool>{{"text", false}, {"json", true}},
+  addChoice(command, "--diagnostics", options.jsonDiagnostics,
+            Choices<bool>{{"text", false}, {"json", true}},
             "how messages are written to standard error");
   addChoice(command, "--ansi", options.ansi, {"auto", "always", "never"}, "colour in messages");
-  addWhole(command, "--error-limit", options.errorLimit, 0, 1000000, "stop showing errors after this many; 0 shows all");
+  addWhole(command, "--error-limit", options.errorLimit, 0, 1000000,
+           "stop showing errors after this many; 0 shows all");
   command
       .add_option_function<std::vector<std::string>>(
           "-W",
@@ -90,7 +94,8 @@ void addMessageOptions(CLI::App &command, CommonOptions &options) {
             for (const std::string &text : texts)
               applyWarning(withoutLimit(text, options.compile.largeLiveState), options.warnings);
           },
-          "turn a warning on, or off with no-NAME; NAME can be all or perf; error[=NAME] makes them errors; "
+          "turn a warning on, or off with no-NAME; NAME can be all or perf; error[=NAME] makes "
+          "them errors; "
           "live-state=BYTES says how much is much; -Whelp lists them")
       ->type_name("NAME")
       ->allow_extra_args(false)
@@ -130,27 +135,35 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
           "what a color is made of")
       ->type_name("rgb|mono|spectral:N|N");
   addChoice(command, "--fp", options.compile.floatingPoint,
-            Choices<FloatingPoint>{
-                {"strict", FloatingPoint::Strict}, {"fast", FloatingPoint::Fast}, {"double", FloatingPoint::Double}},
-            "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and reassociation; double, "
+            Choices<FloatingPoint>{{"strict", FloatingPoint::Strict},
+                                   {"fast", FloatingPoint::Fast},
+                                   {"double", FloatingPoint::Double}},
+            "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and "
+            "reassociation; double, "
             "shaders compute in double on this machine");
   command.add_flag_callback(
       "--unchecked", [&options] { options.compile.checkIndices = false; },
       "trust array and buffer indices: one out of range is then undefined");
   addChoice(command, "--trace", options.compile.trace,
             Choices<TraceMode>{{"recurse", TraceMode::Recurse}, {"split", TraceMode::Split}},
-            "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU. If not given: recurse; of "
+            "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU. If "
+            "not given: recurse; of "
             "C++ split, if it can be printed so");
-  addChoice(command, "--save", options.compile.savesAllThatIsLive, Choices<bool>{{"needed", false}, {"live", true}},
-            "what states save across a `trace`: needed, and rematerialise cheap values; live, all live values, to compare with");
+  addChoice(command, "--save", options.compile.savesAllThatIsLive,
+            Choices<bool>{{"needed", false}, {"live", true}},
+            "what states save across a `trace`: needed, and rematerialise cheap values; live, all "
+            "live values, to compare with");
   addChoice(command, "--gpu-arch", options.compile.gpu,
             {"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"},
             "the oldest NVIDIA GPU that PTX is for; sm_75 if not given");
-  addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation of machine code")->type_name("LEVEL");
+  addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation of machine code")
+      ->type_name("LEVEL");
   addChoice(command, "--undefined", options.compile.undefined,
-            Choices<std::uint32_t>{
-                {"leave", 0}, {"bytes", RTSL_FEATURE_UNDEFINED_BYTES}, {"nan", RTSL_FEATURE_UNDEFINED_NAN}},
-            "state that nobody has written: leave it, or fill it with a pattern, on which no picture depends. For tests");
+            Choices<std::uint32_t>{{"leave", 0},
+                                   {"bytes", RTSL_FEATURE_UNDEFINED_BYTES},
+                                   {"nan", RTSL_FEATURE_UNDEFINED_NAN}},
+            "state that nobody has written: leave it, or fill it with a pattern, on which no "
+            "picture depends. For tests");
 }
 
 namespace {

@@ -25,7 +25,8 @@ namespace rtsl::tool {
 /// How a run ends, for scripts.
 enum ExitStatus : int {
   Fine = 0,
-  Diagnosed = 1,     // errors in what the user gave: source, scene, mesh, image; or no memory or disk for it
+  Diagnosed =
+      1, // errors in what the user gave: source, scene, mesh, image; or no memory or disk for it
   Usage = 2,         // arguments that make no sense
   InternalError = 3, // a fault of rtslc itself
 };
@@ -55,30 +56,40 @@ struct Summary {
   const char *text;
 };
 constexpr Summary renderSummary = {"render", "compile a scene's shaders and render it"};
-constexpr Summary reportSummary = {"report", "measure error against run time, in each configuration"};
-constexpr Summary packSummary = {"pack", "write a scene with its compiled code to one file, for rtsl-run"};
-constexpr Summary compareSummary = {"compare", "say how far two pictures are apart (exit status 1: too far)"};
+constexpr Summary reportSummary = {"report",
+                                   "measure error against run time, in each configuration"};
+constexpr Summary packSummary = {"pack",
+                                 "write a scene with its compiled code to one file, for rtsl-run"};
+constexpr Summary compareSummary = {"compare",
+                                    "say how far two pictures are apart (exit status 1: too far)"};
 
 /// What a command does once the arguments are read; gives the exit status.
 using Action = std::function<int()>;
 
-/// Makes a scene's objects: scene::buildScene. Null in rtslc, which hands over whatever binds a program to a scene.
-using SceneBuilder = runtime::Scene (*)(const scene::SceneDescription &, std::shared_ptr<const runtime::Program>);
+/// Makes a scene's objects: scene::buildScene. Null in rtslc, which hands over whatever binds a
+/// program to a scene.
+using SceneBuilder = runtime::Scene (*)(const scene::SceneDescription &,
+                                        std::shared_ptr<const runtime::Program>);
 
 /// Renders with items left out and kept: measureItems. Null in rtslc, too.
 struct MeasureRequest;
 struct ItemMeasurement;
-using ItemMeasurer = std::optional<std::vector<ItemMeasurement>> (*)(const MeasureRequest &, Diagnostics &);
+using ItemMeasurer = std::optional<std::vector<ItemMeasurement>> (*)(const MeasureRequest &,
+                                                                     Diagnostics &);
 
 void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure);
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
+                       ItemMeasurer measure);
 void addRenderCommand(CLI::App &app, Action &action);
 void addReportCommand(CLI::App &app, Action &action);
 void addPackCommand(CLI::App &app, Action &action);
 void addCompareCommand(CLI::App &app, Action &action);
 
-/// Does `first`, reads the arguments and does what they ask for. Gives the exit status, whatever is thrown.
-int run(CLI::App &app, Action &action, int argc, char **argv, const std::function<void()> &first = [] {});
+/// Does `first`, reads the arguments and does what they ask for. Gives the exit status, whatever is
+/// thrown.
+int run(
+    CLI::App &app, Action &action, int argc, char **argv,
+    const std::function<void()> &first = [] {});
 
 } // namespace rtsl::tool

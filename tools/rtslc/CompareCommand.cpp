@@ -1,11 +1,11 @@
 //===- CompareCommand.cpp - rtslc compare ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "tools/common/OptionValues.h"
-#include "tools/common/Output.h"
 #include "report/ErrorMetrics.h"
 #include "report/Flip.h"
 #include "runtime/image/Image.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/Output.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,8 +18,10 @@ namespace rtsl::tool {
 namespace {
 
 enum class Metric : std::uint8_t { Rmse, RelMse, Flip, FlipHdr };
-const Choices<Metric> metrics = {
-    {"rmse", Metric::Rmse}, {"relmse", Metric::RelMse}, {"flip", Metric::Flip}, {"flip-hdr", Metric::FlipHdr}};
+const Choices<Metric> metrics = {{"rmse", Metric::Rmse},
+                                 {"relmse", Metric::RelMse},
+                                 {"flip", Metric::Flip},
+                                 {"flip-hdr", Metric::FlipHdr}};
 
 struct CompareOptions {
   CommonOptions common;
@@ -38,10 +40,14 @@ struct Comparison {
 
   double value(Metric metric) const {
     switch (metric) {
-    case Metric::Rmse: return error.rmse;
-    case Metric::RelMse: return error.relMse;
-    case Metric::Flip: return flip;
-    case Metric::FlipHdr: return flipHdr;
+    case Metric::Rmse:
+      return error.rmse;
+    case Metric::RelMse:
+      return error.relMse;
+    case Metric::Flip:
+      return flip;
+    case Metric::FlipHdr:
+      return flipHdr;
     }
     return std::numeric_limits<double>::infinity();
   }
@@ -57,7 +63,8 @@ std::vector<double> meansOf(const runtime::Image &image) {
   return sums;
 }
 
-Comparison comparePictures(const runtime::Image &reference, const runtime::Image &test, const CompareOptions &options) {
+Comparison comparePictures(const runtime::Image &reference, const runtime::Image &test,
+                           const CompareOptions &options) {
   Comparison comparison;
   comparison.error = report::measureError(reference, test);
   const runtime::Image a = runtime::toRgb(reference), b = runtime::toRgb(test);
@@ -66,33 +73,37 @@ Comparison comparePictures(const runtime::Image &reference, const runtime::Image
     comparison.flip = report::flip(a, b).mean();
     comparison.flipHdr = report::flipHdr(a, b, comparison.exposures).mean();
   }
-  // A threshold of 0 asks for the same bits; a difference that is not a number is never small enough.
-  comparison.isEqualEnough =
-      options.threshold == 0 ? comparison.error.pixelsThatDiffer == 0
-                             : comparison.error.incomparable == 0 && comparison.value(options.metric) <= options.threshold;
+  // A threshold of 0 asks for the same bits; a difference that is not a number is never small
+  // enough.
+  comparison.isEqualEnough = options.threshold == 0
+                                 ? comparison.error.pixelsThatDiffer == 0
+                                 : comparison.error.incomparable == 0 &&
+                                       comparison.value(options.metric) <= options.threshold;
   return comparison;
 }
 
-void printJson(const CompareOptions &options, const Comparison &comparison, const runtime::Image &reference,
-               const runtime::Image &test) {
+void printJson(const CompareOptions &options, const Comparison &comparison,
+               const runtime::Image &reference, const runtime::Image &test) {
   const report::ErrorMetrics &error = comparison.error;
-  const nlohmann::ordered_json document = {
-      {"version", 2},
-      {"size", {test.width, test.height}},
-      {"means", {meansOf(reference), meansOf(test)}},
-      {"rmse", error.rmse},
-      {"relMse", error.relMse},
-      {"bias", error.bias},
-      {"largest", error.largest},
-      {"flip", comparison.flip},
-      {"flipHdr", comparison.flipHdr},
-      {"exposures", {{"first", comparison.exposures.first}, {"last", comparison.exposures.last}, {"count", comparison.exposures.count}}},
-      {"pixelsThatDiffer", error.pixelsThatDiffer},
-      {"incomparablePixels", error.incomparable},
-      {"nanPixels", error.nanPixels},
-      {"infinitePixels", error.infinitePixels},
-      {"threshold", options.threshold},
-      {"equalEnough", comparison.isEqualEnough}};
+  const nlohmann::ordered_json document = {{"version", 2},
+                                           {"size", {test.width, test.height}},
+                                           {"means", {meansOf(reference), meansOf(test)}},
+                                           {"rmse", error.rmse},
+                                           {"relMse", error.relMse},
+                                           {"bias", error.bias},
+                                           {"largest", error.largest},
+                                           {"flip", comparison.flip},
+                                           {"flipHdr", comparison.flipHdr},
+                                           {"exposures",
+                                            {{"first", comparison.exposures.first},
+                                             {"last", comparison.exposures.last},
+                                             {"count", comparison.exposures.count}}},
+                                           {"pixelsThatDiffer", error.pixelsThatDiffer},
+                                           {"incomparablePixels", error.incomparable},
+                                           {"nanPixels", error.nanPixels},
+                                           {"infinitePixels", error.infinitePixels},
+                                           {"threshold", options.threshold},
+                                           {"equalEnough", comparison.isEqualEnough}};
   printOut(document.dump(2) + "\n");
 }
 
@@ -102,16 +113,19 @@ void printText(const Comparison &comparison) {
     printOut("the pictures are the same, bit for bit\n");
     return;
   }
-  std::string text = fmt::format(
-      "RMSE      {:.6g}\nrelMSE    {:.6g}\nbias      {:+.6g}\nlargest   {:.6g}\nFLIP      {:.6g}\nHDR-FLIP  {:.6g} ({} "
-      "exposures, {:+.2f} to {:+.2f} stops)\n{} pixels differ\n",
-      error.rmse, error.relMse, error.bias, error.largest, comparison.flip, comparison.flipHdr, comparison.exposures.count,
-      comparison.exposures.first, comparison.exposures.last, error.pixelsThatDiffer);
+  std::string text =
+      fmt::format("RMSE      {:.6g}\nrelMSE    {:.6g}\nbias      {:+.6g}\nlargest   {:.6g}\nFLIP   "
+                  "   {:.6g}\nHDR-FLIP  {:.6g} ({} "
+                  "exposures, {:+.2f} to {:+.2f} stops)\n{} pixels differ\n",
+                  error.rmse, error.relMse, error.bias, error.largest, comparison.flip,
+                  comparison.flipHdr, comparison.exposures.count, comparison.exposures.first,
+                  comparison.exposures.last, error.pixelsThatDiffer);
   if (error.nanPixels || error.infinitePixels)
-    text += fmt::format("of the second picture, {} pixels are not a number and {} infinite\n", error.nanPixels,
-                        error.infinitePixels);
+    text += fmt::format("of the second picture, {} pixels are not a number and {} infinite\n",
+                        error.nanPixels, error.infinitePixels);
   if (error.incomparable)
-    text += fmt::format("{} pixels are not finite in one picture or both, and differ: no figure above counts them\n",
+    text += fmt::format("{} pixels are not finite in one picture or both, and differ: no figure "
+                        "above counts them\n",
                         error.incomparable);
   printOut(text);
 }
@@ -138,10 +152,14 @@ int compare(const CompareOptions &options) {
 void addCompareCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App *command = app.add_subcommand(compareSummary.command, compareSummary.text);
-  command->add_option("REFERENCE", options->reference, "a picture, .png or .exr; - is standard input")->required();
+  command
+      ->add_option("REFERENCE", options->reference, "a picture, .png or .exr; - is standard input")
+      ->required();
   command->add_option("TEST", options->test, "another of the same size")->required();
-  addNotNegative(*command, "--threshold", options->threshold, "largest error that passes; 0: the same bits");
-  addChoice(*command, "--metric", options->metric, metrics, "the error that the threshold limits; rmse if not given");
+  addNotNegative(*command, "--threshold", options->threshold,
+                 "largest error that passes; 0: the same bits");
+  addChoice(*command, "--metric", options->metric, metrics,
+            "the error that the threshold limits; rmse if not given");
   command->add_flag("--json", options->json, "write the figures as JSON");
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc compare embree.exr device.exr --threshold 1e-4");

@@ -1,7 +1,6 @@
 //===- CompileCommand.cpp - rtslc compile ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "tools/common/OptionValues.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
 #include "codegen/cpp/EmitCpp.h"
@@ -9,6 +8,7 @@
 #include "codegen/driver/Reflection.h"
 #include "frontend/syntax/Parser.h"
 #include "support/AtomicFile.h"
+#include "tools/common/OptionValues.h"
 
 #include <algorithm>
 #include <memory>
@@ -18,16 +18,16 @@ namespace rtsl::tool {
 namespace {
 
 const Choices<Stage> stages = {{"preprocessed", Stage::Preprocessed},
-                                             {"ast", Stage::Ast},
-                                             {"typed-ast", Stage::TypedAst},
-                                             {"ir", Stage::Ir},
-                                             {"ssa", Stage::Ssa},
-                                             {"split", Stage::Split},
-                                             {"structured", Stage::Structured},
-                                             {"llvm", Stage::Llvm},
-                                             {"ptx", Stage::Ptx},
-                                             {"cpp", Stage::Cpp},
-                                             {"reflection", Stage::Reflection}};
+                               {"ast", Stage::Ast},
+                               {"typed-ast", Stage::TypedAst},
+                               {"ir", Stage::Ir},
+                               {"ssa", Stage::Ssa},
+                               {"split", Stage::Split},
+                               {"structured", Stage::Structured},
+                               {"llvm", Stage::Llvm},
+                               {"ptx", Stage::Ptx},
+                               {"cpp", Stage::Cpp},
+                               {"reflection", Stage::Reflection}};
 
 struct CompileCommandOptions {
   CommonOptions common;
@@ -41,10 +41,13 @@ struct CompileCommandOptions {
 };
 
 /// The text of the asked stage of a whole scene; nothing if there were errors.
-std::optional<std::string> translateScene(const CompileCommandOptions &options, SceneBuilder buildScene, Messages &messages,
+std::optional<std::string> translateScene(const CompileCommandOptions &options,
+                                          SceneBuilder buildScene, Messages &messages,
                                           std::vector<std::string> &filesRead) {
-  const scene::SceneDescription description = readScene(options.files.front(), options.overrides, messages, "compile");
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
+  const scene::SceneDescription description =
+      readScene(options.files.front(), options.overrides, messages, "compile");
+  const std::unique_ptr<typed::Module> module =
+      loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return std::nullopt;
   filesRead = withMeshes(description, filesRead);
@@ -54,10 +57,11 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options, 
   keep(options.common.keep, request, compile);
   std::optional<runtime::Scene> scene;
   const std::optional<std::string> text =
-      emitScene(*module, request, *options.stage, compile, messages.diagnostics, [&](const auto &constructors) {
-        scene = buildScene(description, constructors);
-        return scene->facts();
-      });
+      emitScene(*module, request, *options.stage, compile, messages.diagnostics,
+                [&](const auto &constructors) {
+                  scene = buildScene(description, constructors);
+                  return scene->facts();
+                });
   if (scene)
     for (const Warning &warning : scene->warnings())
       messages.report(warning);
@@ -65,8 +69,8 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options, 
 }
 
 /// The text of a stage that a checked module has.
-std::optional<std::string> translate(const CompileCommandOptions &options, const typed::Module &module,
-                                     Messages &messages) {
+std::optional<std::string> translate(const CompileCommandOptions &options,
+                                     const typed::Module &module, Messages &messages) {
   if (messages.diagnostics.hasErrors())
     return std::nullopt;
   if (*options.stage == Stage::TypedAst)
@@ -75,8 +79,9 @@ std::optional<std::string> translate(const CompileCommandOptions &options, const
     return emitReflection(module, options.common.compile, messages.diagnostics);
   if (*options.stage == Stage::Cpp) {
     const std::string &named = options.output == "-" ? options.files.front() : options.output;
-    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace, features(options.prints, options.exceptions),
-                   options.common.compile, messages.diagnostics);
+    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace,
+                   features(options.prints, options.exceptions), options.common.compile,
+                   messages.diagnostics);
   }
   return emit(module, *options.stage, options.common.compile, messages.diagnostics);
 }
@@ -115,16 +120,23 @@ void checkInputs(const CompileCommandOptions &options) {
   if (scenes > 0 && options.files.size() > 1)
     throw CLI::ValidationError("FILE", "give RTSL files or one scene");
   if (scenes > 0 && (options.stage <= Stage::Ast || options.stage == Stage::TypedAst))
-    throw CLI::ValidationError("--emit", "a scene has no text and no syntax tree; give one of its RTSL files");
+    throw CLI::ValidationError(
+        "--emit", "a scene has no text and no syntax tree; give one of its RTSL files");
   if (options.stage == Stage::Reflection && scenes > 0)
-    throw CLI::ValidationError("--emit", "reflection describes RTSL files; give those of the scene");
+    throw CLI::ValidationError("--emit",
+                               "reflection describes RTSL files; give those of the scene");
   if (options.stage == Stage::Cpp && scenes > 0)
-    throw CLI::ValidationError("--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
-                                         "builds one");
-  if (scenes == 0 && options.stage != Stage::Cpp && features(options.prints, options.exceptions) != 0)
-    throw CLI::ValidationError(options.prints ? "--print" : "--exceptions", "is for C++ and for scenes");
-  if ((options.stage == Stage::Cpp || options.stage == Stage::Ptx) && options.common.compile.floatingPoint == FloatingPoint::Double)
-    throw CLI::ValidationError("--fp", "double is for machine code of this processor; give strict or fast");
+    throw CLI::ValidationError(
+        "--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
+                  "builds one");
+  if (scenes == 0 && options.stage != Stage::Cpp &&
+      features(options.prints, options.exceptions) != 0)
+    throw CLI::ValidationError(options.prints ? "--print" : "--exceptions",
+                               "is for C++ and for scenes");
+  if ((options.stage == Stage::Cpp || options.stage == Stage::Ptx) &&
+      options.common.compile.floatingPoint == FloatingPoint::Double)
+    throw CLI::ValidationError("--fp",
+                               "double is for machine code of this processor; give strict or fast");
   if (scenes == 0 && !options.overrides.empty())
     throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
   if (scenes == 0 && !options.common.keep.isEmpty())
@@ -136,9 +148,9 @@ int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
   try {
     checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
-    const std::optional<std::string> text = isScene(options.files.front())
-                                                ? translateScene(options, buildScene, messages, filesRead)
-                                                : translate(options, messages, filesRead);
+    const std::optional<std::string> text =
+        isScene(options.files.front()) ? translateScene(options, buildScene, messages, filesRead)
+                                       : translate(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
       // First what names the output: where that cannot be written, the old output stays.
@@ -155,17 +167,24 @@ int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
 
 void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   auto options = std::make_shared<CompileCommandOptions>();
-  CLI::App *command = app.add_subcommand("compile", "translate RTSL files, and show any stage on the way");
-  command->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")->required();
+  CLI::App *command =
+      app.add_subcommand("compile", "translate RTSL files, and show any stage on the way");
+  command
+      ->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")
+      ->required();
   addChoice(*command, "--emit", options->stage, stages, "what to write");
-  command->add_flag_callback("-E", [options] { options->stage = Stage::Preprocessed; }, "the same as --emit=preprocessed");
-  command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
+  command->add_flag_callback(
+      "-E", [options] { options->stage = Stage::Preprocessed; }, "the same as --emit=preprocessed");
+  command->add_option("-o,--output", options->output, "the file to write; - is standard output")
+      ->type_name("OUT");
   addSetOption(*command, options->overrides);
   command->add_flag("--line-directives", options->lineDirectives,
                     "with --emit=cpp: #line, so that messages and debuggers show the RTSL files");
-  command->add_flag("--print", options->prints, "of C++ or a scene: `print` prints; without, it is left out");
+  command->add_flag("--print", options->prints,
+                    "of C++ or a scene: `print` prints; without, it is left out");
   command->add_flag("--exceptions", options->exceptions,
-                    "of C++ or a scene: samples end that send a bad ray, one too deep, or use an index out of range");
+                    "of C++ or a scene: samples end that send a bad ray, one too deep, or use an "
+                    "index out of range");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);

@@ -3,13 +3,13 @@
 #include "Explanation.h"
 #include "MeasureItems.h"
 #include "Messages.h"
+#include "SceneShaders.h"
+#include "Shaders.h"
+#include "scenefile/SceneFile.h"
+#include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
-#include "SceneShaders.h"
-#include "Shaders.h"
-#include "support/AtomicFile.h"
-#include "scenefile/SceneFile.h"
 
 #include <algorithm>
 #include <memory>
@@ -41,10 +41,12 @@ std::optional<std::string> explainFiles(const ExplainOptions &options, Messages 
 
 /// A scene, its shaders, and how to make its objects.
 struct LoadedScene {
-  LoadedScene(const ExplainOptions &options, SceneBuilder buildScene, Messages &messages, std::vector<std::string> &filesRead)
+  LoadedScene(const ExplainOptions &options, SceneBuilder buildScene, Messages &messages,
+              std::vector<std::string> &filesRead)
       : description(readScene(options.files.front(), options.overrides, messages, "explain")),
-        module(loadShaders(description, options.common, messages, &filesRead)), request(linkRequest(description)),
-        compile(options.common.compile), makeObjects([this, buildScene](const auto &constructors) {
+        module(loadShaders(description, options.common, messages, &filesRead)),
+        request(linkRequest(description)), compile(options.common.compile),
+        makeObjects([this, buildScene](const auto &constructors) {
           scene = buildScene(description, constructors);
           return scene->facts();
         }) {
@@ -61,27 +63,43 @@ struct LoadedScene {
   MakeObjects makeObjects;
 };
 
-std::optional<std::string> explainStates(const ExplainOptions &options, LoadedScene &loaded, Messages &messages) {
-  return explainSceneStates(*loaded.module, loaded.request, scene::renderOptions(loaded.description.render).maxDepth,
+std::optional<std::string> explainStates(const ExplainOptions &options, LoadedScene &loaded,
+                                         Messages &messages) {
+  return explainSceneStates(*loaded.module, loaded.request,
+                            scene::renderOptions(loaded.description.render).maxDepth,
                             loaded.compile, options.format, messages.diagnostics);
 }
 
 /// Renders the scene with each item kept that something was left out for, and with everything kept.
-std::optional<std::vector<ItemMeasurement>> measureScene(const ExplainOptions &options, const SceneExplanation &explanation,
-                                                         LoadedScene &loaded, SceneBuilder buildScene, ItemMeasurer measure,
-                                                         Messages &messages) {
-  const BuildScene build = [&](const auto &program) { return buildScene(loaded.description, program); };
-  MeasureRequest what{*loaded.module, loaded.request, loaded.compile, build, scene::renderOptions(loaded.description.render),
-                      {}, {}, options.pairs, {}};
+std::optional<std::vector<ItemMeasurement>> measureScene(const ExplainOptions &options,
+                                                         const SceneExplanation &explanation,
+                                                         LoadedScene &loaded,
+                                                         SceneBuilder buildScene,
+                                                         ItemMeasurer measure, Messages &messages) {
+  const BuildScene build = [&](const auto &program) {
+    return buildScene(loaded.description, program);
+  };
+  MeasureRequest what{*loaded.module,
+                      loaded.request,
+                      loaded.compile,
+                      build,
+                      scene::renderOptions(loaded.description.render),
+                      {},
+                      {},
+                      options.pairs,
+                      {}};
   what.render.width = options.size ? options.size->width : 320;
   what.render.height = options.size ? options.size->height : 180;
   what.render.samplesPerPixel = options.samples;
   what.render.threads = 1;
   for (Item item : allItems) {
-    const auto isLeftOut = [&](const Finding &finding) { return finding.item == item && !finding.isNeeded; };
+    const auto isLeftOut = [&](const Finding &finding) {
+      return finding.item == item && !finding.isNeeded;
+    };
     const bool inMeshes = item == Item::Meshes && !loaded.scene->meshAttributes().empty();
     if (loaded.request.keep.has(item) ||
-        (!inMeshes && std::none_of(explanation.findings.begin(), explanation.findings.end(), isLeftOut)))
+        (!inMeshes &&
+         std::none_of(explanation.findings.begin(), explanation.findings.end(), isLeftOut)))
       continue;
     what.kept.push_back(ItemSet::only(item));
     what.names.push_back(nameOf(item));
@@ -93,10 +111,11 @@ std::optional<std::vector<ItemMeasurement>> measureScene(const ExplainOptions &o
   return measure(what, messages.diagnostics);
 }
 
-std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedScene &loaded, SceneBuilder buildScene,
-                                        ItemMeasurer measure, Messages &messages) {
-  const std::optional<SceneExplanation> explanation =
-      explainScene(*loaded.module, loaded.request, loaded.compile, messages.diagnostics, loaded.makeObjects);
+std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedScene &loaded,
+                                        SceneBuilder buildScene, ItemMeasurer measure,
+                                        Messages &messages) {
+  const std::optional<SceneExplanation> explanation = explainScene(
+      *loaded.module, loaded.request, loaded.compile, messages.diagnostics, loaded.makeObjects);
   if (!explanation)
     return std::nullopt;
   for (const Warning &warning : loaded.scene->warnings())
@@ -104,7 +123,8 @@ std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedSce
   loaded.scene->useProgram(explanation->program);
   Explanation whole(loaded.description.file, *explanation, loaded.scene->meshAttributes());
   if (options.measure) {
-    const auto measurements = measureScene(options, *explanation, loaded, buildScene, measure, messages);
+    const auto measurements =
+        measureScene(options, *explanation, loaded, buildScene, measure, messages);
     if (!measurements)
       return std::nullopt;
     whole.add(*measurements);
@@ -112,12 +132,14 @@ std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedSce
   return options.format == ReportFormat::Json ? whole.json() : whole.text();
 }
 
-std::optional<std::string> explainScene(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer measure,
-                                        Messages &messages, std::vector<std::string> &filesRead) {
+std::optional<std::string> explainScene(const ExplainOptions &options, SceneBuilder buildScene,
+                                        ItemMeasurer measure, Messages &messages,
+                                        std::vector<std::string> &filesRead) {
   LoadedScene loaded(options, buildScene, messages, filesRead);
   if (!loaded.module)
     return std::nullopt;
-  return options.states ? explainStates(options, loaded, messages) : explainNeeds(options, loaded, buildScene, measure, messages);
+  return options.states ? explainStates(options, loaded, messages)
+                        : explainNeeds(options, loaded, buildScene, measure, messages);
 }
 
 int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer measure) {
@@ -125,9 +147,10 @@ int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer
   try {
     checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
-    const std::optional<std::string> text = isScene(options.files.front())
-                                                ? explainScene(options, buildScene, measure, messages, filesRead)
-                                                : explainFiles(options, messages, filesRead);
+    const std::optional<std::string> text =
+        isScene(options.files.front())
+            ? explainScene(options, buildScene, measure, messages, filesRead)
+            : explainFiles(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
       writeFileAtomically(options.output, *text);
@@ -141,32 +164,47 @@ int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer
 
 } // namespace
 
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure) {
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
+                       ItemMeasurer measure) {
   auto options = std::make_shared<ExplainOptions>();
-  CLI::App *command = app.add_subcommand("explain", "say what the compiler made of a shader, and why");
+  CLI::App *command =
+      app.add_subcommand("explain", "say what the compiler made of a shader, and why");
   command
       ->add_option("FILE", options->files,
-                   "a scene (.json): what its program holds and does without; with --states RTSL files, too; - is standard input")
+                   "a scene (.json): what its program holds and does without; with --states RTSL "
+                   "files, too; - is standard input")
       ->required();
-  command->add_flag("--states", options->states,
-                    "where shaders that trace are cut: their states, and what each trace saves and recomputes");
+  command->add_flag(
+      "--states", options->states,
+      "where shaders that trace are cut: their states, and what each trace saves and recomputes");
   command->add_flag("--measure", options->measure,
-                    "render with each thing left out and kept, in turn: time, instructions, and whether the picture is the same");
-  addWhole(*command, "--pairs", options->pairs, 10, 10000, "with --measure: pairs of renderings an item; 11 if not given");
+                    "render with each thing left out and kept, in turn: time, instructions, and "
+                    "whether the picture is the same");
+  addWhole(*command, "--pairs", options->pairs, 10, 10000,
+           "with --measure: pairs of renderings an item; 11 if not given");
   addSizeOption(*command, options->size);
-  addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel, "with --measure: samples per pixel; 1 if not given");
-  const Choices<ReportFormat> formats = {
-      {"text", ReportFormat::Text}, {"json", ReportFormat::Json}, {"dot", ReportFormat::Dot}, {"svg", ReportFormat::Svg}};
-  addChoice(*command, "--format", options->format, formats, "text; json; of --states also dot, for Graphviz, and svg, a picture that Graphviz lays out");
-  command->add_flag_callback("--json", [options] { options->format = ReportFormat::Json; }, "the same as --format=json");
-  command->add_option("-o,--output", options->output, "the file to write; - is standard output")->type_name("OUT");
+  addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel,
+           "with --measure: samples per pixel; 1 if not given");
+  const Choices<ReportFormat> formats = {{"text", ReportFormat::Text},
+                                         {"json", ReportFormat::Json},
+                                         {"dot", ReportFormat::Dot},
+                                         {"svg", ReportFormat::Svg}};
+  addChoice(
+      *command, "--format", options->format, formats,
+      "text; json; of --states also dot, for Graphviz, and svg, a picture that Graphviz lays out");
+  command->add_flag_callback(
+      "--json", [options] { options->format = ReportFormat::Json; }, "the same as --format=json");
+  command->add_option("-o,--output", options->output, "the file to write; - is standard output")
+      ->type_name("OUT");
   addSetOption(*command, options->overrides);
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
-  command->footer("examples:\n  rtslc explain scene.json\n  rtslc explain scene.json --measure\n  rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc explain --states --format=svg Glass.rtsl -o states.svg");
+  command->footer("examples:\n  rtslc explain scene.json\n  rtslc explain scene.json --measure\n  "
+                  "rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc "
+                  "explain --states --format=svg Glass.rtsl -o states.svg");
   command->callback([options, buildScene, measure, &action] {
     const auto scenes = std::count_if(options->files.begin(), options->files.end(), isScene);
     if (scenes > 0 && options->files.size() > 1)
@@ -174,12 +212,14 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, I
     if (scenes == 0 && !options->overrides.empty())
       throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
     if (scenes == 0 && !options->states)
-      throw CLI::ValidationError("FILE", "what is needed is a matter of a scene; give one, or --states");
+      throw CLI::ValidationError("FILE",
+                                 "what is needed is a matter of a scene; give one, or --states");
     if (scenes == 0 && !options->common.keep.isEmpty())
       throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
     if (options->states && options->measure)
       throw CLI::ValidationError("--measure", "renders scenes, and says nothing of --states");
-    if (!options->states && (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
+    if (!options->states &&
+        (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
       throw CLI::ValidationError("--format", "only --states has pictures");
     action = [options, buildScene, measure] { return explain(*options, buildScene, measure); };
   });

@@ -24,7 +24,9 @@ std::string grouped(std::int64_t number) {
   return (number < 0 ? "-" : "") + text;
 }
 
-std::string count(std::size_t number) { return number == 0 ? "-" : fmt::format("{}", number); }
+std::string count(std::size_t number) {
+  return number == 0 ? "-" : fmt::format("{}", number);
+}
 
 std::int64_t difference(std::uint64_t kept, std::uint64_t now) {
   return static_cast<std::int64_t>(kept) - static_cast<std::int64_t>(now);
@@ -37,10 +39,14 @@ Explanation::Explanation(std::string scene, const SceneExplanation &program,
     : scene(std::move(scene)), size(program.size), findings(program.findings) {
   std::int64_t meshBytes = 0;
   for (const runtime::Scene::MeshAttribute &attribute : meshes) {
-    findings.push_back({Item::Meshes, fmt::format("{} of {}", attribute.name, attribute.mesh), attribute.isNeeded,
-                        fmt::format("{} bytes, {}", grouped(static_cast<std::int64_t>(attribute.bytes)),
-                                    attribute.isNeeded ? "read by its material" : "which its materials do not read"),
-                        {}});
+    findings.push_back(
+        {Item::Meshes,
+         fmt::format("{} of {}", attribute.name, attribute.mesh),
+         attribute.isNeeded,
+         fmt::format("{} bytes, {}", grouped(static_cast<std::int64_t>(attribute.bytes)),
+                     attribute.isNeeded ? "read by its material"
+                                        : "which its materials do not read"),
+         {}});
     if (!attribute.isNeeded)
       meshBytes += static_cast<std::int64_t>(attribute.bytes);
   }
@@ -54,26 +60,31 @@ Explanation::Explanation(std::string scene, const SceneExplanation &program,
     entries.isKept = keeping == program.sizeKeeping.end();
     if (!entries.isKept) {
       const ProgramSize &kept = keeping->second;
-      entries.saved = {difference(kept.instructions, size.instructions), difference(kept.constantBytes, size.constantBytes),
-                       difference(kept.frameBytes, size.frameBytes), difference(kept.states, size.states),
-                       item == Item::Meshes ? meshBytes : 0};
+      entries.saved = {difference(kept.instructions, size.instructions),
+                       difference(kept.constantBytes, size.constantBytes),
+                       difference(kept.frameBytes, size.frameBytes),
+                       difference(kept.states, size.states), item == Item::Meshes ? meshBytes : 0};
     }
     items.push_back(std::move(entries));
   }
 }
 
 std::string Explanation::table() const {
-  std::string text = fmt::format("{:<38}{:>7}{:>9}   {:>12}{:>11}{:>8}{:>8}{:>9}\n", "", "needed", "left out", "instructions",
-                                 "constants", "frame", "states", "memory");
+  std::string text =
+      fmt::format("{:<38}{:>7}{:>9}   {:>12}{:>11}{:>8}{:>8}{:>9}\n", "", "needed", "left out",
+                  "instructions", "constants", "frame", "states", "memory");
   for (const Entries &entries : items) {
-    const auto number = [](std::int64_t saved) { return saved == 0 ? std::string("-") : grouped(saved); };
+    const auto number = [](std::int64_t saved) {
+      return saved == 0 ? std::string("-") : grouped(saved);
+    };
     const Saved &saved = entries.saved;
     text += fmt::format("{:<38}{:>7}{:>9}   ", titleOf(entries.item), count(entries.needed.size()),
                         count(entries.leftOut.size()));
-    text += entries.isKept ? "kept\n"
-                           : fmt::format("{:>12}{:>11}{:>8}{:>8}{:>9}\n", number(saved.instructions),
-                                         number(saved.constantBytes), number(saved.frameBytes), number(saved.states),
-                                         number(saved.memoryBytes));
+    text += entries.isKept
+                ? "kept\n"
+                : fmt::format("{:>12}{:>11}{:>8}{:>8}{:>9}\n", number(saved.instructions),
+                              number(saved.constantBytes), number(saved.frameBytes),
+                              number(saved.states), number(saved.memoryBytes));
   }
   return text;
 }
@@ -90,9 +101,9 @@ std::string Explanation::entriesText(const Entries &entries) const {
   std::string text = fmt::format("\n{} (--keep={})\n", titleOf(entries.item), nameOf(entries.item));
   for (const auto *list : {&entries.leftOut, &entries.needed})
     for (const Finding *finding : *list) {
-      const std::string line =
-          fmt::format("  {:<9} {:<{}}  {:<{}}  {}", finding->isNeeded ? "needed" : "left out", finding->subject, subjectWidth,
-                      placeText(finding->place), placeWidth, finding->reason);
+      const std::string line = fmt::format(
+          "  {:<9} {:<{}}  {:<{}}  {}", finding->isNeeded ? "needed" : "left out", finding->subject,
+          subjectWidth, placeText(finding->place), placeWidth, finding->reason);
       text += line + "\n";
     }
   return text;
@@ -101,27 +112,36 @@ std::string Explanation::entriesText(const Entries &entries) const {
 std::string Explanation::measurementsText() const {
   if (measurements.empty())
     return {};
-  std::string text = fmt::format("\nMeasured in {} pairs of renderings in turn, on one thread, in processor time: how much longer one takes that keeps "
-                                 "the item\n(median, and an interval that holds it with 95 %), and how many more instructions it runs.\n\n",
+  std::string text = fmt::format("\nMeasured in {} pairs of renderings in turn, on one thread, in "
+                                 "processor time: how much longer one takes that keeps "
+                                 "the item\n(median, and an interval that holds it with 95 %), and "
+                                 "how many more instructions it runs.\n\n",
                                  measurements.front().pairs);
-  text += fmt::format("  {:<12}{:>10}{:>12}{:>24}{:>16}   {}\n", "", "seconds", "longer", "95 %", "instructions", "picture");
+  text += fmt::format("  {:<12}{:>10}{:>12}{:>24}{:>16}   {}\n", "", "seconds", "longer", "95 %",
+                      "instructions", "picture");
   for (const ItemMeasurement &one : measurements) {
-    const std::string interval = fmt::format("{:+.2f} to {:+.2f} %", 100 * one.slowerLow, 100 * one.slowerHigh);
+    const std::string interval =
+        fmt::format("{:+.2f} to {:+.2f} %", 100 * one.slowerLow, 100 * one.slowerHigh);
     const std::string instructions =
         one.instructions && one.instructionsKept
-            ? fmt::format("{:+.2f} %", 100 * (static_cast<double>(*one.instructionsKept) / static_cast<double>(*one.instructions) - 1))
+            ? fmt::format("{:+.2f} %", 100 * (static_cast<double>(*one.instructionsKept) /
+                                                  static_cast<double>(*one.instructions) -
+                                              1))
             : "not counted";
-    text += fmt::format("  {:<12}{:>10.4f}{:>10.2f} %{:>24}{:>16}   {}\n", one.kept, one.seconds, 100 * one.slower, interval,
-                        instructions, one.isSameImage ? "the same" : "ANOTHER");
+    text += fmt::format("  {:<12}{:>10.4f}{:>10.2f} %{:>24}{:>16}   {}\n", one.kept, one.seconds,
+                        100 * one.slower, interval, instructions,
+                        one.isSameImage ? "the same" : "ANOTHER");
   }
   return text;
 }
 
 std::string Explanation::text() const {
-  std::string text = fmt::format("{}: {} instructions, {} bytes of constants, {} states with frames of up to {} bytes\n\n",
-                                 scene, grouped(static_cast<std::int64_t>(size.instructions)),
-                                 grouped(static_cast<std::int64_t>(size.constantBytes)), size.states, size.frameBytes);
-  text += "What its program needs, and what it saves to leave the rest out (bytes, but for instructions and states):\n\n";
+  std::string text = fmt::format(
+      "{}: {} instructions, {} bytes of constants, {} states with frames of up to {} bytes\n\n",
+      scene, grouped(static_cast<std::int64_t>(size.instructions)),
+      grouped(static_cast<std::int64_t>(size.constantBytes)), size.states, size.frameBytes);
+  text += "What its program needs, and what it saves to leave the rest out (bytes, but for "
+          "instructions and states):\n\n";
   text += table();
   text += measurementsText();
   for (const Entries &entries : items)
@@ -139,7 +159,8 @@ std::string Explanation::json() const {
                                        {"states", size.states}}}};
   document["items"] = nlohmann::ordered_json::array();
   for (const Entries &entries : items) {
-    nlohmann::ordered_json item = {{"item", nameOf(entries.item)}, {"title", titleOf(entries.item)}, {"kept", entries.isKept}};
+    nlohmann::ordered_json item = {
+        {"item", nameOf(entries.item)}, {"title", titleOf(entries.item)}, {"kept", entries.isKept}};
     if (!entries.isKept)
       item["saved"] = {{"instructions", entries.saved.instructions},
                        {"constantBytes", entries.saved.constantBytes},
@@ -149,20 +170,24 @@ std::string Explanation::json() const {
     item["entries"] = nlohmann::ordered_json::array();
     for (const auto *list : {&entries.leftOut, &entries.needed})
       for (const Finding *finding : *list) {
-        nlohmann::ordered_json entry = {
-            {"subject", finding->subject}, {"needed", finding->isNeeded}, {"reason", finding->reason}};
+        nlohmann::ordered_json entry = {{"subject", finding->subject},
+                                        {"needed", finding->isNeeded},
+                                        {"reason", finding->reason}};
         if (finding->place.isKnown())
-          entry["place"] = {{"file", finding->place.file}, {"line", finding->place.line}, {"column", finding->place.column}};
+          entry["place"] = {{"file", finding->place.file},
+                            {"line", finding->place.line},
+                            {"column", finding->place.column}};
         item["entries"].push_back(std::move(entry));
       }
     document["items"].push_back(std::move(item));
   }
   for (const ItemMeasurement &one : measurements) {
-    nlohmann::ordered_json measurement = {{"kept", one.kept},
-                                          {"pairs", one.pairs},
-                                          {"seconds", one.seconds},
-                                          {"slower", {{"median", one.slower}, {"low", one.slowerLow}, {"high", one.slowerHigh}}},
-                                          {"sameImage", one.isSameImage}};
+    nlohmann::ordered_json measurement = {
+        {"kept", one.kept},
+        {"pairs", one.pairs},
+        {"seconds", one.seconds},
+        {"slower", {{"median", one.slower}, {"low", one.slowerLow}, {"high", one.slowerHigh}}},
+        {"sameImage", one.isSameImage}};
     if (one.instructions && one.instructionsKept) {
       measurement["instructions"] = *one.instructions;
       measurement["instructionsKept"] = *one.instructionsKept;

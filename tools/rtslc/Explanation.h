@@ -13,12 +13,14 @@ namespace rtsl::tool {
 /// `rtslc explain SCENE` (docs/explain.md).
 class Explanation {
 public:
-  Explanation(std::string scene, const SceneExplanation &program, const std::vector<runtime::Scene::MeshAttribute> &meshes);
+  Explanation(std::string scene, const SceneExplanation &program,
+              const std::vector<runtime::Scene::MeshAttribute> &meshes);
 
   /// Adds what `--measure` found.
   void add(std::vector<ItemMeasurement> measured) { measurements = std::move(measured); }
 
-  /// For people: a table of what each item saves, and then what is needed and what is left out, line by line.
+  /// For people: a table of what each item saves, and then what is needed and what is left out,
+  /// line by line.
   std::string text() const;
   /// For programs: {"version": 1, "program": {...}, "items": [...]}.
   std::string json() const;

@@ -40,8 +40,9 @@ static bool bindsScene(std::string_view command, char **arguments) {
 
 void handOver(char **argv) {
   const std::string_view command = argv[0] && argv[1] ? argv[1] : "";
-  const bool isHandedOver = std::any_of(std::begin(handedOver), std::end(handedOver),
-                                        [&](const Summary &summary) { return command == summary.command; });
+  const bool isHandedOver =
+      std::any_of(std::begin(handedOver), std::end(handedOver),
+                  [&](const Summary &summary) { return command == summary.command; });
   if (isHandedOver || bindsScene(command, argv + 1)) {
     std::error_code error;
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -49,8 +50,8 @@ void handOver(char **argv) {
     execv(program.c_str(), argv);
     if (errno == ENOMEM)
       throw std::bad_alloc();
-    throw std::runtime_error(fmt::format("cannot start `{}`, which knows `rtslc {}`: {}", program.string(), command,
-                                         std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot start `{}`, which knows `rtslc {}`: {}",
+                                         program.string(), command, std::strerror(errno)));
   }
 }
 

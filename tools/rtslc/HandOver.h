@@ -1,7 +1,8 @@
 //===- HandOver.h - commands that live in a program of their own ----------===//
 //
-// Rendering needs Embree, assimp and the image libraries. Loading these takes longer than `rtslc check` may take as a whole,
-// so the commands that use them are in `rtslc-render`, beside `rtslc`, which becomes that program when one is asked for.
+// Rendering needs Embree, assimp and the image libraries. Loading these takes longer than `rtslc
+// check` may take as a whole, so the commands that use them are in `rtslc-render`, beside `rtslc`,
+// which becomes that program when one is asked for.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,8 +14,8 @@ namespace rtsl::tool {
 /// Lists the commands of rtslc-render, for --help.
 void addHandedOverCommands(CLI::App &app);
 
-/// Becomes rtslc-render if the first argument is one of its commands; otherwise returns. Throws std::runtime_error if that
-/// program is missing.
+/// Becomes rtslc-render if the first argument is one of its commands; otherwise returns. Throws
+/// std::runtime_error if that program is missing.
 void handOver(char **argv);
 
 } // namespace rtsl::tool

@@ -1,7 +1,8 @@
 //===- Main.cpp - rtslc, the compiler of RTSL -----------------------------===//
 //
-// Reads the arguments and hands over to a command. Exit status: 0 fine, 1 errors in the user's files, or no memory or disk
-// for them, 2 wrong arguments, 3 a fault of rtslc itself; 130 and 143 if SIGINT or SIGTERM stopped it.
+// Reads the arguments and hands over to a command. Exit status: 0 fine, 1 errors in the user's
+// files, or no memory or disk for them, 2 wrong arguments, 3 a fault of rtslc itself; 130 and 143
+// if SIGINT or SIGTERM stopped it.
 //
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
@@ -31,8 +32,10 @@ int main(int argc, char **argv) {
              "  rtslc render examples/glass/scene.json -o glass.png\n"
              "  rtslc check Glass.rtsl\n"
              "  rtslc compile Glass.rtsl --emit=ir\n"
-             "`rtslc help COMMAND` tells more. Exit status: 0 fine, 1 errors in the files, or no memory or disk for them,\n"
-             "2 wrong arguments, 3 a fault of rtslc itself; 130 and 143: SIGINT (Ctrl-C) or SIGTERM stopped it.");
+             "`rtslc help COMMAND` tells more. Exit status: 0 fine, 1 errors in the files, or no "
+             "memory or disk for them,\n"
+             "2 wrong arguments, 3 a fault of rtslc itself; 130 and 143: SIGINT (Ctrl-C) or "
+             "SIGTERM stopped it.");
   Action action;
   addCheckCommand(app, action, nullptr);
   addCompileCommand(app, action, nullptr);
@@ -41,5 +44,6 @@ int main(int argc, char **argv) {
   app.add_subcommand("help", "show the options of a command");
 
   std::vector<char *> arguments = withoutHelpCommand(argc, argv);
-  return run(app, action, static_cast<int>(arguments.size()) - 1, arguments.data(), [&] { handOver(arguments.data()); });
+  return run(app, action, static_cast<int>(arguments.size()) - 1, arguments.data(),
+             [&] { handOver(arguments.data()); });
 }

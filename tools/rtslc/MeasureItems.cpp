@@ -17,7 +17,8 @@ namespace rtsl::tool {
 
 namespace {
 
-/// Instructions that this process and its threads run in user mode. Many machines do not allow to count them.
+/// Instructions that this process and its threads run in user mode. Many machines do not allow to
+/// count them.
 class InstructionCounter {
 public:
   InstructionCounter() {
@@ -91,11 +92,13 @@ private:
   runtime::Renderer renderer;
 };
 
-std::unique_ptr<Subject> makeSubject(const MeasureRequest &what, ItemSet kept, Diagnostics &diagnostics) {
+std::unique_ptr<Subject> makeSubject(const MeasureRequest &what, ItemSet kept,
+                                     Diagnostics &diagnostics) {
   LinkRequest request = what.request;
   CompileOptions compile = what.compile;
   keep(kept, request, compile);
-  std::optional<runtime::Scene> scene = compileScene(what.module, request, compile, diagnostics, what.buildScene);
+  std::optional<runtime::Scene> scene =
+      compileScene(what.module, request, compile, diagnostics, what.buildScene);
   return scene ? std::make_unique<Subject>(std::move(*scene), what.render) : nullptr;
 }
 
@@ -109,7 +112,8 @@ bool sameBits(const std::vector<float> &a, const std::vector<float> &b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-ItemMeasurement compare(Subject &leftOut, Subject &kept, const MeasureRequest &what, const InstructionCounter &counter) {
+ItemMeasurement compare(Subject &leftOut, Subject &kept, const MeasureRequest &what,
+                        const InstructionCounter &counter) {
   ItemMeasurement measurement;
   measurement.pairs = what.pairs;
   std::vector<double> seconds, ratios;
@@ -152,7 +156,8 @@ std::pair<std::size_t, std::size_t> medianRanks(std::size_t count) {
   return {rank, count - 1 - rank};
 }
 
-std::optional<std::vector<ItemMeasurement>> measureItems(const MeasureRequest &what, Diagnostics &diagnostics) {
+std::optional<std::vector<ItemMeasurement>> measureItems(const MeasureRequest &what,
+                                                         Diagnostics &diagnostics) {
   const InstructionCounter counter;
   const std::unique_ptr<Subject> leftOut = makeSubject(what, {}, diagnostics);
   if (!leftOut)

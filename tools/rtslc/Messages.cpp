@@ -12,39 +12,69 @@ namespace {
 Code codeFor(ErrorCode code) {
   using E = ErrorCode;
   switch (code) {
-  case E::FileNotFound: return Code::fileNotFound;
-  case E::FileUnreadable: return Code::fileUnreadable;
-  case E::FileUnwritable: return Code::fileUnwritable;
-  case E::OverwritesInput: return Code::overwritesInput;
-  case E::UnsupportedFormat: return Code::unsupportedFormat;
-  case E::BadMesh: return Code::badMesh;
-  case E::BadImage: return Code::badImage;
-  case E::NotAScene: return Code::notAScene;
-  case E::JsonSyntax: return Code::sceneSyntax;
-  case E::DuplicateKey: return Code::sceneDuplicateKey;
-  case E::UnknownKey: return Code::sceneUnknownKey;
-  case E::MissingKey: return Code::sceneMissingKey;
-  case E::WrongType: return Code::sceneWrongType;
-  case E::OutOfRange: return Code::sceneOutOfRange;
-  case E::UnknownName: return Code::sceneUnknownName;
-  case E::ReferenceCycle: return Code::sceneReferenceCycle;
-  case E::NotSupported: return Code::sceneNotSupported;
-  case E::BadOverride: return Code::sceneBadOverride;
-  case E::UnknownClass: return Code::sceneUnknownClass;
-  case E::WrongClass: return Code::sceneWrongClass;
-  case E::UnknownMember: return Code::sceneUnknownMember;
-  case E::NotSettable: return Code::sceneNotSettable;
-  case E::BadArguments: return Code::sceneBadArguments;
-  case E::MissingMember: return Code::sceneMissingMember;
-  case E::DegenerateGeometry: return Code::sceneDegenerateGeometry;
-  case E::MissingMethod: return Code::sceneMissingMethod;
-  case E::IncompleteScene: return Code::sceneIncomplete;
-  case E::Cancelled: return Code::cancelled;
-  case E::OutOfMemory: return Code::outOfMemory;
+  case E::FileNotFound:
+    return Code::fileNotFound;
+  case E::FileUnreadable:
+    return Code::fileUnreadable;
+  case E::FileUnwritable:
+    return Code::fileUnwritable;
+  case E::OverwritesInput:
+    return Code::overwritesInput;
+  case E::UnsupportedFormat:
+    return Code::unsupportedFormat;
+  case E::BadMesh:
+    return Code::badMesh;
+  case E::BadImage:
+    return Code::badImage;
+  case E::NotAScene:
+    return Code::notAScene;
+  case E::JsonSyntax:
+    return Code::sceneSyntax;
+  case E::DuplicateKey:
+    return Code::sceneDuplicateKey;
+  case E::UnknownKey:
+    return Code::sceneUnknownKey;
+  case E::MissingKey:
+    return Code::sceneMissingKey;
+  case E::WrongType:
+    return Code::sceneWrongType;
+  case E::OutOfRange:
+    return Code::sceneOutOfRange;
+  case E::UnknownName:
+    return Code::sceneUnknownName;
+  case E::ReferenceCycle:
+    return Code::sceneReferenceCycle;
+  case E::NotSupported:
+    return Code::sceneNotSupported;
+  case E::BadOverride:
+    return Code::sceneBadOverride;
+  case E::UnknownClass:
+    return Code::sceneUnknownClass;
+  case E::WrongClass:
+    return Code::sceneWrongClass;
+  case E::UnknownMember:
+    return Code::sceneUnknownMember;
+  case E::NotSettable:
+    return Code::sceneNotSettable;
+  case E::BadArguments:
+    return Code::sceneBadArguments;
+  case E::MissingMember:
+    return Code::sceneMissingMember;
+  case E::DegenerateGeometry:
+    return Code::sceneDegenerateGeometry;
+  case E::MissingMethod:
+    return Code::sceneMissingMethod;
+  case E::IncompleteScene:
+    return Code::sceneIncomplete;
+  case E::Cancelled:
+    return Code::cancelled;
+  case E::OutOfMemory:
+    return Code::outOfMemory;
   // rtslc reads no packages and runs nothing on a GPU; rtsl-run has messages of its own.
   case E::BadPackage:
   case E::NoDevice:
-  case E::Internal: break; // Main.cpp ends the run with its own status
+  case E::Internal:
+    break; // Main.cpp ends the run with its own status
   }
   throw std::logic_error("a fault of the runtime reached the user's messages");
 }
@@ -64,7 +94,8 @@ Messages::Messages(const CommonOptions &options) : options(options) {
 }
 
 SourceRange Messages::rangeOf(const Place &place) {
-  if (place.line == 0) // a file as a whole: the message names it, and it may be a device or a gigabyte
+  if (place.line ==
+      0) // a file as a whole: the message names it, and it may be a device or a gigabyte
     return {};
   FileId file = sources.find(place.file);
   std::string whyNot;
@@ -80,7 +111,8 @@ void Messages::report(const Error &error) {
   if (error.code == ErrorCode::Internal)
     throw error;
   const SourceRange range = error.place ? rangeOf(*error.place) : SourceRange{};
-  Diagnostic &diagnostic = diagnostics.report(codeFor(error.code), range, std::string(error.what()));
+  Diagnostic &diagnostic =
+      diagnostics.report(codeFor(error.code), range, std::string(error.what()));
   for (const RelatedPlace &related : error.relatedPlaces)
     diagnostic.label(rangeOf(related.place), related.text);
   for (const std::string &note : error.notes)
@@ -100,8 +132,9 @@ void Messages::print() {
   if (printed)
     return;
   printed = true;
-  const std::string text = options.jsonDiagnostics ? renderJson(diagnostics)
-                                                   : renderText(diagnostics, wantsColour(options.ansi));
+  const std::string text = options.jsonDiagnostics
+                               ? renderJson(diagnostics)
+                               : renderText(diagnostics, wantsColour(options.ansi));
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 

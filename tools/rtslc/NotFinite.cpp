@@ -32,9 +32,9 @@ SampleNotFinite explain(const runtime::SampleId &sample, const RtslLaunch &launc
 } // namespace
 
 std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &statistics,
-                                              const typed::Module &module,
-                                              LinkRequest request, CompileOptions compile,
-                                              runtime::Scene &scene, runtime::RenderOptions render,
+                                              const typed::Module &module, LinkRequest request,
+                                              CompileOptions compile, runtime::Scene &scene,
+                                              runtime::RenderOptions render,
                                               Diagnostics &diagnostics) {
   request.keep.add(ItemSet::only(Item::Parameters)); // what folds has no line
   // Calls are the shortest way, and every way has the same bits.

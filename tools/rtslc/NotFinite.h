@@ -18,12 +18,13 @@ struct SampleNotFinite {
 };
 
 /// Renders samples of a rendering that are not finite again, by a program that checks its numbers
-/// (runtime/program/NumberCheck.h), and finds out where each stopped being finite: RenderOptions::mostNotFinite
-/// of them, where lanes have named fewer too. The scene gets that program.
+/// (runtime/program/NumberCheck.h), and finds out where each stopped being finite:
+/// RenderOptions::mostNotFinite of them, where lanes have named fewer too. The scene gets that
+/// program.
 std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &statistics,
-                                              const typed::Module &module,
-                                              LinkRequest request, CompileOptions compile,
-                                              runtime::Scene &scene, runtime::RenderOptions render,
+                                              const typed::Module &module, LinkRequest request,
+                                              CompileOptions compile, runtime::Scene &scene,
+                                              runtime::RenderOptions render,
                                               Diagnostics &diagnostics);
 
 } // namespace rtsl::tool

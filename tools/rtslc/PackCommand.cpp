@@ -2,11 +2,11 @@
 #include "CommandLine.h"
 #include "Messages.h"
 #include "SceneShaders.h"
-#include "support/AtomicFile.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
 #include "scenefile/SceneFile.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 
@@ -26,9 +26,11 @@ struct PackOptions {
 
 void packScene(const PackOptions &options, Messages &messages) {
   checkOutputs(options.output, options.common.dependencies, {options.scene});
-  const scene::SceneDescription description = readScene(options.scene, options.overrides, messages, "pack");
+  const scene::SceneDescription description =
+      readScene(options.scene, options.overrides, messages, "pack");
   std::vector<std::string> filesRead;
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
+  const std::unique_ptr<typed::Module> module =
+      loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
   filesRead = withMeshes(description, filesRead);
@@ -60,9 +62,11 @@ void packScene(const PackOptions &options, Messages &messages) {
   writeFileAtomically(options.output, bytes);
   writeDependencies(options.common.dependencies, options.output, {options.scene}, filesRead);
   if (!options.quiet && !options.common.jsonDiagnostics)
-    fmt::print(stderr, "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB\n", options.output,
-               double(bytes.size()) / (1 << 20), package.ptx.size() / 1000, options.common.compile.gpu,
-               package.host.bytes.size() / 1000, double(package.scene.bytes.size()) / (1 << 20));
+    fmt::print(stderr,
+               "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB\n",
+               options.output, double(bytes.size()) / (1 << 20), package.ptx.size() / 1000,
+               options.common.compile.gpu, package.host.bytes.size() / 1000,
+               double(package.scene.bytes.size()) / (1 << 20));
 }
 
 int pack(const PackOptions &options) {
@@ -80,8 +84,11 @@ int pack(const PackOptions &options) {
 void addPackCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<PackOptions>();
   CLI::App *command = app.add_subcommand(packSummary.command, packSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
-  command->add_option("-o,--output", options->output, "the package, by custom .rtslpkg; - is standard output")
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")
+      ->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "the package, by custom .rtslpkg; - is standard output")
       ->required()
       ->type_name("PACKAGE");
   addSetOption(*command, options->overrides);
@@ -91,10 +98,12 @@ void addPackCommand(CLI::App &app, Action &action) {
   addCompileOptions(*command, options->common);
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
-  command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run glass.rtslpkg -o glass.png --target=gpu");
+  command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run "
+                  "glass.rtslpkg -o glass.png --target=gpu");
   command->callback([options, &action] {
     if (options->common.compile.floatingPoint == FloatingPoint::Double)
-      throw CLI::ValidationError("--fp", "a package is for GPUs, too, and has no double; give strict or fast");
+      throw CLI::ValidationError(
+          "--fp", "a package is for GPUs, too, and has no double; give strict or fast");
     action = [options] { return pack(*options); };
   });
 }

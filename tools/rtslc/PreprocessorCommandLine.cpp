@@ -25,13 +25,18 @@ MacroOption parseMacro(const char *option, const std::string &text, bool isUndef
   if (!isName || macro.name == "defined")
     throw CLI::ValidationError(option, "`" + macro.name + "` cannot be the name of a macro");
   if (isOfTheLanguage(macro.name))
-    throw CLI::ValidationError(option, "`" + macro.name + "` is defined by the language and cannot be changed");
-  if (macro.value.find_first_of("\n\r") != std::string::npos || macro.value.find('\\') != std::string::npos)
-    throw CLI::ValidationError(option, "the value of `" + macro.name + "` is one line without backslashes");
+    throw CLI::ValidationError(option, "`" + macro.name +
+                                           "` is defined by the language and cannot be changed");
+  if (macro.value.find_first_of("\n\r") != std::string::npos ||
+      macro.value.find('\\') != std::string::npos)
+    throw CLI::ValidationError(option,
+                               "the value of `" + macro.name + "` is one line without backslashes");
   return macro;
 }
 
-bool hasFile(const std::string &output) { return !output.empty() && output != "-"; }
+bool hasFile(const std::string &output) {
+  return !output.empty() && output != "-";
+}
 
 /// A path as make reads it.
 std::string escaped(const std::string &path) {
@@ -54,7 +59,9 @@ std::string escaped(const std::string &path) {
 } // namespace
 
 void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options) {
-  command.add_option("-I", options.includeFolders, "look for included and imported files in this folder too")
+  command
+      .add_option("-I", options.includeFolders,
+                  "look for included and imported files in this folder too")
       ->type_name("FOLDER")
       ->allow_extra_args(false);
   const auto add = [&](const char *option, const char *help, const char *type, bool isUndefined) {
@@ -75,9 +82,11 @@ void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options) {
 }
 
 void addDependencyOptions(CLI::App &command, DependencyOptions &options) {
-  command.add_flag("--MD", options.isAsked, "(or -MD) write a rule for make that lists the files that were read");
+  command.add_flag("--MD", options.isAsked,
+                   "(or -MD) write a rule for make that lists the files that were read");
   command.add_option("--MF", options.file, "(or -MF) where to write that rule")->type_name("FILE");
-  command.add_option("--MT", options.target, "(or -MT) the target of that rule")->type_name("TARGET");
+  command.add_option("--MT", options.target, "(or -MT) the target of that rule")
+      ->type_name("TARGET");
 }
 
 std::vector<std::string> withLongDashes(int argc, char **argv) {
@@ -106,7 +115,8 @@ static std::string dependencyFile(const DependencyOptions &options, const std::s
   return std::filesystem::path(source).filename().replace_extension(".d").string();
 }
 
-void checkOutputs(const std::string &output, const DependencyOptions &dependencies, const std::vector<std::string> &sources,
+void checkOutputs(const std::string &output, const DependencyOptions &dependencies,
+                  const std::vector<std::string> &sources,
                   const std::vector<std::string> &filesRead) {
   std::vector<std::string> outputs;
   if (!output.empty())
@@ -121,11 +131,14 @@ void checkOutputs(const std::string &output, const DependencyOptions &dependenci
 }
 
 void writeDependencies(const DependencyOptions &options, const std::string &output,
-                       const std::vector<std::string> &sources, const std::vector<std::string> &files) {
+                       const std::vector<std::string> &sources,
+                       const std::vector<std::string> &files) {
   if (!options.isAsked)
     return;
   const std::string file = dependencyFile(options, output, sources);
-  const std::string target = !options.target.empty() ? options.target : hasFile(output) ? output : file;
+  const std::string target = !options.target.empty() ? options.target
+                             : hasFile(output)       ? output
+                                                     : file;
   writeFileAtomically(file, dependencyRule(target, files));
 }
 

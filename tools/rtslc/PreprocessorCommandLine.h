@@ -22,20 +22,25 @@ void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options);
 /// Adds -MD, -MF and -MT.
 void addDependencyOptions(CLI::App &command, DependencyOptions &options);
 
-/// Spells the options of two letters behind one dash (`-MD`) as the command line library wants them (`--MD`).
+/// Spells the options of two letters behind one dash (`-MD`) as the command line library wants them
+/// (`--MD`).
 std::vector<std::string> withLongDashes(int argc, char **argv);
 
 /// The rule `target: files` for make and ninja.
 std::string dependencyRule(const std::string &target, const std::vector<std::string> &files);
 
-/// Throws FileUnwritable if `output` (empty: there is none) or the dependency file cannot be written, and OverwritesInput if
-/// one of them is a file of the command line or one that was read. Before work begins, and again when all inputs are known.
-void checkOutputs(const std::string &output, const DependencyOptions &dependencies, const std::vector<std::string> &sources,
+/// Throws FileUnwritable if `output` (empty: there is none) or the dependency file cannot be
+/// written, and OverwritesInput if one of them is a file of the command line or one that was read.
+/// Before work begins, and again when all inputs are known.
+void checkOutputs(const std::string &output, const DependencyOptions &dependencies,
+                  const std::vector<std::string> &sources,
                   const std::vector<std::string> &filesRead = {});
 
-/// Writes the dependency file if it is asked for: what `output` (empty or "-": no file) was made of. `sources` are the files
-/// of the command line, `files` all that were read. Throws Error with FileUnwritable.
+/// Writes the dependency file if it is asked for: what `output` (empty or "-": no file) was made
+/// of. `sources` are the files of the command line, `files` all that were read. Throws Error with
+/// FileUnwritable.
 void writeDependencies(const DependencyOptions &options, const std::string &output,
-                       const std::vector<std::string> &sources, const std::vector<std::string> &files);
+                       const std::vector<std::string> &sources,
+                       const std::vector<std::string> &files);
 
 } // namespace rtsl::tool

@@ -1,22 +1,22 @@
 //===- RenderCommand.cpp - rtslc render -----------------------------------===//
 #include "CommandLine.h"
-#include "tools/common/Interruption.h"
 #include "Messages.h"
 #include "NotFinite.h"
+#include "SceneShaders.h"
+#include "codegen/driver/SceneProgram.h"
+#include "runtime/accel/FlatScene.h"
+#include "runtime/program/PrintLog.h"
+#include "runtime/render/HostMegakernel.h"
+#include "runtime/render/MachineStack.h"
+#include "runtime/render/Renderer.h"
+#include "scenefile/SceneFile.h"
+#include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/OutOfMemory.h"
 #include "tools/common/Outcome.h"
 #include "tools/common/Output.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
-#include "SceneShaders.h"
-#include "codegen/driver/SceneProgram.h"
-#include "runtime/accel/FlatScene.h"
-#include "runtime/render/HostMegakernel.h"
-#include "runtime/render/MachineStack.h"
-#include "runtime/program/PrintLog.h"
-#include "runtime/render/Renderer.h"
-#include "scenefile/SceneFile.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -53,7 +53,8 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-runtime::RenderOptions renderOptions(const RenderCommandOptions &options, const scene::RenderSettings &settings) {
+runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
+                                     const scene::RenderSettings &settings) {
   runtime::RenderOptions render = scene::renderOptions(settings);
   if (options.size) {
     render.width = options.size->width;
@@ -77,16 +78,20 @@ struct Times {
 /// What samples met, by RTSL_EXCEPTION_*.
 constexpr const char *exceptionNames[RTSL_EXCEPTIONS] = {"", "stackOverflow", "badRay", "index"};
 
-void printExceptions(const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics) {
+void printExceptions(const runtime::RenderOptions &render,
+                     const runtime::RenderStatistics &statistics) {
   const std::uint64_t *counts = statistics.exceptions;
   if (counts[RTSL_EXCEPTION_STACK_OVERFLOW])
-    fmt::print(stderr, "{} samples sent rays deeper than {}: give a larger `--depth`, or end the recursion in the shader\n",
+    fmt::print(stderr,
+               "{} samples sent rays deeper than {}: give a larger `--depth`, or end the recursion "
+               "in the shader\n",
                counts[RTSL_EXCEPTION_STACK_OVERFLOW], render.maxDepth);
   if (counts[RTSL_EXCEPTION_BAD_RAY])
     fmt::print(stderr, "{} samples sent a ray without a direction, or one that was not finite\n",
                counts[RTSL_EXCEPTION_BAD_RAY]);
   if (counts[RTSL_EXCEPTION_INDEX])
-    fmt::print(stderr, "{} samples used an index that was out of range\n", counts[RTSL_EXCEPTION_INDEX]);
+    fmt::print(stderr, "{} samples used an index that was out of range\n",
+               counts[RTSL_EXCEPTION_INDEX]);
 }
 
 /// What is said of a rendering when it is over.
@@ -99,42 +104,43 @@ struct Summary {
 };
 
 nlohmann::ordered_json toJson(const SampleNotFinite &one) {
-  nlohmann::ordered_json color = nlohmann::ordered_json::array(); // JSON has no numbers that are not finite
+  nlohmann::ordered_json color =
+      nlohmann::ordered_json::array(); // JSON has no numbers that are not finite
   for (const float value : one.color)
-    color.push_back(std::isfinite(value)  ? nlohmann::ordered_json(value)
-                    : std::isnan(value) ? nlohmann::ordered_json("nan")
-                                        : nlohmann::ordered_json(value > 0 ? "inf" : "-inf"));
+    color.push_back(std::isfinite(value) ? nlohmann::ordered_json(value)
+                    : std::isnan(value)  ? nlohmann::ordered_json("nan")
+                                         : nlohmann::ordered_json(value > 0 ? "inf" : "-inf"));
   nlohmann::ordered_json document = {
       {"pixel", {one.sample.x, one.sample.y}}, {"sample", one.sample.sample}, {"color", color}};
   if (one.place)
-    document["place"] = {{"file", one.place->file}, {"line", one.place->line}, {"column", one.place->column}};
+    document["place"] = {
+        {"file", one.place->file}, {"line", one.place->line}, {"column", one.place->column}};
   return document;
 }
 
 std::string toJson(const RenderCommandOptions &options, const Summary &summary) {
   const runtime::RenderOptions &render = summary.render;
   const runtime::RenderStatistics &statistics = summary.statistics;
-  nlohmann::ordered_json document = {
-      {"version", 1},
-      {"output", options.output},
-      {"size", {render.width, render.height}},
-      {"spp", render.samplesPerPixel},
-      {"seed", render.seed},
-      {"seconds",
-       {{"compile", summary.times.compile},
-        {"scene", summary.times.scene},
-        {"build", statistics.buildSeconds},
-        {"render", statistics.renderSeconds},
-        {"image", summary.times.image}}},
-      {"samples", statistics.samples},
-      {"pixels", statistics.pixels},
-      {"badRays", statistics.badRays},
-      {"retracedRays", statistics.retracedRays},
-      {"rescaledRays", statistics.rescaledRays},
-      {"raysTooDeep", statistics.raysTooDeep},
-      {"samplesNotFinite", statistics.samplesNotFinite},
-      {"pixelsWithoutSample", statistics.pixelsWithoutSample},
-      {"notFinite", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json document = {{"version", 1},
+                                     {"output", options.output},
+                                     {"size", {render.width, render.height}},
+                                     {"spp", render.samplesPerPixel},
+                                     {"seed", render.seed},
+                                     {"seconds",
+                                      {{"compile", summary.times.compile},
+                                       {"scene", summary.times.scene},
+                                       {"build", statistics.buildSeconds},
+                                       {"render", statistics.renderSeconds},
+                                       {"image", summary.times.image}}},
+                                     {"samples", statistics.samples},
+                                     {"pixels", statistics.pixels},
+                                     {"badRays", statistics.badRays},
+                                     {"retracedRays", statistics.retracedRays},
+                                     {"rescaledRays", statistics.rescaledRays},
+                                     {"raysTooDeep", statistics.raysTooDeep},
+                                     {"samplesNotFinite", statistics.samplesNotFinite},
+                                     {"pixelsWithoutSample", statistics.pixelsWithoutSample},
+                                     {"notFinite", nlohmann::ordered_json::array()}};
   for (const SampleNotFinite &one : summary.notFinite)
     document["notFinite"].push_back(toJson(one));
   if (statistics.isUnfinished)
@@ -154,38 +160,46 @@ void printSummary(const RenderCommandOptions &options, const Summary &summary) {
     return printOut(toJson(options, summary));
   if (options.quiet || options.common.jsonDiagnostics) // there standard error is one JSON document
     return;
-  fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
-             options.output == "-" ? "standard output" : options.output, render.width, render.height, render.samplesPerPixel,
-             summary.times.compile * 1e3, statistics.renderSeconds,
-             double(statistics.samples) / statistics.renderSeconds * 1e-6);
+  fmt::print(
+      stderr,
+      "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
+      options.output == "-" ? "standard output" : options.output, render.width, render.height,
+      render.samplesPerPixel, summary.times.compile * 1e3, statistics.renderSeconds,
+      double(statistics.samples) / statistics.renderSeconds * 1e-6);
   printExceptions(render, statistics);
   if (statistics.badRays)
-    fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n", statistics.badRays);
+    fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n",
+               statistics.badRays);
 }
 
-/// Warns of what makes a picture wrong although it was rendered: samples that are left out, and rays that are not sent.
+/// Warns of what makes a picture wrong although it was rendered: samples that are left out, and
+/// rays that are not sent.
 void warn(const Summary &summary, Messages &messages) {
   const runtime::RenderStatistics &statistics = summary.statistics;
   if (statistics.isUnfinished)
-    messages.diagnostics.report(Code::unfinishedPicture, {}, unfinishedText(statistics, summary.render));
+    messages.diagnostics.report(Code::unfinishedPicture, {},
+                                unfinishedText(statistics, summary.render));
   if (statistics.samplesNotFinite) {
     SourceRange range;
     for (const SampleNotFinite &one : summary.notFinite)
       if (one.place && !range.isValid())
         range = messages.rangeOf(*one.place);
-    Diagnostic &diagnostic = messages.diagnostics.report(Code::samplesNotFinite, range, notFiniteText(statistics));
+    Diagnostic &diagnostic =
+        messages.diagnostics.report(Code::samplesNotFinite, range, notFiniteText(statistics));
     for (const SampleNotFinite &one : summary.notFinite) {
       const auto isNan = [](float value) { return std::isnan(value); };
-      const char *const what = one.color.empty()                                            ? "not finite"
-                               : std::any_of(one.color.begin(), one.color.end(), isNan) ? "not a number"
-                                                                                            : "infinite";
-      const std::string place =
-          one.place ? fmt::format("since {}:{}:{}", one.place->file, one.place->line, one.place->column)
-                    : "and no line was found to be the reason";
+      const char *const what = one.color.empty() ? "not finite"
+                               : std::any_of(one.color.begin(), one.color.end(), isNan)
+                                   ? "not a number"
+                                   : "infinite";
+      const std::string place = one.place ? fmt::format("since {}:{}:{}", one.place->file,
+                                                        one.place->line, one.place->column)
+                                          : "and no line was found to be the reason";
       diagnostic.note(fmt::format("{} is {}, {}", sampleText(one.sample), what, place));
     }
     if (statistics.samplesNotFinite > summary.notFinite.size())
-      diagnostic.note(fmt::format("and {} more samples", statistics.samplesNotFinite - summary.notFinite.size()));
+      diagnostic.note(fmt::format("and {} more samples",
+                                  statistics.samplesNotFinite - summary.notFinite.size()));
   }
   if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
     messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, summary.render));
@@ -197,7 +211,8 @@ runtime::Image renderFlat(const runtime::Scene &scene, const runtime::RenderOpti
   const Clock::time_point start = Clock::now();
   runtime::FlatScene flat = runtime::flatten(scene);
   const double seconds = secondsSince(start);
-  runtime::Image image = runtime::renderOnHost(scene.program().megakernel, std::move(flat), options, &statistics);
+  runtime::Image image =
+      runtime::renderOnHost(scene.program().megakernel, std::move(flat), options, &statistics);
   statistics.buildSeconds = seconds;
   return image;
 }
@@ -205,12 +220,14 @@ runtime::Image renderFlat(const runtime::Scene &scene, const runtime::RenderOpti
 void renderScene(const RenderCommandOptions &options, Messages &messages) {
   runtime::checkWritable(options.output, options.format);
   checkOutputs(options.output, options.common.dependencies, {options.scene});
-  const scene::SceneDescription description = readScene(options.scene, options.overrides, messages, "render");
+  const scene::SceneDescription description =
+      readScene(options.scene, options.overrides, messages, "render");
 
   Summary summary;
   Clock::time_point start = Clock::now();
   std::vector<std::string> filesRead;
-  const std::unique_ptr<typed::Module> module = loadShaders(description, options.common, messages, &filesRead);
+  const std::unique_ptr<typed::Module> module =
+      loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
   filesRead = withMeshes(description, filesRead);
@@ -249,9 +266,11 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   summary.printed = runtime::takePrintLog().texts(scene->program().prints);
   std::uint64_t stackBytes = 0;
   if (runtime::failedMachineStacks(&stackBytes))
-    throw Error(ErrorCode::OutOfMemory,
-                         fmt::format("no memory for rays in flight: a thread needs {} bytes; ask for a smaller `--depth`",
-                                     stackBytes));
+    throw Error(
+        ErrorCode::OutOfMemory,
+        fmt::format(
+            "no memory for rays in flight: a thread needs {} bytes; ask for a smaller `--depth`",
+            stackBytes));
 
   start = Clock::now();
   runtime::writeImage(options.output, image, options.format);
@@ -261,8 +280,8 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
     printOut(summary.printed.empty() ? "" : fmt::format("{}\n", fmt::join(summary.printed, "\n")));
   if (!summary.statistics.notFinite.empty())
     try {
-      summary.notFinite = explainNotFinite(summary.statistics, *module, request, compile, *scene, render,
-                                           messages.diagnostics);
+      summary.notFinite = explainNotFinite(summary.statistics, *module, request, compile, *scene,
+                                           render, messages.diagnostics);
     } catch (const std::exception &error) { // the picture is written, and the samples are counted
       if (!isOutOfMemory(error))
         throw;
@@ -288,25 +307,30 @@ int render(const RenderCommandOptions &options) {
 void addRenderCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<RenderCommandOptions>();
   CLI::App *command = app.add_subcommand(renderSummary.command, renderSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")
+      ->required();
   addPictureOption(*command, options->output, options->format);
   addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel, "samples a pixel");
   addSizeOption(*command, options->size);
-  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads, "threads; all cores if not given");
+  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
+           "threads; all cores if not given");
   addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
            "how often a ray may lead to another; 0: camera rays only");
   addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");
   addSetOption(*command, options->overrides);
   addChoice(*command, "--traversal", options->traversal,
-            Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree}, {"device", runtime::Traversal::Device}},
+            Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree},
+                                        {"device", runtime::Traversal::Device}},
             "embree: fast; device: the one that GPUs run");
   addChoice(*command, "--target", options->common.compile.target,
             Choices<Target>{{"host", Target::Host}, {"host-megakernel", Target::HostMegakernel}},
-            "host: the fastest way on this machine; host-megakernel: the program that GPUs run, on the CPU");
+            "host: the fastest way on this machine; host-megakernel: the program that GPUs run, on "
+            "the CPU");
   command->add_flag("--print", options->prints,
                     "show what shaders print, in the order of pixels, on standard output");
   command->add_flag("--exceptions", options->exceptions,
-                    "end samples that send a bad ray, one too deep, or use an index out of range, and say how many; list all "
+                    "end samples that send a bad ray, one too deep, or use an index out of range, "
+                    "and say how many; list all "
                     "samples that are not finite");
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
@@ -315,9 +339,11 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addCompileOptions(*command, options->common);
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
-  command->footer("example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");
+  command->footer(
+      "example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");
   command->callback([options, &action] {
-    for (const auto &[name, isGiven] : {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
+    for (const auto &[name, isGiven] :
+         {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
       if (isGiven && options->output == "-")
         throw CLI::ValidationError(name, "standard output is the picture; give a file to `-o`");
     checkPictureName(options->output, options->format);

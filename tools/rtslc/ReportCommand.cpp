@@ -4,12 +4,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "CommandLine.h"
-#include "tools/common/Interruption.h"
 #include "Messages.h"
-#include "tools/common/OptionValues.h"
-#include "tools/common/Output.h"
-#include "tools/common/PictureOptions.h"
-#include "tools/common/Progress.h"
 #include "SceneShaders.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Versions.h"
@@ -19,11 +14,16 @@
 #include "report/Flip.h"
 #include "report/Machine.h"
 #include "report/Page.h"
-#include "support/AtomicFile.h"
+#include "runtime/program/Versions.h"
 #include "runtime/render/MachineStack.h"
 #include "runtime/render/Renderer.h"
-#include "runtime/program/Versions.h"
 #include "scenefile/SceneFile.h"
+#include "support/AtomicFile.h"
+#include "tools/common/Interruption.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/Output.h"
+#include "tools/common/PictureOptions.h"
+#include "tools/common/Progress.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -54,12 +54,15 @@ struct ReportOptions {
 };
 
 double parseSeconds(const std::string &text) {
-  const std::map<std::string, double> units = {{"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}, {"h", 3600}};
+  const std::map<std::string, double> units = {{"", 1},   {"s", 1},    {"ms", 1e-3},
+                                               {"m", 60}, {"min", 60}, {"h", 3600}};
   char *end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   const auto unit = units.find(end);
-  if (end == text.c_str() || unit == units.end() || !(number * unit->second >= 1e-3 && number * unit->second <= 1e6))
-    throw CLI::ValidationError("--budget", "give a time of at least 1 ms, such as 10s, 500ms or 2m");
+  if (end == text.c_str() || unit == units.end() ||
+      !(number * unit->second >= 1e-3 && number * unit->second <= 1e6))
+    throw CLI::ValidationError("--budget",
+                               "give a time of at least 1 ms, such as 10s, 500ms or 2m");
   return number * unit->second;
 }
 
@@ -78,18 +81,19 @@ struct Build {
 };
 
 /// Compiles the scene's shaders; nothing if there were errors.
-std::optional<Build> build(const LoadedScene &loaded, const CompileOptions &options, Messages &messages) {
+std::optional<Build> build(const LoadedScene &loaded, const CompileOptions &options,
+                           Messages &messages) {
   Build result;
   const Clock::time_point start = Clock::now();
   Clock::duration building{};
-  std::optional<runtime::Scene> scene = compileScene(*loaded.module, linkRequest(loaded.description), options,
-                                                     messages.diagnostics, [&](const auto &program) {
-                                                       const Clock::time_point begin = Clock::now();
-                                                       runtime::Scene made =
-                                                           scene::buildScene(loaded.description, program);
-                                                       building = Clock::now() - begin;
-                                                       return made;
-                                                     });
+  std::optional<runtime::Scene> scene =
+      compileScene(*loaded.module, linkRequest(loaded.description), options, messages.diagnostics,
+                   [&](const auto &program) {
+                     const Clock::time_point begin = Clock::now();
+                     runtime::Scene made = scene::buildScene(loaded.description, program);
+                     building = Clock::now() - begin;
+                     return made;
+                   });
   if (!scene)
     return std::nullopt;
   result.compileSeconds = std::chrono::duration<double>(Clock::now() - start - building).count();
@@ -97,30 +101,34 @@ std::optional<Build> build(const LoadedScene &loaded, const CompileOptions &opti
   return result;
 }
 
-report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions options, std::uint32_t samples,
-                           std::uint32_t seed) {
+report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions options,
+                           std::uint32_t samples, std::uint32_t seed) {
   options.samplesPerPixel = samples;
   options.seed = seed;
   options.withoutSample = std::numeric_limits<float>::quiet_NaN(); // no error is measured there
   report::Picture picture;
   picture.image = runtime::render(scene, options, &picture.statistics);
   if (runtime::failedMachineStacks(nullptr))
-    throw Error(ErrorCode::OutOfMemory, "no memory for rays in flight; ask for a smaller `--depth`");
+    throw Error(ErrorCode::OutOfMemory,
+                "no memory for rays in flight; ask for a smaller `--depth`");
   return picture;
 }
 
-std::function<report::Picture(std::uint32_t, std::uint32_t)> rendererOf(const Build &build, runtime::RenderOptions options,
-                                                                        runtime::Traversal traversal) {
+std::function<report::Picture(std::uint32_t, std::uint32_t)>
+rendererOf(const Build &build, runtime::RenderOptions options, runtime::Traversal traversal) {
   options.traversal = traversal;
   return [scene = build.scene, options](std::uint32_t samples, std::uint32_t seed) {
     return renderOnce(*scene, options, samples, seed);
   };
 }
 
-/// What renders a reference, and what shows the rounding of single precision beside it: both go the shortest way.
-constexpr const char *referenceName = "double embree recurse", *singleName = "strict embree recurse";
+/// What renders a reference, and what shows the rounding of single precision beside it: both go the
+/// shortest way.
+constexpr const char *referenceName = "double embree recurse",
+                     *singleName = "strict embree recurse";
 
-std::optional<report::Subject> compileShortest(const char *name, FloatingPoint precision, const LoadedScene &loaded,
+std::optional<report::Subject> compileShortest(const char *name, FloatingPoint precision,
+                                               const LoadedScene &loaded,
                                                const ReportOptions &options, Messages &messages) {
   CompileOptions compile = options.common.compile;
   compile.floatingPoint = precision;
@@ -135,21 +143,27 @@ std::optional<report::Subject> compileShortest(const char *name, FloatingPoint p
   return subject;
 }
 
-/// The one that was given, that the folder has, or that is rendered now; nothing if there were errors.
-std::optional<report::Reference> referenceFor(const LoadedScene &loaded, const ReportOptions &options,
-                                              const std::vector<report::Subject> &subjects, double seconds,
-                                              const report::ProgressFunction &progress, Messages &messages) {
+/// The one that was given, that the folder has, or that is rendered now; nothing if there were
+/// errors.
+std::optional<report::Reference>
+referenceFor(const LoadedScene &loaded, const ReportOptions &options,
+             const std::vector<report::Subject> &subjects, double seconds,
+             const report::ProgressFunction &progress, Messages &messages) {
   if (!options.reference.empty())
     return report::readReference(options.reference, loaded.render.width, loaded.render.height,
                                  options.common.compile.colorComponents);
-  if (std::optional<report::Reference> earlier = report::findReference(referenceName, options.folder))
+  if (std::optional<report::Reference> earlier =
+          report::findReference(referenceName, options.folder))
     return earlier;
   const std::optional<report::Subject> exact =
       compileShortest(referenceName, FloatingPoint::Double, loaded, options, messages);
-  const auto measured = std::find_if(subjects.begin(), subjects.end(),
-                                     [](const report::Subject &subject) { return subject.name == singleName; });
+  const auto measured =
+      std::find_if(subjects.begin(), subjects.end(),
+                   [](const report::Subject &subject) { return subject.name == singleName; });
   const std::optional<report::Subject> single =
-      measured != subjects.end() ? *measured : compileShortest(singleName, FloatingPoint::Strict, loaded, options, messages);
+      measured != subjects.end()
+          ? *measured
+          : compileShortest(singleName, FloatingPoint::Strict, loaded, options, messages);
   if (!exact || !single)
     return std::nullopt;
   constexpr std::uint32_t referenceRuns = 32; // enough to tell heavy tails
@@ -171,29 +185,39 @@ struct Configuration {
 
 /// Those that --only leaves, the usual one first; throws if it leaves none.
 std::vector<Configuration> configurationsFor(const ReportOptions &options) {
-  const std::pair<FloatingPoint, const char *> precisions[] = {{FloatingPoint::Strict, "strict"}, {FloatingPoint::Fast, "fast"}};
-  const std::pair<TraceMode, const char *> traceModes[] = {{TraceMode::Recurse, "recurse"}, {TraceMode::Split, "split"}};
-  const std::pair<runtime::Traversal, const char *> traversals[] = {{runtime::Traversal::Embree, "embree"},
-                                                                    {runtime::Traversal::Device, "device"}};
+  const std::pair<FloatingPoint, const char *> precisions[] = {{FloatingPoint::Strict, "strict"},
+                                                               {FloatingPoint::Fast, "fast"}};
+  const std::pair<TraceMode, const char *> traceModes[] = {{TraceMode::Recurse, "recurse"},
+                                                           {TraceMode::Split, "split"}};
+  const std::pair<runtime::Traversal, const char *> traversals[] = {
+      {runtime::Traversal::Embree, "embree"}, {runtime::Traversal::Device, "device"}};
   std::vector<Configuration> configurations;
   for (const auto &[precision, precisionName] : precisions)
     for (const auto &[trace, traceName] : traceModes)
       for (const auto &[traversal, traversalName] : traversals) {
         const Configuration one = {
-            precision, trace, traversal, {{"fp", precisionName}, {"traversal", traversalName}, {"trace", traceName}}};
-        const auto isPart = [&](const std::string &part) { return one.name().find(part) != std::string::npos; };
+            precision,
+            trace,
+            traversal,
+            {{"fp", precisionName}, {"traversal", traversalName}, {"trace", traceName}}};
+        const auto isPart = [&](const std::string &part) {
+          return one.name().find(part) != std::string::npos;
+        };
         if (options.only.empty() || std::any_of(options.only.begin(), options.only.end(), isPart))
           configurations.push_back(one);
       }
   if (configurations.empty())
     throw Error(ErrorCode::UnknownName,
-                         "no configuration is left by `--only`; their names are made of strict or fast, embree or device, and recurse or split");
+                "no configuration is left by `--only`; their names are made of strict or fast, "
+                "embree or device, and recurse or split");
   return configurations;
 }
 
-/// Compiles them; configurations that differ in traversal alone share a program. Nothing if there were errors.
-std::vector<report::Subject> subjectsFor(const std::vector<Configuration> &configurations, const LoadedScene &loaded,
-                                         const ReportOptions &options, Messages &messages) {
+/// Compiles them; configurations that differ in traversal alone share a program. Nothing if there
+/// were errors.
+std::vector<report::Subject> subjectsFor(const std::vector<Configuration> &configurations,
+                                         const LoadedScene &loaded, const ReportOptions &options,
+                                         Messages &messages) {
   std::map<std::pair<FloatingPoint, TraceMode>, Build> builds;
   std::vector<report::Subject> subjects;
   for (const Configuration &one : configurations) {
@@ -217,15 +241,18 @@ std::vector<report::Subject> subjectsFor(const std::vector<Configuration> &confi
   return subjects;
 }
 
-/// What a study must have in common with the one that it goes on with: everything that changes a picture or a time.
-std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options, const Messages &messages) {
+/// What a study must have in common with the one that it goes on with: everything that changes a
+/// picture or a time.
+std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options,
+                        const Messages &messages) {
   std::string all =
       fmt::format("study 2, {} {}x{} depth {} threads {} runs {} colors {} checked {} O{}",
                   RTSL_VERSION, loaded.render.width, loaded.render.height, loaded.render.maxDepth,
                   options.threads, options.runs, options.common.compile.colorComponents,
                   options.common.compile.checkIndices, options.common.compile.optimization);
   for (FileId file = 1; file <= messages.sources.count(); ++file)
-    all += std::string(messages.sources.name(file)) + '\0' + std::string(messages.sources.text(file)) + '\0';
+    all += std::string(messages.sources.name(file)) + '\0' +
+           std::string(messages.sources.text(file)) + '\0';
   if (options.scene != "-") // the text of standard input is among the sources
     all += readFile(loaded.description.file);
   for (const std::string &value : options.overrides)
@@ -241,28 +268,36 @@ std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options,
 namespace fs = std::filesystem;
 
 /// What a report writes into its folder.
-constexpr const char *parts[] = {"study.json",  "measurements.csv", "levels.csv",     "report.json", "index.html",
-                                 "reference.exr", "reference.json",  "partial", "pictures"};
+constexpr const char *parts[] = {"study.json",     "measurements.csv", "levels.csv",
+                                 "report.json",    "index.html",       "reference.exr",
+                                 "reference.json", "partial",          "pictures"};
 
-std::string identityOf(const ReportOptions &options) { return options.folder + "/study.json"; }
+std::string identityOf(const ReportOptions &options) {
+  return options.folder + "/study.json";
+}
 
-/// Throws if the folder holds another study, or if something that is read lies where the report writes.
-void checkFolder(const ReportOptions &options, const std::string &fingerprint, const std::vector<std::string> &inputs) {
+/// Throws if the folder holds another study, or if something that is read lies where the report
+/// writes.
+void checkFolder(const ReportOptions &options, const std::string &fingerprint,
+                 const std::vector<std::string> &inputs) {
   for (const char *part : parts) {
     const fs::path path = fs::path(options.folder) / part;
     std::error_code error;
     refuseToOverwrite(path.string(), inputs);
-    for (const fs::directory_entry &entry : fs::directory_iterator(path, error)) // of folders: they are emptied
+    for (const fs::directory_entry &entry :
+         fs::directory_iterator(path, error)) // of folders: they are emptied
       refuseToOverwrite(entry.path().string(), inputs);
   }
   if (options.fresh || !fs::exists(identityOf(options)))
     return;
-  const nlohmann::json earlier = nlohmann::json::parse(readFile(identityOf(options)), nullptr, false);
+  const nlohmann::json earlier =
+      nlohmann::json::parse(readFile(identityOf(options)), nullptr, false);
   if (earlier.is_discarded() || earlier.value("fingerprint", "") != fingerprint)
     throw Error(ErrorCode::FileUnwritable,
-                         fmt::format("`{}` holds a report of another scene, shader, size or version; choose another `--out`, or pass `--fresh` to begin it anew",
-                                     options.folder),
-                         Place{options.folder});
+                fmt::format("`{}` holds a report of another scene, shader, size or version; choose "
+                            "another `--out`, or pass `--fresh` to begin it anew",
+                            options.folder),
+                Place{options.folder});
 }
 
 /// Makes the folder, or finds the same study in it.
@@ -271,20 +306,24 @@ void openFolder(const ReportOptions &options, const std::string &fingerprint) {
   fs::create_directories(options.folder, error);
   if (error || !fs::is_directory(options.folder))
     throw Error(ErrorCode::FileUnwritable,
-                         fmt::format("cannot make the folder `{}`: {}", options.folder, error ? error.message() : "there is a file of that name"),
-                         Place{options.folder});
+                fmt::format("cannot make the folder `{}`: {}", options.folder,
+                            error ? error.message() : "there is a file of that name"),
+                Place{options.folder});
   if (options.fresh)
     for (const char *part : parts)
       fs::remove_all(fs::path(options.folder) / part, error);
   if (fs::exists(identityOf(options)))
     return;
-  const nlohmann::ordered_json document = {{"version", 1}, {"scene", options.scene}, {"fingerprint", fingerprint}};
+  const nlohmann::ordered_json document = {
+      {"version", 1}, {"scene", options.scene}, {"fingerprint", fingerprint}};
   writeFileAtomically(identityOf(options), document.dump(2) + "\n");
 }
 
 /// The pictures of the page: the reference, and each different picture with its two maps. All have
 /// the exposure of the first.
-std::vector<report::Exhibit> exhibitsFor(const std::vector<report::Subject> &subjects, const report::Reference &reference, const std::string &folder) {
+std::vector<report::Exhibit> exhibitsFor(const std::vector<report::Subject> &subjects,
+                                         const report::Reference &reference,
+                                         const std::string &folder) {
   std::vector<report::Exhibit> exhibits;
   std::optional<double> stops;
   const auto show = [&](const std::string &caption, const runtime::Image &image) {
@@ -308,17 +347,23 @@ std::vector<report::Exhibit> exhibitsFor(const std::vector<report::Subject> &sub
     show(subject.name + ": one picture with the most samples", image);
     if (!reference.problem.empty())
       continue;
-    const report::FlipMap map = report::flip(runtime::toRgb(reference.image), runtime::toRgb(image));
-    exhibits.push_back({fmt::format("{}: FLIP, mean {:.3g}; black 0, pale yellow 1", subject.name, map.mean()), report::colorFlipMap(map)});
-    exhibits.push_back({fmt::format("{}: relative squared error, logarithmic from 1e-6 (black) to 1 (pale yellow)", subject.name),
-                        report::colorLogMap(report::relativeSquaredErrorMap(reference.image, image), 1e-6, 1)});
+    const report::FlipMap map =
+        report::flip(runtime::toRgb(reference.image), runtime::toRgb(image));
+    exhibits.push_back(
+        {fmt::format("{}: FLIP, mean {:.3g}; black 0, pale yellow 1", subject.name, map.mean()),
+         report::colorFlipMap(map)});
+    exhibits.push_back(
+        {fmt::format("{}: relative squared error, logarithmic from 1e-6 (black) to 1 (pale yellow)",
+                     subject.name),
+         report::colorLogMap(report::relativeSquaredErrorMap(reference.image, image), 1e-6, 1)});
   }
   return exhibits;
 }
 
 std::string commandLine(const ReportOptions &options, const runtime::RenderOptions &render) {
-  std::string line = fmt::format("rtslc report {} --out {} --size {}x{} --budget {:g}s --runs {}", options.scene, options.folder, render.width, render.height,
-                                 options.budget, options.runs);
+  std::string line =
+      fmt::format("rtslc report {} --out {} --size {}x{} --budget {:g}s --runs {}", options.scene,
+                  options.folder, render.width, render.height, options.budget, options.runs);
   if (!options.reference.empty())
     line += " --reference " + options.reference;
   for (const std::string &value : options.overrides)
@@ -334,17 +379,20 @@ std::string withInterval(const report::Estimate &estimate, int digits) {
                      estimate.high, digits);
 }
 
-void printSummary(const ReportOptions &options, const report::Summary &summary, const std::string &json) {
+void printSummary(const ReportOptions &options, const report::Summary &summary,
+                  const std::string &json) {
   if (options.json)
     return printOut(json);
-  std::string text = fmt::format("{:<24} {:>9} {:>24} {:>24}\n", "configuration", "compile", "slope over seconds",
-                                 fmt::format("s to {:.2g}", summary.commonRelMse));
+  std::string text =
+      fmt::format("{:<24} {:>9} {:>24} {:>24}\n", "configuration", "compile", "slope over seconds",
+                  fmt::format("s to {:.2g}", summary.commonRelMse));
   for (const report::SubjectSummary &subject : summary.subjects) {
     const report::LineFit &line = subject.relMseOverSeconds;
     const auto &time = subject.toCommonRelMse;
-    text += fmt::format("{:<24} {:>7.0f}ms {:>24} {:>24}\n", subject.name, subject.compileSeconds * 1e3,
-                        line.points != 0 ? withInterval(line.slope, 3) + (line.bends() ? "*" : "") : "-",
-                        time ? (time->isBound ? "<= " : "") + withInterval(time->seconds, 3) : "-");
+    text += fmt::format(
+        "{:<24} {:>7.0f}ms {:>24} {:>24}\n", subject.name, subject.compileSeconds * 1e3,
+        line.points != 0 ? withInterval(line.slope, 3) + (line.bends() ? "*" : "") : "-",
+        time ? (time->isBound ? "<= " : "") + withInterval(time->seconds, 3) : "-");
   }
   for (const std::string &problem : summary.problems)
     text += fmt::format("note: {}\n", problem);
@@ -382,7 +430,8 @@ void makeReport(const ReportOptions &options, Messages &messages) {
     return;
   const std::string study = fingerprint(*loaded, options, messages);
   checkFolder(options, study, loaded->filesRead);
-  const std::vector<report::Subject> subjects = subjectsFor(configurations, *loaded, options, messages);
+  const std::vector<report::Subject> subjects =
+      subjectsFor(configurations, *loaded, options, messages);
   if (subjects.empty())
     return;
   openFolder(options, study); // when nothing is wrong any more
@@ -394,9 +443,9 @@ void makeReport(const ReportOptions &options, Messages &messages) {
   };
   constexpr double referenceShare = 4; // its time, in budgets
   const double total = referenceShare + double(subjects.size());
-  const std::optional<report::Reference> found =
-      referenceFor(*loaded, options, subjects, referenceShare * options.budget,
-                   [&](double share, const std::string &) { show(share * referenceShare / total); }, messages);
+  const std::optional<report::Reference> found = referenceFor(
+      *loaded, options, subjects, referenceShare * options.budget,
+      [&](double share, const std::string &) { show(share * referenceShare / total); }, messages);
   if (!found)
     return;
   const report::Reference &reference = *found;
@@ -404,8 +453,11 @@ void makeReport(const ReportOptions &options, Messages &messages) {
   how.folder = options.folder;
   how.runs = options.runs;
   how.budgetSeconds = options.budget;
-  how.progress = [&](double share, const std::string &) { show((referenceShare + share * double(subjects.size())) / total); };
-  const report::Summary summary = report::summarise(subjects, report::runStudy(subjects, reference, how), reference);
+  how.progress = [&](double share, const std::string &) {
+    show((referenceShare + share * double(subjects.size())) / total);
+  };
+  const report::Summary summary =
+      report::summarise(subjects, report::runStudy(subjects, reference, how), reference);
   progress.finish();
 
   report::Context context;
@@ -416,12 +468,14 @@ void makeReport(const ReportOptions &options, Messages &messages) {
   context.budgetSeconds = options.budget;
   context.command = commandLine(options, loaded->render);
   context.versions = runtime::libraryVersions();
-  context.versions.insert(context.versions.begin(), {{"rtslc", RTSL_VERSION}, {"LLVM", llvmVersion()}});
+  context.versions.insert(context.versions.begin(),
+                          {{"rtslc", RTSL_VERSION}, {"LLVM", llvmVersion()}});
   context.machine = report::machineFacts();
   const std::string json = report::writeJson(context, summary, reference);
   writeFileAtomically(options.folder + "/report.json", json);
   writeFileAtomically(options.folder + "/index.html",
-                               report::writePage(context, summary, reference, exhibitsFor(subjects, reference, options.folder)));
+                      report::writePage(context, summary, reference,
+                                        exhibitsFor(subjects, reference, options.folder)));
   printSummary(options, summary, json);
 }
 
@@ -442,20 +496,32 @@ int report(const ReportOptions &options) {
 void addReportCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App *command = app.add_subcommand(reportSummary.command, reportSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
-  command->add_option("--out", options->folder, "the folder of the report; an interrupted one goes on")->required()->type_name("DIR");
-  command->add_option("--reference", options->reference, "what to compare with; rendered if not given")->type_name("IMAGE");
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")
+      ->required();
+  command
+      ->add_option("--out", options->folder, "the folder of the report; an interrupted one goes on")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--reference", options->reference, "what to compare with; rendered if not given")
+      ->type_name("IMAGE");
   command
       ->add_option_function<std::string>(
           "--budget", [options](const std::string &text) { options->budget = parseSeconds(text); },
-          "time of rendering for each configuration; the reference gets four times as much; 10s if not given")
+          "time of rendering for each configuration; the reference gets four times as much; 10s if "
+          "not given")
       ->type_name("TIME");
-  addWhole(*command, "--runs", options->runs, 2, 1000, "independent runs with each number of samples; 8 if not given");
+  addWhole(*command, "--runs", options->runs, 2, 1000,
+           "independent runs with each number of samples; 8 if not given");
   addSizeOption(*command, options->size);
-  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads, "threads; all cores if not given");
-  addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth, "how often a ray may lead to another");
+  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
+           "threads; all cores if not given");
+  addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
+           "how often a ray may lead to another");
   addSetOption(*command, options->overrides);
-  command->add_option("--only", options->only, "only configurations with this in their names, such as embree; may be repeated")
+  command
+      ->add_option("--only", options->only,
+                   "only configurations with this in their names, such as embree; may be repeated")
       ->type_name("TEXT")
       ->allow_extra_args(false);
   command->add_flag("--fresh", options->fresh, "throw away what is in the folder");
@@ -466,7 +532,8 @@ void addReportCommand(CLI::App &app, Action &action) {
   for (const char *measured : {"--fp", "--trace"}) // each of their values is
     command->remove_option(command->get_option(measured));
   addMessageOptions(*command, options->common);
-  command->footer("example:\n  rtslc report examples/glass/scene.json --out report --size 320x180 --budget 20s");
+  command->footer("example:\n  rtslc report examples/glass/scene.json --out report --size 320x180 "
+                  "--budget 20s");
   command->callback([options, &action] { action = [options] { return report(*options); }; });
 }
 

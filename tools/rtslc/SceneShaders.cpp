@@ -3,9 +3,9 @@
 
 #include "Shaders.h"
 #include "frontend/preprocessor/FileSearch.h"
-#include "support/AtomicFile.h"
 #include "runtime/scene/Scene.h"
 #include "scenefile/SceneParts.h"
+#include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>
@@ -18,14 +18,17 @@ namespace rtsl::tool {
 namespace {
 
 bool hasEnding(const std::string &file, const std::string &ending) {
-  return file.size() > ending.size() && file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
+  return file.size() > ending.size() &&
+         file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 [[noreturn]] void refuseShaders(const std::string &file, const char *command) {
   Error error(ErrorCode::NotAScene,
-                       fmt::format("`{}` holds shaders, and `rtslc {}` takes a scene, which imports them", file, command),
-                       Place{file});
-  error.note(fmt::format("a scene is a file such as {{\"rtsl\": 1, \"import\": [\"{}\"], \"camera\": {{\"class\": ...}}, "
+              fmt::format("`{}` holds shaders, and `rtslc {}` takes a scene, which imports them",
+                          file, command),
+              Place{file});
+  error.note(fmt::format("a scene is a file such as {{\"rtsl\": 1, \"import\": [\"{}\"], "
+                         "\"camera\": {{\"class\": ...}}, "
                          "\"objects\": [{{\"mesh\": ..., \"material\": {{\"class\": ...}}}}]}}",
                          std::filesystem::path(file).filename().string()));
   error.note(fmt::format("`rtslc check {}` looks for mistakes in the shaders alone", file));
@@ -34,9 +37,12 @@ bool hasEnding(const std::string &file, const std::string &ending) {
 
 } // namespace
 
-bool isScene(const std::string &file) { return hasEnding(file, ".json"); }
+bool isScene(const std::string &file) {
+  return hasEnding(file, ".json");
+}
 
-scene::SceneDescription readScene(const std::string &file, const std::vector<std::string> &overrides, Messages &messages,
+scene::SceneDescription readScene(const std::string &file,
+                                  const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command) {
   if (hasEnding(file, ".rtsl"))
     refuseShaders(file, command);
@@ -54,7 +60,9 @@ void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {
     const bool isOverride = equals != std::string::npos && equals != 0;
     return isOverride ? std::string() : "write `path.to.key=value`, not `" + text + "`";
   };
-  command.add_option("--set", overrides, "change a value of the scene file, such as objects.3.mesh=bunny.obj")
+  command
+      .add_option("--set", overrides,
+                  "change a value of the scene file, such as objects.3.mesh=bunny.obj")
       ->check(CLI::Validator(check, ""))
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -63,7 +71,8 @@ void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {
 namespace {
 
 /// Says which classes of the scene no file has, before any code is made.
-void refuseUnknownClasses(const scene::SceneDescription &description, const typed::Module &module, Messages &messages) {
+void refuseUnknownClasses(const scene::SceneDescription &description, const typed::Module &module,
+                          Messages &messages) {
   std::vector<std::string> names;
   for (const auto &one : module.classes)
     names.push_back(one->name);
@@ -71,8 +80,8 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
     if (module.findClass(mention.text))
       continue;
     const SourceRange range = messages.rangeOf(mention.place);
-    Diagnostic &diagnostic = messages.diagnostics.report(Code::sceneUnknownClass, range,
-                                                         fmt::format("no class is named `{}`", mention.text));
+    Diagnostic &diagnostic = messages.diagnostics.report(
+        Code::sceneUnknownClass, range, fmt::format("no class is named `{}`", mention.text));
     if (const std::string near = closestName(mention.text, names); !near.empty())
       diagnostic.fix(range, near);
   }
@@ -80,8 +89,9 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
 
 } // namespace
 
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
-                                           Messages &messages, std::vector<std::string> *filesRead) {
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
+                                           const CommonOptions &options, Messages &messages,
+                                           std::vector<std::string> *filesRead) {
   PreprocessorOptions preprocessor = options.preprocessor;
   preprocessor.includeFolders.push_back(folderOf(description.file));
   Shaders shaders(messages, preprocessor);
@@ -105,7 +115,8 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
   return module;
 }
 
-std::vector<std::string> withMeshes(const scene::SceneDescription &description, std::vector<std::string> filesRead) {
+std::vector<std::string> withMeshes(const scene::SceneDescription &description,
+                                    std::vector<std::string> filesRead) {
   for (const scene::GeometryDescription &geometry : description.objects)
     if (!geometry.meshPath.empty() &&
         std::find(filesRead.begin(), filesRead.end(), geometry.meshPath) == filesRead.end())
@@ -117,8 +128,8 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   LinkRequest request;
   request.classes = scene::classesUsed(description);
   for (const scene::LocatedName &mention : scene::classMentions(description))
-    request.places.try_emplace(mention.text,
-                               ir::SourcePlace{mention.place.file, mention.place.line, mention.place.column});
+    request.places.try_emplace(mention.text, ir::SourcePlace{mention.place.file, mention.place.line,
+                                                             mention.place.column});
   for (scene::Part &part : scene::partsOf(description))
     request.parts.push_back({static_cast<ScenePart::Role>(part.role),
                              std::move(part.name),
@@ -132,11 +143,13 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   for (const scene::GeometryDescription &geometry : description.objects) {
     const scene::ObjectDescription *material = geometry.material.object.get();
     if (!material)
-      if (auto named = description.materials.find(geometry.material.name.text); named != description.materials.end())
+      if (auto named = description.materials.find(geometry.material.name.text);
+          named != description.materials.end())
         material = &named->second;
     if (material)
-      request.surfaces.push_back({geometry.primitive ? geometry.primitive->className.text : std::string(),
-                                  material->className.text});
+      request.surfaces.push_back(
+          {geometry.primitive ? geometry.primitive->className.text : std::string(),
+           material->className.text});
   }
   return request;
 }

@@ -13,20 +13,26 @@ namespace rtsl::tool {
 /// Whether a file is a scene, and no shaders.
 bool isScene(const std::string &file);
 
-/// Reads a scene file; "-" is standard input. Throws what says what to do if it is given RTSL; `command` is for that.
-scene::SceneDescription readScene(const std::string &file, const std::vector<std::string> &overrides, Messages &messages,
+/// Reads a scene file; "-" is standard input. Throws what says what to do if it is given RTSL;
+/// `command` is for that.
+scene::SceneDescription readScene(const std::string &file,
+                                  const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command);
 
 /// Adds --set.
 void addSetOption(CLI::App &command, std::vector<std::string> &overrides);
 
-/// Reads and checks the files that the scene imports; null if there were errors. They find what they include in the scene's
-/// folder too. `filesRead`, if asked for, gets the scene and all shader files.
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
-                                           Messages &messages, std::vector<std::string> *filesRead = nullptr);
+/// Reads and checks the files that the scene imports; null if there were errors. They find what
+/// they include in the scene's folder too. `filesRead`, if asked for, gets the scene and all shader
+/// files.
+std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
+                                           const CommonOptions &options, Messages &messages,
+                                           std::vector<std::string> *filesRead = nullptr);
 
-/// All files that the scene is made of, for -MD and so that none is overwritten: `filesRead` and the meshes.
-std::vector<std::string> withMeshes(const scene::SceneDescription &description, std::vector<std::string> filesRead);
+/// All files that the scene is made of, for -MD and so that none is overwritten: `filesRead` and
+/// the meshes.
+std::vector<std::string> withMeshes(const scene::SceneDescription &description,
+                                    std::vector<std::string> filesRead);
 
 /// Which classes the scene has objects of, and which materials meet which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);

@@ -11,12 +11,14 @@
 
 namespace rtsl::tool {
 
-/// The files of one run with all that they import. What is wrong with them goes to the run's messages.
+/// The files of one run with all that they import. What is wrong with them goes to the run's
+/// messages.
 class Shaders {
 public:
   Shaders(Messages &messages, const PreprocessorOptions &options)
       : messages(messages), loader(messages.sources, messages.diagnostics, options) {}
-  Shaders(Messages &messages, const PreprocessorOptions &options, const std::vector<std::string> &files)
+  Shaders(Messages &messages, const PreprocessorOptions &options,
+          const std::vector<std::string> &files)
       : Shaders(messages, options) {
     for (const std::string &file : files)
       add(file);
@@ -36,10 +38,14 @@ public:
     return loader.files();
   }
 
-  /// Checks everything together, down to what splitting at `trace` would save if that is asked for (-Wlive-state).
+  /// Checks everything together, down to what splitting at `trace` would save if that is asked for
+  /// (-Wlive-state).
   std::unique_ptr<typed::Module> check(const CompileOptions &options) {
     std::unique_ptr<typed::Module> module = rtsl::check(
-        parsed, [this](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
+        parsed,
+        [this](const ast::ImportDecl &import, FileId importer) {
+          return loader.resolve(import, importer);
+        },
         messages.diagnostics);
     if (!messages.diagnostics.hasErrors())
       checkLiveState(*module, options, messages.diagnostics);

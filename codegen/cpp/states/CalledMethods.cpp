@@ -5,15 +5,16 @@
 //   };
 //   return rtsl::callThen(rt, frame, Step::Tint_shadeAfterCall1, inner, FilterRef::Follow{o, d});
 //
-// The caller's state ends there, and goes on in another when the method has returned. The method's frame begins with that
-// struct, whatever class has it (include/rtsl/shader/Calls.h, codegen/passes/continuation/calls/OpenCalls.cpp).
+// The caller's state ends there, and goes on in another when the method has returned. The method's
+// frame begins with that struct, whatever class has it (include/rtsl/shader/Calls.h,
+// codegen/passes/continuation/calls/OpenCalls.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 #include "codegen/cpp/states/States.h"
 
-#include "sema/typed/Analysis.h"
 #include "codegen/passes/continuation/calls/Steps.h"
+#include "sema/typed/Analysis.h"
 
 #include <fmt/format.h>
 
@@ -49,7 +50,8 @@ void ModulePrinter::findCalledMethods() {
     called.slot = slot.getValue().str();
     for (const auto &definition : module.classes)
       for (const auto &function : definition->functions)
-        if (definition->name == ofClass.getValue() && typed::slotName(module, *function) == called.slot) {
+        if (definition->name == ofClass.getValue() &&
+            typed::slotName(module, *function) == called.slot) {
           called.definition = definition.get();
           called.function = function.get();
         }
@@ -90,10 +92,11 @@ const CalledMethod *ModulePrinter::calledMethod(const std::string &symbol) const
   return nullptr;
 }
 
-const CalledMethod *ModulePrinter::calledMethod(const typed::Class &definition, const typed::Function &method) const {
+const CalledMethod *ModulePrinter::calledMethod(const typed::Class &definition,
+                                                const typed::Function &method) const {
   for (const CalledMethod &called : calledMethods)
-    if ((&definition == called.definition || definition.derivesFrom(called.definition)) && !method.isStateMethod &&
-        typed::slotName(module, method) == called.slot)
+    if ((&definition == called.definition || definition.derivesFrom(called.definition)) &&
+        !method.isStateMethod && typed::slotName(module, method) == called.slot)
       return &called;
   return nullptr;
 }
@@ -113,9 +116,10 @@ std::string ModulePrinter::callStructures(const std::string &className) {
   for (const CalledMethod &called : calledMethods) {
     if (called.definition->name != className)
       continue;
-    text += fmt::format("\n// What `{}` is given{}.\nstruct {} {{\nstatic constexpr Step begin = Step::{};\n",
-                        names.of(called.function), called.returned.empty() ? "" : ", and what it returns",
-                        called.structure, called.step);
+    text += fmt::format(
+        "\n// What `{}` is given{}.\nstruct {} {{\nstatic constexpr Step begin = Step::{};\n",
+        names.of(called.function), called.returned.empty() ? "" : ", and what it returns",
+        called.structure, called.step);
     for (std::size_t i = 0; i < called.given.size(); ++i) {
       const typed::Variable *given = called.given[i];
       const Type *of = given ? given->type : called.function->returnType;
@@ -137,7 +141,8 @@ Statements ModulePrinter::runCalledMethod(const CalledMethod &called) {
         const typed::Function *method = findMethod(definition, *called.function);
         if (!method)
           return {};
-        for (const typed::Class *at = &definition; at != method->owner->base; at = at->base) // a base of that has others
+        for (const typed::Class *at = &definition; at != method->owner->base;
+             at = at->base) // a base of that has others
           if (auto first = firstCalls.find({at, called.slot}); first != firstCalls.end())
             return {returning(first->second.on(objectOf(definition)))};
         std::vector<Code> arguments;
@@ -161,7 +166,8 @@ Statements ModulePrinter::runCalledMethod(const CalledMethod &called) {
       },
       mayReferToNothing);
   if (mentions(body, given->name)) {
-    const Code frame = call(withParameters("rtsl::calledFrameAt", {structureOf(called)}), {cpp::name("frame")});
+    const Code frame =
+        call(withParameters("rtsl::calledFrameAt", {structureOf(called)}), {cpp::name("frame")});
     body.insert(body.begin(), declaration("auto &", given->name, frame));
   }
   if (!endsInReturn(body))

@@ -1,6 +1,7 @@
 //===- StateExpressions.cpp - places and expressions of a state -----------===//
 //
-// An expression is the author's tree (codegen/lower/SourceTable.h), whose leaves are what the IR has computed.
+// An expression is the author's tree (codegen/lower/SourceTable.h), whose leaves are what the IR
+// has computed.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/states/StateWriter.h"
@@ -31,11 +32,13 @@ Code StateWriter::use(mlir::Value value, const Type *type) {
   return code;
 }
 
-// C++ requires both values to be of one type, and a vector of bools has another where it lies in memory.
+// C++ requires both values to be of one type, and a vector of bools has another where it lies in
+// memory.
 Code choose(ModulePrinter &module, Code condition, Code first, Code second, const Type *type) {
   const bool isBools = type && type->isVector() && type->element->is(TypeKind::Bool);
   const auto side = [&](const Code &value) {
-    const bool isMade = !isBools || (value->is(ExpressionKind::Construct) && value->name == module.type(type));
+    const bool isMade =
+        !isBools || (value->is(ExpressionKind::Construct) && value->name == module.type(type));
     return isMade ? value : construct(module.type(type), {value});
   };
   return conditional(std::move(condition), side(first), side(second));
@@ -48,7 +51,8 @@ static Code number(mlir::Attribute attribute, bool isUnsigned) {
   const llvm::APInt &value = integerAttr.getValue();
   if (integerAttr.getType().isInteger(1))
     return boolean(!value.isZero());
-  return isUnsigned ? literal(fmt::format("{}u", value.getZExtValue()), value.isZero()) : integer(value.getSExtValue());
+  return isUnsigned ? literal(fmt::format("{}u", value.getZExtValue()), value.isZero())
+                    : integer(value.getSExtValue());
 }
 
 Code StateWriter::constant(mlir::Value value, const Type *type) {
@@ -65,9 +69,12 @@ Code StateWriter::constant(mlir::Value value, const Type *type) {
   if (!dense)
     return number(attribute, isUnsigned);
   mlir::Type element = dense.getElementType();
-  const std::string vector =
-      type ? module.type(type)
-           : fmt::format("glm::{}vec{}", element.isF32() ? "" : element.isInteger(1) ? "b" : "i", dense.getNumElements());
+  const std::string vector = type ? module.type(type)
+                                  : fmt::format("glm::{}vec{}",
+                                                element.isF32()        ? ""
+                                                : element.isInteger(1) ? "b"
+                                                                       : "i",
+                                                dense.getNumElements());
   if (dense.isSplat())
     return construct(vector, {number(dense.getSplatValue<mlir::Attribute>(), isUnsigned)});
   std::vector<Code> parts;
@@ -107,7 +114,8 @@ void StateWriter::replaceLeaves(const SourceTable::Entry &entry, mlir::ValueRang
   printer.replaced.clear();
   for (auto [leaf, operand] : llvm::zip(entry.leaves, operands))
     if (leaf)
-      printer.replaced[leaf] = llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, leaf->type);
+      printer.replaced[leaf] =
+          llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, leaf->type);
   nameConstants(*entry.expr);
 }
 
@@ -125,13 +133,15 @@ Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange o
   }
   case SourceTable::Kind::Step: {
     const auto &step = static_cast<const typed::IncDecExpr &>(*entry.expr);
-    return printer.stepped(printer.operand(*step.target, Binding::Sum), step.target->type->scalar(), step.increment);
+    return printer.stepped(printer.operand(*step.target, Binding::Sum), step.target->type->scalar(),
+                           step.increment);
   }
   }
   return integer(0);
 }
 
-/// The comparison that holds where this one does not. Of an order of floats there is none: it fails for a NaN both ways.
+/// The comparison that holds where this one does not. Of an order of floats there is none: it fails
+/// for a NaN both ways.
 static std::optional<Operator> oppositeOf(Operator op, bool isWhole) {
   switch (op) {
   case Operator::Equal:
@@ -155,13 +165,19 @@ static std::optional<Operator> oppositeOf(Operator op, bool isWhole) {
 Code StateWriter::opposite(mlir::Value condition, const Code &code) {
   auto whole = condition.getDefiningOp<ir::ExpressionOp>();
   const SourceTable::Entry *entry = whole ? &source.entries[whole.getSource()] : nullptr;
-  auto *compared = entry && entry->kind == SourceTable::Kind::Value ? dynCast<typed::BinaryExpr>(entry->expr) : nullptr;
-  const bool isOfLights = condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr; // below their count
+  auto *compared = entry && entry->kind == SourceTable::Kind::Value
+                       ? dynCast<typed::BinaryExpr>(entry->expr)
+                       : nullptr;
+  const bool isOfLights =
+      condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr; // below their count
   const Code inner = bare(code);
   if ((!compared && !isOfLights) || !inner->is(ExpressionKind::Binary))
     return negated(code);
-  auto isInteger = [](const Type *type) { return type->is(TypeKind::Int) || type->is(TypeKind::UInt); };
-  const std::optional<Operator> op = oppositeOf(inner->op, isOfLights || isInteger(compared->left->type));
+  auto isInteger = [](const Type *type) {
+    return type->is(TypeKind::Int) || type->is(TypeKind::UInt);
+  };
+  const std::optional<Operator> op =
+      oppositeOf(inner->op, isOfLights || isInteger(compared->left->type));
   return op ? binary(*op, inner->parts[0], inner->parts[1]) : negated(code);
 }
 

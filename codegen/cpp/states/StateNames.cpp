@@ -17,7 +17,8 @@ namespace rtsl::cpp {
 namespace arith = mlir::arith;
 
 std::size_t Machine::given(ir::CallArgumentOp argument) const {
-  const auto at = std::find(called->offsets.begin(), called->offsets.end(), static_cast<std::int32_t>(argument.getOffset()));
+  const auto at = std::find(called->offsets.begin(), called->offsets.end(),
+                            static_cast<std::int32_t>(argument.getOffset()));
   return static_cast<std::size_t>(at - called->offsets.begin());
 }
 
@@ -35,7 +36,9 @@ std::string Machine::addressName(const ModulePrinter &printer, std::size_t numbe
 }
 
 /// To make types that the author has not named: nothing changes but what is known.
-static TypeContext &typesOf(const ModulePrinter &printer) { return const_cast<TypeContext &>(printer.module.types); }
+static TypeContext &typesOf(const ModulePrinter &printer) {
+  return const_cast<TypeContext &>(printer.module.types);
+}
 
 /// The type of a state variable; null: the name is none's.
 static const Type *stateType(TypeContext &types, llvm::StringRef name) {
@@ -49,7 +52,9 @@ static const Type *stateType(TypeContext &types, llvm::StringRef name) {
   return types.named(found->second == "uint2" ? "uvec2" : found->second);
 }
 
-const Type *StateWriter::vec3() { return typesOf(module).vector(typesOf(module).floatType, 3); }
+const Type *StateWriter::vec3() {
+  return typesOf(module).vector(typesOf(module).floatType, 3);
+}
 
 std::string StateWriter::spelling(llvm::StringRef name) {
   std::string spelled;
@@ -73,7 +78,9 @@ std::string StateWriter::freshName(const std::string &wanted) {
   if (clean.empty() || std::isdigit(static_cast<unsigned char>(clean.front())))
     clean = "value" + clean;
   std::string name = clean;
-  for (unsigned i = 2; isReserved(name) || isAlways(name) || printer.temporaries.count(name) || !taken.insert(name).second; ++i)
+  for (unsigned i = 2; isReserved(name) || isAlways(name) || printer.temporaries.count(name) ||
+                       !taken.insert(name).second;
+       ++i)
     name = clean + (i == 2 && (isReserved(clean) || isAlways(clean)) ? "_" : std::to_string(i));
   printer.usedNames.insert(name);
   return name;
@@ -185,8 +192,8 @@ const Type *StateWriter::declaredType(mlir::Value address) {
 /// Is it of the type of other values, whatever that is?
 static bool isMadeOfParts(mlir::Value value) {
   namespace vector = mlir::vector;
-  return llvm::isa_and_nonnull<ir::LoadOp, vector::InsertOp, vector::ExtractOp, vector::ShuffleOp, vector::FromElementsOp,
-                               vector::BroadcastOp>(value.getDefiningOp());
+  return llvm::isa_and_nonnull<ir::LoadOp, vector::InsertOp, vector::ExtractOp, vector::ShuffleOp,
+                               vector::FromElementsOp, vector::BroadcastOp>(value.getDefiningOp());
 }
 
 const Type *StateWriter::varType(ir::VarOp variable) {
@@ -198,7 +205,8 @@ const Type *StateWriter::varType(ir::VarOp variable) {
   const Type *type = nullptr;
   for (const bool ofParts : {false, true}) // which may be its own
     for (mlir::Operation *user : variable->getUsers())
-      if (auto store = llvm::dyn_cast<ir::StoreOp>(user); store && !type && isMadeOfParts(store.getValue()) == ofParts)
+      if (auto store = llvm::dyn_cast<ir::StoreOp>(user);
+          store && !type && isMadeOfParts(store.getValue()) == ofParts)
         type = typeOf(store.getValue());
   if (!type)
     type = scalarType(typesOf(module), llvm::cast<ir::PtrType>(variable.getType()).getPointee());
@@ -216,8 +224,10 @@ const Type *StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
     for (const auto *variables : {&function.parameters, &function.locals})
       for (const auto &variable : *variables) {
         const Type *part = variable->type->scalar();
-        const bool isAlike = variable->name == name && part && variable->type->componentCount() == width &&
-                             part->is(TypeKind::Float) == scalar.isF32() && part->is(TypeKind::Bool) == scalar.isInteger(1);
+        const bool isAlike = variable->name == name && part &&
+                             variable->type->componentCount() == width &&
+                             part->is(TypeKind::Float) == scalar.isF32() &&
+                             part->is(TypeKind::Bool) == scalar.isInteger(1);
         if (isAlike && !found)
           found = variable->type;
       }
@@ -243,7 +253,8 @@ const Type *StateWriter::typeOf(mlir::Value value) {
   if (llvm::isa<ir::PtrType>(value.getType()))
     return declaredType(value);
   auto vectorOf = [&](const Type *scalar, std::int64_t width) -> const Type * {
-    return scalar && scalar->isScalar() ? types.vector(scalar, static_cast<std::uint32_t>(width)) : nullptr;
+    return scalar && scalar->isScalar() ? types.vector(scalar, static_cast<std::uint32_t>(width))
+                                        : nullptr;
   };
   return llvm::TypeSwitch<mlir::Operation *, const Type *>(op)
       .Case([&](ir::ExpressionOp expression) {
@@ -268,7 +279,8 @@ const Type *StateWriter::typeOf(mlir::Value value) {
       .Case<ir::TraceResultOp>([&](auto) { return types.color; })
       .Case([&](ir::CallArgumentOp argument) { return machine.givenType(machine.given(argument)); })
       .Case([&](ir::CallReturnedOp) {
-        const auto call = machine.callBefore.find(op->getParentOfType<mlir::func::FuncOp>().getSymName().str());
+        const auto call =
+            machine.callBefore.find(op->getParentOfType<mlir::func::FuncOp>().getSymName().str());
         const bool isKnown = call != machine.callBefore.end() && call->second;
         return isKnown ? call->second->function->returnType : nullptr;
       })
@@ -279,13 +291,19 @@ const Type *StateWriter::typeOf(mlir::Value value) {
       })
       .Case([&](mlir::vector::InsertOp insert) {
         const Type *type = typeOf(insert.getDest());
-        return type ? type : vectorOf(typeOf(insert.getValueToStore()), insert.getDestVectorType().getNumElements());
+        return type ? type
+                    : vectorOf(typeOf(insert.getValueToStore()),
+                               insert.getDestVectorType().getNumElements());
       })
-      .Case([&](mlir::vector::ExtractOp part) { return scalarOf(types, typeOf(part.getSource()), value.getType()); })
+      .Case([&](mlir::vector::ExtractOp part) {
+        return scalarOf(types, typeOf(part.getSource()), value.getType());
+      })
       .Case([&](mlir::vector::FromElementsOp made) {
         const Type *scalar = scalarType(types, made.getElements().front().getType());
-        for (mlir::Value part : made.getElements()) // constants do not say whether they are unsigned
-          if (const Type *type = typeOf(part); type && part.getDefiningOp<arith::ConstantOp>() == nullptr)
+        for (mlir::Value part :
+             made.getElements()) // constants do not say whether they are unsigned
+          if (const Type *type = typeOf(part);
+              type && part.getDefiningOp<arith::ConstantOp>() == nullptr)
             scalar = type;
         return vectorOf(scalar, static_cast<std::int64_t>(made.getElements().size()));
       })
@@ -293,7 +311,8 @@ const Type *StateWriter::typeOf(mlir::Value value) {
         return vectorOf(typeOf(same.getSource()), same.getResultVectorType().getNumElements());
       })
       .Case([&](mlir::vector::ShuffleOp chosen) {
-        return vectorOf(scalarOf(types, typeOf(chosen.getV1()), {}), static_cast<std::int64_t>(chosen.getMask().size()));
+        return vectorOf(scalarOf(types, typeOf(chosen.getV1()), {}),
+                        static_cast<std::int64_t>(chosen.getMask().size()));
       })
       .Default([&](mlir::Operation *) { return scalarType(types, value.getType()); });
 }

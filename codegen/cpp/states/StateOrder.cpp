@@ -1,7 +1,7 @@
 //===- StateOrder.cpp - what a state evaluates when ------------------------===//
 //
-// The value of an operation waits until it is used, and is then part of the expression that uses it, unless something in
-// between would change it: then it gets a variable before.
+// The value of an operation waits until it is used, and is then part of the expression that uses
+// it, unless something in between would change it: then it gets a variable before.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/states/StateWriter.h"
@@ -27,9 +27,11 @@ void StateWriter::Touches::add(const Touches &other) {
 /// Would it show if the two changed places?
 bool StateWriter::meet(const Touches &a, const Touches &b) {
   auto common = [](const std::set<Location> &x, const std::set<Location> &y) {
-    return std::any_of(x.begin(), x.end(), [&](const Location &location) { return y.count(location) != 0; });
+    return std::any_of(x.begin(), x.end(),
+                       [&](const Location &location) { return y.count(location) != 0; });
   };
-  // Unknown methods reach the ray's state and draw random numbers; variables and the frame are this function's own.
+  // Unknown methods reach the ray's state and draw random numbers; variables and the frame are this
+  // function's own.
   auto isOpen = [](const std::set<Location> &locations) {
     return std::any_of(locations.begin(), locations.end(), [](const Location &location) {
       return location.kind == Location::Kind::State || location.kind == Location::Kind::Random;
@@ -119,22 +121,27 @@ StateWriter::Line &StateWriter::emit(Lines &out, Statement statement) {
   return line;
 }
 
-/// Can the variable of a value become that of `value`, which the author calls the same? It can if nothing reads it any more.
+/// Can the variable of a value become that of `value`, which the author calls the same? It can if
+/// nothing reads it any more.
 bool StateWriter::isReplacedBy(mlir::Value before, mlir::Value value) {
   const auto variable = before ? declared.find(before) : declared.end();
   mlir::Operation *op = value.getDefiningOp();
-  if (variable == declared.end() || before.getParentBlock() != op->getBlock() || nameOfValue(before) != nameOfValue(value) ||
-      typeOf(before) != typeOf(value))
+  if (variable == declared.end() || before.getParentBlock() != op->getBlock() ||
+      nameOfValue(before) != nameOfValue(value) || typeOf(before) != typeOf(value))
     return false;
   const std::string &own = variable->second;
   return llvm::all_of(before.getUsers(),
-                      [&](mlir::Operation *user) { return user->getBlock() == op->getBlock() && !op->isBeforeInBlock(user); }) &&
-         llvm::none_of(pending, [&](const auto &waiting) { return mentions(waiting.second.code, own); }) &&
-         llvm::none_of(elementIndices, [&](const auto &index) { return mentions(index.second, own); });
+                      [&](mlir::Operation *user) {
+                        return user->getBlock() == op->getBlock() && !op->isBeforeInBlock(user);
+                      }) &&
+         llvm::none_of(pending,
+                       [&](const auto &waiting) { return mentions(waiting.second.code, own); }) &&
+         llvm::none_of(elementIndices,
+                       [&](const auto &index) { return mentions(index.second, own); });
 }
 
-/// Gives a value that waits for its use a variable now. `isNew`: it was just made, so no expression that still reads the
-/// variable before it is under way to a statement.
+/// Gives a value that waits for its use a variable now. `isNew`: it was just made, so no expression
+/// that still reads the variable before it is under way to a statement.
 void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
   const Pending waiting = std::move(pending[value]);
   pending.erase(value);
@@ -145,10 +152,12 @@ void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
   const auto found = insertions.find(value);
   const Insertion *whole = found != insertions.end() ? &found->second : nullptr;
   const mlir::Value last = whole ? whole->before : latest[wanted];
-  bool isAgain = isNew && (whole || !continuation::authorsName(value).empty()) && !isOwnName(wanted) && isReplacedBy(last, value);
+  bool isAgain = isNew && (whole || !continuation::authorsName(value).empty()) &&
+                 !isOwnName(wanted) && isReplacedBy(last, value);
   const std::string before = isAgain ? declared[last] : "";
   for (std::size_t i = 1; whole && i < whole->parts.size(); ++i) // the first has changed it then
-    isAgain = isAgain && !mentions(whole->parts[i].value, before) && !mentions(whole->parts[i].index, before);
+    isAgain = isAgain && !mentions(whole->parts[i].value, before) &&
+              !mentions(whole->parts[i].index, before);
   const std::string own = isAgain ? before : freshName(wanted);
   declared[value] = own;
   latest[wanted] = value;
@@ -179,8 +188,8 @@ void StateWriter::flush(const Touches &touches, Lines &out) {
     materialise(value, out);
 }
 
-/// Before a construct with regions: what an inner statement would change cannot wait for another region, and nothing that
-/// is used once waits to be evaluated in each round of a loop.
+/// Before a construct with regions: what an inner statement would change cannot wait for another
+/// region, and nothing that is used once waits to be evaluated in each round of a loop.
 void StateWriter::flushBefore(mlir::Operation &op, Lines &out) {
   const Touches inside = touchesOf(&op);
   const bool isLoop = llvm::isa<ir::LoopOp>(op);
@@ -188,7 +197,8 @@ void StateWriter::flushBefore(mlir::Operation &op, Lines &out) {
   for (auto &[value, waiting] : pending) {
     const bool isConstant = waiting.isTrivial && waiting.touches.reads.empty();
     auto isUsedInside = [&, value = value] {
-      return llvm::any_of(value.getUsers(), [&](mlir::Operation *user) { return op.isAncestor(user); });
+      return llvm::any_of(value.getUsers(),
+                          [&](mlir::Operation *user) { return op.isAncestor(user); });
     };
     if (!waiting.isPure || meet(waiting.touches, inside) ||
         (isLoop && waiting.usesLeft == 1 && !isConstant && isUsedInside()))
@@ -218,11 +228,14 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
   const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
                        !given.empty() && !(uses == 1 && isLoose);
   const auto whole = insertions.find(value);
-  const bool isLong = whole != insertions.end() && whole->second.parts.size() > 1 && !llvm::isa<mlir::vector::InsertOp>(user);
-  const bool isRead = llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
+  const bool isLong = whole != insertions.end() && whole->second.parts.size() > 1 &&
+                      !llvm::isa<mlir::vector::InsertOp>(user);
+  const bool isRead =
+      llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
-  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
-                         (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
+  const bool isTrivial =
+      isRead || llvm::isa<ir::LightCountOp>(op) ||
+      (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
   pending[value] = {std::move(code), std::move(touches), uses, isPure, isTrivial};
   if (uses == 1 ? (isNamed && !stores()) || isLong : isNamed || !isTrivial)
     materialise(value, out, /*isNew=*/true);
@@ -231,13 +244,16 @@ void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool i
 Code StateWriter::Insertion::code() const {
   Code code = vector;
   for (const Part &part : parts)
-    code = part.component ? cpp::call(withParameters("rtsl::with", {std::to_string(*part.component)}), {code, part.value})
-                          : cpp::call("rtsl::with", {code, part.index, part.value});
+    code = part.component
+               ? cpp::call(withParameters("rtsl::with", {std::to_string(*part.component)}),
+                           {code, part.value})
+               : cpp::call("rtsl::with", {code, part.index, part.value});
   return code;
 }
 
 Code StateWriter::Insertion::place(const Code &vector, const Part &part) {
-  return part.component ? component(vector, *part.component) : cpp::call("rtsl::at", {vector, part.index});
+  return part.component ? component(vector, *part.component)
+                        : cpp::call("rtsl::at", {vector, part.index});
 }
 
 } // namespace rtsl::cpp

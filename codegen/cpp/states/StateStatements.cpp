@@ -37,11 +37,12 @@ static bool isField(const Code &code, const std::string &frame) {
 
 /// The value of `type name = value;` or `name = value;`.
 static Code valueOf(const Statement &statement) {
-  return statement.is(StatementKind::Declaration) ? statement.declarators.front().value : assignedValue(statement);
+  return statement.is(StatementKind::Declaration) ? statement.declarators.front().value
+                                                  : assignedValue(statement);
 }
 
-/// `bool either = a || b; if (either)`, where nothing else reads it: what the condition is then. The
-/// assignment leaves `out`.
+/// `bool either = a || b; if (either)`, where nothing else reads it: what the condition is then.
+/// The assignment leaves `out`.
 std::optional<Code> StateWriter::takeCondition(ir::IfOp op, Lines &out, Statement &taken) {
   bool isOpposite = false;
   ir::VarOp variable = variableReadBy(op.getCondition(), isOpposite);
@@ -76,11 +77,13 @@ std::optional<Code> StateWriter::takeCondition(ir::IfOp op, Lines &out, Statemen
   return isOpposite ? negated(value) : value;
 }
 
-/// What has the name, if the compiler gave it and nothing else reads it: its declaration leaves `out`
-/// then. Otherwise the name.
+/// What has the name, if the compiler gave it and nothing else reads it: its declaration leaves
+/// `out` then. Otherwise the name.
 Code StateWriter::takeName(ir::IfOp op, const Code &named, Lines &out) {
-  auto last = std::find_if(out.rbegin(), out.rend(), [](const Line &line) { return !line.declares; });
-  if (last == out.rend() || !last->made || !isName(named) || declared[last->made] != named->name || !isOwnName(named->name))
+  auto last =
+      std::find_if(out.rbegin(), out.rend(), [](const Line &line) { return !line.declares; });
+  if (last == out.rend() || !last->made || !isName(named) || declared[last->made] != named->name ||
+      !isOwnName(named->name))
     return named;
   for (mlir::Operation *user : last->made.getUsers())
     if (!op->isAncestor(user) && !llvm::is_contained(user->getUsers(), op.getOperation()))
@@ -125,9 +128,12 @@ void StateWriter::choice(ir::IfOp op, Lines &out) {
     block(op.getElseRegion().front(), elsePart);
   currentLine = line;
 
-  auto assigned = [](const Lines &part) { return part.size() == 1 ? part.front().assigns : nullptr; };
+  auto assigned = [](const Lines &part) {
+    return part.size() == 1 ? part.front().assigns : nullptr;
+  };
   if (mlir::Operation *target = assigned(thenPart); target && target == assigned(elsePart)) {
-    const Code first = assignedValue(thenPart.front().statement), second = assignedValue(elsePart.front().statement);
+    const Code first = assignedValue(thenPart.front().statement),
+               second = assignedValue(elsePart.front().statement);
     Code value;
     if (isBoolean(first, true))
       value = binary(Operator::Or, condition, second);
@@ -148,7 +154,8 @@ void StateWriter::choice(ir::IfOp op, Lines &out) {
     const Code own = name(nameOf(llvm::cast<ir::VarOp>(target)));
     const bool isAnd = same(condition, own), isOr = same(condition, unary(UnaryOperator::Not, own));
     if (isAnd || isOr) {
-      out.back().statement.value = assign(own, binary(isAnd ? Operator::And : Operator::Or, assignedValue(out.back().statement),
+      out.back().statement.value = assign(own, binary(isAnd ? Operator::And : Operator::Or,
+                                                      assignedValue(out.back().statement),
                                                       assignedValue(thenPart.front().statement)));
       return;
     }
@@ -163,10 +170,12 @@ void StateWriter::choice(ir::IfOp op, Lines &out) {
   last.hasSpace |= taken.hasSpace;
 }
 
-/// The `for` without its body, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nothing else reads
-/// i. What it says is taken out of what stands before the loop, and of the body.
-std::optional<Statement> StateWriter::counter(ir::LoopOp op, const Code &condition, Lines &out, Lines &body) {
-  if (out.empty() || body.empty() || !out.back().assigns || out.back().assigns != body.back().assigns)
+/// The `for` without its body, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nothing
+/// else reads i. What it says is taken out of what stands before the loop, and of the body.
+std::optional<Statement> StateWriter::counter(ir::LoopOp op, const Code &condition, Lines &out,
+                                              Lines &body) {
+  if (out.empty() || body.empty() || !out.back().assigns ||
+      out.back().assigns != body.back().assigns)
     return std::nullopt;
   auto variable = llvm::cast<ir::VarOp>(out.back().assigns);
   const Code own = name(nameOf(variable));
@@ -174,34 +183,39 @@ std::optional<Statement> StateWriter::counter(ir::LoopOp op, const Code &conditi
   Code test = condition; // or the first part of it that must hold
   while (test->is(ExpressionKind::Binary) && test->op == Operator::And)
     test = bare(Code(test->parts[0]));
-  const bool isBelow = test->is(ExpressionKind::Binary) && test->op == Operator::Less && same(test->parts[0], own);
-  if (!isBelow || !same(assignedValue(body.back().statement), cpp::call("rtsl::add", {own, integer(1)})))
+  const bool isBelow =
+      test->is(ExpressionKind::Binary) && test->op == Operator::Less && same(test->parts[0], own);
+  if (!isBelow ||
+      !same(assignedValue(body.back().statement), cpp::call("rtsl::add", {own, integer(1)})))
     return std::nullopt;
   unsigned outside = 0;
   for (mlir::Operation *user : variable->getUsers())
     outside += !op->isProperAncestor(user);
   const bool isContinued = op.getBody()
                                .walk([&](ir::ContinueOp jump) {
-                                 return jump->getParentOfType<ir::LoopOp>() == op ? mlir::WalkResult::interrupt()
-                                                                                  : mlir::WalkResult::advance();
+                                 return jump->getParentOfType<ir::LoopOp>() == op
+                                            ? mlir::WalkResult::interrupt()
+                                            : mlir::WalkResult::advance();
                                })
                                .wasInterrupted();
   if (outside != 1 || isContinued)
     return std::nullopt;
   Statement made = simple(StatementKind::For);
-  made.init = {declaration(module.type(varType(variable)), own->name, assignedValue(out.back().statement))};
+  made.init = {
+      declaration(module.type(varType(variable)), own->name, assignedValue(out.back().statement))};
   made.value = condition;
   made.step = unary(UnaryOperator::Increment, own);
   out.pop_back();
   body.pop_back();
-  out.erase(std::remove_if(out.begin(), out.end(),
-                           [&](const Line &line) { return line.declares == variable.getOperation(); }),
-            out.end());
+  out.erase(
+      std::remove_if(out.begin(), out.end(),
+                     [&](const Line &line) { return line.declares == variable.getOperation(); }),
+      out.end());
   return made;
 }
 
-/// The loop that an `illuminance` was, without its body, what runs for each light, and the name of its variable; nothing if
-/// the loop is none.
+/// The loop that an `illuminance` was, without its body, what runs for each light, and the name of
+/// its variable; nothing if the loop is none.
 std::optional<Statement> StateWriter::lights(ir::LoopOp op, mlir::Block *&lit, std::string &name) {
   if (op.getCondition().empty())
     return std::nullopt;
@@ -230,7 +244,8 @@ std::optional<Statement> StateWriter::lights(ir::LoopOp op, mlir::Block *&lit, s
   }
   if (!light || !body || body.getCondition() != light.getLit() || !body.getElseRegion().empty())
     return std::nullopt;
-  auto cosine = light.getCosAngle() ? light.getCosAngle().getDefiningOp<ir::ExpressionOp>() : ir::ExpressionOp();
+  auto cosine = light.getCosAngle() ? light.getCosAngle().getDefiningOp<ir::ExpressionOp>()
+                                    : ir::ExpressionOp();
   if (light.getCosAngle() && (!cosine || !pending.count(cosine.getResult())))
     return std::nullopt;
   // The variable is written before the loop too: 0, which is not printed.
@@ -249,7 +264,8 @@ std::optional<Statement> StateWriter::lights(ir::LoopOp op, mlir::Block *&lit, s
   name = "lights"; // within another loop over lights it is another
   for (unsigned i = 2; isAlways(name) || !taken.insert(name).second; ++i)
     name = "lights" + std::to_string(i);
-  lightNumbers[variable] = callMember(cpp::name(name), "number", {}); // for what goes on with the next light later
+  lightNumbers[variable] =
+      callMember(cpp::name(name), "number", {}); // for what goes on with the next light later
   return lightLoop(name, std::move(arguments));
 }
 
@@ -261,8 +277,9 @@ void StateWriter::loop(ir::LoopOp op, Lines &out) {
     auto load = llvm::cast<ir::LoadOp>(op.getCondition().front().front());
     mlir::Operation *number = load.getAddress().getDefiningOp();
     flushBefore(*op, out);
-    out.erase(std::remove_if(out.begin(), out.end(),
-                             [&](const Line &one) { return one.assigns == number || one.declares == number; }),
+    out.erase(std::remove_if(
+                  out.begin(), out.end(),
+                  [&](const Line &one) { return one.assigns == number || one.declares == number; }),
               out.end());
     Lines body;
     block(*lit, body);
@@ -313,8 +330,9 @@ void StateWriter::switchOver(ir::SwitchOp op, Lines &out) {
     Lines lines;
     block(region.front(), lines);
     arm.body = statementsOf(lines);
-    arm.hasBraces = std::any_of(arm.body.begin(), arm.body.end(),
-                                [](const Statement &one) { return one.is(StatementKind::Declaration); });
+    arm.hasBraces = std::any_of(arm.body.begin(), arm.body.end(), [](const Statement &one) {
+      return one.is(StatementKind::Declaration);
+    });
   }
   if (!op.getDefaultArm()) {
     Arm &arm = made.arms.emplace_back();
@@ -347,7 +365,8 @@ void StateWriter::joinDeclarations(Lines &lines) {
     const std::string typeName = type ? module.type(type) : std::string();
     const std::string &own = nameOf(variable);
     const auto at = lines.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto first = std::find_if(at + 1, lines.end(), [&](const Line &line) { return mentions(line.statement, own); });
+    const auto first = std::find_if(
+        at + 1, lines.end(), [&](const Line &line) { return mentions(line.statement, own); });
     if (first != lines.end() && first->assigns != variable.getOperation()) {
       const bool isNumber = type && type->isScalar() && !type->is(TypeKind::UInt);
       at->statement = declaration(typeName, own, isNumber ? module.zero(type) : list("", {}));
@@ -391,8 +410,10 @@ Statements StateWriter::body(mlir::func::FuncOp state) {
   block(state.getBody().front(), lines);
   Statements statements;
   for (const typed::Variable *constant : constants)
-    statements.push_back(declaration(printer.isTable(*constant->init) ? "static constexpr" : "const", module.type(constant->type),
-                                     module.names.of(constant), printer.initialiser(*constant->init)));
+    statements.push_back(
+        declaration(printer.isTable(*constant->init) ? "static constexpr" : "const",
+                    module.type(constant->type), module.names.of(constant),
+                    printer.initialiser(*constant->init)));
   for (Line &line : lines)
     statements.push_back(std::move(line.statement));
   return statements;

@@ -28,12 +28,14 @@ bool writesTo(mlir::Operation *op, mlir::Value address) {
       if (operand == address && changes(evaluation, index))
         return true;
   return llvm::isa<ir::FieldOp, ir::ElementOp>(op) &&
-         llvm::any_of(op->getUsers(), [&](mlir::Operation *user) { return writesTo(user, op->getResult(0)); });
+         llvm::any_of(op->getUsers(),
+                      [&](mlir::Operation *user) { return writesTo(user, op->getResult(0)); });
 }
 
 /// Is it `target = {};`?
 static bool clears(const Statement &statement, const Code &target) {
-  if (!statement.is(StatementKind::Expression) || !statement.value->is(ExpressionKind::Assign) || statement.value->compound)
+  if (!statement.is(StatementKind::Expression) || !statement.value->is(ExpressionKind::Assign) ||
+      statement.value->compound)
     return false;
   const std::vector<Code> &parts = statement.value->parts;
   return same(parts[0], target) && isZero(parts[1]);
@@ -43,8 +45,9 @@ static bool clears(const Statement &statement, const Code &target) {
 void StateWriter::evaluate(ir::EvaluateOp op, Lines &out) {
   const SourceTable::Entry &entry = source.entries[op.getSource()];
   usesScratch |= module.effects.expression(*entry.expr).usesScratch;
-  const bool isWrite = op.getNumResults() == 0 && entry.kind == SourceTable::Kind::Value &&
-                       (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);
+  const bool isWrite =
+      op.getNumResults() == 0 && entry.kind == SourceTable::Kind::Value &&
+      (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);
   printer.isNested = op->hasAttr("rtsl.nested");
   if (printer.isNested) // its first part may change what waits for its last
     flush(touchesOf(op), out);
@@ -64,13 +67,15 @@ void StateWriter::evaluate(ir::EvaluateOp op, Lines &out) {
   const Code target = isInto ? place(op.getOperand(0)) : Code();
   flush(touches, out);
   // Nothing has read what it held before.
-  if (isInto && !out.empty() && !out.back().declares && clears(out.back().statement, target) && !contains(code, target))
+  if (isInto && !out.empty() && !out.back().declares && clears(out.back().statement, target) &&
+      !contains(code, target))
     out.pop_back();
   for (Statement &statement : before)
     emit(out, std::move(statement));
   if (isInto) {
     Line &line = emit(out, assign(target, code));
-    if (auto variable = op.getOperand(0).getDefiningOp<ir::VarOp>(); variable && !contains(code, target))
+    if (auto variable = op.getOperand(0).getDefiningOp<ir::VarOp>();
+        variable && !contains(code, target))
       line.assigns = variable;
     return;
   }
@@ -78,7 +83,8 @@ void StateWriter::evaluate(ir::EvaluateOp op, Lines &out) {
     emit(out, std::move(statement));
   touches.add(consumed);
   if (op.getNumResults() != 0)
-    define(*op, code, touches, /*isPure=*/op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes"), out);
+    define(*op, code, touches, /*isPure=*/op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes"),
+           out);
   else if (code)
     emit(out, code);
 }
@@ -93,10 +99,12 @@ void StateWriter::clear(ir::ClearOp op, Lines &out) {
     line.assigns = variable;
 }
 
-/// `target += y` for `target + y`, where `value` is the whole expression of the source that made it.
+/// `target += y` for `target + y`, where `value` is the whole expression of the source that made
+/// it.
 Code StateWriter::assignment(const Code &target, const Code &value, mlir::Value made) {
   auto whole = made.getDefiningOp<ir::ExpressionOp>();
-  const bool isCompound = whole && source.entries[whole.getSource()].kind == SourceTable::Kind::Compound;
+  const bool isCompound =
+      whole && source.entries[whole.getSource()].kind == SourceTable::Kind::Compound;
   if (isCompound && value->is(ExpressionKind::Binary) && same(value->parts[0], target))
     return assign(value->op, target, value->parts[1]);
   return assign(target, value);
@@ -115,7 +123,8 @@ void StateWriter::store(ir::StoreOp op, Lines &out) {
   flush(touchesOf(op), out);
   if (same(value, target))
     return;
-  if (op.getValue().getDefiningOp<mlir::arith::AddIOp>() && same(value, binary(Operator::Add, target, integer(1)))) {
+  if (op.getValue().getDefiningOp<mlir::arith::AddIOp>() &&
+      same(value, binary(Operator::Add, target, integer(1)))) {
     emit(out, unary(UnaryOperator::Increment, target)); // the next light
     return;
   }
@@ -126,8 +135,9 @@ void StateWriter::store(ir::StoreOp op, Lines &out) {
     return;
   }
   // Nothing has read what it held before.
-  if (!out.empty() && !out.back().declares && out.back().statement.comment.empty() && !out.back().statement.place &&
-      clears(out.back().statement, target) && !contains(value, target))
+  if (!out.empty() && !out.back().declares && out.back().statement.comment.empty() &&
+      !out.back().statement.place && clears(out.back().statement, target) &&
+      !contains(value, target))
     out.pop_back();
   Line &line = emit(out, assignment(target, value, op.getValue()));
   if (variable)
@@ -138,7 +148,8 @@ void StateWriter::store(ir::StoreOp op, Lines &out) {
   joinFields(op.getAddress(), out);
 }
 
-/// Field by field is how passes copy and clear a struct: `a.x = b.x; a.y = b.y;` is `a = b;`. Looks at what was emitted last.
+/// Field by field is how passes copy and clear a struct: `a.x = b.x; a.y = b.y;` is `a = b;`. Looks
+/// at what was emitted last.
 void StateWriter::joinFields(mlir::Value address, Lines &out) {
   auto field = address.getDefiningOp<ir::FieldOp>();
   const Type *type = field ? declaredType(field.getBase()) : nullptr;
@@ -150,14 +161,15 @@ void StateWriter::joinFields(mlir::Value address, Lines &out) {
   Code from; // what the struct gets
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const Statement &statement = first[static_cast<std::ptrdiff_t>(i)].statement;
-    if (!statement.is(StatementKind::Expression) || !statement.value->is(ExpressionKind::Assign) || statement.value->compound)
+    if (!statement.is(StatementKind::Expression) || !statement.value->is(ExpressionKind::Assign) ||
+        statement.value->compound)
       return;
     const Code &target = statement.value->parts[0], &value = statement.value->parts[1];
     const std::string &own = module.names.of(&fields[i]);
     if (!same(target, member(whole, own)))
       return;
-    const bool isCopy =
-        first[static_cast<std::ptrdiff_t>(i)].copies == type && value->is(ExpressionKind::Member) && value->name == own;
+    const bool isCopy = first[static_cast<std::ptrdiff_t>(i)].copies == type &&
+                        value->is(ExpressionKind::Member) && value->name == own;
     const Code of = isZero(value) ? list("", {}) : isCopy ? value->parts[0] : Code();
     if (!of || (from && !same(from, of)))
       return;

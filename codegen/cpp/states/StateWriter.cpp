@@ -50,8 +50,8 @@ void StateWriter::unsupported(mlir::Operation &op) {
     what = "an array or a struct";
   const unsigned line = lineOf(op.getLoc(), machine.file);
   module.unsupported(machine.method->range,
-                     fmt::format("{} in states in C++{} (--trace=recurse keeps `trace` as a call)", what,
-                                 line ? fmt::format(", of line {}", line) : ""));
+                     fmt::format("{} in states in C++{} (--trace=recurse keeps `trace` as a call)",
+                                 what, line ? fmt::format(", of line {}", line) : ""));
 }
 
 //===----------------------------------------------------------------------===//
@@ -96,7 +96,8 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
       })
       .Case([&](ir::ExpressionOp whole) {
         const Code code = expression(source.entries[whole.getSource()], op.getOperands());
-        usesScratch |= module.effects.expression(*source.entries[whole.getSource()].expr).usesScratch;
+        usesScratch |=
+            module.effects.expression(*source.entries[whole.getSource()].expr).usesScratch;
         pure(code);
       })
       .Case([&](ir::EvaluateOp inner) { evaluate(inner, out); })
@@ -111,7 +112,8 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
       .Case([&](ir::RandOp rand) {
         Touches touches = touchesOf(&op);
         flush(touches, out);
-        define(op, cpp::call(rand.getOpen() ? "rtsl::randOpen" : "rtsl::rand", {name("rt")}), touches, false, out);
+        define(op, cpp::call(rand.getOpen() ? "rtsl::randOpen" : "rtsl::rand", {name("rt")}),
+               touches, false, out);
       })
       .Case([&](ir::CallArgumentOp argument) {
         if (!llvm::isa<ir::PtrType>(argument.getType()))
@@ -122,13 +124,18 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
         emit(out, assign(frameField(machine.called->returned), value));
       })
       .Case([&](ir::CallReturnedOp) {
-        const auto before = machine.callBefore.find(op.getParentOfType<mlir::func::FuncOp>().getSymName().str());
+        const auto before =
+            machine.callBefore.find(op.getParentOfType<mlir::func::FuncOp>().getSymName().str());
         if (op.getNumResults() != 0 && before->second)
           define(op, member(name(machine.callName), before->second->returned), {}, true, out);
       })
       .Case([&](ir::CastRefOp cast) { pure(use(cast.getObject())); })
-      .Case([&](ir::TraceResultOp) { define(op, cpp::call("rtsl::traced", {name("rt")}), {}, true, out); })
-      .Case([&](ir::LightCountOp) { define(op, cpp::call("rtsl::lightCount", {name("rt")}), {}, true, out); })
+      .Case([&](ir::TraceResultOp) {
+        define(op, cpp::call("rtsl::traced", {name("rt")}), {}, true, out);
+      })
+      .Case([&](ir::LightCountOp) {
+        define(op, cpp::call("rtsl::lightCount", {name("rt")}), {}, true, out);
+      })
       .Case([&](ir::IlluminateOp light) {
         std::vector<Code> arguments = {name("rt")};
         for (mlir::Value operand : op.getOperands())
@@ -172,7 +179,8 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
         if (position.size() != 1 || (!part.hasDynamicPosition() && position.front() > 3))
           return unsupported(op);
         Insertion whole;
-        if (auto before = insertions.find(part.getDest()); before != insertions.end() && pending.count(part.getDest()))
+        if (auto before = insertions.find(part.getDest());
+            before != insertions.end() && pending.count(part.getDest()))
           whole = before->second;
         const Code vector = use(part.getDest(), typeOf(part.getResult()));
         if (whole.parts.empty()) {
@@ -212,7 +220,8 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
         const std::int64_t width = chosen.getV1VectorType().getNumElements();
         std::vector<Code> parts;
         for (std::int64_t at : chosen.getMask())
-          parts.push_back(component(at < width ? first : second, static_cast<std::size_t>(at < width ? at : at - width)));
+          parts.push_back(component(at < width ? first : second,
+                                    static_cast<std::size_t>(at < width ? at : at - width)));
         pure(construct(module.type(type), std::move(parts)));
       })
       .Case([&](arith::XOrIOp negation) {
@@ -225,7 +234,8 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
       .Case([&](arith::IndexCastUIOp index) { pure(use(index.getIn())); })
       .Case([&](arith::AddIOp) { infix(Operator::Add); }) // of a light's number
       .Case([&](arith::CmpIOp compare) {
-        compare.getPredicate() == arith::CmpIPredicate::ult ? infix(Operator::Less) : unsupported(op);
+        compare.getPredicate() == arith::CmpIPredicate::ult ? infix(Operator::Less)
+                                                            : unsupported(op);
       })
       .Case([&](arith::SelectOp select) {
         const Type *type = typeOf(select.getResult());
@@ -234,7 +244,8 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
         pure(choose(module, condition, first, use(select.getFalseValue(), type), type));
       })
       .Case<arith::ConstantOp, ir::NullRefOp, ir::NextOp, ir::StateOp, ir::YieldOp, ir::ConditionOp,
-            ir::TraceReturnedOp, ir::EnterOp, ir::LeaveOp, ir::FrameObjectOp, ir::PayloadOp, ir::FieldOp, ir::TableOp>([](auto) {})
+            ir::TraceReturnedOp, ir::EnterOp, ir::LeaveOp, ir::FrameObjectOp, ir::PayloadOp,
+            ir::FieldOp, ir::TableOp>([](auto) {})
       .Case([&](ir::ElementOp element) { elementIndices[element] = use(element.getIndex()); })
       .Default([&](mlir::Operation *) { unsupported(op); });
 }
@@ -255,7 +266,8 @@ void StateWriter::spawnPayload(ir::SpawnPayloadOp op) {
       spawned.push_back(use(optional));
 }
 
-/// A call with which the state ends: its arguments are evaluated there, for what is saved is saved before.
+/// A call with which the state ends: its arguments are evaluated there, for what is saved is saved
+/// before.
 Code StateWriter::call(ir::ReturnOp op) {
   mlir::Operation *at = op;
   while (at && !llvm::isa<ir::EnterOp>(at))
@@ -272,14 +284,16 @@ Code StateWriter::call(ir::ReturnOp op) {
   arguments.push_back(name("Step::" + machine.stepOf.at(enter.getResume()->str())));
   arguments.push_back(use(enter.getOperands().front()));
   for (auto [variable, value] : llvm::zip(called->given, enter.getOperands().drop_front()))
-    given.push_back(llvm::isa<ir::PtrType>(value.getType()) ? unary(UnaryOperator::Address, place(value))
-                                                            : use(value, variable->type));
+    given.push_back(llvm::isa<ir::PtrType>(value.getType())
+                        ? unary(UnaryOperator::Address, place(value))
+                        : use(value, variable->type));
   arguments.push_back(list(module.structureOf(*called), std::move(given)));
   return cpp::call("rtsl::callThen", std::move(arguments));
 }
 
 void StateWriter::leave(ir::ReturnOp op, Lines &out) {
-  auto next = op.getValues().empty() ? ir::NextOp() : op.getValues().front().getDefiningOp<ir::NextOp>();
+  auto next =
+      op.getValues().empty() ? ir::NextOp() : op.getValues().front().getDefiningOp<ir::NextOp>();
   auto withRay = [&](const char *callee, std::vector<Code> arguments) {
     arguments.insert(arguments.begin(), name("rt"));
     arguments.insert(arguments.end(), spawned.begin(), spawned.end());
@@ -291,8 +305,10 @@ void StateWriter::leave(ir::ReturnOp op, Lines &out) {
     withRay("rtsl::traceLast", {});
   else if (next.getTransition() == ir::Transition::Return)
     emit(out, returning(cpp::call("rtsl::returnToCaller", {name("rt")})));
-  else if (next.getTransition() == ir::Transition::Jump && machine.joins.count(next.getState()->str()))
-    emit(out, returning(cpp::call("rtsl::goOn", {name("Step::" + machine.stepOf.at(next.getState()->str()))})));
+  else if (next.getTransition() == ir::Transition::Jump &&
+           machine.joins.count(next.getState()->str()))
+    emit(out, returning(cpp::call("rtsl::goOn",
+                                  {name("Step::" + machine.stepOf.at(next.getState()->str()))})));
   else if (next.getTransition() == ir::Transition::Jump)
     emit(out, returning(call(op)));
   else

@@ -24,11 +24,11 @@ struct FrameField {
   std::string slot; // as the IR names it
   std::string name;
   const Type *type = nullptr; // null: it cannot be told
-  unsigned neededBy = 0; // the first line that reads it
-  unsigned madeIn = 0;   // the line of what is saved
-  bool isTraced = false; // a color that a ray brought back
-  bool isReturned = false; // what a call returned
-  bool isObject = false; // a variable that lies in the frame all the time
+  unsigned neededBy = 0;      // the first line that reads it
+  unsigned madeIn = 0;        // the line of what is saved
+  bool isTraced = false;      // a color that a ray brought back
+  bool isReturned = false;    // what a call returned
+  bool isObject = false;      // a variable that lies in the frame all the time
 };
 
 /// What the states of one method share.
@@ -41,7 +41,8 @@ struct Machine {
   std::string frameName = "frame", callName = "call"; // of the parameters
   std::map<std::string, std::string> stepOf;          // by the symbol of the state
   const CalledMethod *called = nullptr;               // the method is called through references
-  std::map<std::string, const CalledMethod *> callBefore; // what has returned when a state begins; null: it cannot be shown
+  // what has returned when a state begins; null: it cannot be shown
+  std::map<std::string, const CalledMethod *> callBefore;
 
   std::set<std::string> joins; // states that begin where others have come together, by symbol
 
@@ -64,7 +65,8 @@ bool writesTo(mlir::Operation *op, mlir::Value address);
 /// line that calls it. 0: unknown.
 unsigned lineOf(mlir::Location location, llvm::StringRef file);
 
-/// What a value is called among people: as the author calls it, or after the operation that makes it.
+/// What a value is called among people: as the author calls it, or after the operation that makes
+/// it.
 std::string nameFor(mlir::Value value);
 
 /// Is it the compiler's name for what `&&` or `||` has come to?
@@ -85,19 +87,23 @@ public:
   const Type *typeOfSlot(const std::string &slot, mlir::Type type);
   /// What a value is called: as nameFor() says, or in the frame.
   std::string nameOfValue(mlir::Value value);
-  /// A name of the IR as C++ writes it: `m[0]` is m0, `ray.origin` ray_origin, and the state's `HitPoint` hitPoint.
+  /// A name of the IR as C++ writes it: `m[0]` is m0, `ray.origin` ray_origin, and the state's
+  /// `HitPoint` hitPoint.
   std::string spelling(llvm::StringRef name);
   bool usesScratch = false; // of the state that was written last
   /// The author's type of a variable that stays whole, or of a part of one; null: it is not known.
   const Type *declaredType(mlir::Value address);
 
 private:
-  /// Something that can be read and written: a variable of the state, of the ray or of the frame, ...
+  /// Something that can be read and written: a variable of the state, of the ray or of the frame,
+  /// ...
   struct Location {
     enum class Kind : std::uint8_t { Variable, State, Frame, Object, Payload, Argument, Random };
     Kind kind;
     std::string name;
-    bool operator<(const Location &other) const { return std::tie(kind, name) < std::tie(other.kind, other.name); }
+    bool operator<(const Location &other) const {
+      return std::tie(kind, name) < std::tie(other.kind, other.name);
+    }
   };
   /// What reading or writing meets; `any` is everything.
   struct Touches {
@@ -117,10 +123,11 @@ private:
   /// A statement, and what it is of in the IR.
   struct Line {
     Statement statement;
-    mlir::Operation *declares = nullptr; // a variable whose declaration this is, to be joined with its first assignment
-    mlir::Operation *assigns = nullptr;  // the variable of `x = value;`
-    mlir::Value made;                    // what `type name = value;` is the variable of
-    const Type *copies = nullptr;        // the struct whose field is assigned
+    mlir::Operation *declares =
+        nullptr; // a variable whose declaration this is, to be joined with its first assignment
+    mlir::Operation *assigns = nullptr; // the variable of `x = value;`
+    mlir::Value made;                   // what `type name = value;` is the variable of
+    const Type *copies = nullptr;       // the struct whose field is assigned
   };
   using Lines = std::vector<Line>;
   static Statements statementsOf(const Lines &lines);
@@ -197,20 +204,24 @@ private:
   Machine &machine;
   FunctionPrinter printer;
   std::set<std::string> taken, always;
-  bool isAlways(const std::string &name) const { return always.count(name) || module.namesInFile().count(name); }
+  bool isAlways(const std::string &name) const {
+    return always.count(name) || module.namesInFile().count(name);
+  }
   llvm::MapVector<mlir::Value, Pending> pending;
   llvm::DenseMap<mlir::Value, std::string> declared;
-  std::map<std::string, mlir::Value> latest; // of the values that have a variable, by what they are called
+  // of the values that have a variable, by what they are called
+  std::map<std::string, mlir::Value> latest;
   llvm::DenseMap<mlir::Operation *, std::string> variableNames;
   llvm::DenseMap<mlir::Operation *, const Type *> variableTypes;
-  llvm::DenseMap<mlir::Operation *, Code> lightNumbers; // what is read of the variable that counts lights
+  // what is read of the variable that counts lights
+  llvm::DenseMap<mlir::Operation *, Code> lightNumbers;
   Touches consumed;
   llvm::DenseMap<mlir::Value, Insertion> insertions;
-  std::map<unsigned, std::string> comments;          // of statements, by line, until they are printed
-  std::set<unsigned> spaces;                         // lines of statements with an empty line above, likewise
+  std::map<unsigned, std::string> comments; // of statements, by line, until they are printed
+  std::set<unsigned> spaces; // lines of statements with an empty line above, likewise
   unsigned currentLine = 0;
   llvm::DenseMap<mlir::Operation *, Code> elementIndices; // of addresses
-  std::vector<const typed::Variable *> constants;                // of the author's functions, that the state names
+  std::vector<const typed::Variable *> constants; // of the author's functions, that the state names
   bool hasRefused = false;
   std::vector<Code> spawned; // the arguments of the ray that is traced when the state ends
 };

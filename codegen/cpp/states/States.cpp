@@ -1,10 +1,10 @@
 //===- States.cpp - methods that trace, as their states -------------------===//
 #include "codegen/cpp/states/States.h"
 
-#include "codegen/cpp/states/StateWriter.h"
 #include "codegen/cpp/Tracing.h"
-#include "sema/typed/Analysis.h"
+#include "codegen/cpp/states/StateWriter.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
+#include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
 #include <fmt/format.h>
@@ -35,10 +35,15 @@ SourceTable makeSourceTable(const typed::Module &module) {
   SourceTable table;
   table.isPure = [effects, tracing](const typed::Function &function) {
     const Effects &inside = effects->function(function);
-    return inside.isPure() && !inside.usesRay && !inside.usesScratch && !function.mayTrace && !tracing->mayBeCalled(function);
+    return inside.isPure() && !inside.usesRay && !inside.usesScratch && !function.mayTrace &&
+           !tracing->mayBeCalled(function);
   };
-  table.mayTrace = [tracing](const typed::Function &function) { return tracing->mayBeCalled(function); };
-  table.becomesStates = [tracing](const typed::Function &function) { return tracing->contains(function); };
+  table.mayTrace = [tracing](const typed::Function &function) {
+    return tracing->mayBeCalled(function);
+  };
+  table.becomesStates = [tracing](const typed::Function &function) {
+    return tracing->contains(function);
+  };
   table.writes = [effects](const typed::Expr &expr) -> std::optional<std::vector<std::string>> {
     auto *call = dynCast<typed::CallExpr>(&expr);
     if (!call) // of a method that is known when the scene is
@@ -65,13 +70,16 @@ void ModulePrinter::findStates() {
     auto ofClass = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
     auto ofMethod = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
     if (function->hasAttr("rtsl.state") && ofClass && ofMethod)
-      statesOf[{ofClass.str(), ofMethod.str(), continuation::isFramed(function)}].push_back(function);
+      statesOf[{ofClass.str(), ofMethod.str(), continuation::isFramed(function)}].push_back(
+          function);
   }
 }
 
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
-  return states && tracing.contains(method) && (method.isStateMethod || calledMethod(definition, method)) &&
-         statesOf.count({definition.name, typed::slotName(module, method), !method.isStateMethod}) != 0;
+  return states && tracing.contains(method) &&
+         (method.isStateMethod || calledMethod(definition, method)) &&
+         statesOf.count(
+             {definition.name, typed::slotName(module, method), !method.isStateMethod}) != 0;
 }
 
 bool ModulePrinter::isPartOfStates(const typed::Function &function) const {
@@ -148,14 +156,16 @@ static std::set<std::string> joinsOf(const std::vector<mlir::func::FuncOp> &stat
       symbols.insert(state.getSymName().str());
   for (mlir::func::FuncOp state : states)
     state.walk([&](ir::NextOp next) {
-      if (next.getTransition() == ir::Transition::Jump && next.getState() && symbols.count(next.getState()->str()))
+      if (next.getTransition() == ir::Transition::Jump && next.getState() &&
+          symbols.count(next.getState()->str()))
         joins.insert(next.getState()->str());
     });
   return joins;
 }
 
 /// The fields of the frame, in the order in which they are saved first; none is called as a type.
-static void collectFrame(Machine &machine, StateWriter &writer, const std::set<std::string> &types) {
+static void collectFrame(Machine &machine, StateWriter &writer,
+                         const std::set<std::string> &types) {
   std::set<std::string> taken;
   if (machine.called) {
     taken.insert(machine.called->fields.begin(), machine.called->fields.end());
@@ -168,9 +178,11 @@ static void collectFrame(Machine &machine, StateWriter &writer, const std::set<s
     if (!isNew)
       return machine.frame[at->second];
     std::string name = writer.spelling(slot);
-    if (name == "evaluate" || name == "expression" || name == "call_returned") // what the IR calls it
+    if (name == "evaluate" || name == "expression" ||
+        name == "call_returned") // what the IR calls it
       name = value ? writer.nameOfValue(value) : "value";
-    machine.frame.push_back({slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
+    machine.frame.push_back(
+        {slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
   for (auto [number, state] : llvm::enumerate(machine.states))
@@ -219,11 +231,13 @@ static void collectFrame(Machine &machine, StateWriter &writer, const std::set<s
   for (FrameField &saved : machine.frame)
     if (saved.neededBy == 0) // by what is called
       saved.neededBy = saved.madeIn;
-  std::stable_partition(machine.frame.begin(), machine.frame.end(),
-                        [](const FrameField &saved) { return !saved.type || !saved.type->is(TypeKind::Bool); });
+  std::stable_partition(machine.frame.begin(), machine.frame.end(), [](const FrameField &saved) {
+    return !saved.type || !saved.type->is(TypeKind::Bool);
+  });
 }
 
-/// What a field of the frame is, in the author's words: the comment at its declaration, or the line that makes it.
+/// What a field of the frame is, in the author's words: the comment at its declaration, or the line
+/// that makes it.
 std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameField &field) {
   if (field.isTraced)
     return fmt::format("what the ray of line {} brought back", field.madeIn);
@@ -231,26 +245,32 @@ std::string ModulePrinter::meaningOf(const typed::Function &method, const FrameF
     return fmt::format("what the call of line {} returned", field.madeIn);
   for (const auto &local : method.locals)
     if (local->name == field.slot)
-      if (std::string comment = notes.trailingComment(local->init ? local->init->range : local->range);
+      if (std::string comment =
+              notes.trailingComment(local->init ? local->init->range : local->range);
           comment.compare(0, 3, "// ") == 0)
         return comment.substr(3);
   std::string line = notes.textOfLine(method.range, field.madeIn);
   // On one line with the declaration, at 100 columns.
-  const std::size_t room = 64 - std::min<std::size_t>(type(field.type).size() + field.name.size(), 40);
+  const std::size_t room =
+      64 - std::min<std::size_t>(type(field.type).size() + field.name.size(), 40);
   if (line.size() > room)
     line = line.substr(0, line.rfind(' ', room - 4)) + " ...";
   return line.empty() ? field.slot : "`" + line + "`";
 }
 
-std::string ModulePrinter::nameOfMachine(const typed::Class &definition, const typed::Function &method) const {
-  const bool isOneOfMany =
-      typed::takesPayload(method) &&
-      std::count_if(definition.functions.begin(), definition.functions.end(),
-                    [&](const auto &other) { return other->name == method.name; }) > 1; // there is one for each
-  return names.of(&method) + (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
+std::string ModulePrinter::nameOfMachine(const typed::Class &definition,
+                                         const typed::Function &method) const {
+  const bool isOneOfMany = typed::takesPayload(method) &&
+                           std::count_if(definition.functions.begin(), definition.functions.end(),
+                                         [&](const auto &other) {
+                                           return other->name == method.name;
+                                         }) > 1; // there is one for each
+  return names.of(&method) +
+         (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
 }
 
-std::string ModulePrinter::stateMachine(const typed::Class &definition, const typed::Function &method) {
+std::string ModulePrinter::stateMachine(const typed::Class &definition,
+                                        const typed::Function &method) {
   Machine machine;
   machine.definition = &definition;
   machine.method = &method;
@@ -259,19 +279,25 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   const std::string slot = typed::slotName(module, method);
   machine.states = statesOf.at({definition.name, slot, machine.called != nullptr});
   std::string name = nameOfMachine(definition, method);
-  const typed::Variable *payload = typed::takesPayload(method) ? method.parameters.front().get() : nullptr;
-  if (machine.called && machine.called->structure != capitalised(name)) // there are others of the name
+  const typed::Variable *payload =
+      typed::takesPayload(method) ? method.parameters.front().get() : nullptr;
+  if (machine.called &&
+      machine.called->structure != capitalised(name)) // there are others of the name
     name = uncapitalised(machine.called->structure);
   for (mlir::func::FuncOp state : machine.states)
     state.walk([&](ir::EnterOp call) {
-      machine.callBefore[call.getResume().value_or("").str()] = calledMethod(call.getCallee().str());
+      machine.callBefore[call.getResume().value_or("").str()] =
+          calledMethod(call.getCallee().str());
     });
   machine.joins = joinsOf(machine.states);
-  std::set<std::string> taken = namesInClass(definition); // what is printed beside the author's own stands behind it
+  std::set<std::string> taken =
+      namesInClass(definition); // what is printed beside the author's own stands behind it
   std::vector<std::string> functions = {name};
   for (std::size_t i = 1; i < machine.states.size(); ++i) {
     const std::string symbol = machine.states[i].getSymName().str();
-    const char *begin = machine.joins.count(symbol) ? "FromJoin" : machine.callBefore.count(symbol) ? "AfterCall" : "AfterTrace";
+    const char *begin = machine.joins.count(symbol)        ? "FromJoin"
+                        : machine.callBefore.count(symbol) ? "AfterCall"
+                                                           : "AfterTrace";
     functions.push_back(unique(fmt::format("{}{}{}", name, begin, i), taken, namesInFile()));
     machine.stepOf[symbol] = stepName(definition, functions.back());
   }
@@ -282,19 +308,21 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
   const std::string scope = names.of(&definition) + "::";
   std::string text;
   if (!machine.frame.empty()) {
-    text += fmt::format("// What `{}` needs when its rays come back.\nstruct {}{} {{\n", name, frame,
-                        machine.called ? " : " + structureOf(*machine.called) : "");
+    text += fmt::format("// What `{}` needs when its rays come back.\nstruct {}{} {{\n", name,
+                        frame, machine.called ? " : " + structureOf(*machine.called) : "");
     const auto isBool = [](const FrameField &field) {
       return field.type && field.type->is(TypeKind::Bool) && !field.isObject;
     };
-    const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1; // bools share a byte
+    const bool packs =
+        std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1; // bools share a byte
     for (const FrameField &field : machine.frame) {
       if (!field.type) {
         unsupported(method.range, fmt::format("`{}` in the frame of a method in C++", field.slot));
         continue;
       }
       text += fmt::format("{} {}{}; // needed by line {}: {}\n", type(field.type), field.name,
-                          packs && isBool(field) ? " : 1" : "", field.neededBy, meaningOf(method, field));
+                          packs && isBool(field) ? " : 1" : "", field.neededBy,
+                          meaningOf(method, field));
     }
     text += "};\n\n";
   } else if (machine.called) {
@@ -306,11 +334,15 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
     (machine.called ? calledFrames : frames).push_back(frameType);
   const Code bottom = cpp::name("frame");
   const Code frameHere =
-      hasFrame ? cpp::call(withParameters(machine.called ? "rtsl::calledFrameAt" : "rtsl::frameAt", {frameType}), {bottom}) : bottom;
+      hasFrame ? cpp::call(withParameters(machine.called ? "rtsl::calledFrameAt" : "rtsl::frameAt",
+                                          {frameType}),
+                           {bottom})
+               : bottom;
 
   for (std::size_t i = 0; i < machine.states.size(); ++i) {
     Statements body = writer.body(machine.states[i]);
-    for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at) // under the author's name
+    for (std::size_t at = 0; machine.called && at < machine.called->given.size();
+         ++at) // under the author's name
       if (const std::string address = machine.addressName(*this, at); mentions(body, address)) {
         const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
         body.insert(body.begin(), cpp::declaration(type(machine.givenType(at)) + " &", address,
@@ -328,7 +360,9 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
     }
     if (mentions(body, machine.frameName)) {
       bool writes = false;
-      machine.states[i].walk([&](mlir::Operation *op) { writes |= llvm::isa<ir::FrameStoreOp, ir::CallResultOp>(op); });
+      machine.states[i].walk([&](mlir::Operation *op) {
+        writes |= llvm::isa<ir::FrameStoreOp, ir::CallResultOp>(op);
+      });
       machine.states[i].walk([&](ir::FrameObjectOp object) {
         for (mlir::Operation *user : object->getUsers())
           writes |= writesTo(user, object);
@@ -358,17 +392,19 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition, const ty
               : isJoin ? fmt::format("\n// From line {} on, whatever came before.\n", line)
               : isCall ? fmt::format("\n// When the call of line {} is over.\n", line)
                        : fmt::format("\n// When the ray of line {} is back.\n", line);
-      steps.push_back({machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
+      steps.push_back(
+          {machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
     }
     if (const auto place = lineDirective(method.range); place && i == 0)
       text += print(*place);
-    text += fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", functions[i], join(parameters, ", "), print(body));
+    text += fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", functions[i], join(parameters, ", "),
+                        print(body));
   }
   return text;
 }
 
-/// Has something that the method calls on its own object, and that has become part of its states, another definition in the
-/// derived class?
+/// Has something that the method calls on its own object, and that has become part of its states,
+/// another definition in the derived class?
 bool ModulePrinter::differsIn(const typed::Class &derived, const typed::Function &method) const {
   std::set<const typed::Function *> seen = {&method};
   std::vector<const typed::Function *> open = {&method};

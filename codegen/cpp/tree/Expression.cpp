@@ -18,18 +18,22 @@ struct OperatorFacts {
 
 static const OperatorFacts &facts(Operator op) {
   static constexpr OperatorFacts all[] = {
-      {"*", Binding::Product},   {"/", Binding::Product},    {"%", Binding::Product},
-      {"+", Binding::Sum},       {"-", Binding::Sum},        {"<<", Binding::Shift},
-      {">>", Binding::Shift},    {"<", Binding::Relation},   {">", Binding::Relation},
-      {"<=", Binding::Relation}, {">=", Binding::Relation},  {"==", Binding::Equality},
-      {"!=", Binding::Equality}, {"&", Binding::BitAnd},     {"^", Binding::BitXor},
-      {"|", Binding::BitOr},     {"&&", Binding::And},       {"||", Binding::Or},
+      {"*", Binding::Product},   {"/", Binding::Product},   {"%", Binding::Product},
+      {"+", Binding::Sum},       {"-", Binding::Sum},       {"<<", Binding::Shift},
+      {">>", Binding::Shift},    {"<", Binding::Relation},  {">", Binding::Relation},
+      {"<=", Binding::Relation}, {">=", Binding::Relation}, {"==", Binding::Equality},
+      {"!=", Binding::Equality}, {"&", Binding::BitAnd},    {"^", Binding::BitXor},
+      {"|", Binding::BitOr},     {"&&", Binding::And},      {"||", Binding::Or},
   };
   return all[static_cast<std::size_t>(op)];
 }
 
-const char *spelling(Operator op) { return facts(op).spelling; }
-Binding bindingOf(Operator op) { return facts(op).binding; }
+const char *spelling(Operator op) {
+  return facts(op).spelling;
+}
+Binding bindingOf(Operator op) {
+  return facts(op).binding;
+}
 
 const char *spelling(UnaryOperator op) {
   static constexpr const char *all[] = {"-", "!", "~", "++", "--", "&", "*"};
@@ -50,7 +54,9 @@ static ExpressionNode node(ExpressionKind kind, std::string name, std::vector<Co
   return made;
 }
 
-Code name(std::string text) { return Code(node(ExpressionKind::Name, std::move(text), {})); }
+Code name(std::string text) {
+  return Code(node(ExpressionKind::Name, std::move(text), {}));
+}
 
 Code literal(std::string spelling, bool isZero) {
   ExpressionNode made = node(ExpressionKind::Literal, std::move(spelling), {});
@@ -58,7 +64,9 @@ Code literal(std::string spelling, bool isZero) {
   return Code(std::move(made));
 }
 
-Code boolean(bool value) { return literal(value ? "true" : "false", !value); }
+Code boolean(bool value) {
+  return literal(value ? "true" : "false", !value);
+}
 
 Code integer(std::int64_t value) {
   if (value == std::numeric_limits<std::int32_t>::min()) // its opposite is no int
@@ -117,7 +125,9 @@ Code staticCast(std::string type, Code operand) {
   return Code(node(ExpressionKind::Cast, std::move(type), {std::move(operand)}));
 }
 
-Code discarded(Code operand) { return staticCast("void", std::move(operand)); }
+Code discarded(Code operand) {
+  return staticCast("void", std::move(operand));
+}
 
 Code unary(UnaryOperator op, Code operand) {
   ExpressionNode made = node(ExpressionKind::Unary, {}, {std::move(operand)});
@@ -213,7 +223,9 @@ bool same(const Code &first, const Code &second) {
          std::equal(a->parts.begin(), a->parts.end(), b->parts.begin(), b->parts.end(), same);
 }
 
-bool isName(const Code &code) { return code && code->is(ExpressionKind::Name); }
+bool isName(const Code &code) {
+  return code && code->is(ExpressionKind::Name);
+}
 
 bool isZero(const Code &code) {
   switch (code->kind) {
@@ -257,9 +269,9 @@ bool mentions(const Code &code, const std::string &name) {
 }
 
 bool contains(const Code &code, const Code &part) {
-  return code && (same(code, part) || std::any_of(code->parts.begin(), code->parts.end(), [&](const Code &inner) {
-                    return contains(inner, part);
-                  }));
+  return code && (same(code, part) ||
+                  std::any_of(code->parts.begin(), code->parts.end(),
+                              [&](const Code &inner) { return contains(inner, part); }));
 }
 
 Code negated(const Code &condition) {

@@ -62,7 +62,15 @@ enum class Operator : std::uint8_t {
 const char *spelling(Operator op);
 Binding bindingOf(Operator op);
 
-enum class UnaryOperator : std::uint8_t { Minus, Not, BitNot, Increment, Decrement, Address, Dereference };
+enum class UnaryOperator : std::uint8_t {
+  Minus,
+  Not,
+  BitNot,
+  Increment,
+  Decrement,
+  Address,
+  Dereference
+};
 const char *spelling(UnaryOperator op);
 
 /// An expression in C++; empty where there is nothing to evaluate.
@@ -106,8 +114,8 @@ struct ExpressionNode {
   std::vector<Code> parts;
   Operator op = Operator::Add;
   UnaryOperator unary = UnaryOperator::Minus;
-  bool compound = false; // Assign
-  bool isZero = false;   // Literal: 0 or false
+  bool compound = false;                        // Assign
+  bool isZero = false;                          // Literal: 0 or false
   std::shared_ptr<const Statements> statements; // Lambda
 
   bool is(Kind k) const { return kind == k; }

@@ -51,7 +51,9 @@ static bool beginsWithMinus(const Code &code) {
   }
 }
 
-static std::string inParentheses(const std::string &text) { return "(" + text + ")"; }
+static std::string inParentheses(const std::string &text) {
+  return "(" + text + ")";
+}
 
 //===----------------------------------------------------------------------===//
 // Expressions
@@ -156,7 +158,9 @@ std::string print(const Code &code, Binding atLeast) {
   return bindingOf(code) < atLeast ? inParentheses(text) : text;
 }
 
-std::string print(const std::vector<Code> &codes) { return arguments(codes, 0); }
+std::string print(const std::vector<Code> &codes) {
+  return arguments(codes, 0);
+}
 
 //===----------------------------------------------------------------------===//
 // Statements
@@ -205,12 +209,13 @@ static bool needsBraces(const Statements &statements) {
     return true;
   const Statement &only = statements.front();
   return only.is(StatementKind::Declaration) || only.is(StatementKind::Empty) ||
-         only.is(StatementKind::Nothing) || only.is(StatementKind::Block) || !only.comment.empty() ||
-         only.place;
+         only.is(StatementKind::Nothing) || only.is(StatementKind::Block) ||
+         !only.comment.empty() || only.place;
 }
 
 /// What stands under an `if` or a loop, from its brace or its line on.
-static std::string under(const Statements &statements, bool hasBraces, const std::string &trailing = {}) {
+static std::string under(const Statements &statements, bool hasBraces,
+                         const std::string &trailing = {}) {
   if (!hasBraces && trailing.empty() && !needsBraces(statements))
     return "\n" + print(statements);
   return " {" + (trailing.empty() ? "" : " " + trailing) + "\n" + print(statements) + "}\n";
@@ -219,17 +224,20 @@ static std::string under(const Statements &statements, bool hasBraces, const std
 /// `else` belongs to the nearest `if`; so one under an `if` with `else` gets braces.
 static bool mayCatchElse(const Statements &statements) {
   return statements.size() == 1 && isControl(statements.front()) &&
-         !statements.front().is(StatementKind::Switch) && !statements.front().is(StatementKind::DoWhile);
+         !statements.front().is(StatementKind::Switch) &&
+         !statements.front().is(StatementKind::DoWhile);
 }
 
 static std::string printIf(const Statement &statement) {
   const bool hasElse = !statement.otherwise.empty() || statement.otherwiseHasBraces;
   const bool hasBraces = statement.hasBraces || (hasElse && mayCatchElse(statement.body));
-  std::string text = "if (" + print(statement.value) + ")" + under(statement.body, hasBraces, statement.trailing);
+  std::string text =
+      "if (" + print(statement.value) + ")" + under(statement.body, hasBraces, statement.trailing);
   if (!hasElse)
     return text;
   const Statements &otherwise = statement.otherwise;
-  if (!statement.otherwiseHasBraces && !needsBraces(otherwise) && otherwise.front().is(StatementKind::If))
+  if (!statement.otherwiseHasBraces && !needsBraces(otherwise) &&
+      otherwise.front().is(StatementKind::If))
     return text + "else " + print(otherwise);
   return text + "else" + under(otherwise, statement.otherwiseHasBraces);
 }
@@ -280,7 +288,8 @@ static std::string printBare(const Statement &statement) {
   case StatementKind::While:
     return "while (" + print(statement.value) + ")" + under(statement.body, statement.hasBraces);
   case StatementKind::DoWhile:
-    return "do" + under(statement.body, statement.hasBraces) + "while (" + print(statement.value) + ");\n";
+    return "do" + under(statement.body, statement.hasBraces) + "while (" + print(statement.value) +
+           ");\n";
   case StatementKind::Switch:
     return printSwitch(statement);
   case StatementKind::Return:

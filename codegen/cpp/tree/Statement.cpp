@@ -79,7 +79,8 @@ Code assignedValue(const Statement &statement) {
                               : assignment->parts[1];
 }
 
-void forEachPart(const Statement &statement, const std::function<void(const ExpressionNode &)> &visit) {
+void forEachPart(const Statement &statement,
+                 const std::function<void(const ExpressionNode &)> &visit) {
   auto all = [&](const Statements &statements) {
     for (const Statement &inner : statements)
       forEachPart(inner, visit);

@@ -45,8 +45,8 @@ struct Statement {
   };
   Kind kind = Kind::Nothing;
 
-  std::string comment;              // above it, with its markers
-  std::string trailing;             // after it or its opening brace, on the same line, with its markers
+  std::string comment;  // above it, with its markers
+  std::string trailing; // after it or its opening brace, on the same line, with its markers
   std::optional<SourcePlace> place; // for `#line`
   bool hasSpace = false;            // an empty line above, unless it comes first
 
@@ -84,7 +84,8 @@ std::string assignedName(const Statement &statement);
 Code assignedValue(const Statement &statement);
 
 /// Visits every expression of the statements, parts included.
-void forEachPart(const Statement &statement, const std::function<void(const ExpressionNode &)> &visit);
+void forEachPart(const Statement &statement,
+                 const std::function<void(const ExpressionNode &)> &visit);
 /// Does it name this variable, function or type anywhere?
 bool mentions(const Statement &statement, const std::string &name);
 bool mentions(const Statements &statements, const std::string &name);

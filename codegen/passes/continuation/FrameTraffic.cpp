@@ -11,7 +11,8 @@ namespace rtsl::continuation {
 namespace {
 
 /// Bytes of the values that the block's operations of this kind move; a word of bools counts once.
-template <typename Op> std::uint32_t bytesIn(mlir::Block &block) {
+template <typename Op>
+std::uint32_t bytesIn(mlir::Block &block) {
   std::uint32_t bytes = 0;
   std::set<std::uint32_t> wordsOfBools;
   for (Op op : block.getOps<Op>()) {
@@ -27,8 +28,8 @@ template <typename Op> std::uint32_t bytesIn(mlir::Block &block) {
   return bytes;
 }
 
-/// What is loaded on the ways through the state that load least and most. No loop loads, so both are
-/// there after as many rounds as there are blocks.
+/// What is loaded on the ways through the state that load least and most. No loop loads, so both
+/// are there after as many rounds as there are blocks.
 BytesRange loadedOnWays(FuncOp state) {
   llvm::DenseMap<mlir::Block *, BytesRange> upTo;
   BytesRange ways = {~0u, 0};
@@ -40,7 +41,8 @@ BytesRange loadedOnWays(FuncOp state) {
       BytesRange range = {~0u, 0};
       for (mlir::Block *predecessor : block.getPredecessors())
         if (auto before = upTo.find(predecessor); before != upTo.end())
-          range = {std::min(range.least, before->second.least), std::max(range.most, before->second.most)};
+          range = {std::min(range.least, before->second.least),
+                   std::max(range.most, before->second.most)};
       if (block.isEntryBlock())
         range.least = 0;
       else if (range.least == ~0u)
@@ -69,8 +71,9 @@ void FrameTraffic::add(FuncOp state) {
     const std::uint32_t bytes = bytesIn<ir::FrameStoreOp>(block);
     const auto stores = llvm::range_size(block.getOps<ir::FrameStoreOp>());
     TraceTraffic &at = traffic[resume];
-    at.stored = at.isStored ? BytesRange{std::min(at.stored.least, bytes), std::max(at.stored.most, bytes)}
-                            : BytesRange{bytes, bytes};
+    at.stored = at.isStored
+                    ? BytesRange{std::min(at.stored.least, bytes), std::max(at.stored.most, bytes)}
+                    : BytesRange{bytes, bytes};
     at.stores = std::max(at.stores, static_cast<unsigned>(stores));
     at.isStored = true;
   };

@@ -6,9 +6,9 @@
 #pragma once
 
 #include "codegen/ir/SourcePlace.h"
-#include "codegen/passes/continuation/states/RayGraph.h"
 #include "codegen/passes/continuation/frame/Steps.h"
 #include "codegen/passes/continuation/save/Steps.h"
+#include "codegen/passes/continuation/states/RayGraph.h"
 #include "codegen/passes/continuation/suspend/Steps.h"
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct TraceTraffic {
 
 /// The same with all steps done up to one of them.
 struct StepReport {
-  const char *step; // "liveness": none of the optimisations
+  const char *step;             // "liveness": none of the optimisations
   std::uint32_t savedBytes = 0; // in the frame while the ray is away
   TraceTraffic traffic;
 };
@@ -48,8 +48,8 @@ struct ExtraReport {
 /// One trace of a function, in the order in which they stand.
 struct TraceReport {
   TracePlace place;
-  std::string callee;            // of a call on a frame of its own; empty: it is a trace
-  std::string resumesAt;         // the state
+  std::string callee;    // of a call on a frame of its own; empty: it is a trace
+  std::string resumesAt; // the state
   // What plain liveness would save, constants included. This and what follows from it (`steps`,
   // `rematerialised`, `plainly`) is there if SplitOptions::explain.
   std::vector<std::string> live;

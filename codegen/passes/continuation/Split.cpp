@@ -1,16 +1,16 @@
 //===- Split.cpp - shaders that trace become state machines ---------------===//
 #include "codegen/passes/continuation/Split.h"
-#include "codegen/passes/continuation/states/Steps.h"
 #include "codegen/passes/continuation/calls/Steps.h"
+#include "codegen/passes/continuation/states/Steps.h"
 
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/Simplify.h"
-#include "codegen/passes/continuation/common/CostTable.h"
-#include "codegen/passes/continuation/suspend/CutJoins.h"
 #include "codegen/passes/continuation/FrameTraffic.h"
-#include "codegen/passes/continuation/states/KeptState.h"
+#include "codegen/passes/continuation/common/CostTable.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/common/Recompute.h"
+#include "codegen/passes/continuation/states/KeptState.h"
+#include "codegen/passes/continuation/suspend/CutJoins.h"
 
 #include "mlir/IR/Verifier.h"
 #include "llvm/ADT/StringSet.h"
@@ -50,7 +50,8 @@ class FunctionSplitter {
 public:
   FunctionSplitter(FuncOp function, const SplitOptions &options, const codegen::Simplify &simplify,
                    const WriteSummary &summary, FunctionReport &report)
-      : function(function), options(options), simplify(simplify), summary(summary), report(report) {}
+      : function(function), options(options), simplify(simplify), summary(summary), report(report) {
+  }
 
   mlir::LogicalResult run();
 
@@ -129,7 +130,8 @@ mlir::LogicalResult FunctionSplitter::planAndRematerialise() {
     for (mlir::Value value : plan.saved) {
       trace.saved.push_back(names.of(value));
       trace.savedShown.push_back(describeToAuthor(value));
-      trace.savedSizes.push_back(value.getType().isInteger(1) ? 0 : ir::sizeInBytes(value.getType()));
+      trace.savedSizes.push_back(value.getType().isInteger(1) ? 0
+                                                              : ir::sizeInBytes(value.getType()));
     }
     if (!options.explain)
       continue;
@@ -226,7 +228,8 @@ mlir::LogicalResult FunctionSplitter::run() {
   insertSuspends(function, summary);
   for (mlir::Location last : endAtLastTraces(function))
     report.lastTraces.push_back(ir::placeOf(last));
-  // In a program that is printed for people copies read better than states that no trace has made, unless they are many.
+  // In a program that is printed for people copies read better than states that no trace has made,
+  // unless they are many.
   const bool isForPeople = function->getParentOfType<mlir::ModuleOp>()->hasAttr("rtsl.source");
   cutJoins(function, isForPeople ? JoinOptions::forPeople() : JoinOptions());
   moveVariablesToFrame(function);
@@ -327,7 +330,8 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
     if (function->hasAttr("rtsl.states") && listed.insert(function).second)
       functions.push_back(function);
   // What is called comes after its callers, which ask what it writes.
-  std::stable_partition(functions.begin(), functions.end(), [](FuncOp function) { return !isFramed(function); });
+  std::stable_partition(functions.begin(), functions.end(),
+                        [](FuncOp function) { return !isFramed(function); });
   const WriteSummary summary(module);
   for (FuncOp function : functions) {
     if (isFramed(function))

@@ -20,8 +20,8 @@ struct SplitOptions {
   bool trim = true;
   /// No stores of what a slot holds already; loads where they are used.
   bool cleanUp = true;
-  /// Report what each trace would save without the optimisations, and with each of them: as much work
-  /// again as the optimisations.
+  /// Report what each trace would save without the optimisations, and with each of them: as much
+  /// work again as the optimisations.
   bool explain = false;
   /// Number the states and make the functions that the machine calls. Off: for looking at.
   bool dispatch = true;

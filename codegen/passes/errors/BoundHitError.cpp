@@ -1,9 +1,9 @@
 #include "codegen/passes/errors/BoundHitError.h"
 
-#include "codegen/ir/BaseAddress.h"
-#include "codegen/ir/Rtsl.h"
 #include "codegen/formulas/Emitter.h"
 #include "codegen/formulas/Library.h"
+#include "codegen/ir/BaseAddress.h"
+#include "codegen/ir/Rtsl.h"
 #include "runtime/device/ray/HitError.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
@@ -48,13 +48,16 @@ static Num stateOf(Emitter &emitter, llvm::StringRef name) {
   return {emitter, emitter.load(emitter.make<ir::StateOp>(name, emitter.getF32Type()))};
 }
 
-/// Floats are compared as they are without roundings, so that the branches are the right ones and not those that roundings have led
-/// `intersect` into. Which one is right may be in doubt, because elementary functions are off; then `otherwise` says whether the
-/// opposite is tried. True if that can be.
-static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningError &errors, Value otherwise) {
+/// Floats are compared as they are without roundings, so that the branches are the right ones and
+/// not those that roundings have led `intersect` into. Which one is right may be in doubt, because
+/// elementary functions are off; then `otherwise` says whether the opposite is tried. True if that
+/// can be.
+static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningError &errors,
+                             Value otherwise) {
   bool mayBeInDoubt = false;
   for (arith::CmpFOp comparison : comparisons) {
-    const std::optional<Unrounded> left = errors.of(comparison.getLhs()), right = errors.of(comparison.getRhs());
+    const std::optional<Unrounded> left = errors.of(comparison.getLhs()),
+                                   right = errors.of(comparison.getRhs());
     if (!left || !right)
       continue;
     Emitter emitter(comparison.getContext());
@@ -63,7 +66,9 @@ static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningE
     const Wide a(emitter, left->value), b(emitter, right->value);
     Num answer(emitter, emitter.fold<arith::CmpFOp>(comparison.getPredicate(), a, b));
     if (left->error || right->error) {
-      const auto errorOf = [&](const Unrounded &one) { return one.error ? Wide(emitter, one.error) : a.like(0); };
+      const auto errorOf = [&](const Unrounded &one) {
+        return one.error ? Wide(emitter, one.error) : a.like(0);
+      };
       const Num isInDoubt(emitter, isAtMost(abs(a - b), errorOf(*left) + errorOf(*right)));
       answer = answer ^ (isInDoubt & Num(emitter, emitter.load(otherwise)));
       mayBeInDoubt = true;
@@ -73,7 +78,8 @@ static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningE
   return mayBeInDoubt;
 }
 
-/// Everything from `start` on is run once more if it has not found the hit, with `otherwise`. `bound` is what it has found then.
+/// Everything from `start` on is run once more if it has not found the hit, with `otherwise`.
+/// `bound` is what it has found then.
 static void tryOtherwise(mlir::Block *start, Value bound, Value otherwise) {
   mlir::Region &body = *start->getParent();
   llvm::SmallVector<mlir::Operation *> returns;
@@ -92,8 +98,10 @@ static void tryOtherwise(mlir::Block *start, Value bound, Value otherwise) {
     end->erase();
   }
   emitter.setInsertionPointToStart(finish);
-  const Num isFound = !equal({emitter, emitter.load(bound)}, {emitter, emitter.floatConstant(device::hitNotFound)});
-  emitter.make<mlir::cf::CondBranchOp>(isFound | Num(emitter, emitter.load(otherwise)), done, again);
+  const Num isFound =
+      !equal({emitter, emitter.load(bound)}, {emitter, emitter.floatConstant(device::hitNotFound)});
+  emitter.make<mlir::cf::CondBranchOp>(isFound | Num(emitter, emitter.load(otherwise)), done,
+                                       again);
   emitter.setInsertionPointToStart(again);
   emitter.store(emitter.boolConstant(true), otherwise);
   emitter.make<mlir::cf::BranchOp>(start);
@@ -101,7 +109,8 @@ static void tryOtherwise(mlir::Block *start, Value bound, Value otherwise) {
   emitter.make<mlir::func::ReturnOp>();
 }
 
-bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary, std::vector<UnboundHit> &unbound) {
+bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary,
+                   std::vector<UnboundHit> &unbound) {
   llvm::SmallVector<ir::HitOp> hits;
   intersect.walk([&](ir::HitOp hit) { hits.push_back(hit); });
   llvm::SmallVector<arith::CmpFOp> comparisons;
@@ -138,14 +147,16 @@ bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary, st
       const Num before(emitter, emitter.load(bound)), least(emitter, emitter.load(nearest));
       const Wide difference = abs(found - Wide(emitter, exact->value));
       const Wide error = exact->error ? difference + Wide(emitter, exact->error) : difference;
-      const Num away(emitter, narrowed(difference)), isThis = less(away, least) & lessEqual(away, abs(distance) * 0x1p-6);
+      const Num away(emitter, narrowed(difference)),
+          isThis = less(away, least) & lessEqual(away, abs(distance) * 0x1p-6);
       emitter.store(select(isThis, {emitter, narrowed(error)}, before), bound);
       emitter.store(select(isThis, away, least), nearest);
       hasBound = true;
     } else {
       allHaveBounds = false;
     }
-    // Of a hit that is nearer it is known that it did not count; of one that is further away, that it would have.
+    // Of a hit that is nearer it is known that it did not count; of one that is further away, that
+    // it would have.
     hit.replaceAllUsesWith(Value(less(distance, t)));
     hit.erase();
   }
@@ -157,7 +168,8 @@ bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary, st
   for (mlir::Block &block : intersect.getBody())
     if (llvm::isa<mlir::func::ReturnOp>(block.getTerminator())) {
       emitter.setInsertionPoint(block.getTerminator());
-      emitter.store(emitter.load(bound), emitter.make<ir::StateOp>("hitError", emitter.getF32Type()));
+      emitter.store(emitter.load(bound),
+                    emitter.make<ir::StateOp>("hitError", emitter.getF32Type()));
     }
   bool draws = false;
   intersect.walk([&](ir::RandOp) { draws = true; });
@@ -166,14 +178,16 @@ bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary, st
 
 namespace {
 
-struct BoundHitErrorPass : mlir::PassWrapper<BoundHitErrorPass, mlir::OperationPass<mlir::func::FuncOp>> {
+struct BoundHitErrorPass
+    : mlir::PassWrapper<BoundHitErrorPass, mlir::OperationPass<mlir::func::FuncOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(BoundHitErrorPass)
   llvm::StringRef getArgument() const override { return "rtsl-bound-hit-error"; }
   llvm::StringRef getDescription() const override {
     return "`intersect` becomes a function that bounds the error of its t";
   }
   void getDependentDialects(mlir::DialectRegistry &registry) const override {
-    registry.insert<ir::RtslDialect, mlir::arith::ArithDialect, mlir::math::MathDialect, mlir::vector::VectorDialect>();
+    registry.insert<ir::RtslDialect, mlir::arith::ArithDialect, mlir::math::MathDialect,
+                    mlir::vector::VectorDialect>();
   }
   void runOnOperation() override {
     std::vector<UnboundHit> unbound;
@@ -185,6 +199,8 @@ struct BoundHitErrorPass : mlir::PassWrapper<BoundHitErrorPass, mlir::OperationP
 
 } // namespace
 
-void registerBoundHitErrorPass() { mlir::PassRegistration<BoundHitErrorPass>(); }
+void registerBoundHitErrorPass() {
+  mlir::PassRegistration<BoundHitErrorPass>();
+}
 
 } // namespace rtsl

@@ -10,12 +10,12 @@
 //
 // The new function computes in double what `intersect` has computed when it reported the hit at T:
 // the difference is the error. -1 if that is not known, and -2 if there is no such hit
-// (runtime/device/ray/HitError.h). So nothing is lost where no ray leaves the hit. It writes no scratch
-// members, prints nothing, and draws no random numbers.
+// (runtime/device/ray/HitError.h). So nothing is lost where no ray leaves the hit. It writes no
+// scratch members, prints nothing, and draws no random numbers.
 //
 // It takes the branches that double takes, which are the right ones, but for comparisons that
-// elementary functions leave in doubt, because they are exact to single precision only. If the hit is
-// not found, these are decided the other way, all of them, and everything is run once more.
+// elementary functions leave in doubt, because they are exact to single precision only. If the hit
+// is not found, these are decided the other way, all of them, and everything is run once more.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -39,10 +39,11 @@ struct UnboundHit {
   std::string reason;
 };
 
-/// Turns an `intersect` of level 2 into the function above, in place; false if none of its hits has a
-/// bound that is to be derived, and then the function is not to be used. Hits for which the author
-/// states an error are left to him.
-bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary, std::vector<UnboundHit> &unbound);
+/// Turns an `intersect` of level 2 into the function above, in place; false if none of its hits has
+/// a bound that is to be derived, and then the function is not to be used. Hits for which the
+/// author states an error are left to him.
+bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary,
+                   std::vector<UnboundHit> &unbound);
 
 /// `rtsl-bound-hit-error`, on a function.
 void registerBoundHitErrorPass();

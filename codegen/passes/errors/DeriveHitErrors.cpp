@@ -20,7 +20,8 @@ namespace math = mlir::math;
 namespace vector = mlir::vector;
 
 /// Functions, and all that they call directly.
-static llvm::SetVector<mlir::Operation *> reachedFrom(llvm::ArrayRef<FuncOp> functions, const mlir::SymbolTable &symbols) {
+static llvm::SetVector<mlir::Operation *> reachedFrom(llvm::ArrayRef<FuncOp> functions,
+                                                      const mlir::SymbolTable &symbols) {
   llvm::SetVector<mlir::Operation *> reached(functions.begin(), functions.end());
   for (std::size_t i = 0; i < reached.size(); ++i)
     reached[i]->walk([&](mlir::func::CallOp call) {
@@ -30,7 +31,8 @@ static llvm::SetVector<mlir::Operation *> reachedFrom(llvm::ArrayRef<FuncOp> fun
   return reached;
 }
 
-llvm::SetVector<mlir::Operation *> functionsThatSendRays(mlir::ModuleOp ir, const mlir::SymbolTable &symbols) {
+llvm::SetVector<mlir::Operation *> functionsThatSendRays(mlir::ModuleOp ir,
+                                                         const mlir::SymbolTable &symbols) {
   llvm::SetVector<mlir::Operation *> senders, throughReferences;
   llvm::DenseMap<mlir::Operation *, llvm::SmallVector<mlir::Operation *>> callers;
   for (auto function : ir.getOps<FuncOp>())
@@ -56,15 +58,18 @@ static bool isPlain(mlir::Type type) {
   auto vector = llvm::dyn_cast<mlir::VectorType>(type);
   const mlir::Type scalar = vector ? vector.getElementType() : type;
   return (!vector || vector.getNumElements() <= 4) &&
-         (scalar.isF32() || scalar.isF64() || scalar.isInteger(1) || scalar.isInteger(32) || (!vector && scalar.isIndex()));
+         (scalar.isF32() || scalar.isF64() || scalar.isInteger(1) || scalar.isInteger(32) ||
+          (!vector && scalar.isIndex()));
 }
 
-/// The first operation that the writer of C++ does not show (codegen/cpp/HitErrors.cpp); null if there is none. Machine code
-/// does without such a function too, so that both have the same bounds.
+/// The first operation that the writer of C++ does not show (codegen/cpp/HitErrors.cpp); null if
+/// there is none. Machine code does without such a function too, so that both have the same bounds.
 static mlir::Operation *findNotShown(FuncOp function) {
   mlir::Operation *found = nullptr;
   function.walk([&](mlir::Operation *op) {
-    bool isShown = llvm::all_of(op->getResultTypes(), [](mlir::Type type) { return llvm::isa<ir::PtrType>(type) || isPlain(type); });
+    bool isShown = llvm::all_of(op->getResultTypes(), [](mlir::Type type) {
+      return llvm::isa<ir::PtrType>(type) || isPlain(type);
+    });
     if (auto variable = llvm::dyn_cast<ir::VarOp>(op))
       isShown &= isPlain(llvm::cast<ir::PtrType>(variable.getType()).getPointee());
     if (auto table = llvm::dyn_cast<ir::TableOp>(op))
@@ -72,15 +77,18 @@ static mlir::Operation *findNotShown(FuncOp function) {
     if (auto insert = llvm::dyn_cast<vector::InsertOp>(op))
       isShown &= !insert.hasDynamicPosition();
     const llvm::StringRef dialect = op->getName().getDialectNamespace();
-    isShown &= dialect == "cf" || dialect == "func" || op->hasTrait<mlir::OpTrait::ConstantLike>() ||
-               llvm::isa<arith::AddFOp, arith::SubFOp, arith::MulFOp, arith::DivFOp, arith::NegFOp, arith::CmpFOp, arith::CmpIOp,
-                         arith::SelectOp, arith::AndIOp, arith::OrIOp, arith::XOrIOp, arith::AddIOp, arith::SubIOp, arith::MulIOp,
-                         arith::SIToFPOp, arith::UIToFPOp, arith::BitcastOp, arith::ExtFOp, arith::TruncFOp, arith::IndexCastUIOp, arith::ExtUIOp, math::SqrtOp,
-                         math::FmaOp, math::AbsFOp, math::FloorOp, math::CeilOp, math::TruncOp, math::RoundEvenOp, vector::ExtractOp,
-                         vector::InsertOp, vector::FromElementsOp, vector::BroadcastOp, vector::ShuffleOp, ir::ElementaryOp,
-                         ir::ToSintOp, ir::ToUintOp, ir::StateOp, ir::MemberOp, ir::FieldOp, ir::ElementOp, ir::TableOp,
-                         ir::BufferElementOp, ir::BufferLengthOp, ir::VarOp, ir::LoadOp, ir::StoreOp, ir::ClearOp,
-                         ir::HideOp>(op);
+    isShown &=
+        dialect == "cf" || dialect == "func" || op->hasTrait<mlir::OpTrait::ConstantLike>() ||
+        llvm::isa<arith::AddFOp, arith::SubFOp, arith::MulFOp, arith::DivFOp, arith::NegFOp,
+                  arith::CmpFOp, arith::CmpIOp, arith::SelectOp, arith::AndIOp, arith::OrIOp,
+                  arith::XOrIOp, arith::AddIOp, arith::SubIOp, arith::MulIOp, arith::SIToFPOp,
+                  arith::UIToFPOp, arith::BitcastOp, arith::ExtFOp, arith::TruncFOp,
+                  arith::IndexCastUIOp, arith::ExtUIOp, math::SqrtOp, math::FmaOp, math::AbsFOp,
+                  math::FloorOp, math::CeilOp, math::TruncOp, math::RoundEvenOp, vector::ExtractOp,
+                  vector::InsertOp, vector::FromElementsOp, vector::BroadcastOp, vector::ShuffleOp,
+                  ir::ElementaryOp, ir::ToSintOp, ir::ToUintOp, ir::StateOp, ir::MemberOp,
+                  ir::FieldOp, ir::ElementOp, ir::TableOp, ir::BufferElementOp, ir::BufferLengthOp,
+                  ir::VarOp, ir::LoadOp, ir::StoreOp, ir::ClearOp, ir::HideOp>(op);
     if (!isShown && !found)
       found = op;
   });
@@ -97,11 +105,13 @@ static void run(mlir::ModuleOp module, llvm::function_ref<void(mlir::OpPassManag
     llvm::report_fatal_error("the passes that bound errors fail");
 }
 
-std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTable &symbols, const std::vector<std::string> &classes,
+std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
+                                             const std::vector<std::string> &classes,
                                              ElementaryErrors elementary) {
   llvm::SmallVector<FuncOp> originals, methods;
   for (const std::string &name : classes)
-    if (auto intersect = symbols.lookup<FuncOp>(name + ".intersect"); intersect && !intersect.isExternal())
+    if (auto intersect = symbols.lookup<FuncOp>(name + ".intersect");
+        intersect && !intersect.isExternal())
       originals.push_back(intersect);
   if (originals.empty())
     return {};
@@ -137,7 +147,8 @@ std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTabl
   for (auto [one, method] : llvm::zip(derived, methods)) {
     if (mlir::Operation *notShown = one.hasFunction ? findNotShown(method) : nullptr) {
       one.hasFunction = false;
-      one.unbound.push_back({notShown->getLoc(), "it depends on what the compiler does not follow"});
+      one.unbound.push_back(
+          {notShown->getLoc(), "it depends on what the compiler does not follow"});
     }
     if (one.hasFunction) {
       method->remove();

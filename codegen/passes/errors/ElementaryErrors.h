@@ -11,7 +11,8 @@ struct ElementaryErrors {
   bool powGrows;
 };
 
-/// Correctly rounded. Holds for double too, for what both have in memory is single, and they are to trace the same rays.
+/// Correctly rounded. Holds for double too, for what both have in memory is single, and they are to
+/// trace the same rays.
 constexpr ElementaryErrors strictErrors{0x1p-24, false};
 /// By --fp=fast.
 constexpr ElementaryErrors fastErrors{0x1p-21, true};

@@ -22,11 +22,14 @@ namespace arith = mlir::arith;
 namespace math = mlir::math;
 namespace vector = mlir::vector;
 
-static bool isFloats(Value value) { return scalarType(value.getType()).isF32(); }
+static bool isFloats(Value value) {
+  return scalarType(value.getType()).isF32();
+}
 
 /// Operations that take vectors apart and put them together, and touch no number.
 static bool onlyMoves(mlir::Operation &op) {
-  return llvm::isa<vector::ExtractOp, vector::InsertOp, vector::FromElementsOp, vector::BroadcastOp, vector::ShuffleOp>(op);
+  return llvm::isa<vector::ExtractOp, vector::InsertOp, vector::FromElementsOp, vector::BroadcastOp,
+                   vector::ShuffleOp>(op);
 }
 
 //===----------------------------------------------------------------------===//
@@ -51,7 +54,9 @@ static Error timesBoth(Error a, Error b) {
     return std::nullopt;
   return *a * *b;
 }
-static Value valueOf(Error error) { return error ? Value(*error) : Value(); }
+static Value valueOf(Error error) {
+  return error ? Value(*error) : Value();
+}
 
 /// Half a unit of a literal that was rounded to single precision; 0 of whole numbers, 1e30 among
 /// them, which only stands for what is far away, and of those with few digits in binary, such as
@@ -128,7 +133,9 @@ Unrounded RunningError::fail(mlir::Location place, std::string reason) {
 }
 
 /// What is the same in double, made where the emitter stands.
-Unrounded RunningError::exact(Value value) { return {widened(emitter, value), {}, true}; }
+Unrounded RunningError::exact(Value value) {
+  return {widened(emitter, value), {}, true};
+}
 
 Unrounded RunningError::unrounded(Value value) {
   if (obstacle)
@@ -162,7 +169,8 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
     unsigned successor;
   };
   llvm::SmallVector<Edge> edges;
-  for (mlir::Block *predecessor : llvm::SmallSetVector<mlir::Block *, 4>(block->pred_begin(), block->pred_end())) {
+  for (mlir::Block *predecessor :
+       llvm::SmallSetVector<mlir::Block *, 4>(block->pred_begin(), block->pred_end())) {
     auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
     for (unsigned successor = 0; successor < branch->getNumSuccessors(); ++successor)
       if (branch->getSuccessor(successor) == block) {
@@ -199,17 +207,24 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
     return ofConstant(op);
   if (llvm::isa<ir::HideOp>(op)) // --fp=double: the same number
     return unrounded(op.getOperand(0));
-  const auto wide = [&](unsigned index) { return Wide(emitter, unrounded(op.getOperand(index)).value); };
+  const auto wide = [&](unsigned index) {
+    return Wide(emitter, unrounded(op.getOperand(index)).value);
+  };
   const auto error = [&](unsigned index) {
     const Value found = unrounded(op.getOperand(index)).error;
     return found ? Error(Wide(emitter, found)) : std::nullopt;
   };
   const auto product = [&] {
-    return plus(plus(times(error(0), wide(1)), times(error(1), wide(0))), timesBoth(error(0), error(1)));
+    return plus(plus(times(error(0), wide(1)), times(error(1), wide(0))),
+                timesBoth(error(0), error(1)));
   };
   return llvm::TypeSwitch<mlir::Operation *, Unrounded>(&op)
-      .Case([&](arith::AddFOp) -> Unrounded { return {wide(0) + wide(1), valueOf(plus(error(0), error(1)))}; })
-      .Case([&](arith::SubFOp) -> Unrounded { return {wide(0) - wide(1), valueOf(plus(error(0), error(1)))}; })
+      .Case([&](arith::AddFOp) -> Unrounded {
+        return {wide(0) + wide(1), valueOf(plus(error(0), error(1)))};
+      })
+      .Case([&](arith::SubFOp) -> Unrounded {
+        return {wide(0) - wide(1), valueOf(plus(error(0), error(1)))};
+      })
       .Case([&](arith::MulFOp) -> Unrounded { return {wide(0) * wide(1), valueOf(product())}; })
       .Case([&](math::FmaOp) -> Unrounded {
         return {wide(0).apply<math::FmaOp>(wide(1), wide(2)), valueOf(plus(product(), error(2)))};
@@ -232,8 +247,12 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
         const Value none = isAtMost(most, most.like(0));
         return {root, choose(none, most, *error(0) / greater(root, most))};
       })
-      .Case([&](arith::NegFOp) -> Unrounded { return {-wide(0), valueOf(error(0)), unrounded(op.getOperand(0)).isExact}; })
-      .Case([&](math::AbsFOp) -> Unrounded { return {abs(wide(0)), valueOf(error(0)), unrounded(op.getOperand(0)).isExact}; })
+      .Case([&](arith::NegFOp) -> Unrounded {
+        return {-wide(0), valueOf(error(0)), unrounded(op.getOperand(0)).isExact};
+      })
+      .Case([&](math::AbsFOp) -> Unrounded {
+        return {abs(wide(0)), valueOf(error(0)), unrounded(op.getOperand(0)).isExact};
+      })
       .Case([&](arith::SelectOp) { return ofChoice(op); })
       .Case([&](ir::ElementaryOp) { return ofFunction(op); })
       .Case([&](ir::LoadOp) { return ofLoad(op); })
@@ -248,7 +267,8 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
         if constexpr (std::is_same_v<Op, arith::BitcastOp>)
           return {};
         else
-          return {emitter.fold<Op>(wideType(op.getResult(0).getType()), conversion->getOperand(0)), {}};
+          return {emitter.fold<Op>(wideType(op.getResult(0).getType()), conversion->getOperand(0)),
+                  {}};
       })
       .Case<math::FloorOp, math::CeilOp, math::TruncOp, math::RoundEvenOp>([&](auto) -> Unrounded {
         if (unrounded(op.getOperand(0)).isExact)
@@ -258,7 +278,9 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
       .Case([&](ir::HideOp) { return unrounded(op.getOperand(0)); })
       .Case([&](ir::RandOp) { return fail(op.getLoc(), "it depends on `rand`"); })
       .Default([&](mlir::Operation *) {
-        return onlyMoves(op) ? ofParts(op) : fail(op.getLoc(), "it goes through what the compiler does not follow");
+        return onlyMoves(op)
+                   ? ofParts(op)
+                   : fail(op.getLoc(), "it goes through what the compiler does not follow");
       });
 }
 
@@ -312,7 +334,8 @@ Unrounded RunningError::ofParts(mlir::Operation &op) {
   return made;
 }
 
-/// Of `min` and `max` it is known what they choose without roundings; of others the condition decides (compareUnrounded).
+/// Of `min` and `max` it is known what they choose without roundings; of others the condition
+/// decides (compareUnrounded).
 Unrounded RunningError::ofChoice(mlir::Operation &op) {
   auto choice = llvm::cast<arith::SelectOp>(op);
   const Unrounded a = unrounded(choice.getTrueValue()), b = unrounded(choice.getFalseValue());
@@ -327,16 +350,18 @@ Unrounded RunningError::ofChoice(mlir::Operation &op) {
   };
   const bool isInOrder = compares(choice.getTrueValue(), choice.getFalseValue());
   if (isInOrder || compares(choice.getFalseValue(), choice.getTrueValue())) {
-    const Value condition = emitter.fold<arith::CmpFOp>(comparison.getPredicate(), isInOrder ? first : second,
-                                                        isInOrder ? second : first);
-    return {choose(condition, first, second), hasError ? Value(greater(errorOf(a), errorOf(b))) : Value(), a.isExact && b.isExact};
+    const Value condition = emitter.fold<arith::CmpFOp>(
+        comparison.getPredicate(), isInOrder ? first : second, isInOrder ? second : first);
+    return {choose(condition, first, second),
+            hasError ? Value(greater(errorOf(a), errorOf(b))) : Value(), a.isExact && b.isExact};
   }
   return {choose(choice.getCondition(), first, second),
-          hasError ? Value(choose(choice.getCondition(), errorOf(a), errorOf(b))) : Value(), a.isExact && b.isExact};
+          hasError ? Value(choose(choice.getCondition(), errorOf(a), errorOf(b))) : Value(),
+          a.isExact && b.isExact};
 }
 
-/// How far a result is off from the function of the very argument. The bounds are relative to the smallest normal number where
-/// the result is smaller.
+/// How far a result is off from the function of the very argument. The bounds are relative to the
+/// smallest normal number where the result is smaller.
 Wide RunningError::ownError(ir::Elementary function, Wide result) {
   const Wide size = abs(result);
   if (function != ir::Elementary::Pow || !elementary.powGrows)
@@ -350,11 +375,14 @@ Wide RunningError::single(ir::Elementary function, llvm::ArrayRef<Wide> argument
   llvm::SmallVector<Value> rounded;
   for (Wide argument : arguments)
     rounded.push_back(narrowed(argument));
-  return widened(emitter, emitter.make<ir::ElementaryOp>(rounded.front().getType(), function, rounded).getResult());
+  return widened(
+      emitter,
+      emitter.make<ir::ElementaryOp>(rounded.front().getType(), function, rounded).getResult());
 }
 
-/// The single result f(x), x rounded, moved by the slope there times what the rounding took. Where that is not small beside the
-/// distance of x from where the function bends, f(x) is left as it is, with a bound of how far it may change.
+/// The single result f(x), x rounded, moved by the slope there times what the rounding took. Where
+/// that is not small beside the distance of x from where the function bends, f(x) is left as it is,
+/// with a bound of how far it may change.
 Unrounded RunningError::ofFunction(mlir::Operation &op) {
   using F = ir::Elementary;
   auto call = llvm::cast<ir::ElementaryOp>(op);
@@ -374,15 +402,17 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
   const Wide x = widened(emitter, narrowed(arguments.front())), one = x.like(1);
   const Wide moved = arguments.front() - x;
   const Value found = unrounded(call.getOperands().front()).error;
-  const Wide spread = found ? abs(moved) + Wide(emitter, found) : abs(moved); // that x may be off by
+  const Wide spread =
+      found ? abs(moved) + Wide(emitter, found) : abs(moved); // that x may be off by
   const Wide none = x.like(0), infinite = x.like(std::numeric_limits<double>::infinity());
   const auto same = [&](F other) { return single(other, x); }; // of the same argument
-  /// `room`: within half of this the tangent is off by at most twice the share of it that x is off by. `otherwise`: how far f may be off
-  /// beyond.
+  /// `room`: within half of this the tangent is off by at most twice the share of it that x is off
+  /// by. `otherwise`: how far f may be off beyond.
   const auto alongTangent = [&](Wide slope, Wide room, Wide otherwise) -> Unrounded {
     const Value isNear = isAtMost(2.0 * spread, room), isStill = isAtMost(spread, none);
     const Wide shift = slope * moved, share = 2.0 * spread / room;
-    const Wide left = abs(slope) * spread * share + (found ? abs(slope) * Wide(emitter, found) : none);
+    const Wide left =
+        abs(slope) * spread * share + (found ? abs(slope) * Wide(emitter, found) : none);
     const Wide value = choose(isStill, result, choose(isNear, result + shift, result));
     return {value, own + choose(isStill, none, choose(isNear, left, otherwise))};
   };
@@ -411,7 +441,8 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
   case F::Asin:
   case F::Acos: { // beyond: at most pi / sqrt(2) times the root of the error of x
     const Wide slope = 1.0 / sqrt(greater(one - x * x, none));
-    return alongTangent(function == F::Asin ? slope : -slope, one - abs(x), 2.2214415 * sqrt(spread));
+    return alongTangent(function == F::Asin ? slope : -slope, one - abs(x),
+                        2.2214415 * sqrt(spread));
   }
   case F::Acosh:
     return alongTangent(1.0 / sqrt(greater(x * x - one, none)), x - one, infinite);
@@ -441,14 +472,16 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
       own = own + slope * Wide(emitter, rounding);
     }
     const Wide root = single(F::Pow, {spread, p});
-    const Wide far = choose(isAtMost(none, p), choose(isAtMost(p, one), 1.0000005 * root, infinite), infinite);
+    const Wide far =
+        choose(isAtMost(none, p), choose(isAtMost(p, one), 1.0000005 * root, infinite), infinite);
     return alongTangent(p * result / x, abs(x) / (one + abs(p)), far);
   }
   case F::Atan2: {
     const Wide y = x, across = widened(emitter, narrowed(arguments[1]));
     const Unrounded other = unrounded(call.getOperands()[1]);
     const Wide movedAcross = arguments[1] - across;
-    const Wide all = other.error ? spread + abs(movedAcross) + Wide(emitter, other.error) : spread + abs(movedAcross);
+    const Wide all = other.error ? spread + abs(movedAcross) + Wide(emitter, other.error)
+                                 : spread + abs(movedAcross);
     const Wide size = abs(y) + abs(across), square = y * y + across * across;
     const Value isNear = isAtMost(4.0 * all, size), isStill = isAtMost(all, none);
     const Wide shift = (across * moved - y * movedAcross) / square, share = all / size;
@@ -466,8 +499,9 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
 // What has no error that could be given
 //===----------------------------------------------------------------------===//
 
-/// Does a loop compute the value, or what it depends on, from itself? How far an iteration is from where it leads to is no rounding.
-/// That a loop chooses among values, as the least of several roots, is no iteration.
+/// Does a loop compute the value, or what it depends on, from itself? How far an iteration is from
+/// where it leads to is no rounding. That a loop chooses among values, as the least of several
+/// roots, is no iteration.
 bool RunningError::isIterated(Value value) {
   llvm::SmallSetVector<Value, 16> reached;
   reached.insert(value);
@@ -480,7 +514,8 @@ bool RunningError::isIterated(Value value) {
     if (component.size() == 1)
       continue; // an operation does not use its own result
     for (Value part : component)
-      if (mlir::Operation *op = part.getDefiningOp(); op && !onlyMoves(*op) && !llvm::isa<arith::SelectOp, ir::HideOp>(op)) {
+      if (mlir::Operation *op = part.getDefiningOp();
+          op && !onlyMoves(*op) && !llvm::isa<arith::SelectOp, ir::HideOp>(op)) {
         (void)fail(op->getLoc(), "a loop computes it from what it was before");
         return true;
       }

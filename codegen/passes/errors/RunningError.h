@@ -2,13 +2,14 @@
 //
 // Running error analysis (Wilkinson, "Error analysis revisited", 1986; Higham, "Accuracy and
 // Stability of Numerical Algorithms", 2nd edition, 2002, 3.3) in double precision. Beside each
-// operation that a value depends on stands the same in double: what single precision has lost is then
-// known, not bounded, and does not grow along the way as sums of worst cases do. Elementary functions
-// have no double form on a GPU. Theirs is the single result for the rounded argument, moved along the
-// tangent by what that rounding took, and a bound of what that leaves out travels on: |a| eb + |b| ea
+// operation that a value depends on stands the same in double: what single precision has lost is
+// then known, not bounded, and does not grow along the way as sums of worst cases do. Elementary
+// functions have no double form on a GPU. Theirs is the single result for the rounded argument,
+// moved along the tangent by what that rounding took, and a bound of what that leaves out travels
+// on: |a| eb + |b| ea
 // + ea eb for a product, and so on. Members of objects and the ray are exact, for they are what they
-// are; a literal such as 0.33333333 is not, and stands for what an author may have meant within half
-// a unit. All of this holds for the branches that are taken (BoundHitError.h).
+// are; a literal such as 0.33333333 is not, and stands for what an author may have meant within
+// half a unit. All of this holds for the branches that are taken (BoundHitError.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -34,8 +35,8 @@ struct ErrorUnknown {
 
 /// A float, or a vector of floats, as it is without the roundings of single precision.
 struct Unrounded {
-  mlir::Value value; // in double
-  mlir::Value error; // that this may be off by at most, in double; null: none but that of double
+  mlir::Value value;    // in double
+  mlir::Value error;    // that this may be off by at most, in double; null: none but that of double
   bool isExact = false; // the single value is the same: nothing was computed
 };
 
@@ -69,7 +70,8 @@ private:
   ElementaryErrors elementary;
   lowering::Emitter emitter;
   llvm::DenseMap<mlir::Value, Unrounded> known;
-  bool hasErrors = false; // the value depends on an elementary function or a rounded literal: block arguments carry errors
+  bool hasErrors =
+      false; // the value depends on an elementary function or a rounded literal: block arguments carry errors
   std::optional<ErrorUnknown> obstacle;
 };
 

@@ -1,7 +1,7 @@
 //===- Wide.h - double precision in few words -----------------------------===//
 //
-// What Num is for single precision (codegen/formulas/Emitter.h): a value of f64, or a vector of them,
-// with operators.
+// What Num is for single precision (codegen/formulas/Emitter.h): a value of f64, or a vector of
+// them, with operators.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -37,31 +37,61 @@ private:
   mlir::Value value;
 };
 
-inline Wide operator+(Wide a, Wide b) { return a.apply<mlir::arith::AddFOp>(b); }
-inline Wide operator-(Wide a, Wide b) { return a.apply<mlir::arith::SubFOp>(b); }
-inline Wide operator*(Wide a, Wide b) { return a.apply<mlir::arith::MulFOp>(b); }
-inline Wide operator/(Wide a, Wide b) { return a.apply<mlir::arith::DivFOp>(b); }
-inline Wide operator-(Wide a) { return a.apply<mlir::arith::NegFOp>(); }
-inline Wide operator+(Wide a, double b) { return a + a.like(b); }
-inline Wide operator+(double a, Wide b) { return b.like(a) + b; }
-inline Wide operator-(double a, Wide b) { return b.like(a) - b; }
-inline Wide operator*(double a, Wide b) { return b.like(a) * b; }
-inline Wide operator*(Wide a, double b) { return a * a.like(b); }
-inline Wide operator/(double a, Wide b) { return b.like(a) / b; }
-inline Wide sqrt(Wide a) { return a.apply<mlir::math::SqrtOp>(); }
-inline Wide abs(Wide a) { return a.apply<mlir::math::AbsFOp>(); }
+inline Wide operator+(Wide a, Wide b) {
+  return a.apply<mlir::arith::AddFOp>(b);
+}
+inline Wide operator-(Wide a, Wide b) {
+  return a.apply<mlir::arith::SubFOp>(b);
+}
+inline Wide operator*(Wide a, Wide b) {
+  return a.apply<mlir::arith::MulFOp>(b);
+}
+inline Wide operator/(Wide a, Wide b) {
+  return a.apply<mlir::arith::DivFOp>(b);
+}
+inline Wide operator-(Wide a) {
+  return a.apply<mlir::arith::NegFOp>();
+}
+inline Wide operator+(Wide a, double b) {
+  return a + a.like(b);
+}
+inline Wide operator+(double a, Wide b) {
+  return b.like(a) + b;
+}
+inline Wide operator-(double a, Wide b) {
+  return b.like(a) - b;
+}
+inline Wide operator*(double a, Wide b) {
+  return b.like(a) * b;
+}
+inline Wide operator*(Wide a, double b) {
+  return a * a.like(b);
+}
+inline Wide operator/(double a, Wide b) {
+  return b.like(a) / b;
+}
+inline Wide sqrt(Wide a) {
+  return a.apply<mlir::math::SqrtOp>();
+}
+inline Wide abs(Wide a) {
+  return a.apply<mlir::math::AbsFOp>();
+}
 
 /// A condition, or one for each component.
 inline mlir::Value isBelow(Wide a, Wide b) {
-  return a.at().fold<mlir::arith::CmpFOp>(mlir::arith::CmpFPredicate::OLT, mlir::Value(a), mlir::Value(b));
+  return a.at().fold<mlir::arith::CmpFOp>(mlir::arith::CmpFPredicate::OLT, mlir::Value(a),
+                                          mlir::Value(b));
 }
 inline mlir::Value isAtMost(Wide a, Wide b) {
-  return a.at().fold<mlir::arith::CmpFOp>(mlir::arith::CmpFPredicate::OLE, mlir::Value(a), mlir::Value(b));
+  return a.at().fold<mlir::arith::CmpFOp>(mlir::arith::CmpFPredicate::OLE, mlir::Value(a),
+                                          mlir::Value(b));
 }
 inline Wide choose(mlir::Value condition, Wide a, Wide b) {
   return {a.at(), a.at().fold<mlir::arith::SelectOp>(condition, mlir::Value(a), mlir::Value(b))};
 }
-inline Wide greater(Wide a, Wide b) { return choose(isBelow(a, b), b, a); }
+inline Wide greater(Wide a, Wide b) {
+  return choose(isBelow(a, b), b, a);
+}
 
 /// f64 in the shape of a type.
 inline mlir::Type wideType(mlir::Type shape) {

@@ -39,10 +39,10 @@ private:
   /// A construct that control can be sent out of with a flag.
   struct Level {
     enum Kind : std::uint8_t { Sequence, Loop, Switch } kind;
-    Block *place;               // the flags stand there,
-    mlir::Operation *behind;    // behind this operation; null: at the beginning
+    Block *place;                               // the flags stand there,
+    mlir::Operation *behind;                    // behind this operation; null: at the beginning
     llvm::MapVector<Block *, Value> flags = {}; // by target
-    bool isLeft = false;        // a loop: by `rtsl.break` without a flag
+    bool isLeft = false;                        // a loop: by `rtsl.break` without a flag
   };
   /// What jumps mean at a point.
   struct Context {
@@ -186,8 +186,8 @@ bool Builder::putChoice(mlir::cf::CondBranchOp branch, Block *at, const Context 
 bool Builder::putSwitch(mlir::cf::SwitchOp choice, Block *at, const Context &context) {
   llvm::MapVector<Block *, llvm::SmallVector<int32_t>> targets;
   if (choice.getCaseValues())
-    for (auto [value, target] : llvm::zip(choice.getCaseValues()->getValues<llvm::APInt>(),
-                                          choice.getCaseDestinations()))
+    for (auto [value, target] :
+         llvm::zip(choice.getCaseValues()->getValues<llvm::APInt>(), choice.getCaseDestinations()))
       targets[target].push_back(static_cast<int32_t>(value.getSExtValue()));
   const bool hasDefault = choice.getDefaultDestination() != context.next;
   if (hasDefault)
@@ -214,8 +214,8 @@ bool Builder::putSwitch(mlir::cf::SwitchOp choice, Block *at, const Context &con
   }
   if (!isOpen)
     return putUnreachable(at);
-  return putFlagged(llvm::to_vector(level.flags), [](Block *, const Context &) { return true; }, at,
-                    context);
+  return putFlagged(
+      llvm::to_vector(level.flags), [](Block *, const Context &) { return true; }, at, context);
 }
 
 /// Asks flags one after the other; if none is set, what is `otherwise`.
@@ -228,8 +228,7 @@ bool Builder::putFlagged(llvm::ArrayRef<std::pair<Block *, Value>> flags, Part o
   Block *thenBlock = &choice.getThenRegion().emplaceBlock();
   Block *elseBlock = &choice.getElseRegion().emplaceBlock();
   const bool thenIsOpen = putJump(target, thenBlock, context);
-  const bool elseIsOpen = putFlagged(
-      flags.drop_front(), otherwise, elseBlock, context);
+  const bool elseIsOpen = putFlagged(flags.drop_front(), otherwise, elseBlock, context);
   return putIf(choice, thenIsOpen, elseIsOpen, at);
 }
 

@@ -57,9 +57,9 @@ namespace {
 bool isRepeatable(mlir::Operation *op) {
   if (llvm::isa<ir::VarOp>(op))
     return false;
-  return op->getNumResults() == 1 && (llvm::isa<ir::PtrType>(op->getResult(0).getType()) ||
-                                      op->hasTrait<mlir::OpTrait::ConstantLike>() ||
-                                      llvm::isa<ir::NullRefOp, ir::NextOp>(op));
+  return op->getNumResults() == 1 &&
+         (llvm::isa<ir::PtrType>(op->getResult(0).getType()) ||
+          op->hasTrait<mlir::OpTrait::ConstantLike>() || llvm::isa<ir::NullRefOp, ir::NextOp>(op));
 }
 
 /// Constants and addresses are made again where they cannot be seen. Addresses are no values.
@@ -125,9 +125,8 @@ bool Variables::needsVariable(Value value) {
   auto argument = llvm::dyn_cast<mlir::BlockArgument>(value);
   if (argument)
     return !argument.getOwner()->isEntryBlock();
-  return llvm::any_of(value.getUsers(), [&](mlir::Operation *user) {
-    return !isVisible(value, user->getBlock());
-  });
+  return llvm::any_of(value.getUsers(),
+                      [&](mlir::Operation *user) { return !isVisible(value, user->getBlock()); });
 }
 
 void Variables::collect() {
@@ -175,8 +174,8 @@ void Variables::join(Value argument, Value incoming) {
   if (into == from)
     return;
   const bool haveNames = !webs[into].name.empty() && !webs[from].name.empty();
-  bool meet = argument.getType() != incoming.getType() ||
-              (haveNames && webs[into].name != webs[from].name);
+  bool meet =
+      argument.getType() != incoming.getType() || (haveNames && webs[into].name != webs[from].name);
   for (Value a : webs[into].members)
     for (Value b : webs[from].members)
       meet = meet || isLiveBehind(a, b) || isLiveBehind(b, a);

@@ -9,9 +9,9 @@
 //   }
 //
 // The state that begins behind the trace enters the loop of ^q, ^step and ^body at two blocks. What
-// lies before the one that becomes the header is copied: here ^q, which is then once in front of the
-// loop and once in it. A loop in a loop may be copied twice, so in the worst case code grows by a
-// factor of two a level of nesting.
+// lies before the one that becomes the header is copied: here ^q, which is then once in front of
+// the loop and once in it. A loop in a loop may be copied twice, so in the worst case code grows by
+// a factor of two a level of nesting.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/Components.h"
@@ -132,9 +132,9 @@ void makeReducible(FuncOp function) {
   if (loop.empty())
     return;
   // Copies of blocks define values twice, so what leaves a block goes through variables.
-  leaveSsa(function,
-           [](mlir::Value value, Block *use) { return value.getParentBlock() == use ||
-                                                      value.getParentBlock()->isEntryBlock(); });
+  leaveSsa(function, [](mlir::Value value, Block *use) {
+    return value.getParentBlock() == use || value.getParentBlock()->isEntryBlock();
+  });
   for (; !loop.empty(); loop = findIrreducible(blocksOf(function)))
     copyIntoLoop(cheapestCopy(loop), loop);
 }

@@ -2,14 +2,15 @@
 //
 // The code of a block stands in that of its immediate dominator: where the branch to it was, if
 // there is only one, or behind everything that the dominator branches to, if several ways meet in
-// it (Ramsey, "Beyond Relooper", ICFP 2022). A block at which a loop is left stands behind the loop.
+// it (Ramsey, "Beyond Relooper", ICFP 2022). A block at which a loop is left stands behind the
+// loop.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/restructure/Steps.h"
 
 #include "mlir/Analysis/CFGLoopInfo.h"
-#include "llvm/ADT/PostOrderIterator.h"
 #include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/PostOrderIterator.h"
 
 namespace rtsl::restructuring {
 

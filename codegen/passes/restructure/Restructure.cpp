@@ -30,10 +30,13 @@ void dropUnreadVariables(FuncOp function) {
   for (ir::VarOp variable : variables) {
     auto isWrite = [&](mlir::Operation *user) {
       auto store = llvm::dyn_cast<ir::StoreOp>(user);
-      const bool isAllOfIt = llvm::isa<ir::EvaluateOp>(user) && user->hasAttr("rtsl.into") && user->hasAttr("rtsl.plain") &&
+      const bool isAllOfIt = llvm::isa<ir::EvaluateOp>(user) && user->hasAttr("rtsl.into") &&
+                             user->hasAttr("rtsl.plain") &&
                              llvm::count(user->getOperands(), variable.getResult()) == 1 &&
-                             user->getOperand(0) == variable.getResult() && changesNothingElse(user);
-      return llvm::isa<ir::ClearOp>(user) || isAllOfIt || (store && store.getAddress() == variable.getResult());
+                             user->getOperand(0) == variable.getResult() &&
+                             changesNothingElse(user);
+      return llvm::isa<ir::ClearOp>(user) || isAllOfIt ||
+             (store && store.getAddress() == variable.getResult());
     };
     if (!llvm::all_of(variable->getUsers(), isWrite))
       continue;
@@ -50,8 +53,8 @@ mlir::Operation *ancestorIn(Block *block, mlir::Operation *op) {
   return op;
 }
 
-/// Variables that were made of values stand in the innermost region that has all their uses. So do the author's, if they
-/// start there anew.
+/// Variables that were made of values stand in the innermost region that has all their uses. So do
+/// the author's, if they start there anew.
 void placeVariables(FuncOp function) {
   for (auto variable : llvm::to_vector(function.getBody().front().getOps<ir::VarOp>())) {
     const bool isValue = variable->hasAttr("rtsl.value");
@@ -112,7 +115,8 @@ void findCondition(ir::LoopOp loop) {
 /// What only the branches needed, which are gone, or variables.
 void dropDeadCode(FuncOp function) {
   function.walk<mlir::WalkOrder::PostOrder, mlir::ReverseIterator>([](mlir::Operation *op) {
-    const bool isUnread = llvm::isa<ir::EvaluateOp>(op) && op->use_empty() && op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes");
+    const bool isUnread = llvm::isa<ir::EvaluateOp>(op) && op->use_empty() &&
+                          op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes");
     if (isUnread || mlir::isOpTriviallyDead(op))
       op->erase();
   });
@@ -147,8 +151,7 @@ mlir::LogicalResult restructure(mlir::ModuleOp module) {
 
 namespace {
 
-struct RestructurePass
-    : mlir::PassWrapper<RestructurePass, mlir::OperationPass<FuncOp>> {
+struct RestructurePass : mlir::PassWrapper<RestructurePass, mlir::OperationPass<FuncOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(RestructurePass)
   llvm::StringRef getArgument() const override { return "rtsl-restructure"; }
   llvm::StringRef getDescription() const override {

@@ -11,14 +11,15 @@
 #include "mlir/IR/Dominance.h"
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/DenseSet.h"
-#include "llvm/ADT/SmallVector.h"
 #include "llvm/ADT/STLFunctionalExtras.h"
+#include "llvm/ADT/SmallVector.h"
 
 namespace rtsl::restructuring {
 
 using mlir::func::FuncOp;
 
-/// LeaveSsa.cpp: a way on which a branch with several ways passes arguments gets a block of its own.
+/// LeaveSsa.cpp: a way on which a branch with several ways passes arguments gets a block of its
+/// own.
 void giveBlocksToWays(FuncOp function);
 
 /// MakeReducible.cpp: copies blocks until each loop is entered at one block. A loop that a trace

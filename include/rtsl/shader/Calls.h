@@ -1,8 +1,9 @@
 //===- Calls.h - methods that trace and are called through references ------===//
 //
-// Such a method was split at its traces like any other, and its caller at the call. Its frame lies above that of the
-// caller, for it is the same ray's: RTSL_CALL_HEADER bytes that say where the caller goes on, then what it was given and
-// returns, then what it needs when its own rays come back.
+// Such a method was split at its traces like any other, and its caller at the call. Its frame lies
+// above that of the caller, for it is the same ray's: RTSL_CALL_HEADER bytes that say where the
+// caller goes on, then what it was given and returns, then what it needs when its own rays come
+// back.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -12,8 +13,8 @@
 #include <new>
 
 extern "C" {
-/// The ray goes on with `object`, on a frame above what ends at `end` (null: the caller has none); `resume` is the state in
-/// which the caller goes on. Gives where arguments lie.
+/// The ray goes on with `object`, on a frame above what ends at `end` (null: the caller has none);
+/// `resume` is the state in which the caller goes on. Gives where arguments lie.
 void *rtsl_call(RtslState *state, const void *end, std::int32_t resume, RtslRef object);
 /// The caller's frame and object again. Gives the state that follows.
 std::int32_t rtsl_return(RtslState *state);
@@ -30,10 +31,11 @@ inline char *frameBehind(void *end) {
 }
 } // namespace detail
 
-/// Runs a method of `object` on a frame of its own, then the state `after` of the caller, whose frame is `frame`. `call`
-/// says which method it is, and what it is given.
+/// Runs a method of `object` on a frame of its own, then the state `after` of the caller, whose
+/// frame is `frame`. `call` says which method it is, and what it is given.
 template <int N, typename Frame, typename Step, typename Call>
-inline Next callThen(State<N> &rt, const Frame &frame, Step after, Reference object, const Call &call) {
+inline Next callThen(State<N> &rt, const Frame &frame, Step after, Reference object,
+                     const Call &call) {
   new (rtsl_call(rawState(rt), &frame + 1, static_cast<Next>(after), object.object)) Call(call);
   return -static_cast<Next>(Call::begin);
 }

@@ -37,8 +37,8 @@ constexpr bool isLikely(bool choice) {
 #endif
 }
 
-/// For what every round of a loop passes to a call, which spoils registers: g++ would have it in some all the same, and
-/// save and fetch it around each call.
+/// For what every round of a loop passes to a call, which spoils registers: g++ would have it in
+/// some all the same, and save and fetch it around each call.
 template <typename T>
 inline void keepInMemory([[maybe_unused]] T &value) {
 #if defined(__GNUC__)
@@ -153,14 +153,16 @@ constexpr auto chooseComponent(const T &v, Choose choose, std::integer_sequence<
 /// The least component.
 template <typename T>
 constexpr auto minComponent(const T &v) {
-  return detail::chooseComponent(v, [](auto a, auto b) { return rtsl::min(a, b); },
-                                 std::make_integer_sequence<int, width<T> - 1>());
+  return detail::chooseComponent(
+      v, [](auto a, auto b) { return rtsl::min(a, b); },
+      std::make_integer_sequence<int, width<T> - 1>());
 }
 /// The greatest component.
 template <typename T>
 constexpr auto maxComponent(const T &v) {
-  return detail::chooseComponent(v, [](auto a, auto b) { return rtsl::max(a, b); },
-                                 std::make_integer_sequence<int, width<T> - 1>());
+  return detail::chooseComponent(
+      v, [](auto a, auto b) { return rtsl::max(a, b); },
+      std::make_integer_sequence<int, width<T> - 1>());
 }
 
 //===----------------------------------------------------------------------===//
@@ -266,12 +268,13 @@ template <typename X, typename Y>
 inline auto mod(const X &value, const Y &divisor) {
   return each([](float x, float y) { return x - y * std::floor(x / y); }, value, divisor);
 }
-/// Both parts have the sign of x; the fraction of an infinity is 0. `whole` may be where the value comes from.
+/// Both parts have the sign of x; the fraction of an infinity is 0. `whole` may be where the value
+/// comes from.
 template <typename T>
 inline T modf(T value, T &whole) {
   whole = rtsl::trunc(value);
-  return each(
-      [](float x, float w) { return std::copysign(x == w ? 0.0f : x - w, x); }, value, whole);
+  return each([](float x, float w) { return std::copysign(x == w ? 0.0f : x - w, x); }, value,
+              whole);
 }
 template <typename T>
 inline auto isnan(const T &value) {

@@ -1,8 +1,8 @@
 //===- Describe.h - generated classes as the runtime sees them ------------===//
 //
 // The runtime asks a program for its classes, their members and constructors, and for a function a
-// method slot (runtime/program/Program.h). Generated code answers with this: it names classes and members,
-// and offsets and sizes are the C++ compiler's own.
+// method slot (runtime/program/Program.h). Generated code answers with this: it names classes and
+// members, and offsets and sizes are the C++ compiler's own.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -57,10 +57,18 @@ inline std::uint32_t offsetOf(T Owner::*member) {
 
 using Kind = runtime::ValueType::Kind;
 
-inline void describe(runtime::ValueType &type, const float *) { type.kind = Kind::Float, type.name = "float"; }
-inline void describe(runtime::ValueType &type, const int *) { type.kind = Kind::Int, type.name = "int"; }
-inline void describe(runtime::ValueType &type, const uint *) { type.kind = Kind::UInt, type.name = "uint"; }
-inline void describe(runtime::ValueType &type, const Bool *) { type.kind = Kind::Bool, type.name = "bool"; }
+inline void describe(runtime::ValueType &type, const float *) {
+  type.kind = Kind::Float, type.name = "float";
+}
+inline void describe(runtime::ValueType &type, const int *) {
+  type.kind = Kind::Int, type.name = "int";
+}
+inline void describe(runtime::ValueType &type, const uint *) {
+  type.kind = Kind::UInt, type.name = "uint";
+}
+inline void describe(runtime::ValueType &type, const Bool *) {
+  type.kind = Kind::Bool, type.name = "bool";
+}
 
 template <int L, typename T>
 inline void describe(runtime::ValueType &type, const glm::vec<L, T, glm::defaultp> *) {
@@ -182,14 +190,17 @@ struct Constructor;
 
 template <typename Owner, typename... Argument>
 struct Constructor<void (Owner::*)(Argument...)> {
-  static std::vector<runtime::ValueType> parameters() { return {valueType<StoredAs<Argument>>()...}; }
+  static std::vector<runtime::ValueType> parameters() {
+    return {valueType<StoredAs<Argument>>()...};
+  }
 
   template <typename Class, auto Function>
   static void construct(RtslState *state, RtslRef reference, const void *packed) {
     auto next = static_cast<const unsigned char *>(packed);
     const std::tuple<StoredAs<Argument>...> arguments{take<Argument>(next)...};
-    std::apply([&](const auto &...values) { (objectAt<Class>(state, reference).*Function)(values...); },
-               arguments);
+    std::apply(
+        [&](const auto &...values) { (objectAt<Class>(state, reference).*Function)(values...); },
+        arguments);
     static_cast<void>(next);
   }
 };
@@ -197,7 +208,9 @@ struct Constructor<void (Owner::*)(Argument...)> {
 /// One that asks for the state, to call methods of other objects.
 template <typename Owner, int N, typename... Argument>
 struct Constructor<void (Owner::*)(State<N> &, Argument...)> {
-  static std::vector<runtime::ValueType> parameters() { return {valueType<StoredAs<Argument>>()...}; }
+  static std::vector<runtime::ValueType> parameters() {
+    return {valueType<StoredAs<Argument>>()...};
+  }
 
   template <typename Class, auto Function>
   static void construct(RtslState *state, RtslRef reference, const void *packed) {
@@ -232,8 +245,7 @@ class ClassDescription {
 public:
   explicit ClassDescription(runtime::ClassInfo &info) : info(info) {
     static_assert(alignof(Class) <= 16, "records are aligned to 16 bytes");
-    info.recordSize =
-        static_cast<std::uint32_t>((objectOffset<Class> + sizeof(Class) + 3) / 4 * 4);
+    info.recordSize = static_cast<std::uint32_t>((objectOffset<Class> + sizeof(Class) + 3) / 4 * 4);
     info.initialize = &detail::initialize<Class>;
   }
 
@@ -243,8 +255,8 @@ public:
     runtime::MemberInfo described;
     described.name = name;
     described.type = detail::valueType<T>();
-    described.offset = static_cast<std::uint32_t>(objectOffset<Class>) +
-                       detail::offsetOf<Class>(member);
+    described.offset =
+        static_cast<std::uint32_t>(objectOffset<Class>) + detail::offsetOf<Class>(member);
     described.isPublic = access == Access::Public;
     described.hasDefault = given == Default::Given;
     info.members.push_back(std::move(described));
@@ -306,7 +318,8 @@ inline void selfTest() {
   volatile float a = 1.0f + 0x1p-12f, b = -1.0f - 0x1p-11f;
   const float x = a, y = b;
   if (x * x + y != 0.0f) // 2^-24 if fused
-    throw std::logic_error("generated shaders were compiled with contraction of floating-point operations");
+    throw std::logic_error(
+        "generated shaders were compiled with contraction of floating-point operations");
 #endif
 }
 
@@ -323,7 +336,8 @@ public:
 
   /// A class of shaders; numbers count from 1. The description holds until the next class.
   template <typename Class>
-  ClassDescription<Class> add(std::uint32_t id, const char *name, const char *base, const char *root) {
+  ClassDescription<Class> add(std::uint32_t id, const char *name, const char *base,
+                              const char *root) {
     runtime::ClassInfo &info = result->classes.emplace_back();
     info.id = id;
     info.name = name;
@@ -348,7 +362,8 @@ public:
     std::size_t size = 0;
     ((size = std::max(size, sizeof(Frames))), ...);
     result->slots.states.calledMethods = methods;
-    result->slots.states.calledFrameSize = static_cast<std::uint32_t>(RTSL_CALL_HEADER + (size + 7) / 8 * 8);
+    result->slots.states.calledFrameSize =
+        static_cast<std::uint32_t>(RTSL_CALL_HEADER + (size + 7) / 8 * 8);
   }
   void needs(std::uint32_t what) { result->needs = what | detail::ofRaysFromHits; }
   /// RTSL_FEATURE_*: what samples do beside colors.

@@ -8,10 +8,12 @@
 
 #include "rtsl/shader/Common.h"
 
+// clang-format off
 /// X(name) for each function of one number that C has, too.
 #define RTSL_ELEMENTARY_FUNCTIONS(X)                                                               \
   X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(asinh)                    \
   X(acosh) X(atanh) X(exp) X(exp2) X(expm1) X(log) X(log2) X(log1p)
+// clang-format on
 
 extern "C" {
 #define RTSL_DECLARE(name) float rtsl_##name(float x);

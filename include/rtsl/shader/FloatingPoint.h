@@ -2,12 +2,12 @@
 //
 // Both compilers fuse a*b + c by themselves where the target can, which changes results. They are
 // told not to before any other code is seen, GLM's included. `#pragma STDC FP_CONTRACT` would say
-// the same, but g++ does not know it. g++ also learns that nobody asks for floating-point exceptions:
-// then it may choose between two results instead of jumping, which changes none.
+// the same, but g++ does not know it. g++ also learns that nobody asks for floating-point
+// exceptions: then it may choose between two results instead of jumping, which changes none.
 //
-// A file that defines RTSL_FAST (--fp=fast, docs/fast.md) lets them. One that defines RTSL_UNCHECKED (--unchecked) trusts
-// its indices (Types.h). RTSL_VARIANT is a namespace that keeps the inline functions of these kinds of file apart where
-// one program has several.
+// A file that defines RTSL_FAST (--fp=fast, docs/fast.md) lets them. One that defines
+// RTSL_UNCHECKED (--unchecked) trusts its indices (Types.h). RTSL_VARIANT is a namespace that keeps
+// the inline functions of these kinds of file apart where one program has several.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -36,8 +36,12 @@ inline float differenceOfProducts(float a, float b, float c, float d) {
 #endif
 }
 
-inline float dot(float a, float b) { return a * b; }
-inline float dot(const glm::vec2 &a, const glm::vec2 &b) { return a.x * b.x + a.y * b.y; }
+inline float dot(float a, float b) {
+  return a * b;
+}
+inline float dot(const glm::vec2 &a, const glm::vec2 &b) {
+  return a.x * b.x + a.y * b.y;
+}
 inline float dot(const glm::vec3 &a, const glm::vec3 &b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
@@ -51,8 +55,8 @@ inline glm::vec3 cross(const glm::vec3 &a, const glm::vec3 &b) {
 }
 
 namespace detail {
-/// May the root of a sum of squares be taken as it is? Below, squares that are subnormal could reach
-/// the last digits of the sum; above, it has overflowed.
+/// May the root of a sum of squares be taken as it is? Below, squares that are subnormal could
+/// reach the last digits of the sum; above, it has overflowed.
 inline bool isGoodSquare(float square) {
 #if defined(RTSL_FAST)
   return isLikely(0x1p-96f <= square);

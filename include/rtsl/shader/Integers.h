@@ -12,21 +12,28 @@ namespace rtsl {
 inline namespace RTSL_VARIANT {
 
 namespace detail {
-constexpr int wrap(uint x) { return static_cast<int>(x); }
-constexpr uint unwrap(int x) { return static_cast<uint>(x); }
+constexpr int wrap(uint x) {
+  return static_cast<int>(x);
+}
+constexpr uint unwrap(int x) {
+  return static_cast<uint>(x);
+}
 } // namespace detail
 
 template <typename A, typename B>
 constexpr auto add(const A &a, const B &b) {
-  return each([](int x, int y) { return detail::wrap(detail::unwrap(x) + detail::unwrap(y)); }, a, b);
+  return each([](int x, int y) { return detail::wrap(detail::unwrap(x) + detail::unwrap(y)); }, a,
+              b);
 }
 template <typename A, typename B>
 constexpr auto subtract(const A &a, const B &b) {
-  return each([](int x, int y) { return detail::wrap(detail::unwrap(x) - detail::unwrap(y)); }, a, b);
+  return each([](int x, int y) { return detail::wrap(detail::unwrap(x) - detail::unwrap(y)); }, a,
+              b);
 }
 template <typename A, typename B>
 constexpr auto multiply(const A &a, const B &b) {
-  return each([](int x, int y) { return detail::wrap(detail::unwrap(x) * detail::unwrap(y)); }, a, b);
+  return each([](int x, int y) { return detail::wrap(detail::unwrap(x) * detail::unwrap(y)); }, a,
+              b);
 }
 /// From the first to the last.
 template <typename A, typename B, typename... C>
@@ -96,8 +103,9 @@ constexpr auto shiftLeft(const A &a, const B &count) {
 /// Keeps the sign of an int.
 template <typename A, typename B>
 constexpr auto shiftRight(const A &a, const B &count) {
-  return each([](auto x, auto n) { return static_cast<decltype(x)>(x >> (static_cast<uint>(n) & 31u)); },
-              a, count);
+  return each(
+      [](auto x, auto n) { return static_cast<decltype(x)>(x >> (static_cast<uint>(n) & 31u)); }, a,
+      count);
 }
 
 /// ++x and --x, x++ and x--.

@@ -144,8 +144,12 @@ inline float minorOf(const Column &a, const Column &b, int i, int j) {
 }
 } // namespace detail
 
-inline float determinant(const glm::mat2 &m) { return detail::minorOf(m[0], m[1], 0, 1); }
-inline float determinant(const glm::mat3 &m) { return dot(m[0], cross(m[1], m[2])); }
+inline float determinant(const glm::mat2 &m) {
+  return detail::minorOf(m[0], m[1], 0, 1);
+}
+inline float determinant(const glm::mat3 &m) {
+  return dot(m[0], cross(m[1], m[2]));
+}
 /// Laplace's expansion along two columns.
 inline float determinant(const glm::mat4 &m) {
   constexpr int rows[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -171,8 +175,8 @@ namespace detail {
 /// 2^-floor(log2(largest magnitude)), within the normal numbers.
 template <typename Column>
 inline float scaleOf(const Column &column) {
-  const int exponent =
-      rtsl::clamp(static_cast<int>(bitsAs<uint>(rtsl::maxComponent(rtsl::abs(column))) >> 23), 1, 253);
+  const int exponent = rtsl::clamp(
+      static_cast<int>(bitsAs<uint>(rtsl::maxComponent(rtsl::abs(column))) >> 23), 1, 253);
   return bitsAs<float>(static_cast<uint>(254 - exponent) << 23);
 }
 
@@ -185,7 +189,7 @@ inline glm::mat3 inverseOfScaled(const glm::mat3 &m) {
   const glm::vec3 first = rtsl::cross(m[1], m[2]);
   const float determinant = rtsl::dot(m[0], first);
   return rtsl::transpose(glm::mat3(first / determinant, rtsl::cross(m[2], m[0]) / determinant,
-                             rtsl::cross(m[0], m[1]) / determinant));
+                                   rtsl::cross(m[0], m[1]) / determinant));
 }
 
 /// Works on the transpose, whose rows are the columns at hand: the rows of its inverse are the

@@ -30,7 +30,8 @@ struct RayOptions {
   float time;
 
   template <int N>
-  RayOptions(State<N> &, int root, std::uint32_t mask, float time) : root(root), mask(mask), time(time) {}
+  RayOptions(State<N> &, int root, std::uint32_t mask, float time)
+      : root(root), mask(mask), time(time) {}
   template <int N>
   RayOptions(State<N> &rt, int root, std::uint32_t mask) : RayOptions(rt, root, mask, rt.Time) {}
   template <int N>
@@ -41,32 +42,35 @@ struct RayOptions {
 
 /// Hands a ray over to `send`, one of the three functions of the ABI that take one with a payload.
 template <int N, typename Payload, typename... More>
-inline void hand(decltype(rtsl_trace_payload) send, State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
-                 float tmax, Payload &payload, More... more) {
+inline void hand(decltype(rtsl_trace_payload) send, State<N> &rt, const glm::vec3 &origin,
+                 const glm::vec3 &direction, float tmin, float tmax, Payload &payload,
+                 More... more) {
   const RayOptions options(rt, more...);
-  send(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin, tmax, &payload,
-       options.root, options.mask, options.time, Payload::rayType.number, Payload::rayType.search);
+  send(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, tmin,
+       tmax, &payload, options.root, options.mask, options.time, Payload::rayType.number,
+       Payload::rayType.search);
 }
 } // namespace detail
 
-/// Sends a ray with a payload and waits for it. Behind the payload may stand its root, mask and time.
+/// Sends a ray with a payload and waits for it. Behind the payload may stand its root, mask and
+/// time.
 template <int N, typename Payload, typename... More>
-inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
-                  Payload &payload, More... more) {
+inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
+                  float tmax, Payload &payload, More... more) {
   detail::hand(rtsl_trace_payload, rt, origin, direction, tmin, tmax, payload, more...);
 }
 
 /// Prepares such a ray, which is traced when the state ends. Its payload lies in the frame.
 template <int N, typename Step, typename Payload, typename... More>
-inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
-                      float tmax, Payload &payload, More... more) {
+inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction,
+                      float tmin, float tmax, Payload &payload, More... more) {
   detail::hand(rtsl_spawn_payload, rt, origin, direction, tmin, tmax, payload, more...);
   return static_cast<Next>(step);
 }
 /// One that takes the place of the ray that sends it, with the payload that this was given.
 template <int N, typename Payload, typename... More>
-inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin, float tmax,
-                      Payload &payload, More... more) {
+inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
+                      float tmax, Payload &payload, More... more) {
   detail::hand(rtsl_spawn_last_payload, rt, origin, direction, tmin, tmax, payload, more...);
   return RTSL_NEXT_LAST;
 }

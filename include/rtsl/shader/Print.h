@@ -9,11 +9,13 @@ inline namespace RTSL_VARIANT {
 
 namespace detail {
 
-inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> &, const char *text) {
+inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> &,
+                       const char *text) {
   format.push_back({text});
 }
 template <typename T>
-inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> &words, const T &value) {
+inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> &words,
+                       const T &value) {
   const StoredAs<T> stored(value);
   const runtime::ValueType type = valueType<StoredAs<T>>();
   constexpr std::size_t count = sizeof stored / 4;
@@ -22,7 +24,8 @@ inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> 
   format.push_back({type.name, type.kind, static_cast<std::uint32_t>(count)});
 }
 template <int N>
-inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> &words, const StateColor<N> &value) {
+inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> &words,
+                       const StateColor<N> &value) {
   appendItem(format, words, static_cast<const Color<N> &>(value));
 }
 

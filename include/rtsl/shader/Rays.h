@@ -22,13 +22,15 @@ inline Color<N> trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &di
 // Methods that were split at their traces (docs/continuations.md)
 //===----------------------------------------------------------------------===//
 
-/// What comes after a state: `done`, or the number of the state that runs when the ray is back, or that none does.
+/// What comes after a state: `done`, or the number of the state that runs when the ray is back, or
+/// that none does.
 using Next = std::int32_t;
 inline constexpr Next done = 0;
 
 /// Prepares the ray that is traced when the state ends.
 template <int N, typename Step>
-inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction) {
+inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin,
+                      const glm::vec3 &direction) {
   rtsl_spawn(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
   return static_cast<Next>(step);
 }
@@ -39,10 +41,12 @@ constexpr Next goOn(Step step) {
   return -static_cast<Next>(step);
 }
 
-/// Prepares a ray that takes the place of the one that sends it: what it brings back is SampleColor.
+/// Prepares a ray that takes the place of the one that sends it: what it brings back is
+/// SampleColor.
 template <int N>
 inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction) {
-  rtsl_spawn_last(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
+  rtsl_spawn_last(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y,
+                  direction.z);
   return RTSL_NEXT_LAST;
 }
 
@@ -108,13 +112,13 @@ inline float cosOfAngle(float angle) {
   return rtsl::cos(rtsl::clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)));
 }
 
-/// Lights a point with one light: sets LightDirection, LightDistance and LightColor; false if nothing arrives. Only lights
-/// within the angle of the normal count; no cosine (-2): all do.
+/// Lights a point with one light: sets LightDirection, LightDistance and LightColor; false if
+/// nothing arrives. Only lights within the angle of the normal count; no cosine (-2): all do.
 template <int N>
 inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point,
                        const glm::vec3 &normal = glm::vec3(0.0f), float cosAngle = -2.0f) {
-  return rtsl_illuminance(rawState(rt), static_cast<std::uint32_t>(index), point.x, point.y, point.z,
-                          normal.x, normal.y, normal.z, cosAngle) != 0;
+  return rtsl_illuminance(rawState(rt), static_cast<std::uint32_t>(index), point.x, point.y,
+                          point.z, normal.x, normal.y, normal.z, cosAngle) != 0;
 }
 
 /// The same, or without asking whether anything is in between.

@@ -76,7 +76,10 @@ inline void clearTexture(State<N> &rt) {
 template <int N>
 class NestedLookup {
 public:
-  explicit NestedLookup(State<N> &rt) : rt(rt), color(rt.TextureColor), value(rt.FloatTextureValue) { clearTexture(rt); }
+  explicit NestedLookup(State<N> &rt)
+      : rt(rt), color(rt.TextureColor), value(rt.FloatTextureValue) {
+    clearTexture(rt);
+  }
   NestedLookup(const NestedLookup &) = delete;
   ~NestedLookup() {
     rt.TextureColor = color;
@@ -167,7 +170,8 @@ template <typename Primitive, int N>
 inline void intersect(State<N> &rt, const Primitive &primitive) {
   typename Primitive::Scratch scratch;
   primitive.intersect(rt, scratch);
-  if (static_cast<const Scratch &>(scratch).accepted) // a member of the author's may be called so, too
+  if (static_cast<const Scratch &>(scratch)
+          .accepted) // a member of the author's may be called so, too
     scratch.visit([&](int word, const auto &value) { storeAttribute(rt, word, value); });
 }
 

@@ -1,12 +1,13 @@
 //===- Types.h - what GLM has no type for ---------------------------------===//
 //
-// Everything that a scene can set is aligned to 4 bytes and packed, as runtime/device/ray/Abi.h says.
+// Everything that a scene can set is aligned to 4 bytes and packed, as runtime/device/ray/Abi.h
+// says.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "rtsl/shader/FloatingPoint.h"
 #include "language/ColorBasis.h"
+#include "rtsl/shader/FloatingPoint.h"
 #include "runtime/device/ray/Abi.h"
 
 #include <algorithm>
@@ -19,7 +20,8 @@ inline namespace RTSL_VARIANT {
 
 using uint = std::uint32_t;
 
-/// A bool in memory: 32 bits. `{}` is false; without it there is no value, as GLM's vectors ask of what they hold.
+/// A bool in memory: 32 bits. `{}` is false; without it there is no value, as GLM's vectors ask of
+/// what they hold.
 struct Bool {
   std::uint32_t value;
 
@@ -40,7 +42,8 @@ constexpr uint clampIndex(uint index, uint count) {
   return count == 0 ? 0u : std::min(index, count - 1);
 }
 
-// With RTSL_UNCHECKED the elements of arrays, vectors, matrices and buffers are taken as they are asked for.
+// With RTSL_UNCHECKED the elements of arrays, vectors, matrices and buffers are taken as they are
+// asked for.
 #ifdef RTSL_UNCHECKED
 template <typename Index>
 constexpr Index elementIndex(Index index, uint) {
@@ -166,7 +169,8 @@ constexpr auto each(Function function, const T &...operands) {
   if constexpr (count == 0)
     return function(operands...);
   else
-    return eachOf<(isColor<T> || ...)>(function, std::make_integer_sequence<int, count>(), operands...);
+    return eachOf<(isColor<T> || ...)>(function, std::make_integer_sequence<int, count>(),
+                                       operands...);
 }
 
 //===----------------------------------------------------------------------===//

@@ -13,9 +13,9 @@
 #include "runtime/device/ray/Events.h"
 #include "runtime/device/ray/Random.h"
 #include "runtime/device/ray/Spawn.h"
-#include "runtime/device/traverse/Surface.h"
 #include "runtime/device/ray/Undefined.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
 
@@ -255,7 +255,8 @@ inline bool isInCone(Vec3 direction, Vec3 axis, float cosAngle) {
                        : cosine >= 0 || cosine * cosine <= bound;
 }
 
-/// One light of `illuminance (P [, N, angle])`, or `illuminate(index, P [, shadows])`. Returns whether light arrives.
+/// One light of `illuminance (P [, N, angle])`, or `illuminate(index, P [, shadows])`. Returns
+/// whether light arrives.
 inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, float cosAngle) {
   const RtslLaunch &launch = *state.launch;
   if (index >= launch.lightCount) // that a shader has chosen

@@ -5,8 +5,8 @@
 // rtsl_traverse are defined elsewhere.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/engines/Classic.h"
+#include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/HitError.h"
 
 using namespace rtsl;

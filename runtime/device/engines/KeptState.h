@@ -1,9 +1,10 @@
 //===- KeptState.h - what of a waiting ray's state is kept ----------------===//
 //
-// The machine (Machine.h) has one state, that of the ray whose turn it is. While a ray waits for one
-// that it has sent, the state is the other's. What the waiting ray reads later is kept on its level;
-// the compiled program defines which fields these are (codegen/passes/continuation/states/KeptState.h). The
-// rest is never stored. State that is the same for all rays of a sample is not kept either.
+// The machine (Machine.h) has one state, that of the ray whose turn it is. While a ray waits for
+// one that it has sent, the state is the other's. What the waiting ray reads later is kept on its
+// level; the compiled program defines which fields these are
+// (codegen/passes/continuation/states/KeptState.h). The rest is never stored. State that is the
+// same for all rays of a sample is not kept either.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

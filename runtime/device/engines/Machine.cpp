@@ -17,9 +17,8 @@ void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float
 void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy,
                         float dz, float tmin, float tmax, void *payload, int32_t root,
                         uint32_t mask, float time, uint32_t rayType, uint32_t how) {
-  device::send(
-      device::currentRay(parent),
-      {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
+  device::send(device::currentRay(parent),
+               {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
 }
 
 void rtsl_spawn_last(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz) {
@@ -30,9 +29,8 @@ void rtsl_spawn_last(RtslState *ray, float ox, float oy, float oz, float dx, flo
 void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float dx, float dy,
                              float dz, float tmin, float tmax, void *payload, int32_t root,
                              uint32_t mask, float time, uint32_t rayType, uint32_t how) {
-  device::send(
-      device::currentRay(ray),
-      {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
+  device::send(device::currentRay(ray),
+               {{ox, oy, oz}, {dx, dy, dz}, tmin, tmax, payload, root, mask, time, rayType}, how);
 }
 
 void rtsl_move_frame(RtslState *state, int32_t bytes, RtslRef object) {
@@ -47,7 +45,8 @@ const float *rtsl_trace_result(RtslState *parent) {
 
 void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
-  void *stack = rtsl_machine_stack(device::stackSize(launch, launch->maxDepth, launch->referenceChain));
+  void *stack =
+      rtsl_machine_stack(device::stackSize(launch, launch->maxDepth, launch->referenceChain));
   if (stack)
     device::runMachine(*launch, x, y, sample, stack, color);
   else

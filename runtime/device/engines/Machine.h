@@ -24,11 +24,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/engines/Classic.h"
 #include "runtime/device/engines/KeptState.h"
 #include "runtime/device/engines/Programs.h"
 #include "runtime/device/engines/StackBound.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {
 

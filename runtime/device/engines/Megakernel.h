@@ -8,8 +8,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/engines/Machine.h"
+#include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Warp.h"
 
 namespace rtsl::device {

@@ -9,8 +9,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/engines/Classic.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {
 

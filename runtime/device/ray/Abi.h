@@ -1,8 +1,9 @@
 //===- Abi.h - what compiled shaders and the runtime agree on -------------===//
 //
-// Plain C layouts, the same for the host and the GPU, included by the runtime, by the code that runs beside shaders and
-// by the compiler, which takes every offset from here with offsetof. A vecN is N floats with alignment 4, a matrix its
-// columns one after the other, a color up to RTSL_MAX_COLOR floats of which the first N count, a bool a 32-bit 0 or 1.
+// Plain C layouts, the same for the host and the GPU, included by the runtime, by the code that
+// runs beside shaders and by the compiler, which takes every offset from here with offsetof. A vecN
+// is N floats with alignment 4, a matrix its columns one after the other, a color up to
+// RTSL_MAX_COLOR floats of which the first N count, a bool a 32-bit 0 or 1.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,21 +14,23 @@
 #define RTSL_MAX_COLOR 16
 #define RTSL_MAX_ATTRIBUTE_WORDS 32
 
-/// A reference to an object of the scene: byte offset of its record from RtslLaunch::records. 0 is "none".
+/// A reference to an object of the scene: byte offset of its record from RtslLaunch::records. 0 is
+/// "none".
 typedef uint32_t RtslRef;
 
-/// A buffer member (`public vec3 vertices[];`) as it lies in a record. Elements are packed with alignment 4.
-/// Rank 1 uses size[0] alone; the first index of the source is the slowest.
+/// A buffer member (`public vec3 vertices[];`) as it lies in a record. Elements are packed with
+/// alignment 4. Rank 1 uses size[0] alone; the first index of the source is the slowest.
 typedef struct RtslBuffer {
   uint32_t addressLow, addressHigh; // of element 0
   uint32_t size[3];
 } RtslBuffer;
 
-/// One thing to be hit: a geometry with a material. `primitive` is an RTSL object, or 0 for a triangle mesh.
+/// One thing to be hit: a geometry with a material. `primitive` is an RTSL object, or 0 for a
+/// triangle mesh.
 typedef struct RtslInstance {
   RtslRef primitive;
   RtslRef material;
-  uint32_t mesh; // index into RtslLaunch::meshes when primitive is 0
+  uint32_t mesh;           // index into RtslLaunch::meshes when primitive is 0
   uint32_t firstPrimitive; // global id of its first primitive, for stable ordering
   uint32_t needs;          // RTSL_NEEDS_* of its material
   uint32_t mask;           // seen by rays that have a bit of it in theirs
@@ -38,15 +41,15 @@ typedef struct RtslInstance {
 
 /// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
 typedef struct RtslMesh {
-  const float *positions;   // 3 a vertex
-  const float *normals;     // 3 a vertex
-  const float *uvs;         // 2 a vertex
-  const uint32_t *indices;  // 3 a triangle
+  const float *positions;  // 3 a vertex
+  const float *normals;    // 3 a vertex
+  const float *uvs;        // 2 a vertex
+  const uint32_t *indices; // 3 a triangle
   uint32_t vertexCount, triangleCount;
 } RtslMesh;
 
-/// A node of the plain binary tree: bounds of both children. `child` >= 0 is an inner node; otherwise ~child is the
-/// first of `count` leaf items.
+/// A node of the plain binary tree: bounds of both children. `child` >= 0 is an inner node;
+/// otherwise ~child is the first of `count` leaf items.
 typedef struct RtslBvhNode {
   float lower[2][3], upper[2][3];
   int32_t child[2];
@@ -60,28 +63,31 @@ typedef struct RtslLeafItem {
 
 /// What is the same for all rays of a launch.
 typedef struct RtslLaunch {
-  uint8_t *records;             // object records; the first 4 bytes of each are its class id
+  uint8_t *records; // object records; the first 4 bytes of each are its class id
   const RtslInstance *instances;
   const RtslMesh *meshes;
   const RtslRef *lights;
-  RtslRef camera;               // of the classic engine
-  RtslRef rayGeneration;        // of the programs engine
-  RtslRef background;           // an rt_Miss object; 0: backgroundColor
-  RtslRef exception;            // an rt_Exception object; 0: what exceptionColor (Events.h) says
+  RtslRef camera;        // of the classic engine
+  RtslRef rayGeneration; // of the programs engine
+  RtslRef background;    // an rt_Miss object; 0: backgroundColor
+  RtslRef exception;     // an rt_Exception object; 0: what exceptionColor (Events.h) says
   float backgroundColor[RTSL_MAX_COLOR];
   float ambient[RTSL_MAX_COLOR];
   uint32_t instanceCount, meshCount, lightCount;
   uint32_t colorComponents;
-  uint32_t maxDepth;            // 0: camera rays only
-  uint32_t referenceChain;      // how many references lead on from one object at most, one object to the next
+  uint32_t maxDepth; // 0: camera rays only
+  // how many references lead on from one object at most, one object to the next
+  uint32_t referenceChain;
   uint32_t width, height;
   uint32_t seed;
-  const RtslBvhNode *nodes;     // device traversal; null if the host's own is used
+  const RtslBvhNode *nodes; // device traversal; null if the host's own is used
   const RtslLeafItem *leafItems;
-  uint32_t rootIsLeaf, nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items to be tested one by one
-  uint32_t needs;               // RTSL_NEEDS_*: what the classes of the scene read
-  const void *host;             // the host's own (for example its Embree scene); never read by device code
-  struct RtslStatus *status;    // of the job or the rendering that runs the launch; null while a scene is built
+  uint32_t rootIsLeaf,
+      nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items to be tested one by one
+  uint32_t needs;   // RTSL_NEEDS_*: what the classes of the scene read
+  const void *host; // the host's own (for example its Embree scene); never read by device code
+  struct RtslStatus
+      *status; // of the job or the rendering that runs the launch; null while a scene is built
 } RtslLaunch;
 
 // What may go wrong in a sample. The first that does ends it (docs/language.md, "Exceptions").
@@ -91,18 +97,21 @@ typedef struct RtslLaunch {
 #define RTSL_EXCEPTION_INDEX 3u          // an index out of range
 #define RTSL_EXCEPTIONS 4u
 
-/// How many of the samples that are not finite a status names: the first in the order of the picture.
+/// How many of the samples that are not finite a status names: the first in the order of the
+/// picture.
 #define RTSL_FIRST_NOT_FINITE 8
 
 /// What all lanes of a job write, one after the other. The host clears it before.
 typedef struct RtslStatus {
-  uint64_t nextPixel; // the first that nobody has taken; row by row from the top left
-  uint64_t badRays;   // not finite, or without a direction: they saw color 0
+  uint64_t nextPixel;           // the first that nobody has taken; row by row from the top left
+  uint64_t badRays;             // not finite, or without a direction: they saw color 0
   uint64_t raysTooDeep;         // deeper than the launch allows: they were not sent
   uint64_t samplesNotFinite;    // left out of the means of their pixels
   uint64_t pixelsWithoutSample; // black, for none of their samples was finite
-  uint64_t firstNotFinite[RTSL_FIRST_NOT_FINITE]; // ~(pixel * samplesPerPixel + sample), descending; 0: none
-  uint64_t unfinishedPixels, unfinishedSamples;   // pixels that `stop` has cut off, and what they have
+  uint64_t firstNotFinite
+      [RTSL_FIRST_NOT_FINITE]; // ~(pixel * samplesPerPixel + sample), descending; 0: none
+  uint64_t unfinishedPixels,
+      unfinishedSamples;                // pixels that `stop` has cut off, and what they have
   uint64_t exceptions[RTSL_EXCEPTIONS]; // samples that ended so
   uint32_t stop;    // set by anybody: no lane begins another pixel, and on CPUs no other sample
   uint32_t problem; // RTSL_PROBLEM_*
@@ -131,23 +140,26 @@ typedef struct RtslEvents {
 /// The state of one ray. Parent and child ray have one each.
 typedef struct RtslState {
   const RtslLaunch *launch;
-  RtslEvents *events; // of its sample; only programs with rtsl_features have them. Null while a scene is built
+  // of its sample; only programs with rtsl_features have them. Null while a scene is built
+  RtslEvents *events;
 
   // The hit so far (committed), and what is being tested (candidate).
-  uint32_t instance, primitive;           // of the hit so far; RTSL_NO_HIT: none
+  uint32_t instance, primitive; // of the hit so far; RTSL_NO_HIT: none
   uint32_t candidateInstance, candidatePrimitive;
-  float u, v;                             // barycentrics of vertices 1 and 2 of a triangle hit
-  float hitPointError;                    // bound of the distance of HitPoint from the surface that was hit
-  float hitError;                         // bound of the error of HitDistance on a primitive; below 0: none is known
-  uint32_t leaves;                        // the instance whose surface the ray starts on; RTSL_NO_HIT: none
-  uint32_t isEasy;                        // 1: who made the ray knows that every traversal can take it (Spawn.h)
+  float u, v;          // barycentrics of vertices 1 and 2 of a triangle hit
+  float hitPointError; // bound of the distance of HitPoint from the surface that was hit
+  float hitError;      // bound of the error of HitDistance on a primitive; below 0: none is known
+  uint32_t leaves;     // the instance whose surface the ray starts on; RTSL_NO_HIT: none
+  uint32_t isEasy;     // 1: who made the ray knows that every traversal can take it (Spawn.h)
 
   // What the ray carries (docs/language.md, "Tracing and light").
-  void *payload;      // the struct of the ray's type; means nothing where rayType is 0
-  uint32_t rayType;   // 0: the built-in payload of `shade`; others are numbered when a program is linked
-  uint32_t rayMask;   // instances that have no bit of it are not there
-  int32_t rayRoot;    // where it enters the scene; so far there is one root, number 0
-  uint32_t hitAnswer; // RTSL_ACCEPT...: what `anyHit` makes of the candidate; outside of it RTSL_ACCEPT
+  void *payload; // the struct of the ray's type; means nothing where rayType is 0
+  // 0: the built-in payload of `shade`; others are numbered when a program is linked
+  uint32_t rayType;
+  uint32_t rayMask; // instances that have no bit of it are not there
+  int32_t rayRoot;  // where it enters the scene; so far there is one root, number 0
+  // RTSL_ACCEPT...: what `anyHit` makes of the candidate; outside of it RTSL_ACCEPT
+  uint32_t hitAnswer;
 
   // Counter-based random numbers: (pixel, sample) make the key, `dimension` counts what was drawn.
   uint32_t randomKey[2];
@@ -167,16 +179,19 @@ typedef struct RtslState {
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
 
   // What a traversal keeps meanwhile (Hit.h).
-  float foundDistance;               // t of the hit so far
-  float nearest;                     // t by which it is compared; without a hit, where the ray ends
-  float candidateNear, candidateFar; // where the ray is in the box of the RTSL primitive that is being tested
-  uint32_t areAttributesLost;        // 1: a hit that did not win has written over those of the hit so far
+  float foundDistance; // t of the hit so far
+  float nearest;       // t by which it is compared; without a hit, where the ray ends
+  float candidateNear,
+      candidateFar; // where the ray is in the box of the RTSL primitive that is being tested
+  uint32_t areAttributesLost; // 1: a hit that did not win has written over those of the hit so far
 } RtslState;
 
 #define RTSL_NO_HIT 0xffffffffu
 
 /// The bit of a ray type in RtslInstance::anyHit. Some share one; then `anyHit` is asked in vain.
-static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType & 31u); }
+static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
+  return 1u << (rayType & 31u);
+}
 
 // RtslState::hitAnswer.
 #define RTSL_ACCEPT 0u
@@ -184,12 +199,13 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType 
 #define RTSL_TERMINATE 2u // terminateRay()
 
 // How rtsl_traverse searches. Without any: the nearest hit, and `anyHit` programs are not asked.
-#define RTSL_FIRST_HIT 1u  // whether there is a hit at all; what is committed means nothing
-#define RTSL_ASK_ANY_HIT 2u // `anyHit` of the material may refuse a hit, in whatever order hits are found
-#define RTSL_IN_ORDER 4u   // ... asked in the order of (t, instance, primitive), until one accepts
+#define RTSL_FIRST_HIT 1u // whether there is a hit at all; what is committed means nothing
+#define RTSL_ASK_ANY_HIT                                                                           \
+  2u // `anyHit` of the material may refuse a hit, in whatever order hits are found
+#define RTSL_IN_ORDER 4u // ... asked in the order of (t, instance, primitive), until one accepts
 
-// RtslLaunch::needs: state that some method of the scene reads. RtslInstance::needs: what its material's `shade` reads,
-// itself or through what it calls. The rest is not computed.
+// RtslLaunch::needs: state that some method of the scene reads. RtslInstance::needs: what its
+// material's `shade` reads, itself or through what it calls. The rest is not computed.
 #define RTSL_NEEDS_TEXTURE_COORDINATES 1u // TextureUV TextureUVW
 #define RTSL_NEEDS_DERIVATIVES 2u         // dPdu dPdv dsdu dsdv dtdu dtdv
 #define RTSL_NEEDS_TRANSFORMS 4u          // ObjectToWorld WorldToObject
@@ -198,10 +214,12 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) { return 1u << (rayType 
 #define RTSL_NEEDS_TIME 32u               // Time TimeSeed
 #define RTSL_NEEDS_LAUNCH 64u             // LaunchIndex LaunchSize
 #define RTSL_NEEDS_LENS 128u              // LensCoord
-#define RTSL_NEEDS_NORMALS 256u           // GeometricNormal ShadingNormal; whoever sends rays from hits needs them too
-#define RTSL_NEEDS_ANY_HIT 512u           // not read, but asked: some ray's hits may be refused
-#define RTSL_NEEDS_CANDIDATE 1024u        // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
-#define RTSL_NEEDS_HIT_ERRORS 2048u       // not read, but used: rays leave hits, so how exact t is counts
+#define RTSL_NEEDS_NORMALS                                                                         \
+  256u // GeometricNormal ShadingNormal; whoever sends rays from hits needs them too
+#define RTSL_NEEDS_ANY_HIT 512u // not read, but asked: some ray's hits may be refused
+#define RTSL_NEEDS_CANDIDATE                                                                       \
+  1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
+#define RTSL_NEEDS_HIT_ERRORS 2048u // not read, but used: rays leave hits, so how exact t is counts
 #define RTSL_NEEDS_ALL 4095u
 
 // What rtsl_traverse answers.
@@ -214,14 +232,15 @@ extern "C" {
 #endif
 
 //===----------------------------------------------------------------------===//
-// Defined by the compiled program: one entry a method slot, a switch over the classes that the scene uses (one class: a
-// direct call). `object` must be of a class derived from the slot's base. A class that does not define the method does
-// nothing there.
+// Defined by the compiled program: one entry a method slot, a switch over the classes that the
+// scene uses (one class: a direct call). `object` must be of a class derived from the slot's base.
+// A class that does not define the method does nothing there.
 //===----------------------------------------------------------------------===//
 #define RTSL_SLOT(base, method) void rtsl_##base##_##method(RtslState *state, RtslRef object);
 #include "language/Slots.def"
 /// The same for methods that take the payload of state's ray type.
-#define RTSL_PAYLOAD_SLOT(base, method) void rtsl_##base##_##method##_payload(RtslState *state, RtslRef object);
+#define RTSL_PAYLOAD_SLOT(base, method)                                                            \
+  void rtsl_##base##_##method##_payload(RtslState *state, RtslRef object);
 #include "language/PayloadSlots.def"
 
 // What programs can do if they were compiled so. The rest costs nothing.
@@ -236,9 +255,9 @@ extern "C" {
 /// A set of RTSL_FEATURE_*; a constant.
 uint32_t rtsl_features(RtslState *state);
 
-/// What the launches of a program have in common: RtslLaunch::needs and RtslLaunch::colorComponents. runtime/device
-/// defines both weakly, from the launch. A compiled program defines them as constants, so that what it does not need
-/// folds away.
+/// What the launches of a program have in common: RtslLaunch::needs and
+/// RtslLaunch::colorComponents. runtime/device defines both weakly, from the launch. A compiled
+/// program defines them as constants, so that what it does not need folds away.
 uint32_t rtsl_needs(const RtslLaunch *launch);
 uint32_t rtsl_color_components(const RtslLaunch *launch);
 
@@ -246,33 +265,37 @@ uint32_t rtsl_color_components(const RtslLaunch *launch);
 // Defined by the runtime, called by compiled programs.
 //===----------------------------------------------------------------------===//
 
-/// Finds the nearest hit with Epsilon < t < HitDistance along state's ray and commits it (HitDistance, instance,
-/// primitive, u, v, attributes); instance must be RTSL_NO_HIT before. `how` is a set of RTSL_FIRST_HIT,
-/// RTSL_ASK_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT or RTSL_BAD_RAY.
+/// Finds the nearest hit with Epsilon < t < HitDistance along state's ray and commits it
+/// (HitDistance, instance, primitive, u, v, attributes); instance must be RTSL_NO_HIT before. `how`
+/// is a set of RTSL_FIRST_HIT, RTSL_ASK_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT or
+/// RTSL_BAD_RAY.
 uint32_t rtsl_traverse(RtslState *state, uint32_t how);
 
-/// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 if t is the candidate's nearest hit, and commits
-/// it if the candidate wins.
+/// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 if t is the candidate's
+/// nearest hit, and commits it if the candidate wins.
 uint32_t rtsl_hit(RtslState *state, float t);
 /// `hit(t, error)`: t is within `error` of the surface.
 uint32_t rtsl_hit_within(RtslState *state, float t, float error);
 
-/// `trace(origin, direction)`: the color that arrives at `origin` against `direction`. Writes colorComponents floats.
-void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float *color);
+/// `trace(origin, direction)`: the color that arrives at `origin` against `direction`. Writes
+/// colorComponents floats.
+void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz,
+                float *color);
 
-/// `trace(origin, direction, tmin, tmax, payload, root, mask, time)`. `how` is what rtsl_traverse takes.
-void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float tmin,
-                        float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
-                        uint32_t how);
+/// `trace(origin, direction, tmin, tmax, payload, root, mask, time)`. `how` is what rtsl_traverse
+/// takes.
+void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy,
+                        float dz, float tmin, float tmax, void *payload, int32_t root,
+                        uint32_t mask, float time, uint32_t rayType, uint32_t how);
 
 #define RTSL_NO_SHADOWS (-3.0f)
 
-/// One step of `illuminance (P [, N, angle])`: light number `index`. Writes LightDirection, LightDistance and LightColor
-/// of `state`; returns 1 if light arrives (in the cone, not black, not in shadow) so that the body is to run.
-/// Without a cone pass cosAngle = -2; RTSL_NO_SHADOWS: without a cone, and whatever is in between. False of a light that
-/// there is not.
-uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx, float ny, float nz,
-                          float cosAngle);
+/// One step of `illuminance (P [, N, angle])`: light number `index`. Writes LightDirection,
+/// LightDistance and LightColor of `state`; returns 1 if light arrives (in the cone, not black, not
+/// in shadow) so that the body is to run. Without a cone pass cosAngle = -2; RTSL_NO_SHADOWS:
+/// without a cone, and whatever is in between. False of a light that there is not.
+uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx,
+                          float ny, float nz, float cosAngle);
 
 /// `rand()`: uniform in [0, 1).
 float rtsl_rand(RtslState *state);
@@ -285,25 +308,27 @@ void rtsl_raise(RtslState *state, uint32_t exception);
 /// Defined by the host: `print` number `format` of the program, with the words of its values.
 void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32_t count);
 
-/// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents floats.
+/// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents
+/// floats.
 void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 /// The same of the programs engine: runs `generate` of the launch's rayGeneration.
 void rtsl_generate(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 //===----------------------------------------------------------------------===//
-// Programs whose shaders were split at their traces (runtime/device/engines/Machine.h). A state is a piece of a method between two
-// traces; numbers start at 1.
+// Programs whose shaders were split at their traces (runtime/device/engines/Machine.h). A state is
+// a piece of a method between two traces; numbers start at 1.
 //===----------------------------------------------------------------------===//
 
-/// Defined by the compiled program: runs a state on the frame of its ray. Returns what comes next: 0, the method is over;
-/// n > 0, trace the ray that was spawned, then run state n; -n < 0, run state n at once; RTSL_NEXT_LAST, trace the ray that
-/// was spawned in the place of this one, which is over.
+/// Defined by the compiled program: runs a state on the frame of its ray. Returns what comes next:
+/// 0, the method is over; n > 0, trace the ray that was spawned, then run state n; -n < 0, run
+/// state n at once; RTSL_NEXT_LAST, trace the ray that was spawned in the place of this one, which
+/// is over.
 #define RTSL_NEXT_LAST (-2147483647 - 1)
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame);
 
-/// Defined by the compiled program: bytes of its largest frame, a multiple of 4, with the frames of what is called on top
-/// of it. `chain` is RtslLaunch::referenceChain.
+/// Defined by the compiled program: bytes of its largest frame, a multiple of 4, with the frames of
+/// what is called on top of it. `chain` is RtslLaunch::referenceChain.
 int32_t rtsl_frame_size(RtslState *state, int32_t chain);
 
 // Some calls have a frame of their own, above that of the caller. It begins with these words.
@@ -316,31 +341,35 @@ int32_t rtsl_calls(RtslState *state);
 /// The ray goes on with `object`, on a frame so many bytes further up.
 void rtsl_move_frame(RtslState *state, int32_t bytes, RtslRef object);
 
-/// Defined by the compiled program: the states in which methods begin that the runtime starts and that may trace. 0: there
-/// is no such method.
+/// Defined by the compiled program: the states in which methods begin that the runtime starts and
+/// that may trace. 0: there is no such method.
 int32_t rtsl_rt_Material_shade_first(RtslState *state);
 int32_t rtsl_rt_Miss_miss_first(RtslState *state);
 int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *state);
 int32_t rtsl_rt_Miss_miss_payload_first(RtslState *state);
 int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state);
 
-/// First half of `trace(origin, direction)`: prepares the ray, which is traced when the state returns.
+/// First half of `trace(origin, direction)`: prepares the ray, which is traced when the state
+/// returns.
 void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz);
 
 /// The same for a ray with a payload, which stays where it is until the ray is back.
-void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz, float tmin,
-                        float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
-                        uint32_t how);
+void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy,
+                        float dz, float tmin, float tmax, void *payload, int32_t root,
+                        uint32_t mask, float time, uint32_t rayType, uint32_t how);
 
-/// The same for a trace behind which nothing happens: the ray takes the place of the one that sends it.
+/// The same for a trace behind which nothing happens: the ray takes the place of the one that sends
+/// it.
 void rtsl_spawn_last(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz);
-void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz, float tmin,
-                             float tmax, void *payload, int32_t root, uint32_t mask, float time, uint32_t rayType,
-                             uint32_t how);
+void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float dx, float dy,
+                             float dz, float tmin, float tmax, void *payload, int32_t root,
+                             uint32_t mask, float time, uint32_t rayType, uint32_t how);
 
-/// Defined by the compiled program, for the bound of the stack (runtime/device/engines/StackBound.h): how many kinds of rays there
-/// are, at most RTSL_MAX_RAY_KINDS. Kind 0 are those without a payload, kind n those of payload type n; `generate`, if the
-/// program has it, is the last. And, as bits, the kinds that the programs of one may send and come back from, or send last.
+/// Defined by the compiled program, for the bound of the stack
+/// (runtime/device/engines/StackBound.h): how many kinds of rays there are, at most
+/// RTSL_MAX_RAY_KINDS. Kind 0 are those without a payload, kind n those of payload type n;
+/// `generate`, if the program has it, is the last. And, as bits, the kinds that the programs of one
+/// may send and come back from, or send last.
 #define RTSL_MAX_RAY_KINDS 32
 int32_t rtsl_ray_kinds(RtslState *state);
 int32_t rtsl_rays_sent(RtslState *state, int32_t kind);
@@ -349,22 +378,25 @@ int32_t rtsl_rays_sent_last(RtslState *state, int32_t kind);
 /// Second half: the color that came back, colorComponents floats.
 const float *rtsl_trace_result(RtslState *parent);
 
-/// Defined by the host: memory for the rays of one sample, aligned to 16 bytes, the calling thread's own until it asks
-/// again. Null if there is not so much.
+/// Defined by the host: memory for the rays of one sample, aligned to 16 bytes, the calling
+/// thread's own until it asks again. Null if there is not so much.
 void *rtsl_machine_stack(uint64_t bytes);
 
-/// rtsl_sample, or rtsl_generate, by the machine: the same color, bit for bit. Black if there is no memory for the stack.
-void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
+/// rtsl_sample, or rtsl_generate, by the machine: the same color, bit for bit. Black if there is no
+/// memory for the stack.
+void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
+                       float *color);
 
 //===----------------------------------------------------------------------===//
 // The megakernel: programs that bring their own traversal and need nobody else.
 //===----------------------------------------------------------------------===//
 
-/// Bytes that a lane needs for rays up to this depth, a multiple of 16, in scenes whose chains of references are so long.
-/// Exact: no shader can ask for more.
+/// Bytes that a lane needs for rays up to this depth, a multiple of 16, in scenes whose chains of
+/// references are so long. Exact: no shader can ask for more.
 uint64_t rtsl_lane_bytes(uint32_t maxDepth, uint32_t referenceChain);
 
-/// Renders pixels of the job until none is left, in the lane's own memory. Lanes of different numbers may run at once.
+/// Renders pixels of the job until none is left, in the lane's own memory. Lanes of different
+/// numbers may run at once.
 void rtsl_run_lane(const RtslJob *job, uint32_t lane);
 
 #ifdef __cplusplus

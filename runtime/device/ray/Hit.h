@@ -5,9 +5,10 @@
 // a primitive runs as if the primitive were alone: HitDistance is where the ray ends, or where the
 // primitive's own hit is, and the nearest hit of all is kept apart.
 //
-// A traversal leaves out boxes that begin behind the nearest hit. By rounding, or by a mistake of its
-// author, a primitive may report a hit that lies outside of its box. Such a hit is compared as if it
-// were where the ray enters or leaves the box: then it wins or loses whichever traversal finds it.
+// A traversal leaves out boxes that begin behind the nearest hit. By rounding, or by a mistake of
+// its author, a primitive may report a hit that lies outside of its box. Such a hit is compared as
+// if it were where the ray enters or leaves the box: then it wins or loses whichever traversal
+// finds it.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

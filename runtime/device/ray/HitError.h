@@ -17,8 +17,9 @@ namespace rtsl::device {
 /// RtslState::hitError where the author states none.
 constexpr float errorNotStated = -1;
 
-/// The same where the derived function finds no hit at that distance. Where arithmetic is not strict
-/// it may round otherwise than `intersect`, which decides whether a ray that grazes has a hit at all.
+/// The same where the derived function finds no hit at that distance. Where arithmetic is not
+/// strict it may round otherwise than `intersect`, which decides whether a ray that grazes has a
+/// hit at all.
 constexpr float hitNotFound = -2;
 
 /// Is it a bound that means something?

@@ -63,8 +63,8 @@ inline float unitFloat(uint32_t bits) {
   return float(bits >> 8) * 0x1p-24f;
 }
 
-/// The float below the binary fraction 0.words[0] words[1] ... of 149 bits. Each float in [0, 1) comes
-/// out as often as a real number from there to the next float does.
+/// The float below the binary fraction 0.words[0] words[1] ... of 149 bits. Each float in [0, 1)
+/// comes out as often as a real number from there to the next float does.
 inline float floatOfFraction(const uint32_t words[5]) {
   uint32_t first = 0;
   while (first < 3 && words[first] == 0)
@@ -84,7 +84,8 @@ inline float floatOfFraction(const uint32_t words[5]) {
   return float(double(leading) * scale);
 }
 
-/// randomNumber() where the first word does not hold 24 significant bits, as happens once in 512 draws.
+/// randomNumber() where the first word does not hold 24 significant bits, as happens once in 512
+/// draws.
 __attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, uint32_t keyY,
                                                                uint32_t dimension, uint32_t first) {
   const Words4 more = hash4(keyX, keyY, dimension, 0x5bd1e995u);
@@ -92,14 +93,15 @@ __attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, ui
   return floatOfFraction(words);
 }
 
-/// The draw number `dimension` of the ray with this key: uniform in [0, 1), with 24 significant bits however near to 0 it
-/// is. (Of the leading bits of one word alone, as in unitFloat(), nothing lies between 0 and 2^-24; see Downey,
-/// "Generating Pseudo-random Floating-Point Values", 2007.)
+/// The draw number `dimension` of the ray with this key: uniform in [0, 1), with 24 significant
+/// bits however near to 0 it is. (Of the leading bits of one word alone, as in unitFloat(), nothing
+/// lies between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point Values", 2007.)
 inline float randomNumber(const uint32_t key[2], uint32_t dimension) {
   const uint32_t first = hash3(key[0], key[1], dimension).x;
   if (first < 1u << 23)
     return smallRandomNumber(key[0], key[1], dimension, first);
-  return float(first & ~(0xffu >> __builtin_clz(first))) * 0x1p-32f; // exact, so that it does not become 1
+  return float(first & ~(0xffu >> __builtin_clz(first))) *
+         0x1p-32f; // exact, so that it does not become 1
 }
 
 /// The same draw, but for 0, which becomes the smallest float: uniform in (0, 1).

@@ -21,10 +21,10 @@ constexpr float trianglePointUnits = 2;
 // (depthNearOrigin in runtime/device/traverse/Triangle.h).
 // A point that an author made by arithmetic of his own, near coordinates of this size.
 constexpr float foreignPointUnits = 20;
-// A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t. Where
-// nothing is known of that, this is assumed: a quadric solved without cancellation (differences
-// from its centre, r^2 - |f - (f.d) d|^2) is right to about 8 units of the distances in it; the same
-// again for the next test.
+// A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t.
+// Where nothing is known of that, this is assumed: a quadric solved without cancellation
+// (differences from its centre, r^2 - |f - (f.d) d|^2) is right to about 8 units of the distances
+// in it; the same again for the next test.
 constexpr float primitiveErrorUnits = 24;
 // Where the ray only grazes the surface, t is off by more than the point is from the surface, but
 // not by any factor: the surface curves.

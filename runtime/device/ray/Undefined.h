@@ -1,8 +1,8 @@
 //===- Undefined.h - state that nobody has written, made visible ----------===//
 //
 // Of a ray's state only what can be read is written. Whether that is so, tests find out: a program
-// with RTSL_FEATURE_UNDEFINED_BYTES or _NAN fills all the rest with a pattern, and its pictures must
-// not depend on which. Other programs have none of this code, for rtsl_features is a constant.
+// with RTSL_FEATURE_UNDEFINED_BYTES or _NAN fills all the rest with a pattern, and its pictures
+// must not depend on which. Other programs have none of this code, for rtsl_features is a constant.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,7 +19,8 @@ inline uint32_t undefinedWord(const RtslState &state) {
   return features & RTSL_FEATURE_UNDEFINED_NAN ? 0x7fe00001u : 0u;
 }
 
-/// Fills memory from `begin` to `end`, of whole words, if the program of `state` shows what is undefined.
+/// Fills memory from `begin` to `end`, of whole words, if the program of `state` shows what is
+/// undefined.
 inline void makeUndefined(const RtslState &state, void *begin, void *end) {
   if (const uint32_t word = undefinedWord(state))
     for (auto *at = static_cast<char *>(begin); at != end; at += sizeof word)

@@ -191,8 +191,8 @@ struct CommittedHit {
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
 
   explicit CommittedHit(const RtslState &state)
-      : found(state.foundDistance), nearest(state.nearest), error(state.hitError),
-        u(state.u), v(state.v), instance(state.instance), primitive(state.primitive) {
+      : found(state.foundDistance), nearest(state.nearest), error(state.hitError), u(state.u),
+        v(state.v), instance(state.instance), primitive(state.primitive) {
     for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
       attributes[i] = state.attributes[i];
   }
@@ -230,8 +230,8 @@ uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const T
   return search.end();
 }
 
-/// rtsl_traverse for a good ray whose hits may be refused, by some tree. `slots` has the methods that
-/// it needs as members with the names of Slots.def and PayloadSlots.def.
+/// rtsl_traverse for a good ray whose hits may be refused, by some tree. `slots` has the methods
+/// that it needs as members with the names of Slots.def and PayloadSlots.def.
 template <typename Slots, typename Tree>
 uint32_t findHitAsking(RtslState &state, uint32_t how, const Slots &slots, const Tree &tree) {
   return how & RTSL_IN_ORDER ? searchInOrder(state, slots, tree)

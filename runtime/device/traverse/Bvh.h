@@ -6,8 +6,8 @@
 
 namespace rtsl::device {
 
-/// No path from the root is longer; the builder sees to it (runtime/accel/BvhBuilder.h). A step down
-/// pushes one child at most.
+/// No path from the root is longer; the builder sees to it (runtime/accel/BvhBuilder.h). A step
+/// down pushes one child at most.
 constexpr int maxBvhDepth = 64;
 
 /// A ray meets a box if it leaves it no earlier than it enters it, within this factor. That covers
@@ -17,10 +17,10 @@ constexpr float bvhSlack = 1.0f + 16 * roundingUnit;
 
 /// What is in a box is hit where the ray is in the box, within this share of the distance: hits of
 /// triangles are moved there (Traverse.h), those of RTSL primitives compared as if they were there
-/// (Hit.h). So a box that begins behind the nearest hit by more than two such shares has nothing that
-/// could win, and which boxes a traversal enters, of whatever tree and in whatever order, cannot
-/// show. That holds for outer boxes too, for rounding is monotonic: of two boxes, one in the other,
-/// the outer one begins no later and ends no earlier, to the bit.
+/// (Hit.h). So a box that begins behind the nearest hit by more than two such shares has nothing
+/// that could win, and which boxes a traversal enters, of whatever tree and in whatever order,
+/// cannot show. That holds for outer boxes too, for rounding is monotonic: of two boxes, one in the
+/// other, the outer one begins no later and ends no earlier, to the bit.
 constexpr float rangeShare = 0x1p-12f;
 constexpr float cullSlack = 1.0f + 2 * rangeShare;
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
-#include "runtime/device/traverse/Candidate.h"
 #include "runtime/device/ray/HitError.h"
 #include "runtime/device/ray/Spawn.h"
-#include "runtime/device/traverse/Traverse.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/traverse/Traverse.h"
 
 namespace rtsl::device {
 
@@ -94,7 +94,8 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t ne
 
 /// The same for an RTSL primitive, by its methods.
 template <typename Slots>
-void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t needs, const Slots &slots) {
+void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t needs,
+                       const Slots &slots) {
   const RtslRef primitive = instance.primitive;
   Vec3 origin = load(state.RayOrigin), direction = load(state.RayDirection);
   float t = state.HitDistance;
@@ -115,15 +116,17 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
   }
   if (needs & RTSL_NEEDS_HIT_ERRORS) {
     const Vec3 point = load(state.HitPoint), normal = load(state.GeometricNormal);
-    const auto bound = [&](float error) { return primitivePointError(point, direction, error, normal); };
+    const auto bound = [&](float error) {
+      return primitivePointError(point, direction, error, normal);
+    };
     if (isBound(state.hitError)) {
       state.hitPointError = bound(state.hitError);
     } else if (state.hitError == errorNotStated) {
-      // What is derived is the error of this one test. The next one may be no better than is assumed.
-      const float error =
-          derivedHitError(state, primitive, t, [&](RtslState *ray, RtslRef object) {
-            slots.rt_Primitive_rt_boundHitError(ray, object);
-          });
+      // What is derived is the error of this one test. The next one may be no better than is
+      // assumed.
+      const float error = derivedHitError(state, primitive, t, [&](RtslState *ray, RtslRef object) {
+        slots.rt_Primitive_rt_boundHitError(ray, object);
+      });
       if (isBound(error))
         state.hitPointError = maximum(state.hitPointError, bound(error));
     }

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Hit.h"
+#include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/traverse/Candidate.h"
-#include "runtime/device/ray/Hit.h"
 #include "runtime/device/traverse/Triangle.h"
-#include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
 
@@ -34,8 +34,8 @@ inline TriangleVertices triangleVertices(const RtslMesh &mesh, uint32_t triangle
           load(mesh.positions + 3 * size_t(index[2]))};
 }
 
-/// Moves t, where intersectTriangle has found a hit, to where the ray is in the triangle's box, within
-/// rangeShare. False if the ray misses the box: then so does every traversal.
+/// Moves t, where intersectTriangle has found a hit, to where the ray is in the triangle's box,
+/// within rangeShare. False if the ray misses the box: then so does every traversal.
 inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float &t) {
   float lower[3], upper[3];
   for (int i = 0; i < 3; ++i) {
@@ -102,8 +102,8 @@ bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance 
   return hasWon;
 }
 
-/// After a search: `intersect` stores the attributes of its hit, whether it wins or not. If they are
-/// not those of the hit that won, that one's `intersect` runs again.
+/// After a search: `intersect` stores the attributes of its hit, whether it wins or not. If they
+/// are not those of the hit that won, that one's `intersect` runs again.
 template <typename Intersect>
 void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect intersect) {
   if (!state.areAttributesLost || state.instance == RTSL_NO_HIT)
@@ -126,7 +126,8 @@ struct LaunchTree {
   }
 };
 
-/// rtsl_traverse for a good ray, by some tree. intersect(state, object) is the slot of rt_Primitive.
+/// rtsl_traverse for a good ray, by some tree. intersect(state, object) is the slot of
+/// rt_Primitive.
 template <typename Intersect, typename Tree>
 uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree &tree) {
   const RtslLaunch &launch = *state.launch;
@@ -138,10 +139,10 @@ uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree 
         const RtslInstance &instance = launch.instances[item.instance];
         if (!isSeen(state, instance))
           return false;
-        bool found =
-            instance.primitive == 0
-                ? testTriangle(state, ray, launch.meshes[instance.mesh], item.instance, item.primitive)
-                : testPrimitive(state, ray, instance, item, intersect);
+        bool found = instance.primitive == 0
+                         ? testTriangle(state, ray, launch.meshes[instance.mesh], item.instance,
+                                        item.primitive)
+                         : testPrimitive(state, ray, instance, item, intersect);
         return found && anyHit;
       });
   if (!anyHit)

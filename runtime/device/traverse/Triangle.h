@@ -75,13 +75,15 @@ inline float scaledBy(float a, int exponent) {
   return a * powerOfTwo(exponent);
 }
 
-/// The depth of a hit so near that the roundings of the differences would show in it: what a ray meets right where it starts,
-/// the triangle that it leaves above all. In double, from the plane, times `scale`; right to some units of itself over the
-/// cosine. `depth` is the answer for a plane through which the ray does not go.
-__attribute__((cold, noinline)) inline float depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale,
-                                                             float depth) {
+/// The depth of a hit so near that the roundings of the differences would show in it: what a ray
+/// meets right where it starts, the triangle that it leaves above all. In double, from the plane,
+/// times `scale`; right to some units of itself over the cosine. `depth` is the answer for a plane
+/// through which the ray does not go.
+__attribute__((cold, noinline)) inline float
+depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale, float depth) {
   int kx = ray.kx, ky = ray.ky, kz = ray.kz;
-  double ax = double(v0[kx]) - ray.origin[kx], ay = double(v0[ky]) - ray.origin[ky], az = double(v0[kz]) - ray.origin[kz];
+  double ax = double(v0[kx]) - ray.origin[kx], ay = double(v0[ky]) - ray.origin[ky],
+         az = double(v0[kz]) - ray.origin[kz];
   double bx = double(v1[kx]) - v0[kx], by = double(v1[ky]) - v0[ky], bz = double(v1[kz]) - v0[kz];
   double cx = double(v2[kx]) - v0[kx], cy = double(v2[ky]) - v0[ky], cz = double(v2[kz]) - v0[kz];
   double nx = by * cz - bz * cy, ny = bz * cx - bx * cz, nz = bx * cy - by * cx;
@@ -91,8 +93,9 @@ __attribute__((cold, noinline)) inline float depthNearOrigin(const TriangleRay &
   return float(((nx * ax + ny * ay) + nz * az) / down * scale);
 }
 
-/// Hits nearer than this share of the triangle's distances are taken from depthNearOrigin: the error of the others is a
-/// smaller share of them, unless the ray goes within 2^-11 of the triangle's plane.
+/// Hits nearer than this share of the triangle's distances are taken from depthNearOrigin: the
+/// error of the others is a smaller share of them, unless the ray goes within 2^-11 of the
+/// triangle's plane.
 constexpr float nearShare = 0x1p-9f;
 
 /// Where the line of `ray` meets the triangle; from both sides, edges and vertices belong to it.

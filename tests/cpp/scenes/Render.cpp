@@ -1,5 +1,5 @@
-// Renders a scene file with shaders that were compiled to C++ ahead: cpp-render SHADERS.so SCENE.json PICTURE.exr. What they
-// print, and what samples met, goes to standard output as JSON.
+// Renders a scene file with shaders that were compiled to C++ ahead: cpp-render SHADERS.so
+// SCENE.json PICTURE.exr. What they print, and what samples met, goes to standard output as JSON.
 #include "scenefile/SceneFile.h"
 
 #include <rtsl/runtime.h>
@@ -15,7 +15,9 @@ int main(int argc, char **argv) try {
   if (argc != 4)
     return std::fprintf(stderr, "usage: %s SHADERS.so SCENE.json PICTURE.exr\n", argv[0]), 2;
   void *library = dlopen(argv[1], RTLD_NOW);
-  auto *shaders = library ? reinterpret_cast<const RtslShaders *(*)()>(dlsym(library, "shaders_shaders")) : nullptr;
+  auto *shaders =
+      library ? reinterpret_cast<const RtslShaders *(*)()>(dlsym(library, "shaders_shaders"))
+              : nullptr;
   if (!shaders)
     return std::fprintf(stderr, "%s\n", dlerror()), 1;
   const scene::SceneDescription description = scene::readSceneFile(argv[2]);
@@ -23,7 +25,8 @@ int main(int argc, char **argv) try {
   runtime::RenderStatistics statistics;
   const runtime::RenderOptions options = scene::renderOptions(description.render);
   runtime::writeImage(argv[3], runtime::render(built, options, &statistics));
-  nlohmann::ordered_json said = {{"printed", runtime::takePrintLog().texts(built.program().prints)}};
+  nlohmann::ordered_json said = {
+      {"printed", runtime::takePrintLog().texts(built.program().prints)}};
   const char *names[RTSL_EXCEPTIONS] = {"", "stackOverflow", "badRay", "index"};
   for (unsigned i = 1; i < RTSL_EXCEPTIONS; ++i)
     if (statistics.exceptions[i])

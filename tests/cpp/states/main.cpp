@@ -14,22 +14,25 @@ int main(int argc, char **argv) try {
   auto make = [&](const char *name, std::vector<NamedValue> members) {
     return scene.addObject(name, ObjectValues{{}, std::move(members), {}});
   };
-  scene.setCamera(scene.addObject("PinholeCamera", {{0, 2, 9}, {0, 1, 0}, {0, -0.12, -1},
-                                                    {-1.6, -0.9}, {1.6, 0.9}, 2.7}));
-  RtslRef checks = make("Checker", {{"scale", 8}, {"even", {0.85, 0.83, 0.78}},
-                                    {"odd", {0.12, 0.14, 0.2}}});
+  scene.setCamera(scene.addObject(
+      "PinholeCamera", {{0, 2, 9}, {0, 1, 0}, {0, -0.12, -1}, {-1.6, -0.9}, {1.6, 0.9}, 2.7}));
+  RtslRef checks =
+      make("Checker", {{"scale", 8}, {"even", {0.85, 0.83, 0.78}}, {"odd", {0.12, 0.14, 0.2}}});
   RtslRef floor = scene.addObject("Parallelogram", {{-8, 0, 6}, {16, 0, 0}, {0, 0, -16}});
   scene.addPrimitive(floor, make("Glossy", {{"albedo", Value::reference(checks)}}));
   int i = 0;
-  for (const char *name : {"Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived", "Table",
-                           "Bundle", "Turned", "Outputs", "Component", "Lit", "Tangled", "Loud", "Quiet", "Columns", "Flags",
-                           "Scattered", "Replaced", "Arms", "Late"}) {
+  for (const char *name :
+       {"Many",  "Nested",  "Middle", "Choices",   "Endless",   "Mirror", "Base",    "Derived",
+        "Table", "Bundle",  "Turned", "Outputs",   "Component", "Lit",    "Tangled", "Loud",
+        "Quiet", "Columns", "Flags",  "Scattered", "Replaced",  "Arms",   "Late"}) {
     const double x = -4.1 + 1.2 * (i % 8), y = 0.7 + 1.3 * (i / 8);
     scene.addPrimitive(make("Sphere", {{"center", {x, y, 0}}, {"radius", 0.7}}), make(name, {}));
     ++i;
   }
-  scene.addLight(make("BallLight", {{"position", {4, 6, 4}}, {"radius", 0.4}, {"intensity", {38, 36, 33}}}));
-  scene.addLight(make("BallLight", {{"position", {-5, 5, 3}}, {"radius", 0.2}, {"intensity", {18, 20, 25}}}));
+  scene.addLight(
+      make("BallLight", {{"position", {4, 6, 4}}, {"radius", 0.4}, {"intensity", {38, 36, 33}}}));
+  scene.addLight(
+      make("BallLight", {{"position", {-5, 5, 3}}, {"radius", 0.2}, {"intensity", {18, 20, 25}}}));
   scene.setAmbient({0.12f, 0.13f, 0.16f});
   scene.setBackground(make("Sky", {}));
   RenderOptions options;

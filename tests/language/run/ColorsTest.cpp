@@ -1,7 +1,8 @@
 //===- ColorsTest.cpp - the same shaders with 1, 3, 4 and 16 components ---===//
 //
-// examples/glass as RGB, as luminance alone and as spectra. docs/language.md states the bounds: products of spectra are
-// not products of RGB triples, so the pictures agree nearly, and not exactly.
+// examples/glass as RGB, as luminance alone and as spectra. docs/language.md states the bounds:
+// products of spectra are not products of RGB triples, so the pictures agree nearly, and not
+// exactly.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/driver/Compiler.h"
@@ -19,7 +20,8 @@ namespace rtsl::test {
 namespace {
 
 runtime::Image renderGlass(std::uint32_t components) {
-  const scene::SceneDescription description = scene::readSceneFile(RTSL_EXAMPLES "/glass/scene.json");
+  const scene::SceneDescription description =
+      scene::readSceneFile(RTSL_EXAMPLES "/glass/scene.json");
   SourceManager sources;
   Diagnostics diagnostics(sources);
   SourceLoader loader(sources, diagnostics);
@@ -27,13 +29,17 @@ runtime::Image renderGlass(std::uint32_t components) {
   for (const scene::ImportDescription &import : description.imports)
     units.push_back(loader.load(import.path));
   const auto module = check(
-      units, [&](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); },
+      units,
+      [&](const ast::ImportDecl &import, FileId importer) {
+        return loader.resolve(import, importer);
+      },
       diagnostics);
   LinkRequest request;
   request.classes = scene::classesUsed(description);
   for (const scene::GeometryDescription &geometry : description.objects)
-    request.surfaces.push_back({geometry.primitive ? geometry.primitive->className.text : std::string(),
-                                description.materials.at(geometry.material.name.text).className.text});
+    request.surfaces.push_back(
+        {geometry.primitive ? geometry.primitive->className.text : std::string(),
+         description.materials.at(geometry.material.name.text).className.text});
   CompileOptions compile;
   compile.colorComponents = components;
   const auto program = compileProgram(*module, request, compile, diagnostics);

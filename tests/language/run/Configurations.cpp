@@ -5,8 +5,8 @@
 
 namespace rtsl::test {
 
-static CompileOptions options(TraceMode trace, unsigned optimization, std::uint32_t colorComponents = 3,
-                              bool checkIndices = true) {
+static CompileOptions options(TraceMode trace, unsigned optimization,
+                              std::uint32_t colorComponents = 3, bool checkIndices = true) {
   CompileOptions options;
   options.trace = trace;
   options.optimization = optimization;
@@ -44,9 +44,11 @@ const std::vector<Configuration> &configurations() {
   static const std::vector<Configuration> table = {
       {"recurse_O2_bound", options(TraceMode::Recurse, 2), Traversal::Embree, true},
       {"recurse_O0_nan", undefined(options(TraceMode::Recurse, 0), asNan)},
-      {"split_O2_mono_bytes", undefined(options(TraceMode::Split, 2, 1), asBytes), Traversal::Device},
+      {"split_O2_mono_bytes", undefined(options(TraceMode::Split, 2, 1), asBytes),
+       Traversal::Device},
       {"split_O0_spectral4_nan", undefined(options(TraceMode::Split, 0, 4), asNan)},
-      {"recurse_O1_spectral16_unchecked_bytes", undefined(options(TraceMode::Recurse, 1, 16, false), asBytes)},
+      {"recurse_O1_spectral16_unchecked_bytes",
+       undefined(options(TraceMode::Recurse, 1, 16, false), asBytes)},
       {"split_O2_unchecked_bound", options(TraceMode::Split, 2, 3, false), Traversal::Embree, true},
       {"host_megakernel_O1_bound", megakernel(1), Traversal::Embree, true},
       {"host_megakernel_O1_bound_nan", undefined(megakernel(1), asNan), Traversal::Embree, true},
@@ -65,7 +67,8 @@ const std::vector<Configuration> &fastConfigurations() {
 const std::vector<Configuration> &doubleConfigurations() {
   static const std::vector<Configuration> table = {
       {"double_recurse_O0_nan", undefined(inDouble(options(TraceMode::Recurse, 0)), asNan)},
-      {"double_recurse_O2_bound", inDouble(options(TraceMode::Recurse, 2)), runtime::Traversal::Embree, true},
+      {"double_recurse_O2_bound", inDouble(options(TraceMode::Recurse, 2)),
+       runtime::Traversal::Embree, true},
       {"double_split_O2", inDouble(options(TraceMode::Split, 2))},
   };
   return table;

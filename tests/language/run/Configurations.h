@@ -10,7 +10,8 @@
 
 namespace rtsl::test {
 
-/// One way to compile and run a program. A new path is a new row of the table in Configurations.cpp.
+/// One way to compile and run a program. A new path is a new row of the table in
+/// Configurations.cpp.
 struct Configuration {
   std::string name;
   CompileOptions compile;
@@ -25,6 +26,8 @@ const std::vector<Configuration> &fastConfigurations();
 const std::vector<Configuration> &doubleConfigurations();
 
 /// What GoogleTest shows of one.
-inline void PrintTo(const Configuration &configuration, std::ostream *stream) { *stream << configuration.name; }
+inline void PrintTo(const Configuration &configuration, std::ostream *stream) {
+  *stream << configuration.name;
+}
 
 } // namespace rtsl::test

@@ -1,7 +1,8 @@
 //===- ConstantsTest.cpp - folding agrees with running --------------------===//
 //
-// Random expressions, each written twice: with constants, so that the compiler computes it, and with values that are
-// known when it runs. Both have the same bits. RTSL_CONSTANT_ROUNDS=N tries N programs, not one.
+// Random expressions, each written twice: with constants, so that the compiler computes it, and
+// with values that are known when it runs. Both have the same bits. RTSL_CONSTANT_ROUNDS=N tries N
+// programs, not one.
 //
 //===----------------------------------------------------------------------===//
 #include "Program.h"
@@ -31,10 +32,14 @@ public:
     if (depth == 0 || pick(8) == 0)
       return leaf(kind);
     switch (kind) {
-    case Kind::Float: return makeFloat(depth - 1);
-    case Kind::Int: return makeInteger(Kind::Int, depth - 1);
-    case Kind::UInt: return makeInteger(Kind::UInt, depth - 1);
-    case Kind::Bool: break;
+    case Kind::Float:
+      return makeFloat(depth - 1);
+    case Kind::Int:
+      return makeInteger(Kind::Int, depth - 1);
+    case Kind::UInt:
+      return makeInteger(Kind::UInt, depth - 1);
+    case Kind::Bool:
+      break;
     }
     return makeBool(depth - 1);
   }
@@ -60,71 +65,111 @@ private:
     return twin;
   }
 
-  /// Bits of all kinds of numbers: small and large ones, powers of two and their neighbours, infinities, NaN.
+  /// Bits of all kinds of numbers: small and large ones, powers of two and their neighbours,
+  /// infinities, NaN.
   std::uint32_t bits(Kind kind) {
-    static constexpr std::uint32_t floats[] = {0x00000000, 0x80000000, 0x3f800000, 0xbf800000, 0x3f000000, 0x40000000,
-                                               0x7f800000, 0xff800000, 0x7fc00000, 0x00000001, 0x007fffff, 0x00800000,
-                                               0x7f7fffff, 0x4f000000, 0xcf000000, 0x4effffff, 0x4f800000, 0x40490fdb};
-    static constexpr std::uint32_t integers[] = {0, 1, 2, 3, 7, 31, 32, 33, 0x7fffffff, 0x80000000, 0x80000001, 0xffffffff};
+    static constexpr std::uint32_t floats[] = {
+        0x00000000, 0x80000000, 0x3f800000, 0xbf800000, 0x3f000000, 0x40000000,
+        0x7f800000, 0xff800000, 0x7fc00000, 0x00000001, 0x007fffff, 0x00800000,
+        0x7f7fffff, 0x4f000000, 0xcf000000, 0x4effffff, 0x4f800000, 0x40490fdb};
+    static constexpr std::uint32_t integers[] = {
+        0, 1, 2, 3, 7, 31, 32, 33, 0x7fffffff, 0x80000000, 0x80000001, 0xffffffff};
     if (kind == Kind::Float) {
       if (pick(3) == 0)
         return floats[pick(std::size(floats))];
       const std::uint32_t exponent = pick(4) == 0 ? pick(256) : 120 + pick(16); // mostly near one
       return (pick(2) << 31) | (exponent << 23) | static_cast<std::uint32_t>(random() & 0x7fffff);
     }
-    return pick(2) ? integers[pick(std::size(integers))] : static_cast<std::uint32_t>(random()) >> pick(32);
+    return pick(2) ? integers[pick(std::size(integers))]
+                   : static_cast<std::uint32_t>(random()) >> pick(32);
   }
 
   Twin leaf(Kind kind) {
     const std::string value = fmt::format("0x{:08x}u", bits(kind)), sum = value + " + uint(zero)";
     switch (kind) {
-    case Kind::Float: return {"uintBitsToFloat(" + value + ")", "uintBitsToFloat(" + sum + ")"};
-    case Kind::Int: return {"int(" + value + ")", "int(" + sum + ")"};
-    case Kind::UInt: return {value, "(" + sum + ")"};
-    case Kind::Bool: break;
+    case Kind::Float:
+      return {"uintBitsToFloat(" + value + ")", "uintBitsToFloat(" + sum + ")"};
+    case Kind::Int:
+      return {"int(" + value + ")", "int(" + sum + ")"};
+    case Kind::UInt:
+      return {value, "(" + sum + ")"};
+    case Kind::Bool:
+      break;
     }
     return pick(2) ? Twin{"true", "(zero == 0)"} : Twin{"false", "(zero != 0)"};
   }
 
   Twin makeFloat(unsigned depth) {
     static const std::vector<std::string> one = {
-        "-({})", "abs({})", "sign({})", "floor({})", "ceil({})", "trunc({})", "round({})", "fract({})", "sqrt({})",
-        "inversesqrt({})", "sin({})", "cos({})", "tan({})", "asin({})", "acos({})", "atan({})", "exp({})", "log({})",
-        "exp2({})", "log2({})", "sinh({})", "cosh({})", "tanh({})", "asinh({})", "acosh({})", "atanh({})", "radians({})",
-        "degrees({})", "sinpi({})", "cospi({})", "expm1({})", "log1p({})", "refract({}, 1.0, 0.75)"};
-    static const std::vector<std::string> two = {
-        "({} + {})", "({} - {})", "({} * {})", "({} / {})", "min({}, {})", "max({}, {})", "mod({}, {})", "step({}, {})",
-        "pow({}, {})", "atan({}, {})", "dot(vec2({}), vec2(0.5, {}))", "length(vec2({}, {}))", "distance({}, {})"};
-    static const std::vector<std::string> three = {"clamp({}, {}, {})", "mix({}, {}, {})", "fma({}, {}, {})",
-                                                   "smoothstep({}, {}, {})", "vec3({}, {}, {}).y",
+        "-({})",           "abs({})",   "sign({})",
+        "floor({})",       "ceil({})",  "trunc({})",
+        "round({})",       "fract({})", "sqrt({})",
+        "inversesqrt({})", "sin({})",   "cos({})",
+        "tan({})",         "asin({})",  "acos({})",
+        "atan({})",        "exp({})",   "log({})",
+        "exp2({})",        "log2({})",  "sinh({})",
+        "cosh({})",        "tanh({})",  "asinh({})",
+        "acosh({})",       "atanh({})", "radians({})",
+        "degrees({})",     "sinpi({})", "cospi({})",
+        "expm1({})",       "log1p({})", "refract({}, 1.0, 0.75)"};
+    static const std::vector<std::string> two = {"({} + {})",
+                                                 "({} - {})",
+                                                 "({} * {})",
+                                                 "({} / {})",
+                                                 "min({}, {})",
+                                                 "max({}, {})",
+                                                 "mod({}, {})",
+                                                 "step({}, {})",
+                                                 "pow({}, {})",
+                                                 "atan({}, {})",
+                                                 "dot(vec2({}), vec2(0.5, {}))",
+                                                 "length(vec2({}, {}))",
+                                                 "distance({}, {})"};
+    static const std::vector<std::string> three = {"clamp({}, {}, {})",
+                                                   "mix({}, {}, {})",
+                                                   "fma({}, {}, {})",
+                                                   "smoothstep({}, {}, {})",
+                                                   "vec3({}, {}, {}).y",
                                                    "normalize(vec3({}, {}, {})).z",
                                                    "refract(vec2({}, {}), vec2(0.6, -0.8), {}).x"};
     const Kind f = Kind::Float;
     switch (pick(8)) {
-    case 0: return fill("float({})", {Kind::Int}, depth);
-    case 1: return fill(pick(2) ? "float({})" : "uintBitsToFloat({})", {Kind::UInt}, depth);
-    case 2: return fill("({} ? {} : {})", {Kind::Bool, f, f}, depth);
-    case 3: return fill(three[pick(static_cast<unsigned>(three.size()))], {f, f, f}, depth);
+    case 0:
+      return fill("float({})", {Kind::Int}, depth);
+    case 1:
+      return fill(pick(2) ? "float({})" : "uintBitsToFloat({})", {Kind::UInt}, depth);
+    case 2:
+      return fill("({} ? {} : {})", {Kind::Bool, f, f}, depth);
+    case 3:
+      return fill(three[pick(static_cast<unsigned>(three.size()))], {f, f, f}, depth);
     case 4:
-    case 5: return fill(one[pick(static_cast<unsigned>(one.size()))], {f}, depth);
-    default: return fill(two[pick(static_cast<unsigned>(two.size()))], {f, f}, depth);
+    case 5:
+      return fill(one[pick(static_cast<unsigned>(one.size()))], {f}, depth);
+    default:
+      return fill(two[pick(static_cast<unsigned>(two.size()))], {f, f}, depth);
     }
   }
 
   Twin makeInteger(Kind kind, unsigned depth) {
-    static const std::vector<std::string> two = {"({} + {})",  "({} - {})",  "({} * {})",  "({} / {})",
-                                                 "({} % {})",  "({} << {})", "({} >> {})", "({} & {})",
-                                                 "({} | {})",  "({} ^ {})",  "min({}, {})", "max({}, {})"};
+    static const std::vector<std::string> two = {
+        "({} + {})",  "({} - {})", "({} * {})", "({} / {})", "({} % {})",   "({} << {})",
+        "({} >> {})", "({} & {})", "({} | {})", "({} ^ {})", "min({}, {})", "max({}, {})"};
     static const std::vector<std::string> one = {"-({})", "~({})", "bitfieldReverse({})"};
     const std::string keyword = keywords[static_cast<unsigned>(kind)];
     switch (pick(8)) {
-    case 0: return fill(keyword + "({})", {Kind::Float}, depth);
-    case 1: return fill(keyword + "({})", {kind == Kind::Int ? Kind::UInt : Kind::Int}, depth);
-    case 2: return fill("({} ? {} : {})", {Kind::Bool, kind, kind}, depth);
-    case 3: return fill(one[pick(static_cast<unsigned>(one.size()))], {kind}, depth);
-    case 4: return kind == Kind::Int ? fill("floatBitsToInt({})", {Kind::Float}, depth)
-                                     : fill("floatBitsToUint({})", {Kind::Float}, depth);
-    default: return fill(two[pick(static_cast<unsigned>(two.size()))], {kind, kind}, depth);
+    case 0:
+      return fill(keyword + "({})", {Kind::Float}, depth);
+    case 1:
+      return fill(keyword + "({})", {kind == Kind::Int ? Kind::UInt : Kind::Int}, depth);
+    case 2:
+      return fill("({} ? {} : {})", {Kind::Bool, kind, kind}, depth);
+    case 3:
+      return fill(one[pick(static_cast<unsigned>(one.size()))], {kind}, depth);
+    case 4:
+      return kind == Kind::Int ? fill("floatBitsToInt({})", {Kind::Float}, depth)
+                               : fill("floatBitsToUint({})", {Kind::Float}, depth);
+    default:
+      return fill(two[pick(static_cast<unsigned>(two.size()))], {kind, kind}, depth);
     }
   }
 
@@ -133,10 +178,18 @@ private:
                                                          "({} >= {})", "({} == {})", "({} != {})"};
     const Kind kind = static_cast<Kind>(pick(3));
     switch (pick(5)) {
-    case 0: return fill("!({})", {Kind::Bool}, depth);
-    case 1: return fill(pick(2) ? "({} && {})" : pick(2) ? "({} || {})" : "({} ^^ {})", {Kind::Bool, Kind::Bool}, depth);
-    case 2: return fill(pick(2) ? "isnan({})" : "isinf({})", {Kind::Float}, depth);
-    default: return fill(comparisons[pick(static_cast<unsigned>(comparisons.size()))], {kind, kind}, depth);
+    case 0:
+      return fill("!({})", {Kind::Bool}, depth);
+    case 1:
+      return fill(pick(2)   ? "({} && {})"
+                  : pick(2) ? "({} || {})"
+                            : "({} ^^ {})",
+                  {Kind::Bool, Kind::Bool}, depth);
+    case 2:
+      return fill(pick(2) ? "isnan({})" : "isinf({})", {Kind::Float}, depth);
+    default:
+      return fill(comparisons[pick(static_cast<unsigned>(comparisons.size()))], {kind, kind},
+                  depth);
     }
   }
 
@@ -153,9 +206,12 @@ std::string randomProgram(unsigned seed, unsigned functions) {
       const Kind kind = static_cast<Kind>(generator.pick(4));
       const Twin twin = generator.make(kind, 1 + generator.pick(4));
       const char *keyword = keywords[static_cast<unsigned>(kind)];
-      text += fmt::format("  const {0} c{1} = {2};\n  {0} r{1} = {3};\n", keyword, n, twin.constant, twin.hidden);
-      text += kind == Kind::Float ? fmt::format("  if (floatBitsToUint(c{0}) != floatBitsToUint(r{0})) return {0};\n", n)
-                                  : fmt::format("  if (c{0} != r{0}) return {0};\n", n);
+      text += fmt::format("  const {0} c{1} = {2};\n  {0} r{1} = {3};\n", keyword, n, twin.constant,
+                          twin.hidden);
+      text += kind == Kind::Float
+                  ? fmt::format(
+                        "  if (floatBitsToUint(c{0}) != floatBitsToUint(r{0})) return {0};\n", n)
+                  : fmt::format("  if (c{0} != r{0}) return {0};\n", n);
     }
     text += "  return 0;\n}\n";
   }
@@ -170,7 +226,8 @@ TEST_P(Constants, FoldToWhatTheyAreWhenRun) {
   for (unsigned seed = 1; seed <= rounds; ++seed) {
     const std::string text = randomProgram(seed, 40);
     std::size_t count = 0;
-    const std::string wrong = runProgram({{"seed " + std::to_string(seed), text}}, GetParam(), count);
+    const std::string wrong =
+        runProgram({{"seed " + std::to_string(seed), text}}, GetParam(), count);
     EXPECT_EQ(wrong, "") << text;
     EXPECT_EQ(count, 40u);
     if (HasFailure())
@@ -179,11 +236,15 @@ TEST_P(Constants, FoldToWhatTheyAreWhenRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, Constants, testing::ValuesIn(configurations()),
-                         [](const testing::TestParamInfo<Configuration> &param) { return param.param.name; });
+                         [](const testing::TestParamInfo<Configuration> &param) {
+                           return param.param.name;
+                         });
 
 // What is folded with arithmetic in double is computed in double.
 INSTANTIATE_TEST_SUITE_P(DoublePaths, Constants, testing::ValuesIn(doubleConfigurations()),
-                         [](const testing::TestParamInfo<Configuration> &param) { return param.param.name; });
+                         [](const testing::TestParamInfo<Configuration> &param) {
+                           return param.param.name;
+                         });
 
 } // namespace
 } // namespace rtsl::test

@@ -3,11 +3,11 @@
 
 #include "codegen/driver/SceneProgram.h"
 #include "frontend/syntax/Parser.h"
-#include "support/Error.h"
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/scene/Scene.h"
 #include "scenefile/SceneFile.h"
 #include "sema/Sema.h"
+#include "support/Error.h"
 
 #include <fmt/format.h>
 
@@ -64,7 +64,8 @@ struct Test {
 
 class Builder {
 public:
-  Builder(const std::vector<ProgramFile> &files, const Configuration &configuration) : configuration(configuration) {
+  Builder(const std::vector<ProgramFile> &files, const Configuration &configuration)
+      : configuration(configuration) {
     for (const ProgramFile &file : files)
       read(file);
   }
@@ -76,7 +77,8 @@ private:
   void read(const ProgramFile &file);
   std::string frameText() const;
   std::string sceneText() const;
-  std::optional<runtime::Scene> compile(const typed::Module &module, const scene::SceneDescription &description,
+  std::optional<runtime::Scene> compile(const typed::Module &module,
+                                        const scene::SceneDescription &description,
                                         Diagnostics &diagnostics) const;
   std::string judge(const runtime::Image &image) const;
 
@@ -115,8 +117,9 @@ void Builder::read(const ProgramFile &file) {
       else if (kind == "light")
         lights += (lights.empty() ? "" : ", ") + json;
       else if (kind == "material")
-        objects.push_back("{\"primitive\": {\"class\": \"RunSquare\", \"left\": $X, \"width\": 1}, \"material\": " + json +
-                          "}");
+        objects.push_back("{\"primitive\": {\"class\": \"RunSquare\", \"left\": $X, \"width\": 1}, "
+                          "\"material\": " +
+                          json + "}");
       else
         objects.push_back(json);
       if (kind == "material" || kind == "object") {
@@ -144,10 +147,12 @@ std::string Builder::sceneText() const {
   for (std::size_t i = 0; i != objects.size(); ++i)
     all += (all.empty() ? "" : ",\n") +
            std::regex_replace(objects[i], std::regex("\\$X"), std::to_string(functions.size() + i));
-  return fmt::format("{{\"rtsl\": 1, \"import\": [], \"camera\": {{\"class\": \"RunCamera\", \"count\": {}}},\n"
-                     "\"helpers\": {{{}}}, \"textures\": {{{}}}, \"lights\": [{}], \"ambient\": [0.5, 0.5, 0.5], \"background\": [0, 0, 0],\n"
-                     "\"objects\": [{}]}}\n",
-                     count(), helpers, textures, lights, all);
+  return fmt::format(
+      "{{\"rtsl\": 1, \"import\": [], \"camera\": {{\"class\": \"RunCamera\", \"count\": {}}},\n"
+      "\"helpers\": {{{}}}, \"textures\": {{{}}}, \"lights\": [{}], \"ambient\": [0.5, 0.5, 0.5], "
+      "\"background\": [0, 0, 0],\n"
+      "\"objects\": [{}]}}\n",
+      count(), helpers, textures, lights, all);
 }
 
 /// Which material meets which primitive.
@@ -156,7 +161,8 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   request.classes = scene::classesUsed(description);
   request.givenMembers = scene::givenMembers(description);
   for (const scene::GeometryDescription &geometry : description.objects)
-    request.surfaces.push_back({geometry.primitive->className.text, geometry.material.object->className.text});
+    request.surfaces.push_back(
+        {geometry.primitive->className.text, geometry.material.object->className.text});
   return request;
 }
 
@@ -175,9 +181,12 @@ std::string Builder::judge(const runtime::Image &image) const {
 }
 
 /// Nothing if there were errors.
-std::optional<runtime::Scene> Builder::compile(const typed::Module &module, const scene::SceneDescription &description,
+std::optional<runtime::Scene> Builder::compile(const typed::Module &module,
+                                               const scene::SceneDescription &description,
                                                Diagnostics &diagnostics) const {
-  const BuildScene build = [&](const auto &program) { return scene::buildScene(description, program); };
+  const BuildScene build = [&](const auto &program) {
+    return scene::buildScene(description, program);
+  };
   const LinkRequest request = linkRequest(description);
   if (configuration.bindsScene)
     return compileScene(module, request, configuration.compile, diagnostics, build);
@@ -196,7 +205,9 @@ std::string Builder::run() {
     trees.push_back(parse(sources.add(file.name, file.text), diagnostics));
     units.push_back(trees.back().get());
   }
-  const auto noImports = [](const ast::ImportDecl &, FileId) -> const ast::TranslationUnit * { return nullptr; };
+  const auto noImports = [](const ast::ImportDecl &, FileId) -> const ast::TranslationUnit * {
+    return nullptr;
+  };
   const std::unique_ptr<typed::Module> module = check(units, noImports, diagnostics);
   if (diagnostics.hasErrors())
     return renderText(diagnostics, false);
@@ -215,7 +226,8 @@ std::string Builder::run() {
     render.threads = 1;
     render.traversal = configuration.traversal;
     if (configuration.compile.target == Target::HostMegakernel)
-      return judge(runtime::renderOnHost(scene.program().megakernel, runtime::flatten(scene), render));
+      return judge(
+          runtime::renderOnHost(scene.program().megakernel, runtime::flatten(scene), render));
     return judge(runtime::render(scene, render));
   } catch (const Error &error) {
     return std::string(error.what()) + "\n";
@@ -224,7 +236,8 @@ std::string Builder::run() {
 
 } // namespace
 
-std::string runProgram(const std::vector<ProgramFile> &files, const Configuration &configuration, std::size_t &count) {
+std::string runProgram(const std::vector<ProgramFile> &files, const Configuration &configuration,
+                       std::size_t &count) {
   Builder builder(files, configuration);
   count = builder.count();
   return builder.run();

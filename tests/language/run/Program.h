@@ -9,10 +9,11 @@
 //   //! object: {...}        the same with a primitive; $X stands for the left edge of the unit square that is looked at
 //   //! texture name: {...}  and `light: {...}`: what the materials refer to
 //
-// All tests of a program are compiled together, and run as the pixels of one picture. The material that calls the
-// functions traces before and behind them, so that they are part of a state where `trace` is split. A line
-// `// unchecked: no` in front of a function leaves it out where indices are not checked, `// fast: no` where arithmetic need
-// not be as it is written, `// double: no` where it is double.
+// All tests of a program are compiled together, and run as the pixels of one picture. The material
+// that calls the functions traces before and behind them, so that they are part of a state where
+// `trace` is split. A line `// unchecked: no` in front of a function leaves it out where indices
+// are not checked, `// fast: no` where arithmetic need not be as it is written, `// double: no`
+// where it is double.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -30,6 +31,7 @@ struct ProgramFile {
 };
 
 /// What is wrong, a line each; empty if all tests passed. `count` becomes the number of tests.
-std::string runProgram(const std::vector<ProgramFile> &files, const Configuration &configuration, std::size_t &count);
+std::string runProgram(const std::vector<ProgramFile> &files, const Configuration &configuration,
+                       std::size_t &count);
 
 } // namespace rtsl::test

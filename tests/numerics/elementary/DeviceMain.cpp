@@ -57,8 +57,7 @@ struct Comparison {
 
 class DeviceTest {
 public:
-  DeviceTest(const std::string &ptx, const Options &chosen)
-      : options(chosen), results(chunkSize) {
+  DeviceTest(const std::string &ptx, const Options &chosen) : options(chosen), results(chunkSize) {
     device.load(ptx);
     deviceResults = device.allocate(chunkSize * sizeof(float), "results");
   }
@@ -80,7 +79,8 @@ public:
   bool run(const Binary &function) {
     Comparison comparison;
     std::vector<Pair> pairs(chunkSize);
-    const runtime::CudaDevice::Address arguments = device.allocate(chunkSize * sizeof(Pair), "arguments");
+    const runtime::CudaDevice::Address arguments =
+        device.allocate(chunkSize * sizeof(Pair), "arguments");
     for (std::uint64_t chunk = 0; chunk < options.chunks; ++chunk) {
       std::uint64_t first = chunk * chunkSize;
       forEachOfChunk(options.threads,
@@ -99,8 +99,8 @@ private:
   void launch(const char *name, void *argument, Comparison &comparison) {
     auto start = std::chrono::steady_clock::now();
     void *arguments[] = {argument, &deviceResults};
-    device.launch(device.kernel(fmt::format("evaluate_{}", name).c_str()), static_cast<unsigned>(chunkSize / threadsPerBlock),
-                  threadsPerBlock, arguments);
+    device.launch(device.kernel(fmt::format("evaluate_{}", name).c_str()),
+                  static_cast<unsigned>(chunkSize / threadsPerBlock), threadsPerBlock, arguments);
     std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     comparison.deviceSeconds += elapsed.count();
     device.download(results.data(), deviceResults, chunkSize * sizeof(float));

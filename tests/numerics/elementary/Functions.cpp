@@ -66,8 +66,7 @@ double boundOfFastAngle(float, float) {
 
 } // namespace
 
-#define UNARY(name, low, high)                                                                     \
-  { #name, device::name, ::name##f, ::name, mpfr_##name, low, high }
+#define UNARY(name, low, high) {#name, device::name, ::name##f, ::name, mpfr_##name, low, high}
 
 const std::vector<Unary> &unaryFunctions() {
   static const std::vector<Unary> functions = {
@@ -114,7 +113,7 @@ const std::vector<Binary> &laneFunctions() {
 }
 
 #define FAST(name, low, high, bound)                                                               \
-  { "fast." #name, device::fast::name, ::name##f, ::name, mpfr_##name, low, high, bound }
+  {"fast." #name, device::fast::name, ::name##f, ::name, mpfr_##name, low, high, bound}
 
 const std::vector<Unary> &fastUnaryFunctions() {
   static const std::vector<Unary> functions = {

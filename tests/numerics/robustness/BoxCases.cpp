@@ -27,7 +27,8 @@ BoxCase originOnSlabs(Random &random, std::uint64_t) {
   const Box box = boxAround(random.inBox(2), random.inBox(2));
   float origin[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const float choices[] = {box.lower[axis], box.upper[axis], random.between(-3, 3), 0.5f * (box.lower[axis] + box.upper[axis])};
+    const float choices[] = {box.lower[axis], box.upper[axis], random.between(-3, 3),
+                             0.5f * (box.lower[axis] + box.upper[axis])};
     origin[axis] = choices[random.index(4)];
   }
   return {{device::load(origin), thinDirection(random)}, box};
@@ -58,14 +59,16 @@ BoxCase farAway(Random &random, std::uint64_t number) {
 } // namespace
 
 Box boxAround(Vec3 a, Vec3 b) {
-  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}, {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+          {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
 }
 
 bool BoxCase::meetsExactly() const {
   Rational near = 0;
   std::optional<Rational> far;
   for (int axis = 0; axis < 3; ++axis) {
-    const Rational below = exact(box.lower[axis]) - exact(ray.origin[axis]), above = exact(box.upper[axis]) - exact(ray.origin[axis]);
+    const Rational below = exact(box.lower[axis]) - exact(ray.origin[axis]),
+                   above = exact(box.upper[axis]) - exact(ray.origin[axis]);
     if (ray.direction[axis] == 0) {
       if (below > 0 || above < 0)
         return false;
@@ -83,9 +86,13 @@ bool BoxCase::meetsExactly() const {
 
 const std::vector<BoxKind> &boxKinds() {
   static const std::vector<BoxKind> kinds = {
-      {"originsOnSlabs", "origins in the planes of sides, direction components of 0, -0 and 1e-30: boxes that the exact ray meets and that are not entered", originOnSlabs},
+      {"originsOnSlabs",
+       "origins in the planes of sides, direction components of 0, -0 and 1e-30: boxes that the "
+       "exact ray meets and that are not entered",
+       originOnSlabs},
       {"flat", "boxes without thickness, aimed at or started from", flat},
-      {"far", "boxes of size 1 and 1e-9 at 1e8 and 1e-8, directions of length 2^-40 to 2^40", farAway},
+      {"far", "boxes of size 1 and 1e-9 at 1e8 and 1e-8, directions of length 2^-40 to 2^40",
+       farAway},
   };
   return kinds;
 }

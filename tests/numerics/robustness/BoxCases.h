@@ -21,10 +21,12 @@ struct BoxCase {
   Ray ray;
   Box box;
 
-  /// Whether the ray meets the box, exactly, ends and sides included. Such a box must be entered; entering one too many costs
-  /// time, not a hit.
+  /// Whether the ray meets the box, exactly, ends and sides included. Such a box must be entered;
+  /// entering one too many costs time, not a hit.
   bool meetsExactly() const;
-  std::string text() const { return ray.text() + ", box " + show(box.lower) + " " + show(box.upper); }
+  std::string text() const {
+    return ray.text() + ", box " + show(box.lower) + " " + show(box.upper);
+  }
 };
 
 /// One way in which boxes are hard; `make` gives the case of that number.

@@ -16,8 +16,10 @@ namespace {
 
 bool isEntered(const Ray &ray, const Box &box) {
   const device::Vec3 inverse = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
-  const float lower[] = {box.lower.x, box.lower.y, box.lower.z}, upper[] = {box.upper.x, box.upper.y, box.upper.z};
-  return device::enterBox(lower, upper, ray.origin, inverse, 0, device::infinity) < device::infinity;
+  const float lower[] = {box.lower.x, box.lower.y, box.lower.z},
+              upper[] = {box.upper.x, box.upper.y, box.upper.z};
+  return device::enterBox(lower, upper, ray.origin, inverse, 0, device::infinity) <
+         device::infinity;
 }
 
 Outcome runKind(const BoxKind &kind, std::uint64_t cases, std::uint32_t seed) {
@@ -25,13 +27,14 @@ Outcome runKind(const BoxKind &kind, std::uint64_t cases, std::uint32_t seed) {
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
     const BoxCase given = kind.make(random, i);
-    worst.count(!isEntered(given.ray, given.box) && given.meetsExactly(), [&] { return given.text(); });
+    worst.count(!isEntered(given.ray, given.box) && given.meetsExactly(),
+                [&] { return given.text(); });
   }
   return worst.outcome();
 }
 
-/// As many items with one centroid as there are cases: each must be in the tree once, in a box that holds it, and no path
-/// may be longer than traversal has room for. Counts what is not so.
+/// As many items with one centroid as there are cases: each must be in the tree once, in a box that
+/// holds it, and no path may be longer than traversal has room for. Counts what is not so.
 Outcome runEqualCentroids(std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -51,8 +54,11 @@ Outcome runEqualCentroids(std::uint64_t cases, std::uint32_t seed) {
     if (item.primitive < cases)
       ++seen[item.primitive];
   for (std::uint64_t i = 0; i < cases; ++i)
-    worst.count(seen[i] != 1, [&] { return "item " + std::to_string(i) + " is there " + std::to_string(seen[i]) + " times"; });
-  worst.count(tree.depth() > unsigned(device::maxBvhDepth), [&] { return "a path of " + std::to_string(tree.depth()); });
+    worst.count(seen[i] != 1, [&] {
+      return "item " + std::to_string(i) + " is there " + std::to_string(seen[i]) + " times";
+    });
+  worst.count(tree.depth() > unsigned(device::maxBvhDepth),
+              [&] { return "a path of " + std::to_string(tree.depth()); });
   return worst.outcome();
 }
 
@@ -89,10 +95,14 @@ double nanosecondsABuiltItem() {
 std::vector<Row> boxRows() {
   std::vector<Row> rows;
   for (const BoxKind &kind : boxKinds())
-    rows.push_back({std::string("boxes.") + kind.name, kind.description, "misses", 200'000,
-                    [&kind](std::uint64_t cases, std::uint32_t seed) { return runKind(kind, cases, seed); }, nanosecondsABox});
-  rows.push_back({"boxes.equalCentroids", "a tree over items that all have one centroid: items lost or doubled, paths that are too long", "faults", 1'000'000,
-                  runEqualCentroids, nanosecondsABuiltItem});
+    rows.push_back(
+        {std::string("boxes.") + kind.name, kind.description, "misses", 200'000,
+         [&kind](std::uint64_t cases, std::uint32_t seed) { return runKind(kind, cases, seed); },
+         nanosecondsABox});
+  rows.push_back({"boxes.equalCentroids",
+                  "a tree over items that all have one centroid: items lost or doubled, paths that "
+                  "are too long",
+                  "faults", 1'000'000, runEqualCentroids, nanosecondsABuiltItem});
   return rows;
 }
 

@@ -10,7 +10,8 @@ namespace rtsl::numerics {
 /// Pearson's chi-square of counts in cells against what was to be expected there.
 class ChiSquare {
 public:
-  /// Cells where less than `fewest` are expected count as one: the distribution is known of large numbers.
+  /// Cells where less than `fewest` are expected count as one: the distribution is known of large
+  /// numbers.
   void add(double expected, std::uint64_t count) {
     constexpr double fewest = 8;
     if (expected >= fewest) {

@@ -4,8 +4,8 @@
 #include "codegen/driver/Compiler.h"
 #include "codegen/driver/SourceLoader.h"
 #include "rtsl/program.h"
-#include "support/Error.h"
 #include "sema/Sema.h"
+#include "support/Error.h"
 
 #include <algorithm>
 
@@ -17,23 +17,33 @@ std::string sourceRoot;
 
 namespace {
 
-std::unique_ptr<typed::Module> checkFiles(const std::vector<std::string> &files, SourceManager &sources, Diagnostics &diagnostics) {
+std::unique_ptr<typed::Module> checkFiles(const std::vector<std::string> &files,
+                                          SourceManager &sources, Diagnostics &diagnostics) {
   SourceLoader loader(sources, diagnostics);
   std::vector<const ast::TranslationUnit *> units;
   for (const std::string &file : files)
     if (const ast::TranslationUnit *unit = loader.load(sourceRoot + "/" + file))
       units.push_back(unit);
-  return check(units, [&](const ast::ImportDecl &import, FileId importer) { return loader.resolve(import, importer); }, diagnostics);
+  return check(
+      units,
+      [&](const ast::ImportDecl &import, FileId importer) {
+        return loader.resolve(import, importer);
+      },
+      diagnostics);
 }
 
 FloatingPoint floatingPointOf(Path path) {
-  return path == Path::Fast ? FloatingPoint::Fast : path == Path::Double ? FloatingPoint::Double : FloatingPoint::Strict;
+  return path == Path::Fast     ? FloatingPoint::Fast
+         : path == Path::Double ? FloatingPoint::Double
+                                : FloatingPoint::Strict;
 }
 
 } // namespace
 
-CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std::string> classes,
-                                                   std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled) {
+CompiledShaders::Compiled
+CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std::string> classes,
+                         std::vector<std::pair<std::string, std::string>> surfaces, Path path,
+                         bool isSampled) {
   if (path == Path::Cpp)
     return {program(numerics_shaders()), ""};
   SourceManager sources;
@@ -48,7 +58,8 @@ CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string
   Compiled compiled;
   if (!diagnostics.hasErrors()) {
     // On a GPU too this one makes the objects, and says how much memory a ray takes.
-    options.target = path == Path::Megakernel || path == Path::Gpu ? Target::HostMegakernel : Target::Host;
+    options.target =
+        path == Path::Megakernel || path == Path::Gpu ? Target::HostMegakernel : Target::Host;
     compiled.program = compileProgram(*module, request, options, diagnostics);
     if (path == Path::Gpu)
       compiled.ptx = emitScene(*module, request, Stage::Ptx, options, diagnostics).value_or("");
@@ -58,15 +69,21 @@ CompiledShaders::Compiled CompiledShaders::compile(const std::vector<std::string
   return compiled;
 }
 
-CompiledShaders::CompiledShaders(Compiled made, Path path) : path(path), compiled(std::move(made)), theScene(compiled.program) {}
+CompiledShaders::CompiledShaders(Compiled made, Path path)
+    : path(path), compiled(std::move(made)), theScene(compiled.program) {}
 
-CompiledShaders::CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
-                                 std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled)
-    : CompiledShaders(compile(files, std::move(classes), std::move(surfaces), path, isSampled), path) {}
+CompiledShaders::CompiledShaders(const std::vector<std::string> &files,
+                                 std::vector<std::string> classes,
+                                 std::vector<std::pair<std::string, std::string>> surfaces,
+                                 Path path, bool isSampled)
+    : CompiledShaders(compile(files, std::move(classes), std::move(surfaces), path, isSampled),
+                      path) {}
 
 void CompiledShaders::finish() {
   if (!eye)
-    eye = path == Path::Megakernel ? megakernelEye() : path == Path::Gpu ? gpuEye(compiled.ptx) : machineEye();
+    eye = path == Path::Megakernel ? megakernelEye()
+          : path == Path::Gpu      ? gpuEye(compiled.ptx)
+                                   : machineEye();
   eye->turnTo(theScene);
 }
 
@@ -83,7 +100,8 @@ float *CompiledShaders::member(RtslRef object, const std::string &name) const {
   throw Error(ErrorCode::UnknownMember, "there is no member `" + name + "`");
 }
 
-void CompiledShaders::set(RtslRef object, const std::string &name, std::initializer_list<float> values) const {
+void CompiledShaders::set(RtslRef object, const std::string &name,
+                          std::initializer_list<float> values) const {
   std::copy(values.begin(), values.end(), member(object, name));
 }
 

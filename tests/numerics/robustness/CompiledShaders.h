@@ -12,16 +12,19 @@
 
 namespace rtsl::numerics {
 
-/// The tree whose shaders are tested; a mutation has its own. Emitted C++ was compiled with the tests and has none.
+/// The tree whose shaders are tested; a mutation has its own. Emitted C++ was compiled with the
+/// tests and has none.
 extern std::string sourceRoot;
 
 /// RTSL files, compiled for one of the paths, and a scene of them that is still empty.
 class CompiledShaders {
 public:
-  /// Files are relative to sourceRoot; `surfaces` as in LinkRequest. Throws Error with the messages if the files have
-  /// mistakes. `isSampled`: the program has SamplingSlots.def, for a host to call.
+  /// Files are relative to sourceRoot; `surfaces` as in LinkRequest. Throws Error with the messages
+  /// if the files have mistakes. `isSampled`: the program has SamplingSlots.def, for a host to
+  /// call.
   CompiledShaders(const std::vector<std::string> &files, std::vector<std::string> classes,
-                  std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled = false);
+                  std::vector<std::pair<std::string, std::string>> surfaces, Path path,
+                  bool isSampled = false);
 
   runtime::Scene &scene() { return theScene; }
   const runtime::Scene &scene() const { return theScene; }
@@ -44,7 +47,8 @@ private:
     std::string ptx; // the same for a GPU; Path::Gpu alone has it
   };
   static Compiled compile(const std::vector<std::string> &files, std::vector<std::string> classes,
-                          std::vector<std::pair<std::string, std::string>> surfaces, Path path, bool isSampled);
+                          std::vector<std::pair<std::string, std::string>> surfaces, Path path,
+                          bool isSampled);
   CompiledShaders(Compiled compiled, Path path);
 
   Path path;

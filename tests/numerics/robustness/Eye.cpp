@@ -2,10 +2,10 @@
 #include "Eye.h"
 
 #include "runtime/accel/FlatScene.h"
-#include "runtime/render/HostMegakernel.h"
-#include "runtime/render/Renderer.h"
 #include "runtime/gpu/CudaDriver.h"
 #include "runtime/gpu/GpuRenderer.h"
+#include "runtime/render/HostMegakernel.h"
+#include "runtime/render/Renderer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,9 @@ using Color = std::array<float, 3>;
 /// What a renderer leaves out of its sums.
 Color unlessNotFinite(const Color &color) {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
-  return std::all_of(color.begin(), color.end(), [](float c) { return std::isfinite(c); }) ? color : Color{none, none, none};
+  return std::all_of(color.begin(), color.end(), [](float c) { return std::isfinite(c); })
+             ? color
+             : Color{none, none, none};
 }
 
 class MachineEye : public Eye {
@@ -52,7 +54,9 @@ public:
     return unlessNotFinite({color[0], color[1], color[2]});
   }
 
-  runtime::Image picture(const runtime::RenderOptions &options) override { return runtime::render(*scene, options); }
+  runtime::Image picture(const runtime::RenderOptions &options) override {
+    return runtime::render(*scene, options);
+  }
 
 private:
   const runtime::Scene *scene = nullptr;
@@ -65,14 +69,20 @@ private:
 struct alignas(64) Line {
   std::uint8_t bytes[64];
 };
-std::uint64_t inLines(std::uint64_t bytes) { return (bytes + sizeof(Line) - 1) / sizeof(Line) * sizeof(Line); }
-std::vector<Line> linesFor(std::uint64_t bytes) { return std::vector<Line>(inLines(bytes) / sizeof(Line)); }
+std::uint64_t inLines(std::uint64_t bytes) {
+  return (bytes + sizeof(Line) - 1) / sizeof(Line) * sizeof(Line);
+}
+std::vector<Line> linesFor(std::uint64_t bytes) {
+  return std::vector<Line>(inLines(bytes) / sizeof(Line));
+}
 
-/// The scene in one block of bytes, as whole programs take it, and kept up with the members of its objects.
+/// The scene in one block of bytes, as whole programs take it, and kept up with the members of its
+/// objects.
 class FlatCopy {
 public:
   explicit FlatCopy(const runtime::Scene &scene)
-      : scene(scene), flat(runtime::flatten(scene)), records(reinterpret_cast<std::uintptr_t>(flat.launch().records)) {}
+      : scene(scene), flat(runtime::flatten(scene)),
+        records(reinterpret_cast<std::uintptr_t>(flat.launch().records)) {}
 
   const runtime::Scene &source() const { return scene; }
   std::size_t size() const { return flat.bytes.size(); }
@@ -102,7 +112,8 @@ private:
 Color seen(const RtslStatus &status, const Color &pixel) {
   runtime::RenderStatistics statistics;
   runtime::readStatus(status, onePixel(), statistics);
-  return statistics.samplesNotFinite ? unlessNotFinite({std::numeric_limits<float>::infinity()}) : pixel;
+  return statistics.samplesNotFinite ? unlessNotFinite({std::numeric_limits<float>::infinity()})
+                                     : pixel;
 }
 
 class MegakernelEye : public Eye {
@@ -175,7 +186,8 @@ public:
     block.assign(answerPlace + sizeof(Answer), 0);
     blockAddress = blockMemory.of(block.size());
     answerAddress = blockAddress + answerPlace;
-    flat->place(blockAddress, reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status)));
+    flat->place(blockAddress,
+                reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status)));
     RtslJob job{};
     job.launch = reinterpret_cast<const RtslLaunch *>(blockAddress);
     job.status = reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status));
@@ -219,14 +231,21 @@ private:
   runtime::CudaDevice::Kernel kernel;
   DeviceMemory blockMemory{device, "the scene"}, laneMemory{device, "rays in flight"};
   std::optional<FlatCopy> flat;
-  std::vector<std::uint8_t> block; // the scene, and behind it an Answer that is empty: both go up at once
+  // the scene, and behind it an Answer that is empty: both go up at once
+  std::vector<std::uint8_t> block;
   runtime::CudaDevice::Address blockAddress = 0, answerAddress = 0, jobAddress = 0;
 };
 
 } // namespace
 
-std::unique_ptr<Eye> machineEye() { return std::make_unique<MachineEye>(); }
-std::unique_ptr<Eye> megakernelEye() { return std::make_unique<MegakernelEye>(); }
-std::unique_ptr<Eye> gpuEye(const std::string &ptx) { return std::make_unique<GpuEye>(ptx); }
+std::unique_ptr<Eye> machineEye() {
+  return std::make_unique<MachineEye>();
+}
+std::unique_ptr<Eye> megakernelEye() {
+  return std::make_unique<MegakernelEye>();
+}
+std::unique_ptr<Eye> gpuEye(const std::string &ptx) {
+  return std::make_unique<GpuEye>(ptx);
+}
 
 } // namespace rtsl::numerics

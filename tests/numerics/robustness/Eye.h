@@ -3,10 +3,10 @@
 
 #include "Path.h"
 
+#include "runtime/device/ray/Abi.h"
 #include "runtime/image/Image.h"
 #include "runtime/render/RenderOptions.h"
 #include "runtime/scene/Scene.h"
-#include "runtime/device/ray/Abi.h"
 
 #include <array>
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace rtsl::numerics {
 
-/// What a camera ray sees: a picture of one pixel and one sample, by our own traversal. Members of the scene's objects may be
-/// changed between looks, where scene.launch().records has them.
+/// What a camera ray sees: a picture of one pixel and one sample, by our own traversal. Members of
+/// the scene's objects may be changed between looks, where scene.launch().records has them.
 class Eye {
 public:
   virtual ~Eye() = default;
@@ -35,7 +35,8 @@ constexpr std::uint32_t eyeDepth = 8;
 std::unique_ptr<Eye> machineEye();
 /// By the megakernel of the program.
 std::unique_ptr<Eye> megakernelEye();
-/// By the kernel in `ptx`, made of the same shaders as the megakernel of the scene's program. Throws NoDevice.
+/// By the kernel in `ptx`, made of the same shaders as the megakernel of the scene's program.
+/// Throws NoDevice.
 std::unique_ptr<Eye> gpuEye(const std::string &ptx);
 
 } // namespace rtsl::numerics

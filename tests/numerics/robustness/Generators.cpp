@@ -5,6 +5,8 @@
 
 namespace rtsl::numerics {
 
-std::string show(device::Vec3 v) { return fmt::format("({:a}, {:a}, {:a})", v.x, v.y, v.z); }
+std::string show(device::Vec3 v) {
+  return fmt::format("({:a}, {:a}, {:a})", v.x, v.y, v.z);
+}
 
 } // namespace rtsl::numerics

@@ -8,8 +8,8 @@
 
 namespace rtsl::numerics {
 
-/// SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014). The distributions of the
-/// standard library differ from one implementation to the next.
+/// SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators",
+/// 2014). The distributions of the standard library differ from one implementation to the next.
 class Random {
 public:
   explicit Random(std::uint64_t seed) : state(seed) {}
@@ -22,7 +22,9 @@ public:
   }
   std::uint64_t index(std::uint64_t count) { return bits() % count; }
   int integer(int low, int high) { return low + int(index(std::uint64_t(high - low) + 1)); }
-  float between(float low, float high) { return low + (high - low) * (float(bits() >> 40) * 0x1p-24f); }
+  float between(float low, float high) {
+    return low + (high - low) * (float(bits() >> 40) * 0x1p-24f);
+  }
   /// Uniform in [-size, size] each.
   device::Vec3 inBox(float size) {
     const float x = between(-size, size), y = between(-size, size), z = between(-size, size);

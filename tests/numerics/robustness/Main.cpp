@@ -3,8 +3,8 @@
 //   numerics-robustness [ROW...] [--quick] [--json] --bounds bounds.json          rows of the runtime
 //   numerics-shaders [ROW...] [--path strict|fast|double|cpp|megakernel|gpu] ...  rows of compiled shaders
 //
-// Runs the rows whose names begin with one of the arguments, all of them if there are none. Exit status: 0 all bounds hold, 1
-// some do not, 2 wrong arguments.
+// Runs the rows whose names begin with one of the arguments, all of them if there are none. Exit
+// status: 0 all bounds hold, 1 some do not, 2 wrong arguments.
 //
 //===----------------------------------------------------------------------===//
 #include "Row.h"
@@ -32,13 +32,17 @@ struct Options {
 std::vector<Row> chosenRows(const Options &options) {
   std::vector<Row> rows;
   for (Row &row : allRows(options.path))
-    if (options.rows.empty() || std::any_of(options.rows.begin(), options.rows.end(), [&](const std::string &name) { return row.name.rfind(name, 0) == 0; }))
+    if (options.rows.empty() ||
+        std::any_of(options.rows.begin(), options.rows.end(),
+                    [&](const std::string &name) { return row.name.rfind(name, 0) == 0; }))
       rows.push_back(std::move(row));
   return rows;
 }
 
 /// Paths that have the same bits have the same bounds.
-const char *boundSuffix(Path path) { return path == Path::Fast ? " fast" : path == Path::Double ? " double" : ""; }
+const char *boundSuffix(Path path) {
+  return path == Path::Fast ? " fast" : path == Path::Double ? " double" : "";
+}
 
 int run(const Options &options) {
   std::ifstream file(options.bounds);
@@ -56,7 +60,8 @@ int run(const Options &options) {
   bool allHold = true;
   for (const Row &row : rows) {
     // A row of sums needs its million samples for one case.
-    const std::uint64_t cases = options.quick ? std::max<std::uint64_t>(row.cases / 100, 1000) : row.cases;
+    const std::uint64_t cases =
+        options.quick ? std::max<std::uint64_t>(row.cases / 100, 1000) : row.cases;
     const Outcome outcome = row.run(cases, options.seed);
     const std::string key = row.name + boundSuffix(options.path);
     const bool hasBound = bounds.contains(key);
@@ -64,11 +69,20 @@ int run(const Options &options) {
     const bool holds = hasBound && outcome.worst <= bound && outcome.cases > 0;
     allHold &= holds;
     const double nanoseconds = options.json ? row.nanoseconds() : 0;
-    document.push_back({{"name", row.name}, {"description", row.description}, {"unit", row.unit}, {"cases", outcome.cases}, {"bound", bound},
-                        {"worst", outcome.worst}, {"holds", holds}, {"nanoseconds", nanoseconds}, {"where", outcome.where}});
+    document.push_back({{"name", row.name},
+                        {"description", row.description},
+                        {"unit", row.unit},
+                        {"cases", outcome.cases},
+                        {"bound", bound},
+                        {"worst", outcome.worst},
+                        {"holds", holds},
+                        {"nanoseconds", nanoseconds},
+                        {"where", outcome.where}});
     if (!options.json)
-      fmt::print("{} {:<24} worst {:.4g}, bound {} ({}; {} cases)\n{}", holds ? "ok    " : "BROKEN", row.name, outcome.worst, hasBound ? fmt::format("{:.4g}", bound) : "missing",
-                 row.unit, outcome.cases, holds || outcome.where.empty() ? "" : "       at " + outcome.where + "\n");
+      fmt::print("{} {:<24} worst {:.4g}, bound {} ({}; {} cases)\n{}", holds ? "ok    " : "BROKEN",
+                 row.name, outcome.worst, hasBound ? fmt::format("{:.4g}", bound) : "missing",
+                 row.unit, outcome.cases,
+                 holds || outcome.where.empty() ? "" : "       at " + outcome.where + "\n");
   }
   if (options.json)
     fmt::print("{}\n", document.dump(2));
@@ -83,7 +97,8 @@ int main(int argc, char **argv) {
   app.add_option("ROW", options.rows, "rows, or beginnings of their names; all if not given");
   app.add_option("--bounds", options.bounds, "the bounds, as JSON")->required();
   app.add_option("--seed", options.seed, "of the random inputs");
-  app.add_option("--path", options.path, "how shaders run")->transform(CLI::CheckedTransformer(pathNames));
+  app.add_option("--path", options.path, "how shaders run")
+      ->transform(CLI::CheckedTransformer(pathNames));
   addOptions(app);
   app.add_flag("--quick", options.quick, "a hundredth of the cases");
   app.add_flag("--json", options.json, "for scripts, with the time of a call");

@@ -17,13 +17,17 @@ namespace rtsl::numerics {
 namespace {
 
 /// Columns one after the other, as in memory.
-template <int size> using Matrix = std::array<float, size * size>;
+template <int size>
+using Matrix = std::array<float, size * size>;
 
 /// The inverse and the determinant, which come three numbers a look.
-template <int size> class Inverses {
+template <int size>
+class Inverses {
 public:
   explicit Inverses(Path path)
-      : shaders({"tests/numerics/robustness/shaders/Inverses.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Inverse3", "Inverse4", "Probe"}, {}, path),
+      : shaders({"tests/numerics/robustness/shaders/Inverses.rtsl",
+                 "tests/numerics/robustness/shaders/Probe.rtsl"},
+                {"Inverse3", "Inverse4", "Probe"}, {}, path),
         object(shaders.scene().addObject(size == 3 ? "Inverse3" : "Inverse4")) {
     shaders.scene().setCamera(shaders.scene().addObject("Probe"));
     shaders.scene().setBackground(object);
@@ -51,7 +55,9 @@ public:
   }
 
 private:
-  void place(const Matrix<size> &m) const { std::copy(m.begin(), m.end(), shaders.member(object, "m")); }
+  void place(const Matrix<size> &m) const {
+    std::copy(m.begin(), m.end(), shaders.member(object, "m"));
+  }
   std::array<float, 3> part(int number) const {
     shaders.set(object, "part", {float(number)});
     return shaders.look();
@@ -61,21 +67,25 @@ private:
   RtslRef object;
 };
 
-template <int size> const Inverses<size> &inverses(Path path) {
+template <int size>
+const Inverses<size> &inverses(Path path) {
   static const Inverses<size> only(path);
   return only;
 }
 
-template <int size> std::string show(const Matrix<size> &m) {
+template <int size>
+std::string show(const Matrix<size> &m) {
   std::string text;
   for (float value : m)
     text += fmt::format("{}{:a}", text.empty() ? "" : ", ", value);
   return text;
 }
 
-/// The largest element of A X - I, in rounding units of the largest element of |A| |X| in its row: how far the product is from
-/// what arithmetic of this precision can give, whatever the matrix's condition, and the scale of its columns.
-template <int size> double residual(const Matrix<size> &a, const Matrix<size> &x) {
+/// The largest element of A X - I, in rounding units of the largest element of |A| |X| in its row:
+/// how far the product is from what arithmetic of this precision can give, whatever the matrix's
+/// condition, and the scale of its columns.
+template <int size>
+double residual(const Matrix<size> &a, const Matrix<size> &x) {
   double worst = 0;
   for (int row = 0; row < size; ++row) {
     Precise error = 0, largest = 1;
@@ -96,7 +106,8 @@ template <int size> double residual(const Matrix<size> &a, const Matrix<size> &x
   return worst;
 }
 
-template <int size> Precise determinantOf(const Matrix<size> &m, Precise &magnitudes) {
+template <int size>
+Precise determinantOf(const Matrix<size> &m, Precise &magnitudes) {
   // By permutations: exact.
   std::array<int, size> order;
   for (int i = 0; i < size; ++i)
@@ -117,7 +128,8 @@ template <int size> Precise determinantOf(const Matrix<size> &m, Precise &magnit
   return sum;
 }
 
-template <int size> Matrix<size> randomMatrix(Random &random) {
+template <int size>
+Matrix<size> randomMatrix(Random &random) {
   Matrix<size> m;
   for (float &value : m)
     value = random.between(-1, 1);
@@ -125,7 +137,8 @@ template <int size> Matrix<size> randomMatrix(Random &random) {
 }
 
 /// Each column times a power of ten: what scale(1, 1, 1e-7) does to a transform.
-template <int size> void scaleColumns(Random &random, Matrix<size> &m, float most) {
+template <int size>
+void scaleColumns(Random &random, Matrix<size> &m, float most) {
   for (int column = 0; column < size; ++column) {
     const float scale = std::pow(10.0f, random.between(-most, most));
     for (int row = 0; row < size; ++row)
@@ -152,7 +165,8 @@ Outcome runHilbert(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
-/// A transform as scenes have them: a rotation, or any matrix, scaled by (1, 1, 1e-7) or worse, and moved.
+/// A transform as scenes have them: a rotation, or any matrix, scaled by (1, 1, 1e-7) or worse, and
+/// moved.
 Outcome runScaled(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -172,8 +186,8 @@ Outcome runScaled(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
-/// 3 x 3 matrices of any scale whose determinant keeps at least a hundredth of its terms. (The adjugate shares the determinant's
-/// relative error.)
+/// 3 x 3 matrices of any scale whose determinant keeps at least a hundredth of its terms. (The
+/// adjugate shares the determinant's relative error.)
 Outcome runThree(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -192,8 +206,10 @@ Outcome runThree(Path path, std::uint64_t cases, std::uint32_t seed) {
 Outcome runDeterminants(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
-  const auto judge = [&](float value, const Precise &exact, const Precise &magnitudes, auto describe) {
-    worst.add(static_cast<double>(abs(Precise(value) - exact) / (magnitudes * Precise(0x1p-24))), describe);
+  const auto judge = [&](float value, const Precise &exact, const Precise &magnitudes,
+                         auto describe) {
+    worst.add(static_cast<double>(abs(Precise(value) - exact) / (magnitudes * Precise(0x1p-24))),
+              describe);
   };
   for (std::uint64_t i = 0; i < cases; ++i) {
     Precise magnitudes;
@@ -230,10 +246,16 @@ std::vector<Row> matrixRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAnInverse);
   const char *unit = "of A X - I, rounding units of the row of abs(A) abs(X)";
   return {
-      row("matrices.hilbert", "the inverse of Hilbert's 4 x 4 matrix, its columns in any order", unit, 10'000, runHilbert),
-      row("matrices.scaled", "inverses of scale(1, 1, 1e-7), and of random transforms with columns from 1e-7 to 1e7", unit, 200'000, runScaled),
-      row("matrices.three", "inverses of 3 x 3 matrices with columns from 1e-12 to 1e12", unit, 200'000, runThree),
-      row("matrices.determinants", "determinants of 3 x 3 and 4 x 4 matrices with columns from 1e-4 to 1e4", "rounding units of the terms' magnitudes", 200'000, runDeterminants),
+      row("matrices.hilbert", "the inverse of Hilbert's 4 x 4 matrix, its columns in any order",
+          unit, 10'000, runHilbert),
+      row("matrices.scaled",
+          "inverses of scale(1, 1, 1e-7), and of random transforms with columns from 1e-7 to 1e7",
+          unit, 200'000, runScaled),
+      row("matrices.three", "inverses of 3 x 3 matrices with columns from 1e-12 to 1e12", unit,
+          200'000, runThree),
+      row("matrices.determinants",
+          "determinants of 3 x 3 and 4 x 4 matrices with columns from 1e-4 to 1e4",
+          "rounding units of the terms' magnitudes", 200'000, runDeterminants),
   };
 }
 

@@ -30,7 +30,9 @@ Outcome runSelfHits(Path path, std::uint64_t cases, std::uint32_t seed) {
       continue; // where the bound is given up (runtime/device/ray/Spawn.h)
     target.replaceBy(meshOf({triangle}));
     if (target.meet(ray.origin, ray.direction))
-      worst.count(target.meetsAgain(ray.origin, ray.direction, onwards), [&] { return ray.text() + ", " + triangle.text() + ", onwards " + show(onwards); });
+      worst.count(target.meetsAgain(ray.origin, ray.direction, onwards), [&] {
+        return ray.text() + ", " + triangle.text() + ", onwards " + show(onwards);
+      });
   }
   return worst.outcome();
 }
@@ -44,13 +46,14 @@ Outcome runHitPoints(Path path, std::uint64_t cases, std::uint32_t seed) {
     const Ray ray = rayTowards(random, triangle, -8, 8);
     target.replaceBy(meshOf({triangle}));
     if (target.meet(ray.origin, ray.direction))
-      worst.add(pointOffPlane(triangle, target.hitPoint(ray.origin, ray.direction)), [&] { return ray.text() + ", " + triangle.text(); });
+      worst.add(pointOffPlane(triangle, target.hitPoint(ray.origin, ray.direction)),
+                [&] { return ray.text() + ", " + triangle.text(); });
   }
   return worst.outcome();
 }
 
-/// The widest gap to a second triangle, behind the first one as the eye sees them, that a ray which goes on from the first one
-/// jumps.
+/// The widest gap to a second triangle, behind the first one as the eye sees them, that a ray which
+/// goes on from the first one jumps.
 Outcome runJumps(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -62,14 +65,16 @@ Outcome runJumps(Path path, std::uint64_t cases, std::uint32_t seed) {
     if (!target.meet(ray.origin, ray.direction))
       continue;
     const Vec3 point = target.hitPoint(ray.origin, ray.direction);
-    const std::optional<Gap> gap = gapAbove(random, triangle, point, Plane(triangle).cosine(ray.direction) > 0 ? 1 : -1);
+    const std::optional<Gap> gap =
+        gapAbove(random, triangle, point, Plane(triangle).cosine(ray.direction) > 0 ? 1 : -1);
     if (!gap)
       continue;
     target.replaceBy(meshOf({triangle, gap->ceiling}));
     const Vec3 seen = target.hitPoint(ray.origin, ray.direction);
     if (!(seen.x == point.x && seen.y == point.y && seen.z == point.z))
       continue; // from there the second one is the nearer
-    worst.add(target.meetsNext(ray.origin, ray.direction, gap->direction) == 1 ? 0 : gap->ulps, [&] { return ray.text() + ", " + gap->text(); });
+    worst.add(target.meetsNext(ray.origin, ray.direction, gap->direction) == 1 ? 0 : gap->ulps,
+              [&] { return ray.text() + ", " + gap->text(); });
   }
   return worst.outcome();
 }
@@ -91,10 +96,16 @@ double nanosecondsAWay(Path path) {
 std::vector<Row> meshSpawnRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAWay);
   return {
-      row("surfaces.selfHits", "rendered: rays that leave a triangle in any direction but within 2^-11 of its plane: those that meet it again", "hits", 1'000'000, runSelfHits),
-      row("surfaces.hitPoints", "rendered: the distance of the hit point from its triangle's plane", "rounding units of the largest coordinate", 500'000, runHitPoints),
-      row("surfaces.jumps", "rendered: gaps between two triangles that a ray from one of them to the other jumps, at any cosine above 1/8", "ulp of the largest coordinate, the widest gap",
-          1'000'000, runJumps),
+      row("surfaces.selfHits",
+          "rendered: rays that leave a triangle in any direction but within 2^-11 of its plane: "
+          "those that meet it again",
+          "hits", 1'000'000, runSelfHits),
+      row("surfaces.hitPoints", "rendered: the distance of the hit point from its triangle's plane",
+          "rounding units of the largest coordinate", 500'000, runHitPoints),
+      row("surfaces.jumps",
+          "rendered: gaps between two triangles that a ray from one of them to the other jumps, at "
+          "any cosine above 1/8",
+          "ulp of the largest coordinate, the widest gap", 1'000'000, runJumps),
   };
 }
 

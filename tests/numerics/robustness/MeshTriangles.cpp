@@ -16,7 +16,8 @@ namespace {
 
 using device::Vec3;
 
-/// The triangle is one of eight, so that there is a tree with its box in it. The others have no area and are met by nobody.
+/// The triangle is one of eight, so that there is a tree with its box in it. The others have no
+/// area and are met by nobody.
 runtime::Mesh amongPoints(Random &random, const Triangle &triangle) {
   const float around = 4 * triangle.largestCoordinate();
   std::vector<Triangle> triangles;
@@ -50,13 +51,15 @@ Outcome runHitPoints(Path path, std::uint64_t cases, std::uint32_t seed) {
     const TriangleCase given = kinds[i % kinds.size()].make(random, i / kinds.size());
     target.replaceBy(amongPoints(others, given.triangle));
     if (target.meet(given.ray.origin, given.ray.direction))
-      worst.add(pointOffPlane(given.triangle, target.hitPoint(given.ray.origin, given.ray.direction)), [&] { return given.text(); });
+      worst.add(
+          pointOffPlane(given.triangle, target.hitPoint(given.ray.origin, given.ray.direction)),
+          [&] { return given.text(); });
   }
   return worst.outcome();
 }
 
-/// How far the point at t is from the segment, or the point, that a triangle without area is: in rounding units of the largest
-/// difference between a vertex and the origin.
+/// How far the point at t is from the segment, or the point, that a triangle without area is: in
+/// rounding units of the largest difference between a vertex and the origin.
 double offTheSegment(const TriangleCase &given, float t) {
   if (!std::isfinite(t))
     return std::numeric_limits<double>::infinity();
@@ -82,14 +85,16 @@ Outcome runDegenerate(Path path, std::uint64_t cases, std::uint32_t seed) {
   RayTarget &target = changingMesh(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
     const TriangleCase given = degenerateTriangle(random, i);
-    target.replaceBy(meshOf({given.triangle, given.triangle, given.triangle, given.triangle, given.triangle}));
+    target.replaceBy(
+        meshOf({given.triangle, given.triangle, given.triangle, given.triangle, given.triangle}));
     const auto t = target.meet(given.ray.origin, given.ray.direction);
     worst.add(t ? offTheSegment(given, *t) : 0, [&] { return given.text(); });
   }
   return worst.outcome();
 }
 
-/// Where the ray meets the triangle's plane, in units of its direction, and the smallest weight there. False if it never does.
+/// Where the ray meets the triangle's plane, in units of its direction, and the smallest weight
+/// there. False if it never does.
 bool meetInDouble(const Ray &ray, const Triangle &triangle, double &t, double &weight) {
   double e1[3], e2[3], s[3], d[3];
   for (int i = 0; i < 3; ++i) {
@@ -99,7 +104,8 @@ bool meetInDouble(const Ray &ray, const Triangle &triangle, double &t, double &w
     d[i] = ray.direction[i];
   }
   const auto determinant = [](const double *a, const double *b, const double *c) {
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
   };
   const double whole = determinant(d, e2, e1);
   if (whole == 0)
@@ -110,8 +116,9 @@ bool meetInDouble(const Ray &ray, const Triangle &triangle, double &t, double &w
   return true;
 }
 
-/// As many triangles as there are cases, whose boxes all have their centre in the origin: each has the box's two opposite corners. Rays
-/// that pass near the origin meet many; the nearest one is found.
+/// As many triangles as there are cases, whose boxes all have their centre in the origin: each has
+/// the box's two opposite corners. Rays that pass near the origin meet many; the nearest one is
+/// found.
 Outcome runEqualCentroids(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -119,7 +126,8 @@ Outcome runEqualCentroids(Path path, std::uint64_t cases, std::uint32_t seed) {
   std::vector<Triangle> triangles;
   for (std::uint64_t i = 0; i < cases; ++i) {
     const Vec3 corner = random.inBox(1);
-    const Vec3 third = {corner.x * random.between(-1, 1), corner.y * random.between(-1, 1), corner.z * random.between(-1, 1)};
+    const Vec3 third = {corner.x * random.between(-1, 1), corner.y * random.between(-1, 1),
+                        corner.z * random.between(-1, 1)};
     triangles.push_back({{corner, corner * -1.0f, third}});
   }
   target.replaceBy(meshOf(triangles));
@@ -162,11 +170,22 @@ std::vector<Row> meshTriangleRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAMeeting);
   std::vector<Row> rows;
   for (const TriangleKind &kind : triangleKinds())
-    rows.push_back(row(std::string("meshes.") + kind.name, std::string("rendered: ") + kind.description, planeUnits, 200'000,
-                       [&kind](Path p, std::uint64_t cases, std::uint32_t seed) { return runKind(p, kind, cases, seed); }));
-  rows.push_back(row("meshes.hitPoints", "the hit points of all these: their distance from the triangle's plane", "rounding units of the largest coordinate", 200'000, runHitPoints));
-  rows.push_back(row("meshes.degenerate", "five times the same triangle with collinear or duplicate vertices: hits", "off the segment that it is, rounding units of the farthest vertex", 500'000, runDegenerate));
-  rows.push_back(row("meshes.equalCentroids", "a million triangles whose boxes have one centre: the nearest one that 100 rays meet", planeUnits, 1'000'000, runEqualCentroids));
+    rows.push_back(row(std::string("meshes.") + kind.name,
+                       std::string("rendered: ") + kind.description, planeUnits, 200'000,
+                       [&kind](Path p, std::uint64_t cases, std::uint32_t seed) {
+                         return runKind(p, kind, cases, seed);
+                       }));
+  rows.push_back(row("meshes.hitPoints",
+                     "the hit points of all these: their distance from the triangle's plane",
+                     "rounding units of the largest coordinate", 200'000, runHitPoints));
+  rows.push_back(row("meshes.degenerate",
+                     "five times the same triangle with collinear or duplicate vertices: hits",
+                     "off the segment that it is, rounding units of the farthest vertex", 500'000,
+                     runDegenerate));
+  rows.push_back(
+      row("meshes.equalCentroids",
+          "a million triangles whose boxes have one centre: the nearest one that 100 rays meet",
+          planeUnits, 1'000'000, runEqualCentroids));
   return rows;
 }
 

@@ -18,8 +18,8 @@ namespace {
 
 using device::Vec3;
 
-/// A closed mesh around the origin: an octahedron whose faces were divided three times, its vertices moved in and out. It is
-/// star-shaped, so that the origin sees all of it.
+/// A closed mesh around the origin: an octahedron whose faces were divided three times, its
+/// vertices moved in and out. It is star-shaped, so that the origin sees all of it.
 struct ClosedMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> faces;
@@ -50,7 +50,8 @@ private:
   void divide() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [place, isNew] = middles.try_emplace({std::min(a, b), std::max(a, b)}, std::uint32_t(vertices.size()));
+      const auto [place, isNew] =
+          middles.try_emplace({std::min(a, b), std::max(a, b)}, std::uint32_t(vertices.size()));
       if (isNew)
         vertices.push_back((vertices[a] + vertices[b]) * 0.5f);
       return place->second;
@@ -73,7 +74,8 @@ const MeshTarget &target(Path path) {
   return only;
 }
 
-/// From inside to a vertex or a point of an edge; from the origin itself, or from beside it. The direction has any length.
+/// From inside to a vertex or a point of an edge; from the origin itself, or from beside it. The
+/// direction has any length.
 Ray throughAnEdge(Random &random, const ClosedMesh &mesh) {
   const auto &face = mesh.faces[random.index(mesh.faces.size())];
   const Vec3 from = mesh.vertices[face[0]], to = mesh.vertices[face[1]];
@@ -92,7 +94,8 @@ Outcome runEdges(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
-/// Rays that leave a point of an edge towards the inside: the mesh is closed, so they meet it again.
+/// Rays that leave a point of an edge towards the inside: the mesh is closed, so they meet it
+/// again.
 Outcome runLeaving(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -101,8 +104,10 @@ Outcome runLeaving(Path path, std::uint64_t cases, std::uint32_t seed) {
     if (!target(path).meet(ray.origin, ray.direction))
       continue; // the other row's
     // Back to about where it came from.
-    const Vec3 onwards = (random.inBox(0.01f) - device::normalized(ray.direction)) * std::ldexp(1.0f, random.integer(-10, 10));
-    worst.count(!target(path).meetsAgain(ray.origin, ray.direction, onwards), [&] { return ray.text(); });
+    const Vec3 onwards = (random.inBox(0.01f) - device::normalized(ray.direction)) *
+                         std::ldexp(1.0f, random.integer(-10, 10));
+    worst.count(!target(path).meetsAgain(ray.origin, ray.direction, onwards),
+                [&] { return ray.text(); });
   }
   return worst.outcome();
 }
@@ -122,8 +127,13 @@ double nanosecondsAMeeting(Path path) {
 std::vector<Row> meshRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAMeeting);
   return {
-      row("meshes.edges", "camera rays from inside a closed mesh of 512 triangles, through its edges and vertices, with directions of length 2^-30 to 2^30: those that see through it", "misses", 1'000'000, runEdges),
-      row("meshes.leaving", "rays that leave such points towards the inside: those that do not meet the mesh again", "misses", 200'000, runLeaving),
+      row("meshes.edges",
+          "camera rays from inside a closed mesh of 512 triangles, through its edges and vertices, "
+          "with directions of length 2^-30 to 2^30: those that see through it",
+          "misses", 1'000'000, runEdges),
+      row("meshes.leaving",
+          "rays that leave such points towards the inside: those that do not meet the mesh again",
+          "misses", 200'000, runLeaving),
   };
 }
 

@@ -15,13 +15,15 @@ constexpr std::uint32_t samples = 1'000'000;
 class Picture {
 public:
   explicit Picture(Path path)
-      : shaders({"tests/numerics/robustness/shaders/BrightAndDark.rtsl"}, {"BrightAndDark", "Across"}, {}, path) {
+      : shaders({"tests/numerics/robustness/shaders/BrightAndDark.rtsl"},
+                {"BrightAndDark", "Across"}, {}, path) {
     shaders.scene().setCamera(shaders.scene().addObject("Across"));
     shaders.scene().setBackground(shaders.scene().addObject("BrightAndDark"));
     shaders.finish();
   }
 
-  runtime::Image operator()(std::uint32_t width, std::uint32_t samplesPerPixel, std::uint32_t seed) const {
+  runtime::Image operator()(std::uint32_t width, std::uint32_t samplesPerPixel,
+                            std::uint32_t seed) const {
     runtime::RenderOptions options;
     options.width = width;
     options.height = 1;
@@ -46,10 +48,13 @@ Outcome runBrightAndDark(Path path, std::uint64_t cases, std::uint32_t seed) {
   const runtime::Image image = picture(path)(pixels, samples, seed);
   for (std::uint32_t x = 0; x < pixels; ++x) {
     const float *pixel = image.at(x, 0);
-    const auto bright = std::lround(double(pixel[1]) * samples); // a mean of ones, so that its rounding does not matter
-    const long double truth = ((long double)bright * 1e8f + (long double)(samples - bright) * 1e-4f) / samples;
+    const auto bright = std::lround(
+        double(pixel[1]) * samples); // a mean of ones, so that its rounding does not matter
+    const long double truth =
+        ((long double)bright * 1e8f + (long double)(samples - bright) * 1e-4f) / samples;
     const double error = double(std::fabs(((long double)pixel[0] - truth) / truth));
-    worst.add(std::isfinite(pixel[0]) ? error : std::numeric_limits<double>::infinity(), [&] { return std::to_string(bright) + " bright samples"; });
+    worst.add(std::isfinite(pixel[0]) ? error : std::numeric_limits<double>::infinity(),
+              [&] { return std::to_string(bright) + " bright samples"; });
   }
   return worst.outcome();
 }
@@ -62,8 +67,12 @@ double nanosecondsASample(Path path) {
 } // namespace
 
 std::vector<Row> pixelRows(Path path) {
-  return {{"pixels.brightAndDark", "rendered pixels of a million samples of 1e-4 and 1e8: the mean against exact arithmetic", "relative error", 800'000'000,
-           [=](std::uint64_t cases, std::uint32_t seed) { return runBrightAndDark(path, cases, seed); }, [=] { return nanosecondsASample(path); }}};
+  return {
+      {"pixels.brightAndDark",
+       "rendered pixels of a million samples of 1e-4 and 1e8: the mean against exact arithmetic",
+       "relative error", 800'000'000,
+       [=](std::uint64_t cases, std::uint32_t seed) { return runBrightAndDark(path, cases, seed); },
+       [=] { return nanosecondsASample(path); }}};
 }
 
 } // namespace rtsl::numerics

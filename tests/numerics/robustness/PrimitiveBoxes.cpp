@@ -22,11 +22,13 @@ using device::Vec3;
 class BoxTarget {
 public:
   explicit BoxTarget(Path path)
-      : shaders({"tests/numerics/robustness/shaders/Entered.rtsl", "tests/numerics/robustness/shaders/Reader.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"},
+      : shaders({"tests/numerics/robustness/shaders/Entered.rtsl",
+                 "tests/numerics/robustness/shaders/Reader.rtsl",
+                 "tests/numerics/robustness/shaders/Probe.rtsl"},
                 {"Entered", "Reader", "Probe"}, {{"Entered", "Reader"}}, path) {}
 
-  /// Among boxes that lie round about it, some of them without thickness too. Gives the tree's box for it, which is some ulps
-  /// larger.
+  /// Among boxes that lie round about it, some of them without thickness too. Gives the tree's box
+  /// for it, which is some ulps larger.
   Box place(Random &random, const Box &box) {
     shaders.restart();
     reader = shaders.scene().addObject("Reader");
@@ -37,7 +39,8 @@ public:
     std::uint32_t instance = 0;
     for (int i = 0; i < 8; ++i) {
       const Vec3 corner = random.inBox(around), other = random.inBox(around);
-      const Box another = boxAround(corner, {random.integer(0, 1) ? corner.x : other.x, other.y, other.z});
+      const Box another =
+          boxAround(corner, {random.integer(0, 1) ? corner.x : other.x, other.y, other.z});
       const std::uint32_t added = add(i == number ? box : another, i == number);
       instance = i == number ? added : instance;
     }
@@ -55,7 +58,12 @@ public:
 private:
   std::uint32_t add(const Box &box, bool isThere) {
     const auto value = [](Vec3 v) { return runtime::Value{v.x, v.y, v.z}; };
-    const RtslRef object = shaders.scene().addObject("Entered", runtime::ObjectValues{{}, {{"lower", value(box.lower)}, {"upper", value(box.upper)}, {"isThere", isThere ? 1.0 : 0.0}}, {}});
+    const RtslRef object = shaders.scene().addObject(
+        "Entered", runtime::ObjectValues{{},
+                                         {{"lower", value(box.lower)},
+                                          {"upper", value(box.upper)},
+                                          {"isThere", isThere ? 1.0 : 0.0}},
+                                         {}});
     return shaders.scene().addPrimitive(object, reader);
   }
 
@@ -72,7 +80,9 @@ BoxTarget &target(Path path) {
 Vec3 movedWithSides(Vec3 origin, const Box &from, const Box &to) {
   float moved[3];
   for (int i = 0; i < 3; ++i)
-    moved[i] = origin[i] == from.lower[i] ? to.lower[i] : origin[i] == from.upper[i] ? to.upper[i] : origin[i];
+    moved[i] = origin[i] == from.lower[i]   ? to.lower[i]
+               : origin[i] == from.upper[i] ? to.upper[i]
+                                            : origin[i];
   return device::load(moved);
 }
 
@@ -83,7 +93,8 @@ Outcome runKind(Path path, const BoxKind &kind, std::uint64_t cases, std::uint32
     BoxCase given = kind.make(random, i);
     const Box inTree = target(path).place(others, given.box);
     given = {{movedWithSides(given.ray.origin, given.box, inTree), given.ray.direction}, inTree};
-    worst.count(!target(path).isEntered(given.ray) && given.meetsExactly(), [&] { return given.text(); });
+    worst.count(!target(path).isEntered(given.ray) && given.meetsExactly(),
+                [&] { return given.text(); });
   }
   return worst.outcome();
 }
@@ -105,8 +116,13 @@ double nanosecondsABox(Path path) {
 std::vector<Row> primitiveBoxRows(Path path) {
   std::vector<Row> rows;
   for (const BoxKind &kind : boxKinds())
-    rows.push_back({std::string("bounds.") + kind.name, std::string("bounds of primitives in a scene: ") + kind.description, "misses", 200'000,
-                    [path, &kind](std::uint64_t cases, std::uint32_t seed) { return runKind(path, kind, cases, seed); }, [path] { return nanosecondsABox(path); }});
+    rows.push_back({std::string("bounds.") + kind.name,
+                    std::string("bounds of primitives in a scene: ") + kind.description, "misses",
+                    200'000,
+                    [path, &kind](std::uint64_t cases, std::uint32_t seed) {
+                      return runKind(path, kind, cases, seed);
+                    },
+                    [path] { return nanosecondsABox(path); }});
   return rows;
 }
 

@@ -19,7 +19,8 @@ using device::Vec3;
 class Quadric : public QuadricTarget {
 public:
   explicit Quadric(Path path)
-      : QuadricTarget("examples/quadrics/Quadric.rtsl", "Quadric", {{"extent", {targetRoom, targetRoom, targetRoom}}}, path) {}
+      : QuadricTarget("examples/quadrics/Quadric.rtsl", "Quadric",
+                      {{"extent", {targetRoom, targetRoom, targetRoom}}}, path) {}
 
   /// The box is a cube with sides of 2 `theReach`.
   void place(Vec3 at, Vec3 theCoefficients, float theLevel, float theReach) {
@@ -35,8 +36,9 @@ public:
 
 private:
   std::string show(const Ray &ray) const override {
-    return fmt::format("center {}, coefficients {}, level {:a}, reach {:a}, {}", numerics::show(center), numerics::show(coefficients), static_cast<float>(level),
-                       reach, ray.text());
+    return fmt::format("center {}, coefficients {}, level {:a}, reach {:a}, {}",
+                       numerics::show(center), numerics::show(coefficients),
+                       static_cast<float>(level), reach, ray.text());
   }
 
   float reach = 1;
@@ -47,13 +49,15 @@ Quadric &quadric(Path path) {
   return only;
 }
 
-/// An ellipsoid whose half axes are `size` times at most `ratio` and one over that; gives the shortest.
+/// An ellipsoid whose half axes are `size` times at most `ratio` and one over that; gives the
+/// shortest.
 float placeEllipsoid(Random &random, Quadric &target, Vec3 at, float size, float ratio) {
   std::array<float, 3> axes;
   for (float &axis : axes)
     axis = size * std::pow(ratio, random.between(-1, 1));
   const auto inverseSquare = [&](float axis) { return (size / axis) * (size / axis); };
-  target.place(at, {inverseSquare(axes[0]), inverseSquare(axes[1]), inverseSquare(axes[2])}, size * size, 2 * size * ratio);
+  target.place(at, {inverseSquare(axes[0]), inverseSquare(axes[1]), inverseSquare(axes[2])},
+               size * size, 2 * size * ratio);
   return *std::min_element(axes.begin(), axes.end());
 }
 
@@ -92,9 +96,12 @@ Outcome runPoints(Path path, std::uint64_t cases, std::uint32_t seed) {
   Worst worst;
   Quadric &target = quadric(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
-    const float size = powerOfTen(random, -6, 6), distance = std::min(1e7f, size * powerOfTen(random, 0.2f, 13));
-    placeAny(random, target, random.integer(0, 1) ? Vec3{0, 0, 0} : random.inBox(10 * std::min(size, 1e6f)), size);
-    target.judgePoint(aimedFrom(random, target.center, size, distance, size * random.between(0, 2)), worst);
+    const float size = powerOfTen(random, -6, 6),
+                distance = std::min(1e7f, size * powerOfTen(random, 0.2f, 13));
+    placeAny(random, target,
+             random.integer(0, 1) ? Vec3{0, 0, 0} : random.inBox(10 * std::min(size, 1e6f)), size);
+    target.judgePoint(aimedFrom(random, target.center, size, distance, size * random.between(0, 2)),
+                      worst);
   }
   return worst.outcome();
 }
@@ -104,9 +111,13 @@ Outcome runSilhouettes(Path path, std::uint64_t cases, std::uint32_t seed) {
   Worst worst;
   Quadric &target = quadric(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
-    const float size = powerOfTen(random, -6, 6), distance = std::min(1e7f, size * powerOfTen(random, 1.5f, 13));
-    const float shortest = placeEllipsoid(random, target, random.integer(0, 1) ? Vec3{0, 0, 0} : random.inBox(size), size, 3);
-    target.judgeSilhouette(aimedFrom(random, target.center, size, distance, size * random.between(0, 2)), shortest, worst);
+    const float size = powerOfTen(random, -6, 6),
+                distance = std::min(1e7f, size * powerOfTen(random, 1.5f, 13));
+    const float shortest = placeEllipsoid(
+        random, target, random.integer(0, 1) ? Vec3{0, 0, 0} : random.inBox(size), size, 3);
+    target.judgeSilhouette(
+        aimedFrom(random, target.center, size, distance, size * random.between(0, 2)), shortest,
+        worst);
   }
   return worst.outcome();
 }
@@ -117,18 +128,22 @@ Outcome runTangents(Path path, std::uint64_t cases, std::uint32_t seed) {
   Worst worst;
   Quadric &target = quadric(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
-    const float size = powerOfTen(random, -6, 6), distance = std::min(1e7f, size * powerOfTen(random, 2, 13));
-    const float shortest = placeEllipsoid(random, target, random.integer(0, 1) ? Vec3{0, 0, 0} : random.inBox(size), size, 10);
+    const float size = powerOfTen(random, -6, 6),
+                distance = std::min(1e7f, size * powerOfTen(random, 2, 13));
+    const float shortest = placeEllipsoid(
+        random, target, random.integer(0, 1) ? Vec3{0, 0, 0} : random.inBox(size), size, 10);
     // How near a ray passes is in proportion to where it is aimed, nearly.
     float impact = size;
     const Random before = random;
     for (int step = 0; step < 3; ++step) {
       random = before;
-      impact /= static_cast<float>(target.passing(aimedFrom(random, target.center, size, distance, impact)));
+      impact /= static_cast<float>(
+          target.passing(aimedFrom(random, target.center, size, distance, impact)));
     }
     impact += impact * random.between(-1, 1) * 1e-6f;
     Random again = before;
-    target.judgeSilhouette(aimedFrom(again, target.center, size, distance, impact), shortest, worst);
+    target.judgeSilhouette(aimedFrom(again, target.center, size, distance, impact), shortest,
+                           worst);
   }
   return worst.outcome();
 }
@@ -141,7 +156,8 @@ Outcome runInside(Path path, std::uint64_t cases, std::uint32_t seed) {
     const float size = powerOfTen(random, -6, 6);
     const float shortest = placeEllipsoid(random, target, random.inBox(10 * size), size, mostRatio);
     const float depth = i % 3 == 0 ? random.between(0, 0.999f) : i % 3 == 1 ? 0.0f : 0.999f;
-    const Ray ray = {target.center + random.direction() * (shortest * depth), random.direction() * std::ldexp(1.0f, random.integer(-20, 20))};
+    const Ray ray = {target.center + random.direction() * (shortest * depth),
+                     random.direction() * std::ldexp(1.0f, random.integer(-20, 20))};
     if (target.isInside(ray.origin, 1e-4)) // rounding may have taken it to the surface
       target.judgeInside(ray, worst);
   }
@@ -153,9 +169,11 @@ Outcome runSurface(Path path, std::uint64_t cases, std::uint32_t seed) {
   Worst worst;
   Quadric &target = quadric(path);
   for (std::uint64_t i = 0; i < cases; ++i) {
-    const float size = powerOfTen(random, -6, 6), distance = std::min(1e7f, size * powerOfTen(random, 1, 3));
+    const float size = powerOfTen(random, -6, 6),
+                distance = std::min(1e7f, size * powerOfTen(random, 1, 3));
     placeEllipsoid(random, target, random.inBox(10 * size), size, 3);
-    const Ray ray = aimedFrom(random, target.center, size, distance, size * random.between(0, 0.3f));
+    const Ray ray =
+        aimedFrom(random, target.center, size, distance, size * random.between(0, 0.3f));
     target.judgeLeaving(ray, random.direction() * std::ldexp(1.0f, random.integer(-20, 20)), worst);
   }
   return worst.outcome();
@@ -173,12 +191,24 @@ std::vector<Row> quadricRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAMeeting);
   const char *off = "off the surface, rounding units of the largest coordinate";
   return {
-      row("quadrics.points", "ellipsoids, cylinders, cones and hyperboloids of size 1e-6 to 1e6 at distances up to 1e7: hit points", off, 200'000, runPoints),
-      row("quadrics.silhouettes", "the same for ellipsoids with axes of 1/3 to 3: how near to the silhouette a ray passes that is told the wrong answer",
+      row("quadrics.points",
+          "ellipsoids, cylinders, cones and hyperboloids of size 1e-6 to 1e6 at distances up to "
+          "1e7: hit points",
+          off, 200'000, runPoints),
+      row("quadrics.silhouettes",
+          "the same for ellipsoids with axes of 1/3 to 3: how near to the silhouette a ray passes "
+          "that is told the wrong answer",
           "between hit and miss, rounding units of the distance", 200'000, runSilhouettes),
-      row("quadrics.tangents", "the same for axes of 1/10 to 10 and rays that pass within about 1e-6 of the silhouette", "between hit and miss, rounding units of the distance", 200'000, runTangents),
-      row("quadrics.inside", "rays from inside of ellipsoids with axes of 1/30 to 30: all of them meet it", off, 200'000, runInside),
-      row("quadrics.surface", "rays that leave a hit point of an ellipsoid: those that meet it outwards, or miss it inwards", "rays", 1'000'000, runSurface),
+      row("quadrics.tangents",
+          "the same for axes of 1/10 to 10 and rays that pass within about 1e-6 of the silhouette",
+          "between hit and miss, rounding units of the distance", 200'000, runTangents),
+      row("quadrics.inside",
+          "rays from inside of ellipsoids with axes of 1/30 to 30: all of them meet it", off,
+          200'000, runInside),
+      row("quadrics.surface",
+          "rays that leave a hit point of an ellipsoid: those that meet it outwards, or miss it "
+          "inwards",
+          "rays", 1'000'000, runSurface),
   };
 }
 

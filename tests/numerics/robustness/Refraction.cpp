@@ -25,7 +25,9 @@ struct Case {
 class Refraction {
 public:
   explicit Refraction(Path path)
-      : shaders({"tests/numerics/robustness/shaders/Refraction.rtsl", "tests/numerics/robustness/shaders/Probe.rtsl"}, {"Refraction", "Probe"}, {}, path),
+      : shaders({"tests/numerics/robustness/shaders/Refraction.rtsl",
+                 "tests/numerics/robustness/shaders/Probe.rtsl"},
+                {"Refraction", "Probe"}, {}, path),
         object(shaders.scene().addObject("Refraction")) {
     shaders.scene().setCamera(shaders.scene().addObject("Probe"));
     shaders.scene().setBackground(object);
@@ -58,11 +60,13 @@ Vec3 randomUnit(Random &random) {
   }
 }
 
-/// Unit vectors up to rounding, and an index at any distance from the one at which the ray begins to be reflected totally: a few
-/// floats, a share of 2^-1 to 2^-24, or anything.
+/// Unit vectors up to rounding, and an index at any distance from the one at which the ray begins
+/// to be reflected totally: a few floats, a share of 2^-1 to 2^-24, or anything.
 Case randomCase(Random &random) {
   Case one = {randomUnit(random), randomUnit(random), 0};
-  const double cosine = double(one.incident.x) * one.normal.x + double(one.incident.y) * one.normal.y + double(one.incident.z) * one.normal.z;
+  const double cosine = double(one.incident.x) * one.normal.x +
+                        double(one.incident.y) * one.normal.y +
+                        double(one.incident.z) * one.normal.z;
   one.eta = float(1 / std::sqrt(std::max(1 - cosine * cosine, 1e-3)));
   switch (random.integer(0, 2)) {
   case 0:
@@ -89,7 +93,8 @@ Precise radicandOf(const Case &one, PreciseVec3 &direction) {
 }
 
 std::string show(const Case &one) {
-  return fmt::format("incident {}, normal {}, eta {:a}", numerics::show(one.incident), numerics::show(one.normal), one.eta);
+  return fmt::format("incident {}, normal {}, eta {:a}", numerics::show(one.incident),
+                     numerics::show(one.normal), one.eta);
 }
 
 Outcome runDirection(Path path, std::uint64_t cases, std::uint32_t seed) {
@@ -104,7 +109,8 @@ Outcome runDirection(Path path, std::uint64_t cases, std::uint32_t seed) {
     Precise error = 0;
     for (std::size_t c = 0; c < 3; ++c)
       error = std::max(error, Precise(abs(Precise(seen[c]) - exact[c])));
-    worst.add(static_cast<double>(error) / 0x1p-24 / std::max(1.0, double(one.eta)), [&] { return show(one); });
+    worst.add(static_cast<double>(error) / 0x1p-24 / std::max(1.0, double(one.eta)),
+              [&] { return show(one); });
   }
   return worst.outcome();
 }
@@ -116,7 +122,8 @@ Outcome runTotalReflection(Path path, std::uint64_t cases, std::uint32_t seed) {
     const Case one = randomCase(random);
     PreciseVec3 exact;
     const bool isTotal = radicandOf(one, exact) < 0;
-    worst.count(isTotal != (refraction(path)(one) == std::array<float, 3>{0, 0, 0}), [&] { return show(one); });
+    worst.count(isTotal != (refraction(path)(one) == std::array<float, 3>{0, 0, 0}),
+                [&] { return show(one); });
   }
   return worst.outcome();
 }
@@ -135,8 +142,12 @@ double nanosecondsARefraction(Path path) {
 std::vector<Row> refractionRows(Path path) {
   const auto row = rowsOf(path, nanosecondsARefraction);
   return {
-      row("refraction.direction", "refract() at any distance from the angle of total reflection: the direction", "rounding units of max(1, eta)", 500'000, runDirection),
-      row("refraction.total", "the same rays: those that are wrongly reflected totally, or wrongly not", "rays", 500'000, runTotalReflection),
+      row("refraction.direction",
+          "refract() at any distance from the angle of total reflection: the direction",
+          "rounding units of max(1, eta)", 500'000, runDirection),
+      row("refraction.total",
+          "the same rays: those that are wrongly reflected totally, or wrongly not", "rays",
+          500'000, runTotalReflection),
   };
 }
 

@@ -17,12 +17,13 @@ namespace rtsl::numerics {
 
 /// What a row found.
 struct Outcome {
-  double worst = 0;          // in the row's unit; infinite where an answer is plainly wrong
-  std::uint64_t cases = 0;   // that were judged
-  std::string where;         // the worst case, to be looked at; empty if there was nothing wrong
+  double worst = 0;        // in the row's unit; infinite where an answer is plainly wrong
+  std::uint64_t cases = 0; // that were judged
+  std::string where;       // the worst case, to be looked at; empty if there was nothing wrong
 };
 
-/// A generator of hard inputs, an exact oracle, and the measure of error. The bound lies in bounds.json.
+/// A generator of hard inputs, an exact oracle, and the measure of error. The bound lies in
+/// bounds.json.
 struct Row {
   std::string name;        // family.case
   std::string description; // what is done, to what, compared with what
@@ -32,10 +33,18 @@ struct Row {
   std::function<double()> nanoseconds; // a call of the code under test, on easy inputs
 };
 
-/// Makes rows of one path from functions of (path, cases, seed); `nanoseconds(path)` is what a call costs.
-template <typename Nanoseconds> auto rowsOf(Path path, Nanoseconds nanoseconds) {
-  return [=](std::string name, std::string description, const char *unit, std::uint64_t cases, auto run) {
-    return Row{std::move(name), std::move(description), unit, cases, [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); }, [=] { return nanoseconds(path); }};
+/// Makes rows of one path from functions of (path, cases, seed); `nanoseconds(path)` is what a call
+/// costs.
+template <typename Nanoseconds>
+auto rowsOf(Path path, Nanoseconds nanoseconds) {
+  return [=](std::string name, std::string description, const char *unit, std::uint64_t cases,
+             auto run) {
+    return Row{std::move(name),
+               std::move(description),
+               unit,
+               cases,
+               [=](std::uint64_t n, std::uint32_t seed) { return run(path, n, seed); },
+               [=] { return nanoseconds(path); }};
   };
 }
 

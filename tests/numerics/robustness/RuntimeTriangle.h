@@ -9,9 +9,11 @@
 
 namespace rtsl::numerics {
 
-inline std::optional<device::TriangleHit> meet(const Triangle &triangle, device::Vec3 origin, device::Vec3 direction) {
+inline std::optional<device::TriangleHit> meet(const Triangle &triangle, device::Vec3 origin,
+                                               device::Vec3 direction) {
   device::TriangleHit hit;
-  if (!device::intersectTriangle(device::makeTriangleRay(origin, direction), triangle.v[0], triangle.v[1], triangle.v[2], hit))
+  if (!device::intersectTriangle(device::makeTriangleRay(origin, direction), triangle.v[0],
+                                 triangle.v[1], triangle.v[2], hit))
     return std::nullopt;
   return hit;
 }

@@ -13,7 +13,9 @@ void addOptions(CLI::App &app) {
 
 std::vector<Row> allRows(Path path) {
   std::vector<Row> rows;
-  for (const auto &family : {meshRows, meshTriangleRows, meshSpawnRows, primitiveBoxRows, pixelRows, sphereRows, quadricRows, torusRows, scatteringRows, refractionRows, metalRows, matrixRows, attenuationRows})
+  for (const auto &family : {meshRows, meshTriangleRows, meshSpawnRows, primitiveBoxRows, pixelRows,
+                             sphereRows, quadricRows, torusRows, scatteringRows, refractionRows,
+                             metalRows, matrixRows, attenuationRows})
     for (Row &row : family(path))
       rows.push_back(std::move(row));
   return rows;

@@ -10,16 +10,25 @@ using device::Vec3;
 
 namespace {
 
-Vector difference(Vec3 a, Vec3 b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
-Vector cross(const Vector &a, const Vector &b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
-double dot(const Vector &a, const Vector &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector difference(Vec3 a, Vec3 b) {
+  return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
+}
+Vector cross(const Vector &a, const Vector &b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double dot(const Vector &a, const Vector &b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
-float lastPlaceOf(float coordinate) { return std::ldexp(1.0f, device::exponentOf(coordinate) - 23); }
+float lastPlaceOf(float coordinate) {
+  return std::ldexp(1.0f, device::exponentOf(coordinate) - 23);
+}
 
 } // namespace
 
 Triangle triangleToLeave(Random &random) {
-  const float far = std::ldexp(1.0f, random.integer(-10, 10)), size = far * std::ldexp(1.0f, random.integer(-18, 0));
+  const float far = std::ldexp(1.0f, random.integer(-10, 10)),
+              size = far * std::ldexp(1.0f, random.integer(-18, 0));
   const Vec3 place = random.inBox(far);
   return {{place + random.inBox(size), place + random.inBox(size), place + random.inBox(size)}};
 }
@@ -27,7 +36,8 @@ Triangle triangleToLeave(Random &random) {
 Ray rayTowards(Random &random, const Triangle &triangle, int lowest, int highest) {
   const float u = random.between(0, 1), v = random.between(0, 1) * (1 - u);
   const Vec3 point = triangle.v[0] * (1 - u - v) + triangle.v[1] * u + triangle.v[2] * v;
-  const float distance = triangle.largestCoordinate() * std::ldexp(1.0f, random.integer(lowest, highest));
+  const float distance =
+      triangle.largestCoordinate() * std::ldexp(1.0f, random.integer(lowest, highest));
   const Vec3 origin = point + random.direction() * distance;
   return {origin, point - origin};
 }
@@ -41,7 +51,9 @@ Plane::Plane(const Triangle &triangle) : base(triangle.v[0]) {
     component /= length;
 }
 
-double Plane::distance(Vec3 point) const { return dot(difference(point, base), normal); }
+double Plane::distance(Vec3 point) const {
+  return dot(difference(point, base), normal);
+}
 
 double Plane::cosine(Vec3 direction) const {
   const Vector d = difference(direction, {0, 0, 0});
@@ -65,16 +77,22 @@ std::optional<Gap> gapAbove(Random &random, const Triangle &triangle, Vec3 point
   const Plane plane(gap.ceiling);
   const Vector along = {gap.direction.x, gap.direction.y, gap.direction.z};
   const double t = -plane.distance(gap.point) / dot(along, plane.normal);
-  const Vector crossing = {gap.point.x + t * along[0], gap.point.y + t * along[1], gap.point.z + t * along[2]};
+  const Vector crossing = {gap.point.x + t * along[0], gap.point.y + t * along[1],
+                           gap.point.z + t * along[2]};
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 from = gap.ceiling.v[i], to = gap.ceiling.v[(i + 1) % 3], other = gap.ceiling.v[(i + 2) % 3];
+    const Vec3 from = gap.ceiling.v[i], to = gap.ceiling.v[(i + 1) % 3],
+               other = gap.ceiling.v[(i + 2) % 3];
     const Vector inward = cross(plane.normal, difference(to, from));
     const Vector here = {crossing[0] - from.x, crossing[1] - from.y, crossing[2] - from.z};
     if (!(dot(inward, here) > 0.02 * dot(inward, difference(other, from))))
       return std::nullopt;
   }
-  const double wide = lastPlaceOf(std::max(triangle.largestCoordinate(), gap.ceiling.largestCoordinate()));
-  gap.ulps = (dot(crossing, floor.normal) - (floor.normal[0] * floor.base.x + floor.normal[1] * floor.base.y + floor.normal[2] * floor.base.z)) * side / wide;
+  const double wide =
+      lastPlaceOf(std::max(triangle.largestCoordinate(), gap.ceiling.largestCoordinate()));
+  gap.ulps = (dot(crossing, floor.normal) -
+              (floor.normal[0] * floor.base.x + floor.normal[1] * floor.base.y +
+               floor.normal[2] * floor.base.z)) *
+             side / wide;
   return gap;
 }
 

@@ -29,17 +29,23 @@ struct Plane {
   double cosine(device::Vec3 direction) const;
 };
 
-/// A second triangle at a small distance from one that was hit, and a ray from the hit point through both.
+/// A second triangle at a small distance from one that was hit, and a ray from the hit point
+/// through both.
 struct Gap {
   Triangle ceiling;
   device::Vec3 point, direction;
-  double ulps; // between the two, along the normal where the ray goes; in the last place of the largest coordinate
+  // between the two, along the normal where the ray goes; in the last place of the largest
+  // coordinate
+  double ulps;
 
-  std::string text() const { return "point " + show(point) + ", direction " + show(direction) + ", " + ceiling.text(); }
+  std::string text() const {
+    return "point " + show(point) + ", direction " + show(direction) + ", " + ceiling.text();
+  }
 };
 
-/// On the given side, 1 or -1, of the plane through `point` of the triangle. Nothing for slivers, and where the ray passes the
-/// second triangle near its edges.
-std::optional<Gap> gapAbove(Random &random, const Triangle &triangle, device::Vec3 point, float side);
+/// On the given side, 1 or -1, of the plane through `point` of the triangle. Nothing for slivers,
+/// and where the ray passes the second triangle near its edges.
+std::optional<Gap> gapAbove(Random &random, const Triangle &triangle, device::Vec3 point,
+                            float side);
 
 } // namespace rtsl::numerics

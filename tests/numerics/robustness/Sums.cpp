@@ -40,8 +40,8 @@ private:
   float value = 0;
 };
 
-/// A million samples a pixel, each 1e-4 or 1e8, in random order and in the worst ones, against the exact mean: both kinds
-/// are added up as integers.
+/// A million samples a pixel, each 1e-4 or 1e8, in random order and in the worst ones, against the
+/// exact mean: both kinds are added up as integers.
 Outcome runBrightAndDark(std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -52,13 +52,15 @@ Outcome runBrightAndDark(std::uint64_t cases, std::uint32_t seed) {
     std::uint64_t bright = 0;
     for (std::uint32_t sample = 0; sample < samples; ++sample) {
       const bool isBright = i % 3 == 0   ? random.index(oneIn) == 0
-                            : i % 3 == 1 ? sample < samples / oneIn  // all the bright ones first
+                            : i % 3 == 1 ? sample < samples / oneIn // all the bright ones first
                                          : sample >= samples - samples / oneIn; // or last
       bright += isBright;
       pixel.add(isBright ? 1e8f : 1e-4f);
     }
-    const long double truth = ((long double)bright * 1e8f + (long double)(samples - bright) * 1e-4f) / samples;
-    worst.add(double(std::fabs(((long double)pixel.finish() - truth) / truth)), [&] { return "one bright sample in " + std::to_string(oneIn); });
+    const long double truth =
+        ((long double)bright * 1e8f + (long double)(samples - bright) * 1e-4f) / samples;
+    worst.add(double(std::fabs(((long double)pixel.finish() - truth) / truth)),
+              [&] { return "one bright sample in " + std::to_string(oneIn); });
   }
   return worst.outcome();
 }
@@ -76,8 +78,9 @@ double nanosecondsASample() {
 } // namespace
 
 std::vector<Row> sumRows() {
-  return {{"sums.brightAndDark", "pixels of a million samples of 1e-4 and 1e8: the mean against exact arithmetic", "relative error", 200'000'000, runBrightAndDark,
-           nanosecondsASample}};
+  return {{"sums.brightAndDark",
+           "pixels of a million samples of 1e-4 and 1e8: the mean against exact arithmetic",
+           "relative error", 200'000'000, runBrightAndDark, nanosecondsASample}};
 }
 
 } // namespace rtsl::numerics

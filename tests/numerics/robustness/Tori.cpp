@@ -50,7 +50,9 @@ public:
     }
   }
   /// Roots in (low, high].
-  int rootsBetween(const Precise &low, const Precise &high) const { return changesAt(low) - changesAt(high); }
+  int rootsBetween(const Precise &low, const Precise &high) const {
+    return changesAt(low) - changesAt(high);
+  }
 
 private:
   static Polynomial remainder(Polynomial a, const Polynomial &b) {
@@ -117,7 +119,9 @@ public:
     const PreciseVec3 normal = normalAt(point), d = precise(direction);
     return static_cast<double>(dot(normal, d) / (length(normal) * length(d)));
   }
-  std::string text() const { return fmt::format("center {}, ring {:a}, tube {:a}", show(center), ring, tube); }
+  std::string text() const {
+    return fmt::format("center {}, ring {:a}, tube {:a}", show(center), ring, tube);
+  }
 
   Vec3 center{};
   float ring = 2, tube = 0.5f;
@@ -136,11 +140,13 @@ Torus &stepped(Path path) {
 Ray placeAndAim(Random &random, Torus &target) {
   const float ring = powerOfTen(random, -3, 3);
   target.place(random.inBox(2 * ring), ring, ring * random.between(0.1f, 0.6f));
-  return aimedFrom(random, target.center, target.size(), target.size() * powerOfTen(random, 0.3f, 1), target.size() * random.between(0, 1));
+  return aimedFrom(random, target.center, target.size(),
+                   target.size() * powerOfTen(random, 0.3f, 1),
+                   target.size() * random.between(0, 1));
 }
 
-/// Rays that leave outwards and meet the torus nowhere further on: those that meet it near where they start have met what they leave.
-/// Far away they may graze it by a rounding.
+/// Rays that leave outwards and meet the torus nowhere further on: those that meet it near where
+/// they start have met what they leave. Far away they may graze it by a rounding.
 Outcome judgeSelfHits(Torus &target, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -154,12 +160,15 @@ Outcome judgeSelfHits(Torus &target, std::uint64_t cases, std::uint32_t seed) {
       continue; // inwards, or where the bound is given up (runtime/device/ray/Spawn.h)
     const Precise size = target.size(), speed = length(precise(onwards));
     if (target.along(point, onwards).rootsBetween(size / 1000 / speed, 100 * size / speed) == 0)
-      worst.count(target.meetsWithin(static_cast<float>(size / 10 / speed), ray.origin, ray.direction, onwards), [&] { return target.text() + ", " + ray.text() + ", onwards " + show(onwards); });
+      worst.count(target.meetsWithin(static_cast<float>(size / 10 / speed), ray.origin,
+                                     ray.direction, onwards),
+                  [&] { return target.text() + ", " + ray.text() + ", onwards " + show(onwards); });
   }
   return worst.outcome();
 }
 
-/// What a ray skips that leaves straight inwards, in rounding units of the largest coordinate of the ray that met the torus.
+/// What a ray skips that leaves straight inwards, in rounding units of the largest coordinate of
+/// the ray that met the torus.
 Outcome judgeGaps(Torus &target, std::uint64_t cases, std::uint32_t seed, double cosine) {
   Random random(seed);
   Worst worst;
@@ -173,9 +182,12 @@ Outcome judgeGaps(Torus &target, std::uint64_t cases, std::uint32_t seed, double
       continue;
     const PreciseVec3 normal = target.normalAt(point);
     const Precise scale = -1 / length(normal);
-    const Vec3 inwards = {static_cast<float>(normal[0] * scale), static_cast<float>(normal[1] * scale), static_cast<float>(normal[2] * scale)};
+    const Vec3 inwards = {static_cast<float>(normal[0] * scale),
+                          static_cast<float>(normal[1] * scale),
+                          static_cast<float>(normal[2] * scale)};
     if (const auto gap = target.startOfNext(ray.origin, ray.direction, inwards))
-      worst.add(static_cast<double>(Precise(*gap) / pointUnit(ray, *t)), [&] { return target.text() + ", " + ray.text(); });
+      worst.add(static_cast<double>(Precise(*gap) / pointUnit(ray, *t)),
+                [&] { return target.text() + ", " + ray.text(); });
   }
   return worst.outcome();
 }
@@ -192,14 +204,34 @@ std::vector<Row> torusRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAMeeting);
   const char *units = "rounding units of the largest coordinate";
   return {
-      row("tori.selfHits", "a torus by steps, which states its error: rays that leave it outwards for good: those that meet it again within a tenth of its size", "hits", 100'000,
-          [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeSelfHits(stepped(on), cases, seed); }),
-      row("tori.gaps", "the same: what a ray skips that leaves straight inwards, where the torus was met at a cosine above 1/8", units, 100'000,
-          [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeGaps(stepped(on), cases, seed, 0.125); }),
-      row("tori.ferrariSelfHits", "a torus by Ferrari's quartic, whose error the compiler derives: rays that leave it outwards for good: those that meet it again within a tenth of its size", "hits", 100'000,
-          [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeSelfHits(ferrari(on), cases, seed); }),
-      row("tori.ferrariGaps", "the same: what a ray skips that leaves straight inwards, where the torus was met at a cosine above 1/8", units, 100'000,
-          [](Path on, std::uint64_t cases, std::uint32_t seed) { return judgeGaps(ferrari(on), cases, seed, 0.125); }),
+      row("tori.selfHits",
+          "a torus by steps, which states its error: rays that leave it outwards for good: those "
+          "that meet it again within a tenth of its size",
+          "hits", 100'000,
+          [](Path on, std::uint64_t cases, std::uint32_t seed) {
+            return judgeSelfHits(stepped(on), cases, seed);
+          }),
+      row("tori.gaps",
+          "the same: what a ray skips that leaves straight inwards, where the torus was met at a "
+          "cosine above 1/8",
+          units, 100'000,
+          [](Path on, std::uint64_t cases, std::uint32_t seed) {
+            return judgeGaps(stepped(on), cases, seed, 0.125);
+          }),
+      row("tori.ferrariSelfHits",
+          "a torus by Ferrari's quartic, whose error the compiler derives: rays that leave it "
+          "outwards for good: those that meet it again within a tenth of its size",
+          "hits", 100'000,
+          [](Path on, std::uint64_t cases, std::uint32_t seed) {
+            return judgeSelfHits(ferrari(on), cases, seed);
+          }),
+      row("tori.ferrariGaps",
+          "the same: what a ray skips that leaves straight inwards, where the torus was met at a "
+          "cosine above 1/8",
+          units, 100'000,
+          [](Path on, std::uint64_t cases, std::uint32_t seed) {
+            return judgeGaps(ferrari(on), cases, seed, 0.125);
+          }),
   };
 }
 

@@ -10,12 +10,17 @@ namespace {
 
 using device::Vec3;
 
-Triangle triangleIn(Random &random, float size) { return {{random.inBox(size), random.inBox(size), random.inBox(size)}}; }
-Vec3 middleOf(const Triangle &triangle) { return (triangle.v[0] + triangle.v[1] + triangle.v[2]) * (1 / 3.0f); }
+Triangle triangleIn(Random &random, float size) {
+  return {{random.inBox(size), random.inBox(size), random.inBox(size)}};
+}
+Vec3 middleOf(const Triangle &triangle) {
+  return (triangle.v[0] + triangle.v[1] + triangle.v[2]) * (1 / 3.0f);
+}
 
 /// Sides of 11, 9.7 and 1.4, in a random frame, half a degree above the plane.
 TriangleCase sliver(Random &random, std::uint64_t) {
-  const Vec3 x = random.direction(), y = device::normalized(device::cross(x, random.direction())), n = device::cross(x, y);
+  const Vec3 x = random.direction(), y = device::normalized(device::cross(x, random.direction())),
+             n = device::cross(x, y);
   constexpr float along = (11.0f * 11.0f + 9.7f * 9.7f - 1.4f * 1.4f) / (2 * 11.0f);
   const float across = std::sqrt(9.7f * 9.7f - along * along);
   const Vec3 origin = random.inBox(100);
@@ -32,7 +37,8 @@ TriangleCase scaled(Random &random, std::uint64_t number) {
   const float size = number % 2 ? 1e8f : 1e-8f;
   const Triangle triangle = triangleIn(random, size);
   const Vec3 origin = random.inBox(3 * size);
-  return {{origin, number % 4 < 2 ? random.direction() : middleOf(triangle) - origin}, triangle, 1e-2};
+  return {
+      {origin, number % 4 < 2 ? random.direction() : middleOf(triangle) - origin}, triangle, 1e-2};
 }
 
 TriangleCase thinlyAimed(Random &random, std::uint64_t) {
@@ -53,7 +59,8 @@ TriangleCase ofExtremeLength(Random &random, std::uint64_t number) {
   return {{origin, (middleOf(triangle) - origin) * length}, triangle, 1e-3};
 }
 
-/// In an axis' plane, so that its box has no thickness; the origin often lies in the planes of the box's other sides.
+/// In an axis' plane, so that its box has no thickness; the origin often lies in the planes of the
+/// box's other sides.
 TriangleCase flat(Random &random, std::uint64_t) {
   const int axis = random.integer(0, 2);
   const float height = random.between(-2, 2);
@@ -68,7 +75,8 @@ TriangleCase flat(Random &random, std::uint64_t) {
   for (int i = 0; i < 3; ++i) {
     // Above the target itself the direction's component is 0, or nearly.
     const float choices[] = {target[i], triangle.v[random.index(3)][i], random.between(-5, 5)};
-    origin[i] = i == axis ? height + random.between(1, 5) * (random.index(2) ? 1.0f : -1.0f) : choices[random.index(3)];
+    origin[i] = i == axis ? height + random.between(1, 5) * (random.index(2) ? 1.0f : -1.0f)
+                          : choices[random.index(3)];
   }
   return {{device::load(origin), target - device::load(origin)}, triangle, 1e-3};
 }
@@ -102,7 +110,10 @@ const std::vector<TriangleKind> &triangleKinds() {
       {"scales", "vertices at 1e8 and 1e-8", scaled},
       {"directions", "direction components of 0, -0, 1e-40 and 1e-30", thinlyAimed},
       {"lengths", "directions of length 1e20 and 1e-20", ofExtremeLength},
-      {"flat", "triangles whose boxes have no thickness, rays along the axes and from the planes of the box's sides", flat},
+      {"flat",
+       "triangles whose boxes have no thickness, rays along the axes and from the planes of the "
+       "box's sides",
+       flat},
   };
   return kinds;
 }
@@ -125,7 +136,8 @@ TriangleCase degenerateTriangle(Random &random, std::uint64_t number) {
     break;
   }
   const Vec3 origin = random.inBox(8);
-  const Vec3 target = number % 3 ? triangle.v[0] + (triangle.v[2] - triangle.v[0]) * half : random.inBox(4);
+  const Vec3 target =
+      number % 3 ? triangle.v[0] + (triangle.v[2] - triangle.v[0]) * half : random.inBox(4);
   return {{origin, target - origin}, triangle, 0};
 }
 
@@ -144,12 +156,14 @@ void judgeTriangle(const TriangleCase &given, Asked asked, std::optional<float> 
 }
 
 double pointOffPlane(const Triangle &triangle, Vec3 point) {
-  const ExactVec3 base(triangle.v[0]), normal = cross(ExactVec3(triangle.v[1]) - base, ExactVec3(triangle.v[2]) - base);
+  const ExactVec3 base(triangle.v[0]),
+      normal = cross(ExactVec3(triangle.v[1]) - base, ExactVec3(triangle.v[2]) - base);
   const Rational square = dot(normal, normal), along = dot(normal, ExactVec3(point) - base);
   if (square == 0)
     return 0;
   const Rational ratio = along * along / square; // of the distance's square: only this is rounded
-  return std::sqrt(ratio.convert_to<double>()) / (device::roundingUnit * triangle.largestCoordinate());
+  return std::sqrt(ratio.convert_to<double>()) /
+         (device::roundingUnit * triangle.largestCoordinate());
 }
 
 } // namespace rtsl::numerics

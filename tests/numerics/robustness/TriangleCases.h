@@ -19,12 +19,20 @@ namespace rtsl::numerics {
 struct Triangle {
   std::array<device::Vec3, 3> v;
 
-  float largestSide() const { return std::max({device::largest(v[1] - v[0]), device::largest(v[2] - v[0]), device::largest(v[2] - v[1])}); }
-  float largestCoordinate() const { return std::max({device::largest(v[0]), device::largest(v[1]), device::largest(v[2])}); }
-  std::string text() const { return "triangle " + show(v[0]) + " " + show(v[1]) + " " + show(v[2]); }
+  float largestSide() const {
+    return std::max(
+        {device::largest(v[1] - v[0]), device::largest(v[2] - v[0]), device::largest(v[2] - v[1])});
+  }
+  float largestCoordinate() const {
+    return std::max({device::largest(v[0]), device::largest(v[1]), device::largest(v[2])});
+  }
+  std::string text() const {
+    return "triangle " + show(v[0]) + " " + show(v[1]) + " " + show(v[2]);
+  }
 };
 
-/// A triangle and a ray that is aimed at it. Weights below `clear` are so near to an edge that hit and miss are both right.
+/// A triangle and a ray that is aimed at it. Weights below `clear` are so near to an edge that hit
+/// and miss are both right.
 struct TriangleCase {
   Ray ray;
   Triangle triangle;
@@ -46,12 +54,14 @@ TriangleCase degenerateTriangle(Random &random, std::uint64_t number);
 /// What was asked: a ray does not meet what lies behind its origin.
 enum class Asked : std::uint8_t { Line, Ray };
 
-/// Judges where it was said to meet the triangle, at `t` or not at all: how far the point at t lies from the triangle's plane, in
-/// rounding units of the largest difference between a vertex and the origin of the ray. A clear hit that is missed is infinitely
-/// wrong, and so is a hit clearly outside; near edges either answer is right.
+/// Judges where it was said to meet the triangle, at `t` or not at all: how far the point at t lies
+/// from the triangle's plane, in rounding units of the largest difference between a vertex and the
+/// origin of the ray. A clear hit that is missed is infinitely wrong, and so is a hit clearly
+/// outside; near edges either answer is right.
 void judgeTriangle(const TriangleCase &given, Asked asked, std::optional<float> t, Worst &worst);
 
-/// The distance of a point from the triangle's plane, in rounding units of the triangle's largest coordinate.
+/// The distance of a point from the triangle's plane, in rounding units of the triangle's largest
+/// coordinate.
 double pointOffPlane(const Triangle &triangle, device::Vec3 point);
 
 /// The unit of judgeTriangle.

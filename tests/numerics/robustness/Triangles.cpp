@@ -25,7 +25,8 @@ Outcome runKind(const TriangleKind &kind, std::uint64_t cases, std::uint32_t see
   return worst.outcome();
 }
 
-/// A closed mesh: an octahedron whose faces were divided, its vertices moved at random. Every line from inside meets it.
+/// A closed mesh: an octahedron whose faces were divided, its vertices moved at random. Every line
+/// from inside meets it.
 std::vector<Triangle> closedMesh(Random &random) {
   const Vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   Vec3 corners[6];
@@ -47,7 +48,8 @@ std::vector<Triangle> closedMesh(Random &random) {
   return mesh;
 }
 
-/// Rays from inside through vertices and edge points of a closed mesh: the number that meets no triangle.
+/// Rays from inside through vertices and edge points of a closed mesh: the number that meets no
+/// triangle.
 Outcome runClosedMeshes(std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
@@ -68,22 +70,25 @@ Outcome runClosedMeshes(std::uint64_t cases, std::uint32_t seed) {
     int found = 0;
     for (const Triangle &candidate : mesh) {
       TriangleHit hit;
-      found += device::intersectTriangle(ray, candidate.v[0], candidate.v[1], candidate.v[2], hit) && hit.t >= 0;
+      found +=
+          device::intersectTriangle(ray, candidate.v[0], candidate.v[1], candidate.v[2], hit) &&
+          hit.t >= 0;
     }
     worst.count(found == 0, [&] { return TriangleCase{{origin, direction}, triangle, 0}.text(); });
   }
   return worst.outcome();
 }
 
-/// Triangles without area: a hit is only right where the ray meets the point or the segment that they are; its t must be
-/// finite then. Counts answers that are not.
+/// Triangles without area: a hit is only right where the ray meets the point or the segment that
+/// they are; its t must be finite then. Counts answers that are not.
 Outcome runDegenerate(std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;
   for (std::uint64_t i = 0; i < cases; ++i) {
     const TriangleCase given = degenerateTriangle(random, i);
     const auto hit = meet(given.triangle, given.ray.origin, given.ray.direction);
-    worst.count(hit && !(std::isfinite(hit->t) && std::isfinite(hit->u) && std::isfinite(hit->v)), [&] { return given.text(); });
+    worst.count(hit && !(std::isfinite(hit->t) && std::isfinite(hit->u) && std::isfinite(hit->v)),
+                [&] { return given.text(); });
   }
   return worst.outcome();
 }
@@ -110,12 +115,18 @@ double nanosecondsATriangle() {
 
 std::vector<Row> triangleRows() {
   std::vector<Row> rows = {
-      {"triangles.closedMesh", "rays from inside a closed mesh, exactly through its edges and vertices: those that meet nothing", "misses", 10'000'000, runClosedMeshes, nanosecondsATriangle},
-      {"triangles.degenerate", "collinear and duplicate vertices: answers that are not finite", "answers", 10'000'000, runDegenerate, nanosecondsATriangle},
+      {"triangles.closedMesh",
+       "rays from inside a closed mesh, exactly through its edges and vertices: those that meet "
+       "nothing",
+       "misses", 10'000'000, runClosedMeshes, nanosecondsATriangle},
+      {"triangles.degenerate", "collinear and duplicate vertices: answers that are not finite",
+       "answers", 10'000'000, runDegenerate, nanosecondsATriangle},
   };
   for (const TriangleKind &kind : triangleKinds())
-    rows.push_back({std::string("triangles.") + kind.name, kind.description, planeUnits, 200'000,
-                    [&kind](std::uint64_t cases, std::uint32_t seed) { return runKind(kind, cases, seed); }, nanosecondsATriangle});
+    rows.push_back(
+        {std::string("triangles.") + kind.name, kind.description, planeUnits, 200'000,
+         [&kind](std::uint64_t cases, std::uint32_t seed) { return runKind(kind, cases, seed); },
+         nanosecondsATriangle});
   return rows;
 }
 

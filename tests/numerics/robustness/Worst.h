@@ -10,7 +10,8 @@ namespace rtsl::numerics {
 class Worst {
 public:
   /// One case with its error; `describe` gives a text and is only called for a new worst one.
-  template <typename Describe> void add(double error, Describe describe) {
+  template <typename Describe>
+  void add(double error, Describe describe) {
     ++result.cases;
     if (error > result.worst) {
       result.worst = error;
@@ -18,7 +19,8 @@ public:
     }
   }
   /// A case that is right or wrong: the error is the number of wrong ones.
-  template <typename Describe> void count(bool isWrong, Describe describe) {
+  template <typename Describe>
+  void count(bool isWrong, Describe describe) {
     ++result.cases;
     if (isWrong && result.worst++ == 0)
       result.where = describe();

@@ -282,7 +282,8 @@ TEST_F(Messages, ShowAWindowOfAVeryLongLine) {
                          "\n");
 }
 
-// Bytes as in the middle of a character, where no character begins: the window must not leave the place out.
+// Bytes as in the middle of a character, where no character begins: the window must not leave the
+// place out.
 TEST_F(Messages, ShowTheBeginningOfALongLineOfNoCharacters) {
   const FileId other = sources.add("line.rtsl", std::string(3, '\x80') + std::string(200, 'a'));
   diagnostics.report(Code::notCallable, SourceRange{other, 0, 1});

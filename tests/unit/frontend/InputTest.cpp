@@ -27,7 +27,8 @@ std::string inFunction(const std::string &statement) {
 TEST(Input, OfNothing) {
   EXPECT_EQ(Parsed("").messages(), "E0102 1:1-1:1 file contains no declarations\n");
   EXPECT_EQ(Parsed("  \r\n\t\n").messages(), "E0102 1:1-1:1 file contains no declarations\n");
-  EXPECT_EQ(Parsed("// only a comment").messages(), "E0102 1:1-1:1 file contains no declarations\n");
+  EXPECT_EQ(Parsed("// only a comment").messages(),
+            "E0102 1:1-1:1 file contains no declarations\n");
   EXPECT_EQ(Parsed("\xEF\xBB\xBF").messages(), "E0102 1:1-1:1 file contains no declarations\n");
 }
 

@@ -1,7 +1,7 @@
 //===- PreprocessorTest.cpp - expanded texts, the way back, and limits ----===//
 //
-// What the preprocessor accepts and refuses is in tests/language/preprocessor. Here: how messages are shown, what fixes
-// touch, what the text looks like, and what a few lines may ask for.
+// What the preprocessor accepts and refuses is in tests/language/preprocessor. Here: how messages
+// are shown, what fixes touch, what the text looks like, and what a few lines may ask for.
 //
 //===----------------------------------------------------------------------===//
 #include "frontend/preprocessor/Preprocessor.h"
@@ -19,7 +19,8 @@ namespace {
 
 /// Texts that include one another, in memory, of which "main.rtsl" is preprocessed and parsed.
 struct Preprocessed {
-  explicit Preprocessed(const std::string &main, const std::map<std::string, std::string> &others = {},
+  explicit Preprocessed(const std::string &main,
+                        const std::map<std::string, std::string> &others = {},
                         const PreprocessorOptions &options = {})
       : file(sources.add("main.rtsl", main)) {
     for (const auto &[name, text] : others)
@@ -73,9 +74,10 @@ TEST(Preprocessor, KeepsCommentsSpacesAndLines) {
 }
 
 TEST(Preprocessor, KeepsCommentsWithWhatTheyStandAbove) {
-  const Preprocessed source("// of nothing\n#define X\nfloat a;\n#ifdef X\n// of b\nfloat b;\n#endif\n"
-                            "// of nothing\n#include \"c.rtsl\"\nfloat d;\n",
-                            {{"c.rtsl", "float c;\n// of nothing"}});
+  const Preprocessed source(
+      "// of nothing\n#define X\nfloat a;\n#ifdef X\n// of b\nfloat b;\n#endif\n"
+      "// of nothing\n#include \"c.rtsl\"\nfloat d;\n",
+      {{"c.rtsl", "float c;\n// of nothing"}});
   std::string comments;
   for (const ast::VariableDecl &variable : source.unit->constants)
     comments += variable.name.text + ": " + variable.comment + "\n";
@@ -164,8 +166,8 @@ TEST(Preprocessor, SaysOnceWhatAMacroMakesTwice) {
 }
 
 TEST(Preprocessor, NamesTheFilesThatIncluded) {
-  const Preprocessed source("\n#include \"a.rtsl\"\n",
-                            {{"a.rtsl", "\n\n#include \"b.rtsl\"\n"}, {"b.rtsl", "float f() { return 1.0 }\n"}});
+  const Preprocessed source("\n#include \"a.rtsl\"\n", {{"a.rtsl", "\n\n#include \"b.rtsl\"\n"},
+                                                        {"b.rtsl", "float f() { return 1.0 }\n"}});
   EXPECT_EQ(source.shown(), "b.rtsl:1:23: error[E0112]: missing `;` after `1.0`\n"
                             "  |\n"
                             "1 | float f() { return 1.0 }\n"
@@ -197,29 +199,33 @@ TEST(Preprocessor, ShowsWhatTheCommandLineDefined) {
 
 TEST(Preprocessor, ShowsBothEndsOfAConflict) {
   const Preprocessed source("#define A 1\n#define A 2\n#if 1\nfloat f() { return 1.0; }\n");
-  EXPECT_EQ(source.shown(), "main.rtsl:2:9: error[E0157]: macro `A` is already defined differently\n"
-                            "  |\n"
-                            "1 | #define A 1\n"
-                            "  |         - defined here first\n"
-                            "2 | #define A 2\n"
-                            "  |         ^\n"
-                            "  = note: `#undef A` in front of it makes way\n"
-                            "\n"
-                            "main.rtsl:3:2: error[E0151]: `#if` without `#endif`\n"
-                            "  |\n"
-                            "3 | #if 1\n"
-                            "  |  ^^\n"
-                            "4 | float f() { return 1.0; }\n"
-                            "5 |\n"
-                            "  | - the file ends here\n"
-                            "\n");
+  EXPECT_EQ(source.shown(),
+            "main.rtsl:2:9: error[E0157]: macro `A` is already defined differently\n"
+            "  |\n"
+            "1 | #define A 1\n"
+            "  |         - defined here first\n"
+            "2 | #define A 2\n"
+            "  |         ^\n"
+            "  = note: `#undef A` in front of it makes way\n"
+            "\n"
+            "main.rtsl:3:2: error[E0151]: `#if` without `#endif`\n"
+            "  |\n"
+            "3 | #if 1\n"
+            "  |  ^^\n"
+            "4 | float f() { return 1.0; }\n"
+            "5 |\n"
+            "  | - the file ends here\n"
+            "\n");
 }
 
 TEST(Preprocessor, ReportsUnderTheNameAndLineOfALineDirective) {
   const Preprocessed source("#line 70 \"other.rtsl\"\n\nfloat f() { return 1.0 }\n");
-  EXPECT_NE(source.shown().find("other.rtsl:71:23: error[E0112]"), std::string::npos) << source.shown();
-  EXPECT_NE(source.shown().find("71 | float f() { return 1.0 }"), std::string::npos) << source.shown();
-  EXPECT_EQ(source.fixed(), "#line 70 \"other.rtsl\"\n\nfloat f() { return 1.0; }\n"); // in the file itself
+  EXPECT_NE(source.shown().find("other.rtsl:71:23: error[E0112]"), std::string::npos)
+      << source.shown();
+  EXPECT_NE(source.shown().find("71 | float f() { return 1.0 }"), std::string::npos)
+      << source.shown();
+  EXPECT_EQ(source.fixed(),
+            "#line 70 \"other.rtsl\"\n\nfloat f() { return 1.0; }\n"); // in the file itself
   const std::string json = renderJson(source.diagnostics);
   EXPECT_NE(json.find("\"file\": \"other.rtsl\""), std::string::npos) << json;
   EXPECT_NE(json.find("\"written\": {"), std::string::npos) << json;
@@ -231,7 +237,8 @@ TEST(Preprocessor, ReportsUnderTheNameAndLineOfALineDirective) {
 
 TEST(Preprocessor, FixesWhatTheAuthorWroteInPlace) {
   const Preprocessed source("#define ONE 1.0\nfloat f() {\n  float a = ONE\n  return a + ONE\n}\n");
-  EXPECT_EQ(source.fixed(), "#define ONE 1.0\nfloat f() {\n  float a = ONE;\n  return a + ONE;\n}\n");
+  EXPECT_EQ(source.fixed(),
+            "#define ONE 1.0\nfloat f() {\n  float a = ONE;\n  return a + ONE;\n}\n");
 }
 
 TEST(Preprocessor, FixesNothingInsideOfMacrosAndIncludes) {
@@ -280,42 +287,51 @@ class Bombs : public testing::TestWithParam<Bomb> {};
 // None of them takes long, and none of them takes the stack.
 TEST_P(Bombs, AreRefused) {
   const auto start = std::chrono::steady_clock::now();
-  const Preprocessed source(GetParam().text, {{"self.rtsl", "#include \"self.rtsl\"\n#include \"self.rtsl\"\n"}});
+  const Preprocessed source(GetParam().text,
+                            {{"self.rtsl", "#include \"self.rtsl\"\n#include \"self.rtsl\"\n"}});
   EXPECT_EQ(source.codes(), GetParam().codes) << source.shown().substr(0, 2000);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60)); // seconds on a loaded machine
+  EXPECT_LT(std::chrono::steady_clock::now() - start,
+            std::chrono::seconds(60)); // seconds on a loaded machine
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Preprocessor, Bombs,
-    testing::Values(
-        Bomb{"Objects", doublingMacros(31, "+") + "const int x = A30;\n", "E0164"},
-        Bomb{"Condition", doublingMacros(31, "+") + "#if A30\n#endif\n", "E0164"},
-        Bomb{"Include", doublingMacros(31, "") + "#include A30\n", "E0146"},
-        Bomb{"Arguments", "#define F(x) x x\nconst int x = " + repeated("F(", 30) + "1" + repeated(")", 30) + ";\n",
-             "E0164"},
-        Bomb{"ArgumentsOfOthers",
-             [] {
-               std::string text = "#define B0(x) x\n";
-               for (int i = 1; i < 40; ++i)
-                 text += fmt::format("#define B{}(x) B{}(x x)\n", i, i - 1);
-               return text + "const int x = B39(1);\n";
-             }(),
-             "E0164"},
-        Bomb{"DeepArguments",
-             "#define F(x) x\nconst int x = " + repeated("F(", 300) + "1" + repeated(")", 300) + ";\n", "E0165"},
-        Bomb{"VeryDeepArguments",
-             "#define F(x) x\nconst int x = " + repeated("F(", 100000) + "1" + repeated(")", 100000) + ";\n", "E0164"},
-        Bomb{"DeepBodies",
-             [] {
-               std::string text = "#define C0 1\n";
-               for (int i = 1; i < 100000; ++i)
-                 text += fmt::format("#define C{} C{}\n", i, i - 1);
-               return text + "const int x = C99999;\n";
-             }(),
-             "E0165"},
-        Bomb{"DeepCondition", "#if " + repeated("(", 1000000) + "1\n#endif\n", "E0154"},
-        Bomb{"DeepSigns", "#if 1\n#elif " + repeated("!", 1000000) + "1\n#endif\n", "E0154"},
-        Bomb{"Includes", "#include \"self.rtsl\"\n", "E0147"}, Bomb{"Itself", "#include \"main.rtsl\"\n", "E0147"}),
+    testing::Values(Bomb{"Objects", doublingMacros(31, "+") + "const int x = A30;\n", "E0164"},
+                    Bomb{"Condition", doublingMacros(31, "+") + "#if A30\n#endif\n", "E0164"},
+                    Bomb{"Include", doublingMacros(31, "") + "#include A30\n", "E0146"},
+                    Bomb{"Arguments",
+                         "#define F(x) x x\nconst int x = " + repeated("F(", 30) + "1" +
+                             repeated(")", 30) + ";\n",
+                         "E0164"},
+                    Bomb{"ArgumentsOfOthers",
+                         [] {
+                           std::string text = "#define B0(x) x\n";
+                           for (int i = 1; i < 40; ++i)
+                             text += fmt::format("#define B{}(x) B{}(x x)\n", i, i - 1);
+                           return text + "const int x = B39(1);\n";
+                         }(),
+                         "E0164"},
+                    Bomb{"DeepArguments",
+                         "#define F(x) x\nconst int x = " + repeated("F(", 300) + "1" +
+                             repeated(")", 300) + ";\n",
+                         "E0165"},
+                    Bomb{"VeryDeepArguments",
+                         "#define F(x) x\nconst int x = " + repeated("F(", 100000) + "1" +
+                             repeated(")", 100000) + ";\n",
+                         "E0164"},
+                    Bomb{"DeepBodies",
+                         [] {
+                           std::string text = "#define C0 1\n";
+                           for (int i = 1; i < 100000; ++i)
+                             text += fmt::format("#define C{} C{}\n", i, i - 1);
+                           return text + "const int x = C99999;\n";
+                         }(),
+                         "E0165"},
+                    Bomb{"DeepCondition", "#if " + repeated("(", 1000000) + "1\n#endif\n", "E0154"},
+                    Bomb{"DeepSigns", "#if 1\n#elif " + repeated("!", 1000000) + "1\n#endif\n",
+                         "E0154"},
+                    Bomb{"Includes", "#include \"self.rtsl\"\n", "E0147"},
+                    Bomb{"Itself", "#include \"main.rtsl\"\n", "E0147"}),
     [](const testing::TestParamInfo<Bomb> &info) { return std::string(info.param.name); });
 
 TEST(Preprocessor, CountsNestingBehindMacros) {
@@ -326,51 +342,59 @@ TEST(Preprocessor, CountsNestingBehindMacros) {
 }
 
 TEST(Preprocessor, ShowsTheWayIntoACircle) {
-  const Preprocessed source("#include \"a.rtsl\"\n", {{"a.rtsl", "#include \"b.rtsl\"\n"}, {"b.rtsl", "\n#include \"a.rtsl\"\n"}});
-  EXPECT_EQ(source.shown(), "b.rtsl:2:10: error[E0147]: includes are nested deeper than 100 levels\n"
-                            "  |\n"
-                            "2 | #include \"a.rtsl\"\n"
-                            "  |          ^^^^^^^^\n"
-                            "  = note: included from a.rtsl:1\n"
-                            "  = note: included from b.rtsl:2\n"
-                            "  = note: included from a.rtsl:1\n"
-                            "  = note: included from b.rtsl:2\n"
-                            "  = note: included from a.rtsl:1\n"
-                            "  = note: included from main.rtsl:1\n"
-                            "  = note: `#pragma once` in a file that is included keeps it from being read again\n"
-                            "\n");
+  const Preprocessed source("#include \"a.rtsl\"\n", {{"a.rtsl", "#include \"b.rtsl\"\n"},
+                                                      {"b.rtsl", "\n#include \"a.rtsl\"\n"}});
+  EXPECT_EQ(source.shown(),
+            "b.rtsl:2:10: error[E0147]: includes are nested deeper than 100 levels\n"
+            "  |\n"
+            "2 | #include \"a.rtsl\"\n"
+            "  |          ^^^^^^^^\n"
+            "  = note: included from a.rtsl:1\n"
+            "  = note: included from b.rtsl:2\n"
+            "  = note: included from a.rtsl:1\n"
+            "  = note: included from b.rtsl:2\n"
+            "  = note: included from a.rtsl:1\n"
+            "  = note: included from main.rtsl:1\n"
+            "  = note: `#pragma once` in a file that is included keeps it from being read again\n"
+            "\n");
 }
 
 TEST(Preprocessor, LimitsWhatIsIncluded) {
   std::map<std::string, std::string> others;
   for (int i = 0; i < 30; ++i)
-    others[fmt::format("{}.rtsl", i)] = fmt::format("#include \"{0}.rtsl\"\n#include \"{0}.rtsl\"\n", i + 1);
+    others[fmt::format("{}.rtsl", i)] =
+        fmt::format("#include \"{0}.rtsl\"\n#include \"{0}.rtsl\"\n", i + 1);
   others["30.rtsl"] = "";
   const Preprocessed source("#include \"0.rtsl\"\n", others);
   EXPECT_EQ(source.codes(), "E0148") << source.shown();
 }
 
 TEST(Preprocessor, RefusesFilesThatAreNoText) {
-  const Preprocessed source("#include \"a.bin\"\nfloat f() { return missing(; }\n", {{"a.bin", std::string("a\0b", 3)}});
-  EXPECT_EQ(source.shown(), "a.bin:1:2: error[E0101]: source is not valid text: it holds a NUL byte\n"
-                            "  |\n"
-                            "1 | a\\x00b\n"
-                            "  |  ^^^^\n"
-                            "  = note: included from main.rtsl:1\n"
-                            "\n");
+  const Preprocessed source("#include \"a.bin\"\nfloat f() { return missing(; }\n",
+                            {{"a.bin", std::string("a\0b", 3)}});
+  EXPECT_EQ(source.shown(),
+            "a.bin:1:2: error[E0101]: source is not valid text: it holds a NUL byte\n"
+            "  |\n"
+            "1 | a\\x00b\n"
+            "  |  ^^^^\n"
+            "  = note: included from main.rtsl:1\n"
+            "\n");
 }
 
 TEST(Preprocessor, ReadsLongLinesAndLongTexts) {
-  const Preprocessed line("#define X(a) a\nconst float x = 0.0" + repeated(" + X(1.0)", 900) + ";" + repeated(" ", 1 << 20) + "\n");
+  const Preprocessed line("#define X(a) a\nconst float x = 0.0" + repeated(" + X(1.0)", 900) + ";" +
+                          repeated(" ", 1 << 20) + "\n");
   EXPECT_EQ(line.shown(), "");
-  const Preprocessed text("#define ONE 1.0\n" + repeated("/* ONE */ const float x = ONE;\n", 100000));
+  const Preprocessed text("#define ONE 1.0\n" +
+                          repeated("/* ONE */ const float x = ONE;\n", 100000));
   EXPECT_EQ(text.shown(), "");
   EXPECT_EQ(text.sources.text(text.result.text).size(), 1u + 31u * 100000u);
 }
 
 // Every position of the expanded text has an origin, and verbatim pieces say what stands there.
 TEST(Preprocessor, KnowsWhereEveryByteIsFrom) {
-  const Preprocessed source("#include \"a.rtsl\"\n#define F(x, y) x##y + #x y\nfloat g = F(one, two(F(3, 4)));\\\n int h;\n#if 0\n#else\n"
+  const Preprocessed source("#include \"a.rtsl\"\n#define F(x, y) x##y + #x y\nfloat g = F(one, "
+                            "two(F(3, 4)));\\\n int h;\n#if 0\n#else\n"
                             "int k = __LINE__;\n#endif\n",
                             {{"a.rtsl", "\xEF\xBB\xBF// included\nint a;"}});
   const ExpandedText *text = source.sources.expanded(source.result.text);

@@ -262,7 +262,8 @@ TEST(Words, KeywordsAsNames) {
   EXPECT_EQ(inFunction("float default; int for = 1, a;"),
             "E0115 2:7-2:14 `default` is a keyword and cannot be used as a name\n"
             "E0115 2:20-2:23 `for` is a keyword and cannot be used as a name\n");
-  EXPECT_EQ(inFunction("a.in = 2;"), "E0115 2:3-2:5 `in` is a keyword and cannot be used as a name\n");
+  EXPECT_EQ(inFunction("a.in = 2;"),
+            "E0115 2:3-2:5 `in` is a keyword and cannot be used as a name\n");
   EXPECT_EQ(messages("void return() { }"),
             "E0115 1:6-1:12 `return` is a keyword and cannot be used as a name\n");
   EXPECT_EQ(messages("struct switch { float a; };\nclass do : rt_Light { };\n"),
@@ -335,12 +336,14 @@ TEST(DeclarationErrors, FunctionsWithoutReturnType) {
 
 TEST(DeclarationErrors, Classes) {
   EXPECT_EQ(messages("class A { };\nvoid f() { }\n"), "");
-  EXPECT_EQ(messages("class A;\n"), "E0171 1:1-1:8 class `A` has neither a base nor members of its own\n");
+  EXPECT_EQ(messages("class A;\n"),
+            "E0171 1:1-1:8 class `A` has neither a base nor members of its own\n");
   EXPECT_EQ(messages("class : rt_Light { };\n"), "E0111 1:7-1:8 expected a name, found `:`\n");
   EXPECT_EQ(messages("class A : public rt_Light { };\n"),
             "E0119 1:11-1:17 `public` is not allowed here: a class derives in one way only\n");
-  EXPECT_EQ(messages("class A : rt_Light {\npublic:\n  public float a;\n};\n"),
-            "E0119 2:1-2:8 `public:` is not allowed here: write `public` in front of each member\n");
+  EXPECT_EQ(
+      messages("class A : rt_Light {\npublic:\n  public float a;\n};\n"),
+      "E0119 2:1-2:8 `public:` is not allowed here: write `public` in front of each member\n");
   EXPECT_EQ(messages("class A : rt_Light {\n  return 1;\n  void f() { }\n};\n"),
             "E0111 2:3-2:9 expected a member, found `return`\n");
 }
@@ -371,10 +374,11 @@ TEST(DeclarationErrors, Qualifiers) {
   EXPECT_EQ(messages("void f(in out float a, public float b) { }\n"),
             "E0120 1:11-1:14 `out` contradicts or repeats `in`\n"
             "E0119 1:24-1:30 `public` is not allowed here: it is for members of classes\n");
-  EXPECT_EQ(messages("struct S { public float a; const float b; inout float c; };\n"),
-            "E0119 1:12-1:18 `public` is not allowed here: it is for members of classes\n"
-            "E0119 1:28-1:33 `const` is not allowed here: the fields of a struct have no qualifiers\n"
-            "E0119 1:43-1:48 `inout` is not allowed here: it is for parameters\n");
+  EXPECT_EQ(
+      messages("struct S { public float a; const float b; inout float c; };\n"),
+      "E0119 1:12-1:18 `public` is not allowed here: it is for members of classes\n"
+      "E0119 1:28-1:33 `const` is not allowed here: the fields of a struct have no qualifiers\n"
+      "E0119 1:43-1:48 `inout` is not allowed here: it is for parameters\n");
   EXPECT_EQ(messages("public void f() { in float a; }\n"),
             "E0119 1:1-1:7 `public` is not allowed here: functions have no qualifiers\n"
             "E0119 1:19-1:21 `in` is not allowed here: it is for parameters\n");

@@ -14,7 +14,9 @@ using runtime::Image;
 
 namespace {
 
-Image readData(const std::string &name) { return runtime::readImage(std::string(RTSL_REPORT_TEST_DATA) + "/" + name); }
+Image readData(const std::string &name) {
+  return runtime::readImage(std::string(RTSL_REPORT_TEST_DATA) + "/" + name);
+}
 
 Image flat(float red, float green, float blue, std::uint32_t size = 32) {
   Image image(size, size, 3);
@@ -23,8 +25,12 @@ Image flat(float red, float green, float blue, std::uint32_t size = 32) {
   return image;
 }
 
-float largest(const FlipMap &map) { return *std::max_element(map.error.begin(), map.error.end()); }
-float smallest(const FlipMap &map) { return *std::min_element(map.error.begin(), map.error.end()); }
+float largest(const FlipMap &map) {
+  return *std::max_element(map.error.begin(), map.error.end());
+}
+float smallest(const FlipMap &map) {
+  return *std::min_element(map.error.begin(), map.error.end());
+}
 
 } // namespace
 
@@ -63,7 +69,8 @@ TEST(Flip, IsSymmetric) {
 }
 
 TEST(Flip, CountsWhatIsNotANumberAsBlack) {
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   EXPECT_EQ(report::flip(flat(0, 0, 0), flat(nan, -1, -infinity)).mean(), 0);
   EXPECT_EQ(report::flip(flat(1, 1, 1), flat(infinity, 2, 1)).mean(), 0);
   const FlipMap map = report::flipHdr(flat(1, 1, 1), flat(infinity, nan, -1), {-2, 2, 3});

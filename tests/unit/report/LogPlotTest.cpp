@@ -64,7 +64,8 @@ TEST(LogPlot, ASteepLineStaysInItsFrame) {
     std::smatch ends;
     ASSERT_TRUE(std::regex_search(
         svg, ends,
-        std::regex("<line class=\"fit\" x1=\"([0-9.]+)\" y1=\"(.*?)\" x2=\"([0-9.]+)\" y2=\"(.*?)\"")))
+        std::regex(
+            "<line class=\"fit\" x1=\"([0-9.]+)\" y1=\"(.*?)\" x2=\"([0-9.]+)\" y2=\"(.*?)\"")))
         << slope;
     for (const int end : {2, 4}) {
       EXPECT_GE(std::stod(ends[end]), 61.9) << slope;

@@ -1,7 +1,7 @@
 // Studies of subjects that are no renderers: their errors, times and faults are known.
+#include "report/Study.h"
 #include "report/Page.h"
 #include "report/RunningVariance.h"
-#include "report/Study.h"
 #include "report/Summary.h"
 
 #include "support/AtomicFile.h"
@@ -33,7 +33,8 @@ Image truth() {
 }
 
 /// Noise of a known size about the truth, and a time that is proportional to the samples.
-Subject noisy(const std::string &name, double noise, double slowness = 1, unsigned *calls = nullptr) {
+Subject noisy(const std::string &name, double noise, double slowness = 1,
+              unsigned *calls = nullptr) {
   Subject subject;
   subject.name = name;
   subject.settings = {{"noise", std::to_string(noise)}};
@@ -56,7 +57,9 @@ Subject noisy(const std::string &name, double noise, double slowness = 1, unsign
 class Studies : public testing::Test {
 protected:
   void SetUp() override {
-    folder = fs::temp_directory_path() / ("rtsl-study-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder = fs::temp_directory_path() /
+             ("rtsl-study-" +
+              std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder);
     fs::create_directories(folder);
     reference.image = truth();
@@ -66,7 +69,9 @@ protected:
   }
   void TearDown() override { fs::remove_all(folder); }
 
-  Summary study(const std::vector<Subject> &subjects) { return summarise(subjects, runStudy(subjects, reference, options), reference); }
+  Summary study(const std::vector<Subject> &subjects) {
+    return summarise(subjects, runStudy(subjects, reference, options), reference);
+  }
   std::string problems(const Summary &summary) {
     std::string all;
     for (const std::string &problem : summary.problems)
@@ -112,7 +117,8 @@ TEST_F(Studies, FindEfficiencyAndTheCostOfASlowerWay) {
 }
 
 TEST_F(Studies, KeepToTheBudget) {
-  options.budgetSeconds = 0.2; // 8 runs x (1 + 2 + 4 + 8) ms is 0.12 s, and 16 more would be 0.248 s
+  options.budgetSeconds =
+      0.2; // 8 runs x (1 + 2 + 4 + 8) ms is 0.12 s, and 16 more would be 0.248 s
   const Summary summary = study({noisy("strict", 0.2), noisy("slow", 0.2, 100)});
   EXPECT_EQ(summary.subjects[0].levels.back().samplesPerPixel, 8u);
   EXPECT_EQ(summary.subjects[1].levels.back().samplesPerPixel, 4u); // a line needs three
@@ -250,13 +256,15 @@ TEST_F(Studies, CountWhatIsNotFinite) {
   EXPECT_EQ(summary.subjects[0].nanPixels, pictures);
   EXPECT_EQ(summary.subjects[0].infinitePixels, pictures);
   EXPECT_EQ(summary.subjects[0].samplesNotFinite, 2 * pictures);
-  EXPECT_NEAR(summary.subjects[0].relMseOverSamples.slope.value, -1, 0.05) << "the other pixels still count";
+  EXPECT_NEAR(summary.subjects[0].relMseOverSamples.slope.value, -1, 0.05)
+      << "the other pixels still count";
 }
 
 TEST(RunningVariances, LeaveOutWhatIsNotFinite) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   RunningVariance spread;
-  for (const std::array<float, 3> &values : {std::array<float, 3>{1, nan, nan}, {3, 5, nan}, {nan, 7, nan}}) {
+  for (const std::array<float, 3> &values :
+       {std::array<float, 3>{1, nan, nan}, {3, 5, nan}, {nan, 7, nan}}) {
     Image picture(1, 1, 3);
     picture.pixels.assign(values.begin(), values.end());
     spread.add(picture);
@@ -284,14 +292,16 @@ TEST_F(Studies, MeasureTimesWithoutAUsableReference) {
   EXPECT_GT(summary.subjects[0].levels.size(), 3u);
   EXPECT_TRUE(std::isnan(summary.subjects[0].levels[0].relMse.value));
   EXPECT_GT(summary.subjects[0].levels[0].seconds.value, 0);
-  EXPECT_NE(writePage({}, summary, reference, {}).find("no error above 0 was measured"), std::string::npos);
+  EXPECT_NE(writePage({}, summary, reference, {}).find("no error above 0 was measured"),
+            std::string::npos);
 
   EXPECT_NE(readReference(path, width + 1, height, 3).problem.find("25x16"), std::string::npos);
 }
 
 TEST_F(Studies, SayThatTheReferenceIsBlack) {
   reference.image = Image(width, height, 3);
-  EXPECT_NE(problems(study({noisy("strict", 0.2)})).find("the reference is black"), std::string::npos);
+  EXPECT_NE(problems(study({noisy("strict", 0.2)})).find("the reference is black"),
+            std::string::npos);
 }
 
 TEST_F(Studies, LeaveOutWhatTheReferenceCannotTell) {
@@ -305,10 +315,13 @@ TEST_F(Studies, LeaveOutWhatTheReferenceCannotTell) {
 
 TEST_F(Studies, SayOnceWhatIsTrueOfAll) {
   const Summary both = study({noisy("first", 0), noisy("second", 0)});
-  EXPECT_NE(problems(both).find("all configurations: all runs gave the same picture"), std::string::npos) << problems(both);
+  EXPECT_NE(problems(both).find("all configurations: all runs gave the same picture"),
+            std::string::npos)
+      << problems(both);
   fs::remove_all(folder);
   const Summary some = study({noisy("first", 0), noisy("second", 0), noisy("third", 0.2)});
-  EXPECT_NE(problems(some).find("first, second: all runs gave the same picture"), std::string::npos) << problems(some);
+  EXPECT_NE(problems(some).find("first, second: all runs gave the same picture"), std::string::npos)
+      << problems(some);
 }
 
 TEST_F(Studies, MakeAReferenceWithItsOwnError) {
@@ -319,7 +332,8 @@ TEST_F(Studies, MakeAReferenceWithItsOwnError) {
       value += 1e-3f;
     return picture;
   };
-  const Reference made = makeReference(noisy("double", 0.2), single, folder.string(), 8, 0.8, [](double, const std::string &) {});
+  const Reference made = makeReference(noisy("double", 0.2), single, folder.string(), 8, 0.8,
+                                       [](double, const std::string &) {});
   ASSERT_TRUE(made.ownError);
   EXPECT_NEAR(made.ownError->rounding, 1e-3, 1e-6);
   const double expected = 0.2 / std::sqrt(double(made.ownError->samplesPerPixel) * 8);
@@ -327,7 +341,8 @@ TEST_F(Studies, MakeAReferenceWithItsOwnError) {
   double squares = 0;
   for (std::size_t i = 0; i < made.image.pixels.size(); ++i)
     squares += std::pow(double(made.image.pixels[i]) - truth().pixels[i], 2);
-  EXPECT_NEAR(std::sqrt(squares / double(made.image.pixels.size())) / made.ownError->rmse, 1, 0.15) << "it is as wrong as it says";
+  EXPECT_NEAR(std::sqrt(squares / double(made.image.pixels.size())) / made.ownError->rmse, 1, 0.15)
+      << "it is as wrong as it says";
 
   const std::optional<Reference> again = findReference("double", folder.string());
   ASSERT_TRUE(again);
@@ -349,14 +364,18 @@ TEST_F(Studies, PagesAreWholeAndAlone) {
   EXPECT_NE(page.find("&lt;scene&gt; &amp; &quot;more&quot;"), std::string::npos);
   for (const char *foreign : {"http://", "https://", "<script", "src=\"/", "@import"})
     EXPECT_EQ(page.find(foreign), std::string::npos) << foreign;
-  for (const char *tag : {"svg", "table", "tr", "td", "figure", "g", "ul", "li", "details", "div"}) {
+  for (const char *tag :
+       {"svg", "table", "tr", "td", "figure", "g", "ul", "li", "details", "div"}) {
     const auto count = [&](const std::string &text) {
       std::size_t found = 0;
-      for (std::size_t place = page.find(text); place != std::string::npos; place = page.find(text, place + 1))
+      for (std::size_t place = page.find(text); place != std::string::npos;
+           place = page.find(text, place + 1))
         ++found;
       return found;
     };
-    EXPECT_EQ(count("<" + std::string(tag) + ">") + count("<" + std::string(tag) + " "), count("</" + std::string(tag) + ">")) << tag;
+    EXPECT_EQ(count("<" + std::string(tag) + ">") + count("<" + std::string(tag) + " "),
+              count("</" + std::string(tag) + ">"))
+        << tag;
   }
   EXPECT_EQ(page.find("nan"), std::string::npos) << "no coordinate is off the paper";
   // Each figure of a plot can be reached without a pointer.

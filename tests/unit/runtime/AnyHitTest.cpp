@@ -1,9 +1,9 @@
 // Materials that may refuse hits: our traversal against trying everything and sorting.
 #include "FakeProgram.h"
 
-#include "runtime/embree/HostScene.h"
-#include "runtime/device/traverse/AnyHit.h"
 #include "runtime/device/ray/Random.h"
+#include "runtime/device/traverse/AnyHit.h"
+#include "runtime/embree/HostScene.h"
 
 #include <gtest/gtest.h>
 
@@ -113,7 +113,8 @@ std::uint32_t expected(RtslState state, float distance, Asked &inOrder, RtslStat
       one.HitDistance = distance;
       rtsl::device::beginSearch(one);
       if (instance.primitive) {
-        rtsl::device::testPrimitive(one, triangleRay, instance, {i, 0}, rtsl_rt_Primitive_intersect);
+        rtsl::device::testPrimitive(one, triangleRay, instance, {i, 0},
+                                    rtsl_rt_Primitive_intersect);
       } else {
         rtsl::device::testTriangle(one, triangleRay, launch.meshes[instance.mesh], i, p);
       }

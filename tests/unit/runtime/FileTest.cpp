@@ -1,10 +1,10 @@
 #include "report/ErrorMetrics.h"
-#include "support/AtomicFile.h"
-#include "runtime/image/Image.h"
-#include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/AssimpFile.h"
+#include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
+#include "runtime/image/Image.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -288,7 +288,8 @@ TEST_F(Meshes, BinaryPlyThatEndsTooEarly) {
 
 namespace {
 
-/// Triangle by triangle, what stands at their corners: coordinates, normals and texture coordinates.
+/// Triangle by triangle, what stands at their corners: coordinates, normals and texture
+/// coordinates.
 std::vector<float> corners(const Mesh &mesh) {
   std::vector<float> values;
   auto append = [&](const std::vector<float> &from, std::size_t width, std::size_t vertex) {
@@ -319,8 +320,9 @@ std::string randomObj(std::mt19937 &random) {
   const int width = 2 + below(5), count = width * width;
   std::string text = "# a grid\r\nmtllib none.mtl\no grid\ns off\n\n";
   for (int i = 0; i < count; ++i) {
-    text += fmt::format("v  {} {}\t{:g}{}\n", i % width + 0.3 * below(3), i / width + 0.3 * below(3),
-                        1e-4 * below(100), below(2) ? " 0.5 0.25 1" : "");
+    text +=
+        fmt::format("v  {} {}\t{:g}{}\n", i % width + 0.3 * below(3), i / width + 0.3 * below(3),
+                    1e-4 * below(100), below(2) ? " 0.5 0.25 1" : "");
     if (uvs)
       text += fmt::format("vt {} {}{}\n", number(), number(), below(2) ? " 0" : "");
     if (normals)
@@ -367,13 +369,15 @@ TEST_F(Meshes, CornersThatAreEqualShareAVertex) {
 TEST_F(Meshes, WhatIsNotPlainIsLeftToAssimp) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\n";
   ASSERT_TRUE(readPlainObj(vertices + "f 1 2 3\n"));
-  for (const char *rest : {"f 1 2 3 4 5\n", "f 1 2 3 \\\n4\n", "v 1 1 1 2\nf 1 2 6\n", "f 1 2 3\nl 1 2\n"}) {
+  for (const char *rest :
+       {"f 1 2 3 4 5\n", "f 1 2 3 \\\n4\n", "v 1 1 1 2\nf 1 2 6\n", "f 1 2 3\nl 1 2\n"}) {
     EXPECT_FALSE(readPlainObj(vertices + rest)) << rest;
     EXPECT_GE(loadMesh(put("general.obj", vertices + rest)).triangleCount(), 1u) << rest;
   }
-  for (const char *rest : {"", "f 1 2\n", "f 1 2 9\n", "f 1 2 0\n", "f 1 2 -9\n", "f 1 2 3/1\n", "f 1 2 3//1\n",
-                           "f 1 2 x\n", "f 1 2 3/\n", "v 1 nan 1\nf 1 2 3\n", "v 1 1\nf 1 2 3\n", "v 1 1e99 1\nf 1 2 3\n",
-                           "v 1 1 x\nf 1 2 3\n", "vn 0 0\nf 1 2 3\n", "vt 0\nf 1 2 3\n", "nonsense\nf 1 2 3\n"})
+  for (const char *rest : {"", "f 1 2\n", "f 1 2 9\n", "f 1 2 0\n", "f 1 2 -9\n", "f 1 2 3/1\n",
+                           "f 1 2 3//1\n", "f 1 2 x\n", "f 1 2 3/\n", "v 1 nan 1\nf 1 2 3\n",
+                           "v 1 1\nf 1 2 3\n", "v 1 1e99 1\nf 1 2 3\n", "v 1 1 x\nf 1 2 3\n",
+                           "vn 0 0\nf 1 2 3\n", "vt 0\nf 1 2 3\n", "nonsense\nf 1 2 3\n"})
     EXPECT_FALSE(readPlainObj(vertices + rest)) << rest;
 }
 
@@ -394,7 +398,8 @@ namespace {
 
 /// The grid of quadrilaterals again, with properties that no mesh has, in one of PLY's formats.
 std::string plyGrid(const char *format, bool normals, bool uvs) {
-  const bool isText = std::string(format) == "ascii", isBig = std::string(format) == "binary_big_endian";
+  const bool isText = std::string(format) == "ascii",
+             isBig = std::string(format) == "binary_big_endian";
   std::string body;
   auto put = [&](auto value) {
     if (isText) {
@@ -407,8 +412,10 @@ std::string plyGrid(const char *format, bool normals, bool uvs) {
       std::reverse(bytes, bytes + sizeof value);
     body.append(bytes, sizeof value);
   };
-  std::string header = fmt::format("ply\nformat {} 1.0\ncomment a grid\nelement vertex 9\nproperty float x\n"
-                                   "property double y\nproperty float z\nproperty uchar red\n", format);
+  std::string header =
+      fmt::format("ply\nformat {} 1.0\ncomment a grid\nelement vertex 9\nproperty float x\n"
+                  "property double y\nproperty float z\nproperty uchar red\n",
+                  format);
   if (normals)
     header += "property float nx\nproperty float ny\nproperty float nz\n";
   if (uvs)
@@ -466,7 +473,8 @@ TEST_F(Meshes, PlainPlyIsWhatAssimpReads) {
 TEST_F(Meshes, PlyThatIsNotPlainIsLeftToAssimp) {
   const std::string header = plyHeader;
   ASSERT_TRUE(readPlainPly(header + "3 0 1 2\n3 1 2 3\n"));
-  for (const char *faces : {"3 0 1 2\n3 1 2 4\n", "3 0 1 2\n3 1 2 -1\n", "3 0 1 2\n2 1 2\n", "3 0 1 2\n3 1 2 x\n", "3 0 1 2\n3 1 2\n", ""})
+  for (const char *faces : {"3 0 1 2\n3 1 2 4\n", "3 0 1 2\n3 1 2 -1\n", "3 0 1 2\n2 1 2\n",
+                            "3 0 1 2\n3 1 2 x\n", "3 0 1 2\n3 1 2\n", ""})
     EXPECT_FALSE(readPlainPly(header + faces)) << faces;
   auto with = [&](const std::string &what, const std::string &instead) {
     std::string text = header + "3 0 1 2\n3 1 2 3\n";

@@ -44,9 +44,8 @@ TEST(Hit, OnlyBetweenEpsilonAndTheEndOfTheRay) {
 }
 
 TEST(Hit, TheLowerInstanceAndPrimitiveWinsATie) {
-  for (auto [instance, primitive, wins] :
-       {std::tuple(6u, 0u, true), std::tuple(5u, 8u, true), std::tuple(5u, 6u, false),
-        std::tuple(4u, 9u, false)}) {
+  for (auto [instance, primitive, wins] : {std::tuple(6u, 0u, true), std::tuple(5u, 8u, true),
+                                           std::tuple(5u, 6u, false), std::tuple(4u, 9u, false)}) {
     RtslState s = state(0, 10, 4, instance, primitive);
     EXPECT_TRUE(reportHit(s, 4));
     EXPECT_EQ(s.instance == 5 && s.primitive == 7, wins) << instance << ", " << primitive;

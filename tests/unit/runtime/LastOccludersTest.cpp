@@ -19,7 +19,8 @@ struct Tests {
   }
 };
 
-std::vector<std::uint32_t> testedFor(LastOccluders &last, std::uint64_t scene, std::vector<std::uint32_t> met, bool expected) {
+std::vector<std::uint32_t> testedFor(LastOccluders &last, std::uint64_t scene,
+                                     std::vector<std::uint32_t> met, bool expected) {
   Tests tests{met};
   EXPECT_EQ(last.isMet(scene, std::ref(tests)), expected);
   return tests.tested;

@@ -1,6 +1,7 @@
-// A package is read as it was written, or refused: whatever byte of it changes, and wherever it ends.
-#include "support/Error.h"
+// A package is read as it was written, or refused: whatever byte of it changes, and wherever it
+// ends.
 #include "runtime/package/Package.h"
+#include "support/Error.h"
 
 #include <gtest/gtest.h>
 
@@ -108,13 +109,15 @@ TEST(Package, EveryOtherLengthIsFound) {
 
 TEST(Package, RefusalsSayWhy) {
   const std::string whole = serialize(smallPackage());
-  EXPECT_EQ(refusal("an ordinary text that has nothing to do with it"), "`x.rtslpkg` is not a package of rtslc");
+  EXPECT_EQ(refusal("an ordinary text that has nothing to do with it"),
+            "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
   newer[8] = 5;
-  EXPECT_EQ(refusal(newer),
-            "`x.rtslpkg` is a package of format 5, and this program reads format 4: use a newer rtsl-run");
-  EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"), std::string::npos);
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 5, and this program reads format "
+                            "4: use a newer rtsl-run");
+  EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
+            std::string::npos);
   std::string damaged = whole;
   damaged[whole.size() - 1] ^= 1;
   EXPECT_EQ(refusal(damaged), "`x.rtslpkg` is damaged: pack the scene again");
@@ -135,8 +138,8 @@ TEST(Package, ContentsThatContradictEachOtherAreRefused) {
   EXPECT_EQ(refusal(forged(info + 32, 30)), ""); // the width, as it was
   EXPECT_NE(refusal(forged(12, 1000000)), "");   // sections
   for (int i = 0; i < 6; ++i) {
-    EXPECT_NE(refusal(forged(sections + i * sectionBytes, 77)), "") << i;          // kind
-    EXPECT_NE(refusal(forged(sections + i * sectionBytes + 8, 0x7fffffc0)), "") << i; // offset
+    EXPECT_NE(refusal(forged(sections + i * sectionBytes, 77)), "") << i;              // kind
+    EXPECT_NE(refusal(forged(sections + i * sectionBytes + 8, 0x7fffffc0)), "") << i;  // offset
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 16, 0x7fffffff)), "") << i; // size
   }
   EXPECT_NE(refusal(forged(info, 1)).find("rtslc 1.2.3"), std::string::npos); // layout of a launch

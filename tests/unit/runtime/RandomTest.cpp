@@ -85,9 +85,12 @@ namespace {
 
 using Fraction = std::array<std::uint32_t, 5>;
 
-bool bitAt(const Fraction &fraction, int index) { return fraction[std::size_t(index / 32)] >> (31 - index % 32) & 1; }
+bool bitAt(const Fraction &fraction, int index) {
+  return fraction[std::size_t(index / 32)] >> (31 - index % 32) & 1;
+}
 
-/// The float below a fraction, bit by bit: 24 of them from the first that is set, none behind the 149th.
+/// The float below a fraction, bit by bit: 24 of them from the first that is set, none behind the
+/// 149th.
 float floatBelow(const Fraction &fraction) {
   double value = 0;
   int first = -1;
@@ -113,7 +116,8 @@ Fraction fractionOf(float value) {
 
 } // namespace
 
-// Each float is what becomes of the numbers from it up to the next one, so that it has the probability of that interval.
+// Each float is what becomes of the numbers from it up to the next one, so that it has the
+// probability of that interval.
 TEST(Random, EveryFloatHasItsProbability) {
   for (int zeros = 0; zeros < 160; ++zeros)
     for (std::uint32_t i = 0; i < 2000; ++i) {
@@ -182,7 +186,8 @@ TEST(Random, FreePathsHaveTheirDistribution) {
   EXPECT_NEAR(first / draws, 1, 5 / std::sqrt(double(draws)));
   EXPECT_NEAR(second / draws, 2, 5 * std::sqrt(20 / double(draws)));
 
-  // Beyond 22 mean free paths, where 32 bits hold nothing: draws whose first word is 0 alone, exp(-32 ln 2) of all.
+  // Beyond 22 mean free paths, where 32 bits hold nothing: draws whose first word is 0 alone,
+  // exp(-32 ln 2) of all.
   double sum = 0;
   constexpr std::uint32_t rare = 1u << 18;
   for (std::uint32_t i = 0; i < rare; ++i)

@@ -1,8 +1,8 @@
 #include "FakeProgram.h"
 
 #include "report/ErrorMetrics.h"
-#include "runtime/render/Renderer.h"
 #include "runtime/device/engines/Megakernel.h"
+#include "runtime/render/Renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -66,11 +66,15 @@ TEST(Scene, AnInstanceNeedsWhatTheObjectsBehindItsMaterialNeed) {
                  : info.name == "Noise" ? RTSL_NEEDS_DERIVATIVES
                                         : 0;
   Scene scene(program);
-  const RtslRef mirror = scene.addObject("Mirror", members({})), noise = scene.addObject("Noise", members({}));
+  const RtslRef mirror = scene.addObject("Mirror", members({})),
+                noise = scene.addObject("Noise", members({}));
   const RtslRef ball = scene.addObject("Sphere", {vector(0, 0, 0), 1.0});
-  const RtslRef first = scene.addObject("Everything", members({{"other", Value::reference(mirror)}}));
-  const RtslRef second = scene.addObject("Everything", members({{"other", Value::reference(first)}}));
-  const RtslRef third = scene.addObject("Everything", members({{"other", Value::reference(noise)}}));
+  const RtslRef first =
+      scene.addObject("Everything", members({{"other", Value::reference(mirror)}}));
+  const RtslRef second =
+      scene.addObject("Everything", members({{"other", Value::reference(first)}}));
+  const RtslRef third =
+      scene.addObject("Everything", members({{"other", Value::reference(noise)}}));
   for (RtslRef material : {mirror, first, second, third})
     scene.addPrimitive(ball, material);
   scene.setCamera(addCamera(scene));
@@ -209,7 +213,8 @@ TEST(Renderer, WhatIsCancelledCanBeKept) {
 }
 
 /// Samples that are infinite, in column 0 all of them, in the others each fourth.
-void spoilt(const RtslLaunch *, std::uint32_t x, std::uint32_t, std::uint32_t sample, float *color) {
+void spoilt(const RtslLaunch *, std::uint32_t x, std::uint32_t, std::uint32_t sample,
+            float *color) {
   const bool isBad = x == 0 || sample % 4 == 2;
   color[0] = color[2] = 0.25f * float(sample % 4);
   color[1] = isBad ? std::numeric_limits<float>::infinity() : 1.0f;

@@ -1,8 +1,8 @@
 #include "FakeProgram.h"
 
-#include "runtime/embree/HostScene.h"
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/traverse/Surface.h"
+#include "runtime/embree/HostScene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "FakeProgram.h"
 
 #include "runtime/accel/BvhBuilder.h"
-#include "runtime/embree/HostScene.h"
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/traverse/Traverse.h"
+#include "runtime/embree/HostScene.h"
 
 #include <gtest/gtest.h>
 
@@ -241,7 +241,8 @@ Scene tiedScene(unsigned seed) {
     addScene(mirrored(needles, 0));
   }
   for (int i = 0; i < 12; ++i) { // spheres, some of them twice, in boxes that touch
-    std::vector<Value> sphere = {vector(std::floor(wide(random)), std::floor(wide(random)), 0), 0.5};
+    std::vector<Value> sphere = {vector(std::floor(wide(random)), std::floor(wide(random)), 0),
+                                 0.5};
     for (int copy = 0; copy < 1 + i % 2; ++copy)
       scene.addPrimitive(scene.addObject("Sphere", sphere), material);
   }
@@ -306,23 +307,27 @@ TEST(EmbreeTraversal, MaskedRaysNeedNoSecondTree) {
   EXPECT_FALSE(embree.hasOwnTree());
 }
 
-// Bundles of shadow rays, as lights get them, in two scenes in turns: what was in the way of a ray before is tested first
-// (LastOccluders.h), and of the larger scene there are blocks that the smaller one does not have.
+// Bundles of shadow rays, as lights get them, in two scenes in turns: what was in the way of a ray
+// before is tested first (LastOccluders.h), and of the larger scene there are blocks that the
+// smaller one does not have.
 TEST(EmbreeTraversal, OccludersOfOtherRaysChangeNoAnswer) {
   Scene large = tiedScene(7), small = randomScene(8, 200, 3);
-  HostScene embree[] = {{large, true, 1}, {small, true, 1}}, own[] = {{large, false, 1}, {small, false, 1}};
+  HostScene embree[] = {{large, true, 1}, {small, true, 1}},
+            own[] = {{large, false, 1}, {small, false, 1}};
   const RtslLaunch launches[] = {large.launch(), small.launch()};
   std::mt19937 random(9);
   std::uniform_real_distribution<float> near(-0.05f, 0.05f), share(0.2f, 1.5f);
   int answers[2] = {};
   for (int bundle = 0; bundle < 2000; ++bundle) {
     const int which = bundle % 2;
-    const Ray first = bundle % 3 ? rayAtTriangle(random, launches[which], randomRay(random, 1).o) : randomRay(random, 1);
+    const Ray first = bundle % 3 ? rayAtTriangle(random, launches[which], randomRay(random, 1).o)
+                                 : randomRay(random, 1);
     for (int i = 0; i < 20; ++i) {
       const Vec3 o = first.o + Vec3{near(random), near(random), near(random)};
       const Vec3 d = first.d + Vec3{near(random), near(random), near(random)};
       const float end = share(random);
-      RtslState a = makeState(launches[which], o, d, 1e-4f, end), b = makeState(own[which].deviceLaunch(), o, d, 1e-4f, end);
+      RtslState a = makeState(launches[which], o, d, 1e-4f, end),
+                b = makeState(own[which].deviceLaunch(), o, d, 1e-4f, end);
       const std::uint32_t found = embree[which].traverse(a, RTSL_FIRST_HIT);
       ASSERT_EQ(found, own[which].traverse(b, RTSL_FIRST_HIT)) << bundle << ", " << i;
       ++answers[found == RTSL_HIT];

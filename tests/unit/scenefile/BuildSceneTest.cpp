@@ -265,12 +265,14 @@ TEST(BuildScene, AMeshThatStandsTwiceIsHeldOnce) {
 TEST(BuildScene, TellsAllThatIsWrongInOneRun) {
   // What refers to an object that was refused says nothing of its own.
   EXPECT_EQ(
-      buildError("\"materials\": {\"bad\": {\"class\": \"Lambert\",\n\"albeda\": 1, \"colour\": 2},\n"
-                 "\"m\": {\"class\": \"Mirror\"}},\n\"objects\": [\n"
-                 "{\"material\": \"bad\", \"primitive\": {\"class\": \"Sphere\", \"constructor\": [[1, 2, 3], 1]}},\n"
-                 "{\"material\": \"n\", \"mesh\": \"nowhere.ply\"},\n"
-                 "{\"material\": \"m\", \"mesh\": \"nowhere.ply\"}],\n"
-                 "\"background\": {\"class\": \"Skye\"}"),
+      buildError(
+          "\"materials\": {\"bad\": {\"class\": \"Lambert\",\n\"albeda\": 1, \"colour\": 2},\n"
+          "\"m\": {\"class\": \"Mirror\"}},\n\"objects\": [\n"
+          "{\"material\": \"bad\", \"primitive\": {\"class\": \"Sphere\", \"constructor\": [[1, 2, "
+          "3], 1]}},\n"
+          "{\"material\": \"n\", \"mesh\": \"nowhere.ply\"},\n"
+          "{\"material\": \"m\", \"mesh\": \"nowhere.ply\"}],\n"
+          "\"background\": {\"class\": \"Skye\"}"),
       "s.json:3:2+6: unknownMember: class `Lambert` has no member `albeda` (fix `albedo`)\n"
       "s.json:3:15+6: unknownMember: class `Lambert` has no member `colour`\n"
       "s.json:7:15+1: unknownName: no texture or material is named `n`\n"

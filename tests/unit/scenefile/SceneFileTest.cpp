@@ -179,23 +179,24 @@ TEST(SceneFile, MissingFile) {
 }
 
 TEST(SceneFile, TellsAllThatIsWrongInOneRun) {
-  EXPECT_EQ(parseError("{\"rtsl\": 1, \"camra\": {},\n"
-                       "\"camera\": {\"klass\": \"C\"},\n"
-                       "\"textures\": {\"a\": {\"class\": 1}, \"b\": {\"class\": \"B\"}},\n"
-                       "\"materials\": {\"b\": {\"class\": \"B\"}, \"c\": 2},\n"
-                       "\"objects\": [{\"mesh\": \"m.obj\", \"colour\": 1},\n"
-                       "{\"material\": \"c\", \"mask\": -1}],\n"
-                       "\"render\": {\"spp\": 0}}"),
-            "dir/s.json:1:14+5: unknownKey: a scene has no key `camra` (fix `camera`)\n"
-            "dir/s.json:2:11+1: missingKey: `camera` needs a `class`\n"
-            "dir/s.json:3:29+1: wrongType: `class` is a string, not a number\n"
-            "dir/s.json:4:16+1: duplicateKey: `b` is the name of a texture already (3:38 the texture)\n"
-            "dir/s.json:4:41+1: wrongType: `c` is an object, not a number\n"
-            "dir/s.json:5:32+6: unknownKey: an object has no key `colour`\n"
-            "dir/s.json:5:13+1: missingKey: an object needs a `material`\n"
-            "dir/s.json:6:1+1: missingKey: an object needs a `primitive` or a `mesh`\n"
-            "dir/s.json:6:27+2: outOfRange: `mask` lies between 0 and 4294967295, it cannot be -1\n"
-            "dir/s.json:7:19+1: outOfRange: `spp` lies between 1 and 2147483647, it cannot be 0");
+  EXPECT_EQ(
+      parseError("{\"rtsl\": 1, \"camra\": {},\n"
+                 "\"camera\": {\"klass\": \"C\"},\n"
+                 "\"textures\": {\"a\": {\"class\": 1}, \"b\": {\"class\": \"B\"}},\n"
+                 "\"materials\": {\"b\": {\"class\": \"B\"}, \"c\": 2},\n"
+                 "\"objects\": [{\"mesh\": \"m.obj\", \"colour\": 1},\n"
+                 "{\"material\": \"c\", \"mask\": -1}],\n"
+                 "\"render\": {\"spp\": 0}}"),
+      "dir/s.json:1:14+5: unknownKey: a scene has no key `camra` (fix `camera`)\n"
+      "dir/s.json:2:11+1: missingKey: `camera` needs a `class`\n"
+      "dir/s.json:3:29+1: wrongType: `class` is a string, not a number\n"
+      "dir/s.json:4:16+1: duplicateKey: `b` is the name of a texture already (3:38 the texture)\n"
+      "dir/s.json:4:41+1: wrongType: `c` is an object, not a number\n"
+      "dir/s.json:5:32+6: unknownKey: an object has no key `colour`\n"
+      "dir/s.json:5:13+1: missingKey: an object needs a `material`\n"
+      "dir/s.json:6:1+1: missingKey: an object needs a `primitive` or a `mesh`\n"
+      "dir/s.json:6:27+2: outOfRange: `mask` lies between 0 and 4294967295, it cannot be -1\n"
+      "dir/s.json:7:19+1: outOfRange: `spp` lies between 1 and 2147483647, it cannot be 0");
 }
 
 TEST(SceneFile, StopsReadingBehindAHundredErrors) {

@@ -29,8 +29,7 @@ std::vector<NamedCase> allCases() {
   std::vector<NamedCase> cases;
   for (const std::string &path : languageFiles("errors.rtsl"))
     for (Case &each : splitCases(readFile(path)))
-      cases.push_back({testName(chapterOf(path) + "_" + each.title),
-                       std::move(each)});
+      cases.push_back({testName(chapterOf(path) + "_" + each.title), std::move(each)});
   return cases;
 }
 
@@ -46,8 +45,9 @@ INSTANTIATE_TEST_SUITE_P(Language, Errors, testing::ValuesIn(allCases()),
                            return param.param.name;
                          });
 
-// Codes that no text of reasonable length can provoke; LimitsTest.cpp does, and frontend/PreprocessorTest.cpp and
-// cli/test_preprocessor.py. W2901 is found behind sema, and tests/cli provokes it.
+// Codes that no text of reasonable length can provoke; LimitsTest.cpp does, and
+// frontend/PreprocessorTest.cpp and cli/test_preprocessor.py. W2901 is found behind sema, and
+// tests/cli provokes it.
 const char *const provokedElsewhere[] = {"E0320", "E0606", "E0608", "E0609", "E0611", "W2901",
                                          "E0145", "E0147", "E0148", "E0164", "E0165"};
 
@@ -61,10 +61,10 @@ TEST(Errors, EveryMessageOfSemaAndThePreprocessorHasATest) {
   };
   for (const char *number : numbers) {
     // E014x to E06xx, and the warnings that go with them or concern performance.
-    const bool isSemas = std::strlen(number) == 5 &&
-                         ((number[0] == 'E' && number[1] == '0') || number[1] == '2') &&
-                         ((number[2] >= '2' && number[2] <= '6') || (number[2] == '1' && number[3] >= '4') ||
-                          (number[0] == 'W' && number[2] == '9'));
+    const bool isSemas =
+        std::strlen(number) == 5 && ((number[0] == 'E' && number[1] == '0') || number[1] == '2') &&
+        ((number[2] >= '2' && number[2] <= '6') || (number[2] == '1' && number[3] >= '4') ||
+         (number[0] == 'W' && number[2] == '9'));
     bool elsewhere = false;
     for (const char *other : provokedElsewhere)
       elsewhere |= std::strcmp(number, other) == 0;

@@ -1,8 +1,8 @@
 //===- Harness.cpp - RTSL text in, messages and typed tree out ------------===//
 #include "Harness.h"
 
-#include "frontend/syntax/Parser.h"
 #include "frontend/preprocessor/Preprocessor.h"
+#include "frontend/syntax/Parser.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -94,8 +94,8 @@ std::string render(const Checked &checked) {
 std::string withActualMessages(const std::string &text) {
   // Expectations are comments: they may stay while the text is checked.
   const std::unique_ptr<Checked> checked = checkText(text);
-  std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, std::string>>>
-      said; // by line, then column
+  // by line, then column
+  std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, std::string>>> said;
   for (const Diagnostic &each : checked->diagnostics.all()) {
     const Diagnostic diagnostic = asWritten(each, checked->sources);
     const LineColumn begin =

@@ -32,7 +32,8 @@ struct Checked {
   std::string numbers() const;
 };
 
-/// Checks a text. After a line `//=== name.rtsl` another file begins that the text may import or include.
+/// Checks a text. After a line `//=== name.rtsl` another file begins that the text may import or
+/// include.
 std::unique_ptr<Checked> checkText(const std::string &text);
 
 /// The text of all messages, empty if there are none.

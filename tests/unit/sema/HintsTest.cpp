@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #include "Harness.h"
 
-#include "sema/model/ClassModel.h"
 #include "sema/check/Suggest.h"
+#include "sema/model/ClassModel.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,8 @@ std::string mended(const std::string &text) {
   const FixedText result = applyFixes(checked->diagnostics, checked->files.at("main.rtsl"));
   EXPECT_EQ(result.skipped, 0u);
   const std::unique_ptr<Checked> again = checkText(result.text);
-  EXPECT_EQ(applyFixes(again->diagnostics, again->files.at("main.rtsl")).text, result.text) << "not at once";
+  EXPECT_EQ(applyFixes(again->diagnostics, again->files.at("main.rtsl")).text, result.text)
+      << "not at once";
   return result.text;
 }
 
@@ -95,13 +96,18 @@ TEST(Hints, OtherLanguagesAreTranslated) {
 }
 
 TEST(Hints, WhatCannotStandThereIsNotSuggested) {
-  EXPECT_EQ(hints("class A : rt_Material { void shade() { discard; rt_SampleColor = color(1.0); } };"),
-            "`ignoreIntersection()`, which may be meant, stands in `anyHit` of an rt_Material\n");
-  expectFix("struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { discard; } };",
-            "struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { ignoreIntersection(); } };");
+  EXPECT_EQ(
+      hints("class A : rt_Material { void shade() { discard; rt_SampleColor = color(1.0); } };"),
+      "`ignoreIntersection()`, which may be meant, stands in `anyHit` of an rt_Material\n");
+  expectFix(
+      "struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { discard; } };",
+      "struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { "
+      "ignoreIntersection(); } };");
   EXPECT_EQ(hints("class C : rt_Camera { void generateRay() { rt_RayOrigin = N; } };"),
-            "`rt_ShadingNormal`, which may be meant, belongs to rt_Primitive, rt_Material and rt_Light\n");
-  EXPECT_EQ(hints("class C : rt_Camera { void generateRay() { rt_RayOrigin = rt_HitPont; } };"), "");
+            "`rt_ShadingNormal`, which may be meant, belongs to rt_Primitive, rt_Material and "
+            "rt_Light\n");
+  EXPECT_EQ(hints("class C : rt_Camera { void generateRay() { rt_RayOrigin = rt_HitPont; } };"),
+            "");
 }
 
 /// The text after every fix of every message, sure or not.
@@ -117,15 +123,18 @@ std::string withAllFixes(const Checked &checked, const std::string &text) {
   return result;
 }
 
-/// Whatever word of another language stands in whatever method: what is suggested in its place may stand there.
+/// Whatever word of another language stands in whatever method: what is suggested in its place may
+/// stand there.
 TEST(Hints, NoSuggestionIsMisplaced) {
-  const std::set<Code> misplaced = {Code::stateNotVisible, Code::stateWithoutRay, Code::misplacedTrace,
-                                    Code::misplacedIlluminance, Code::misplacedLookup, Code::misplacedCall,
-                                    Code::unknownName, Code::unknownState};
+  const std::set<Code> misplaced = {Code::stateNotVisible, Code::stateWithoutRay,
+                                    Code::misplacedTrace,  Code::misplacedIlluminance,
+                                    Code::misplacedLookup, Code::misplacedCall,
+                                    Code::unknownName,     Code::unknownState};
   std::vector<std::string> words = foreignNames();
   for (const std::string &state : stateVariableNames())
     words.insert(words.end(), {state.substr(3), state + "x"});
-  for (const char *call : {"tracee", "hitt", "ignoreIntersections", "terminateray", "visitChildren", "ramd"})
+  for (const char *call :
+       {"tracee", "hitt", "ignoreIntersections", "terminateray", "visitChildren", "ramd"})
     words.push_back(call);
   std::size_t suggestions = 0;
   for (const RootModel &root : rootModels())
@@ -135,8 +144,9 @@ TEST(Hints, NoSuggestionIsMisplaced) {
           std::string use = form;
           use.replace(use.find('*'), 1, word);
           const bool takesPayload = method.payload == MethodModel::Payload::Required;
-          const std::string text = "struct P_ { float x; };\nclass A : " + root.name + " {\nvoid " + method.name +
-                                   (takesPayload ? "(inout P_ p)" : "()") + " {\n" + use + "}\n};\n";
+          const std::string text = "struct P_ { float x; };\nclass A : " + root.name + " {\nvoid " +
+                                   method.name + (takesPayload ? "(inout P_ p)" : "()") + " {\n" +
+                                   use + "}\n};\n";
           const std::unique_ptr<Checked> before = checkText(text);
           const std::string after = withAllFixes(*before, text);
           if (after == text)
@@ -191,7 +201,8 @@ TEST(Hints, CallersOfHelpersAreNamed) {
 
 TEST(Hints, CyclesAreShown) {
   EXPECT_EQ(hints("float a(float x) { return b(x); }\nfloat b(float x) { return a(x); }"),
-            "b: `a` calls `b` here\n`a` calls `b`, which calls `a`\nonly `trace` recurses, and functions on objects that members refer to: `member.function()`\n");
+            "b: `a` calls `b` here\n`a` calls `b`, which calls `a`\nonly `trace` recurses, and "
+            "functions on objects that members refer to: `member.function()`\n");
 }
 
 TEST(Hints, ExpectedMethodsAreShown) {
@@ -216,35 +227,48 @@ TEST(SureFixes, SpellingsOfHlslAndCuda) {
                "vec4 f(float x) { return vec4(x, 0.0, inversesqrt(x), sin(x)); }");
   expectMended("vec3 f(vec3 c) { return saturate(c * 2.0); }",
                "vec3 f(vec3 c) { return clamp(c * 2.0, 0.0, 1.0); }");
-  expectMended("float f(float x) { return saturate(rcp(x + 1.0) + saturate(x)); }",
-               "float f(float x) { return clamp((1.0 / (x + 1.0)) + clamp(x, 0.0, 1.0), 0.0, 1.0); }");
+  expectMended(
+      "float f(float x) { return saturate(rcp(x + 1.0) + saturate(x)); }",
+      "float f(float x) { return clamp((1.0 / (x + 1.0)) + clamp(x, 0.0, 1.0), 0.0, 1.0); }");
   expectMended("float f(float x) { return sqr(x) + log10(x) + fmaf(x, powf(x, 2.0), fabsf(x)); }",
-               "float f(float x) { return pow(x, 2) + (log(x) / log(10.0)) + fma(x, pow(x, 2.0), abs(x)); }");
-  expectMended("float f(float y, float x) { return atan2(y, x) + float(asuint(x)) + fmaxf(x, y); }",
-               "float f(float y, float x) { return atan(y, x) + float(floatBitsToUint(x)) + max(x, y); }");
+               "float f(float x) { return pow(x, 2) + (log(x) / log(10.0)) + fma(x, pow(x, 2.0), "
+               "abs(x)); }");
+  expectMended(
+      "float f(float y, float x) { return atan2(y, x) + float(asuint(x)) + fmaxf(x, y); }",
+      "float f(float y, float x) { return atan(y, x) + float(floatBitsToUint(x)) + max(x, y); }");
 }
 
 TEST(SureFixes, SpellingsOfOptix) {
-  expectMended("struct P { float x; };\nclass A : rt_Material {\n  void anyHit(inout P p) {\n    if (p.x > 0.5) "
+  expectMended("struct P { float x; };\nclass A : rt_Material {\n  void anyHit(inout P p) {\n    "
+               "if (p.x > 0.5) "
                "rtIgnoreIntersection();\n    optixTerminateRay();\n  }\n};",
-               "struct P { float x; };\nclass A : rt_Material {\n  void anyHit(inout P p) {\n    if (p.x > 0.5) "
+               "struct P { float x; };\nclass A : rt_Material {\n  void anyHit(inout P p) {\n    "
+               "if (p.x > 0.5) "
                "ignoreIntersection();\n    terminateRay();\n  }\n};");
-  expectMended("class A : rt_Material { void shade() { rt_SampleColor = rtTrace(rt_HitPoint, rt_RayDirection); } };",
-               "class A : rt_Material { void shade() { rt_SampleColor = trace(rt_HitPoint, rt_RayDirection); } };");
+  expectMended("class A : rt_Material { void shade() { rt_SampleColor = rtTrace(rt_HitPoint, "
+               "rt_RayDirection); } };",
+               "class A : rt_Material { void shade() { rt_SampleColor = trace(rt_HitPoint, "
+               "rt_RayDirection); } };");
 }
 
 TEST(SureFixes, HabitsOfOtherLanguages) {
-  expectMended("static float f(const vec3& a, const vec3 & b, const vec3 &c, const vec3&d)\n{ return a.x + b.x + c.x + d.x }",
-               "float f(const vec3 a, const vec3 b, const vec3 c, const vec3 d)\n{ return a.x + b.x + c.x + d.x; }");
-  expectMended("class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = color(this.k); }\n};",
-               "class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = color(k); }\n};");
-  expectMended("unsigned int f(unsigned x, const unsigned int y, signed int z)\n{ unsigned int k = x; return k + y + uint(z); }",
+  expectMended("static float f(const vec3& a, const vec3 & b, const vec3 &c, const vec3&d)\n{ "
+               "return a.x + b.x + c.x + d.x }",
+               "float f(const vec3 a, const vec3 b, const vec3 c, const vec3 d)\n{ return a.x + "
+               "b.x + c.x + d.x; }");
+  expectMended("class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = "
+               "color(this.k); }\n};",
+               "class A : rt_Material {\n  public float k;\n  void shade() { rt_SampleColor = "
+               "color(k); }\n};");
+  expectMended("unsigned int f(unsigned x, const unsigned int y, signed int z)\n{ unsigned int k = "
+               "x; return k + y + uint(z); }",
                "uint f(uint x, const uint y, int z)\n{ uint k = x; return k + y + uint(z); }");
 }
 
 TEST(SureFixes, NumbersThatDoNotConvertByThemselves) {
-  expectMended("int f(float x) { int i = x; i = x * 2.0; uint u = 3.0; return u; }",
-               "int f(float x) { int i = int(x); i = int(x * 2.0); uint u = uint(3.0); return int(u); }");
+  expectMended(
+      "int f(float x) { int i = x; i = x * 2.0; uint u = 3.0; return u; }",
+      "int f(float x) { int i = int(x); i = int(x * 2.0); uint u = uint(3.0); return int(u); }");
   expectMended("ivec3 f(vec3 x) { return x; }", "ivec3 f(vec3 x) { return ivec3(x); }");
 }
 

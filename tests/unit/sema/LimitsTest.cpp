@@ -178,10 +178,10 @@ TEST(Limits, AThousandStructsInAChainDoNotOverflow) {
 }
 
 TEST(Limits, StructsAndConstantsThatNeedEachOtherUpToALimit) {
-  const std::unique_ptr<Checked> checked = checkText(
-      numbered(400, "struct S# { float x[N#]; };\n"
-                    "const int N# = S@(float[1](1.0)) == S@(float[1](1.0)) ? 1 : 2;\n") +
-      "struct S400 { float x[1]; };\n");
+  const std::unique_ptr<Checked> checked =
+      checkText(numbered(400, "struct S# { float x[N#]; };\n"
+                              "const int N# = S@(float[1](1.0)) == S@(float[1](1.0)) ? 1 : 2;\n") +
+                "struct S400 { float x[1]; };\n");
   EXPECT_NE(checked->numbers().find("E0606"), std::string::npos);
 }
 
@@ -204,8 +204,10 @@ TEST(Limits, ConstantsInTheWrongOrderUpToALimit) {
 
 TEST(Limits, ClassesInAChainUpToALimit) {
   const std::string first = "class C0 : rt_Light { public float power; };\n";
-  const std::string last = "class Last : C255 { void illumination() { rt_LightColor = color(power); } };\n";
-  const std::unique_ptr<Checked> checked = checkText(first + numbered(255, "class C@ : C# { };\n") + last);
+  const std::string last =
+      "class Last : C255 { void illumination() { rt_LightColor = color(power); } };\n";
+  const std::unique_ptr<Checked> checked =
+      checkText(first + numbered(255, "class C@ : C# { };\n") + last);
   EXPECT_EQ(render(*checked), "");
   EXPECT_TRUE(checked->module->findClass("Last")->derivesFrom(checked->module->findClass("C0")));
   EXPECT_EQ(checked->module->findClass("Last")->root, "rt_Light");
@@ -223,7 +225,8 @@ TEST(Limits, TenThousandClassesInAChain) {
 TEST(Limits, TenThousandClassesSideBySide) {
   const std::unique_ptr<Checked> checked = checkText(
       "class Base : rt_Light { public float power; float half() { return 0.5 * power; } };\n" +
-      numbered(10000, "class C# : Base { void illumination() { rt_LightColor = color(half()); } };\n"));
+      numbered(10000,
+               "class C# : Base { void illumination() { rt_LightColor = color(half()); } };\n"));
   EXPECT_EQ(render(*checked), "");
 }
 

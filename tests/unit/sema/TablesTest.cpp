@@ -1,9 +1,9 @@
 //===- TablesTest.cpp - types, conversions, overloads, suggestions --------===//
+#include "sema/check/Suggest.h"
+#include "sema/fold/ConstantFold.h"
 #include "sema/model/Builtins.h"
 #include "sema/model/ClassModel.h"
-#include "sema/fold/ConstantFold.h"
 #include "sema/model/Conversion.h"
-#include "sema/check/Suggest.h"
 #include "sema/typed/TypeProperties.h"
 #include "support/ClosestName.h"
 

@@ -14,8 +14,8 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
-#include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/calls/Steps.h"
+#include "codegen/passes/continuation/common/Names.h"
 #include "runtime/device/ray/Abi.h"
 
 #include "llvm/ADT/MapVector.h"
@@ -54,11 +54,13 @@ void takeArgumentsFromFrame(FuncOp function) {
   mlir::OpBuilder builder(function.getContext());
   mlir::Block &entry = function.getBody().front();
   builder.setInsertionPointToStart(&entry);
-  for (auto [argument, offset] : llvm::zip(entry.getArguments().drop_front(own), layout.arguments)) {
+  for (auto [argument, offset] :
+       llvm::zip(entry.getArguments().drop_front(own), layout.arguments)) {
     std::string name = authorsName(argument);
     if (name.empty())
       name = "argument" + std::to_string(argument.getArgNumber() - own);
-    auto load = ir::CallArgumentOp::create(builder, argument.getLoc(), argument.getType(), name, offset);
+    auto load =
+        ir::CallArgumentOp::create(builder, argument.getLoc(), argument.getType(), name, offset);
     argument.replaceAllUsesWith(load.getResult());
   }
   function.walk([&](mlir::func::ReturnOp end) {
@@ -69,7 +71,8 @@ void takeArgumentsFromFrame(FuncOp function) {
   });
   entry.eraseArguments(own, entry.getNumArguments() - own);
   function.setFunctionType(builder.getFunctionType(entry.getArgumentTypes(), {}));
-  function->setAttr("rtsl.frame_base", builder.getI32IntegerAttr(static_cast<std::int32_t>(layout.size)));
+  function->setAttr("rtsl.frame_base",
+                    builder.getI32IntegerAttr(static_cast<std::int32_t>(layout.size)));
 }
 
 //===----------------------------------------------------------------------===//
@@ -147,7 +150,8 @@ void FrameCounter::read(FuncOp state) {
   functions[number].isCalled |= isFramed(state);
   state.walk([&](ir::EnterOp call) {
     const unsigned callee = numberOf(call.getCallee());
-    const bool onMember = !call.getOperands().empty() && isOfMember(call.getOperands().front(), state);
+    const bool onMember =
+        !call.getOperands().empty() && isOfMember(call.getOperands().front(), state);
     functions[number].calls.push_back({callee, onMember});
   });
 }
@@ -180,7 +184,8 @@ std::uint32_t FrameCounter::bytes(unsigned function, unsigned chain) {
       most = std::max(most, bytes(call.callee, chain - 1));
   }
   const std::uint32_t own = functions[function].bytes;
-  return known[{function, chain}] = most == 0 ? own : (own + 7) / 8 * 8 + most; // as Dispatch.cpp has it
+  return known[{function, chain}] =
+             most == 0 ? own : (own + 7) / 8 * 8 + most; // as Dispatch.cpp has it
 }
 
 std::vector<std::uint32_t> FrameCounter::run() {

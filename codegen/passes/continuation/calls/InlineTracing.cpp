@@ -121,7 +121,8 @@ llvm::SmallVector<CallOp> Inliner::inlineCall(CallOp call, FuncOp callee) {
   llvm::SmallVector<mlir::Value> passed;
   llvm::copy_if(call.getOperands(), std::back_inserter(passed),
                 [](mlir::Value value) { return !llvm::isa<ir::PtrType>(value.getType()); });
-  mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()), passed);
+  mlir::cf::BranchOp::create(builder, call.getLoc(), mapping.lookup(&callee.getBody().front()),
+                             passed);
   call.erase();
   llvm::SmallVector<CallOp> calls;
   for (mlir::Operation *clone : clones)
@@ -141,7 +142,9 @@ void Inliner::visit(FuncOp function) {
     return;
   state = Visit::Open;
   llvm::SmallVector<CallOp> pending; // the first in the end
-  const auto add = [&](llvm::ArrayRef<CallOp> calls) { pending.append(calls.rbegin(), calls.rend()); };
+  const auto add = [&](llvm::ArrayRef<CallOp> calls) {
+    pending.append(calls.rbegin(), calls.rend());
+  };
   llvm::SmallVector<CallOp> calls;
   function.walk([&](CallOp call) { calls.push_back(call); });
   add(calls);
@@ -189,7 +192,8 @@ void Inliner::eraseUncalled() {
   llvm::SmallVector<FuncOp> idle;
   const auto addIfIdle = [&](mlir::Operation *op) {
     auto function = llvm::dyn_cast_or_null<FuncOp>(op);
-    if (function && tracing.contains(function) && function.isPrivate() && uses.lookup(function.getSymNameAttr()) == 0)
+    if (function && tracing.contains(function) && function.isPrivate() &&
+        uses.lookup(function.getSymNameAttr()) == 0)
       idle.push_back(function);
   };
   for (mlir::Operation *function : tracing)

@@ -3,14 +3,15 @@
 //   rtsl.call_method "follow" on %f(%d)
 //       ==>   func.call @dispatch.Filter.follow(%f, %d) {rtsl.framed}
 //
-// where some class below Filter has a `follow` that traces. Which one runs is known when there is a scene, so
-// `@dispatch.Filter.follow` is only declared, under the first class that has the method; whoever makes a program of this
-// (codegen/cpp) chooses there. The methods that it may stand for get frames of their own. The declaration says what they
-// may write, `rtsl.writes`, for they are cut before all that call them are.
+// where some class below Filter has a `follow` that traces. Which one runs is known when there is a
+// scene, so `@dispatch.Filter.follow` is only declared, under the first class that has the method;
+// whoever makes a program of this (codegen/cpp) chooses there. The methods that it may stand for
+// get frames of their own. The declaration says what they may write, `rtsl.writes`, for they are
+// cut before all that call them are.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/common/Recompute.h"
 #include "codegen/passes/continuation/calls/Steps.h"
+#include "codegen/passes/continuation/common/Recompute.h"
 
 #include "mlir/IR/SymbolTable.h"
 #include "llvm/ADT/SetVector.h"
@@ -38,8 +39,9 @@ private:
   mlir::ModuleOp module;
   mlir::SymbolTable symbols;
   llvm::SmallSetVector<mlir::Operation *, 16> tracing;
-  llvm::SmallSetVector<mlir::Operation *, 8> framed;                                 // what was called so
-  llvm::SmallVector<std::pair<FuncOp, llvm::SmallVector<FuncOp>>> declarations; // and what they may stand for
+  llvm::SmallSetVector<mlir::Operation *, 8> framed; // what was called so
+  // and what they may stand for
+  llvm::SmallVector<std::pair<FuncOp, llvm::SmallVector<FuncOp>>> declarations;
 };
 
 /// The author's class that this one derives from, or null.
@@ -77,17 +79,18 @@ void OpenCalls::findTracing() {
     for (FuncOp function : module.getOps<FuncOp>()) {
       if (tracing.contains(function))
         continue;
-      const bool traces = function
-                              .walk([&](mlir::Operation *op) {
-                                bool here = llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op);
-                                if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
-                                  here = tracing.contains(symbols.lookup(call.getCallee()));
-                                if (auto call = llvm::dyn_cast<ir::CallMethodOp>(op))
-                                  here = llvm::any_of(targets(baseOf(call), call.getMethod()),
-                                                      [&](FuncOp target) { return tracing.contains(target); });
-                                return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
-                              })
-                              .wasInterrupted();
+      const bool traces =
+          function
+              .walk([&](mlir::Operation *op) {
+                bool here = llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op);
+                if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
+                  here = tracing.contains(symbols.lookup(call.getCallee()));
+                if (auto call = llvm::dyn_cast<ir::CallMethodOp>(op))
+                  here = llvm::any_of(targets(baseOf(call), call.getMethod()),
+                                      [&](FuncOp target) { return tracing.contains(target); });
+                return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+              })
+              .wasInterrupted();
       if (traces)
         changed |= tracing.insert(function);
     }
@@ -105,7 +108,8 @@ std::string OpenCalls::firstWith(llvm::StringRef className, llvm::StringRef meth
   return definition.getSymName().str();
 }
 
-/// Who calls the method on the own object does not want a frame for it: it stays as it is, and has a twin.
+/// Who calls the method on the own object does not want a frame for it: it stays as it is, and has
+/// a twin.
 void OpenCalls::giveFrame(FuncOp method) {
   if (!framed.insert(method))
     return;
@@ -133,7 +137,8 @@ void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
   auto declaration = symbols.lookup<FuncOp>(name);
   if (!declaration) {
     declaration = FuncOp::create(
-        call.getLoc(), name, builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
+        call.getLoc(), name,
+        builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
     declaration.setPrivate();
     declaration->setAttr("rtsl.class", builder.getStringAttr(base));
     declaration->setAttr("rtsl.method", call.getMethodAttr());

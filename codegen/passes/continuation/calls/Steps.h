@@ -18,15 +18,15 @@ namespace rtsl::continuation {
 /// they and their calls are marked `rtsl.framed`.
 void inlineTracingCalls(mlir::ModuleOp module);
 
-/// OpenCalls.cpp: of a program without a scene, on level 1: calls of methods that trace, through references, become framed
-/// calls of `@dispatch.CLASS.METHOD`, which is only declared. It has the names of the first class that has the method
-/// (`rtsl.class`) and of the method (`rtsl.method`).
+/// OpenCalls.cpp: of a program without a scene, on level 1: calls of methods that trace, through
+/// references, become framed calls of `@dispatch.CLASS.METHOD`, which is only declared. It has the
+/// names of the first class that has the method (`rtsl.class`) and of the method (`rtsl.method`).
 void callThroughFrames(mlir::ModuleOp module);
 
 /// CallFrames.cpp: where what a call hands over lies in the frame of what it calls, in bytes.
 struct CallLayout {
   llvm::SmallVector<std::int32_t> arguments, results; // but for the object
-  std::uint32_t size = 0; // what the callee saves itself begins here
+  std::uint32_t size = 0;                             // what the callee saves itself begins here
 };
 CallLayout layoutCall(mlir::TypeRange arguments, mlir::TypeRange results);
 

@@ -63,7 +63,8 @@ void Liveness::compute(const HandedOn *handedOn) {
 }
 
 void Liveness::extend(ir::SuspendOp suspend, const llvm::BitVector &handedOn) {
-  llvm::SmallVector<std::pair<mlir::Block *, llvm::BitVector>> worklist = {{suspend->getBlock(), handedOn}};
+  llvm::SmallVector<std::pair<mlir::Block *, llvm::BitVector>> worklist = {
+      {suspend->getBlock(), handedOn}};
   while (!worklist.empty()) {
     auto [block, added] = worklist.pop_back_val();
     BlockSets &sets = blocks[block];

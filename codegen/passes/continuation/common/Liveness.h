@@ -22,7 +22,8 @@ public:
   using HandedOn = llvm::DenseMap<mlir::Operation *, llvm::BitVector>;
   void compute(const HandedOn *handedOn = nullptr);
 
-  /// After compute() with what suspends hand on: this one hands on these values, and what it handed on before.
+  /// After compute() with what suspends hand on: this one hands on these values, and what it handed
+  /// on before.
   void extend(ir::SuspendOp suspend, const llvm::BitVector &handedOn);
 
   /// Values that are live at the beginning of a block and not its arguments.

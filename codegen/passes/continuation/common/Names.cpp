@@ -130,7 +130,8 @@ std::string describeToAuthor(mlir::Value value) {
     return "`" + name + "`";
   const ir::SourcePlace place = ir::placeOf(value.getLoc());
   const char *does = value.getDefiningOp<ir::TraceResultOp>() ? "brings back" : "computes";
-  return place.isKnown() ? "what line " + std::to_string(place.line) + " " + does : "a value in between";
+  return place.isKnown() ? "what line " + std::to_string(place.line) + " " + does
+                         : "a value in between";
 }
 
 std::string UniqueNames::unique(const std::string &name) {

@@ -21,7 +21,8 @@ std::string authorsName(mlir::Value value);
 /// not its conditions.
 bool isNamedByCaller(mlir::Value value);
 
-/// What a message calls the value: "`sum`", "`rt_HitPoint`", or "what line 12 computes" where the author gave no name.
+/// What a message calls the value: "`sum`", "`rt_HitPoint`", or "what line 12 computes" where the
+/// author gave no name.
 std::string describeToAuthor(mlir::Value value);
 
 /// Names for values of one function, each different: the second "sum" is "sum.2".

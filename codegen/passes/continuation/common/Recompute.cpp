@@ -40,7 +40,8 @@ static StateWrites writesThrough(mlir::Value address) {
 
 static bool isLight(FuncOp function) {
   auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
-  return (method && method.getValue() == "illumination") || function.getSymName() == "rtsl_rt_Light_illumination";
+  return (method && method.getValue() == "illumination") ||
+         function.getSymName() == "rtsl_rt_Light_illumination";
 }
 
 WriteSummary::WriteSummary(mlir::ModuleOp module) {
@@ -64,7 +65,8 @@ WriteSummary::WriteSummary(mlir::ModuleOp module) {
     illumination.any = true;
 }
 
-/// From what functions write themselves to their callers. Cycles of calls through references end where nothing is new.
+/// From what functions write themselves to their callers. Cycles of calls through references end
+/// where nothing is new.
 void WriteSummary::propagate(mlir::ModuleOp module) {
   // Lights are as if called where a point is lit: under this name, which no function has.
   const auto lights = mlir::StringAttr::get(module.getContext(), "");
@@ -81,7 +83,8 @@ void WriteSummary::propagate(mlir::ModuleOp module) {
     function.walk([&](mlir::Operation *op) {
       if (llvm::isa<ir::IlluminateOp>(op))
         callers[lights].push_back(name);
-      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op); call && functions.contains(call.getCalleeAttr().getAttr()))
+      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op);
+          call && functions.contains(call.getCalleeAttr().getAttr()))
         callers[call.getCalleeAttr().getAttr()].push_back(name);
       else
         writes.add(of(op));
@@ -146,11 +149,12 @@ bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendO
     return found.names.contains(state) || (found.any && !fixed);
   };
   if (auto [anywhere, isFirst] = written.try_emplace(state, false); isFirst)
-    anywhere->second = function
-                           .walk([&](mlir::Operation *op) {
-                             return writes(op) ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
-                           })
-                           .wasInterrupted();
+    anywhere->second =
+        function
+            .walk([&](mlir::Operation *op) {
+              return writes(op) ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+            })
+            .wasInterrupted();
   if (!written.lookup(state))
     return unchanged[{load, suspend}] = true;
   llvm::SmallPtrSet<mlir::Block *, 16> seen;
@@ -182,7 +186,8 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
   auto isConstantForLaunch = [&](mlir::Value address) {
     mlir::Operation *base = ir::baseOperation(address);
     return llvm::isa_and_nonnull<ir::TableOp>(base) ||
-           (llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(base) && !function->hasAttr("rtsl.constructor"));
+           (llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(base) &&
+            !function->hasAttr("rtsl.constructor"));
   };
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
     mlir::Operation *base = ir::baseOperation(load.getAddress());

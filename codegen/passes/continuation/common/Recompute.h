@@ -34,7 +34,9 @@ public:
   explicit WriteSummary(mlir::ModuleOp module);
   /// What one operation may write.
   StateWrites of(mlir::Operation *op) const;
-  StateWrites ofFunction(FuncOp function) const { return functions.lookup(function.getSymNameAttr()); }
+  StateWrites ofFunction(FuncOp function) const {
+    return functions.lookup(function.getSymNameAttr());
+  }
 
 private:
   void propagate(mlir::ModuleOp module);

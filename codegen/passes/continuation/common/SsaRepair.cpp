@@ -171,7 +171,8 @@ BlockOrder::BlockOrder(mlir::Region &body) {
     numbers.try_emplace(block, numbers.size());
 }
 
-llvm::SmallVector<mlir::Block *> BlockOrder::sorted(const llvm::SmallPtrSetImpl<mlir::Block *> &blocks) const {
+llvm::SmallVector<mlir::Block *>
+BlockOrder::sorted(const llvm::SmallPtrSetImpl<mlir::Block *> &blocks) const {
   llvm::SmallVector<std::pair<unsigned, mlir::Block *>> numbered;
   for (mlir::Block *block : blocks)
     if (const auto number = numbers.find(block); number != numbers.end())

@@ -12,8 +12,8 @@ namespace rtsl::continuation {
 /// New definitions of one value, each in force from the beginning of a block.
 using Redefinitions = llvm::MapVector<mlir::Block *, mlir::Value>;
 
-/// The blocks of a function in reverse postorder, for many repairs: arguments of blocks come and go meanwhile, blocks and
-/// branches do not.
+/// The blocks of a function in reverse postorder, for many repairs: arguments of blocks come and go
+/// meanwhile, blocks and branches do not.
 class BlockOrder {
 public:
   explicit BlockOrder(mlir::Region &body);

@@ -61,7 +61,8 @@ Calls::Calls(mlir::ModuleOp module) {
   }
   for (auto [number, function] : llvm::enumerate(functions))
     function.op.walk([&, number = number, &function = function](mlir::Operation *op) {
-      function.traces |= llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp, ir::SpawnOp, ir::SpawnPayloadOp>(op);
+      function.traces |= llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp, ir::SpawnOp,
+                                   ir::SpawnPayloadOp>(op);
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
         function.traces |= isFramed(call);
         if (auto callee = numbers.find(call.getCalleeAttr().getAttr()); callee != numbers.end()) {
@@ -89,11 +90,13 @@ std::vector<bool> Calls::tracing() const {
   return found;
 }
 
-/// Strongly connected components (Tarjan, "Depth-first search and linear graph algorithms", 1972), without recursion.
+/// Strongly connected components (Tarjan, "Depth-first search and linear graph algorithms", 1972),
+/// without recursion.
 std::vector<bool> Calls::inCycles() const {
   constexpr unsigned none = ~0u;
   std::vector<bool> found(functions.size()), isOpen(functions.size());
-  std::vector<unsigned> index(functions.size(), none), low(functions.size()), next(functions.size());
+  std::vector<unsigned> index(functions.size(), none), low(functions.size()),
+      next(functions.size());
   llvm::SmallVector<unsigned> path, open;
   unsigned count = 0;
   for (unsigned start = 0; start != functions.size(); ++start) {
@@ -147,7 +150,8 @@ llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module) {
 llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module) {
   const Calls calls(module);
   llvm::SmallVector<FuncOp> found;
-  for (auto [function, traces, isInCycle] : llvm::zip(calls.functions, calls.tracing(), calls.inCycles()))
+  for (auto [function, traces, isInCycle] :
+       llvm::zip(calls.functions, calls.tracing(), calls.inCycles()))
     if (traces && isInCycle) // what calls what traces does so itself
       found.push_back(function.op);
   return found;

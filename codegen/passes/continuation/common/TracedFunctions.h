@@ -23,8 +23,8 @@ llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module);
 /// Those of them that calls lead back to.
 llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module);
 
-/// The entries that the machine starts (runtime/device/engines/Machine.h): their states are made even if
-/// they do not trace.
+/// The entries that the machine starts (runtime/device/engines/Machine.h): their states are made
+/// even if they do not trace.
 llvm::ArrayRef<llvm::StringLiteral> machineEntries();
 
 /// Has the function, or the call, a frame of its own (calls/Steps.h)?

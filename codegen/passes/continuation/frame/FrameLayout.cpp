@@ -7,8 +7,9 @@
 //
 // One slot a value over all traces, so that nothing is ever copied from slot to slot. Values that
 // are never saved at the same trace may share words; objects share them with others that are not
-// wanted while they are (ObjectLifetimes.h). Bools take a bit each. Words are given first fit, to the largest values first, to those that are saved most often first, or as they come,
-// whichever frame is smallest.
+// wanted while they are (ObjectLifetimes.h). Bools take a bit each. Words are given first fit, to
+// the largest values first, to those that are saved most often first, or as they come, whichever
+// frame is smallest.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
@@ -130,7 +131,8 @@ std::uint32_t Layouter::place(const std::vector<unsigned> &order,
   std::uint32_t end = base;
   std::vector<std::vector<unsigned>> placedAt(suspends.size()); // by trace
   std::vector<unsigned> placedObjects;
-  std::vector<unsigned> seenFor(items.size(), ~0u); // an item that is saved at several of the same traces
+  std::vector<unsigned> seenFor(items.size(),
+                                ~0u); // an item that is saved at several of the same traces
   for (unsigned index : order) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> taken; // from, to
     const auto look = [&](const std::vector<unsigned> &placed) {
@@ -191,7 +193,8 @@ FrameLayout Layouter::describe() const {
       atTrace[trace] += item.size;
     if (item.bools.empty())
       layout.slots.push_back({item.name, item.offset, item.size, -1, item.isObject});
-    layout.unshared += item.bools.empty() ? item.size : 4 * static_cast<std::uint32_t>(item.bools.size());
+    layout.unshared +=
+        item.bools.empty() ? item.size : 4 * static_cast<std::uint32_t>(item.bools.size());
     for (unsigned index : item.bools)
       layout.slots.push_back(
           {bools[index].name, item.offset, 4, static_cast<int>(bools[index].bit % 32), false});

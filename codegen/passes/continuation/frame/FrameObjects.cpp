@@ -10,8 +10,8 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/Liveness.h"
-#include "codegen/passes/continuation/frame/Steps.h"
 #include "codegen/passes/continuation/common/Names.h"
+#include "codegen/passes/continuation/frame/Steps.h"
 
 namespace rtsl::continuation {
 
@@ -50,7 +50,8 @@ void moveVariablesToFrame(FuncOp function) {
     mlir::OpBuilder builder(variable);
     auto object = ir::FrameObjectOp::create(builder, variable.getLoc(), variable.getType(),
                                             names.unique(variable.getName().str()), 0u);
-    object->setDiscardableAttrs(variable->getDiscardableAttrDictionary()); // what a printer knows of it
+    object->setDiscardableAttrs(
+        variable->getDiscardableAttrDictionary()); // what a printer knows of it
     ir::ClearOp::create(builder, variable.getLoc(), object);
     variable.replaceAllUsesWith(object.getResult());
     variable.erase();

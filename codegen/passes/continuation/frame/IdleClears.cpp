@@ -4,8 +4,9 @@
 //   rtsl.clear %ray             ==>       ...
 //   ...
 //
-// Variables in memory are cleared where they are declared, and once more where they move to the frame. For people, who read
-// what the printer for C++ makes of it, a clear says that somebody wants the zeros.
+// Variables in memory are cleared where they are declared, and once more where they move to the
+// frame. For people, who read what the printer for C++ makes of it, a clear says that somebody
+// wants the zeros.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/BaseAddress.h"

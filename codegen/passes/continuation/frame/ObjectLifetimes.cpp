@@ -13,7 +13,8 @@ using llvm::BitVector;
 
 class Finder {
 public:
-  Finder(FuncOp function, llvm::ArrayRef<ir::SuspendOp> suspends) : function(function), suspends(suspends) {}
+  Finder(FuncOp function, llvm::ArrayRef<ir::SuspendOp> suspends)
+      : function(function), suspends(suspends) {}
   std::vector<ObjectLifetime> run();
 
 private:
@@ -28,8 +29,9 @@ private:
   llvm::ArrayRef<ir::SuspendOp> suspends;
   std::vector<ObjectLifetime> lifetimes;
   llvm::StringMap<unsigned> numbers;
-  llvm::DenseMap<mlir::Operation *, llvm::SmallVector<unsigned, 2>> uses; // reads, or writes of parts
-  llvm::DenseMap<mlir::Operation *, unsigned> clears;                     // of all that an object is
+  llvm::DenseMap<mlir::Operation *, llvm::SmallVector<unsigned, 2>>
+      uses;                                           // reads, or writes of parts
+  llvm::DenseMap<mlir::Operation *, unsigned> clears; // of all that an object is
   BitVector escaped; // to where they cannot be followed: wanted always
   llvm::DenseMap<mlir::Block *, BitVector> atBeginning;
 };
@@ -139,7 +141,8 @@ std::vector<ObjectLifetime> Finder::run() {
 
 } // namespace
 
-std::vector<ObjectLifetime> lifetimesOfObjects(FuncOp function, llvm::ArrayRef<ir::SuspendOp> suspends) {
+std::vector<ObjectLifetime> lifetimesOfObjects(FuncOp function,
+                                               llvm::ArrayRef<ir::SuspendOp> suspends) {
   return Finder(function, suspends).run();
 }
 

@@ -14,12 +14,13 @@
 namespace rtsl::continuation {
 
 struct ObjectLifetime {
-  ir::FrameObjectOp object;   // the first of its name: it may be computed again elsewhere
-  llvm::BitVector traces;     // at which it is wanted, or handed to the ray
-  llvm::BitVector objects;    // that are wanted while this one is
+  ir::FrameObjectOp object; // the first of its name: it may be computed again elsewhere
+  llvm::BitVector traces;   // at which it is wanted, or handed to the ray
+  llvm::BitVector objects;  // that are wanted while this one is
 };
 
 /// In the order in which the objects stand; `suspends` are those of the function.
-std::vector<ObjectLifetime> lifetimesOfObjects(FuncOp function, llvm::ArrayRef<ir::SuspendOp> suspends);
+std::vector<ObjectLifetime> lifetimesOfObjects(FuncOp function,
+                                               llvm::ArrayRef<ir::SuspendOp> suspends);
 
 } // namespace rtsl::continuation

@@ -16,7 +16,8 @@ namespace rtsl::continuation {
 /// FrameObjects.cpp: variables that are still in memory and live across a trace move to the frame.
 void moveVariablesToFrame(FuncOp function);
 
-/// IdleClears.cpp: of a program that is printed for people, no variable is cleared that is written before it is read.
+/// IdleClears.cpp: of a program that is printed for people, no variable is cleared that is written
+/// before it is read.
 void removeIdleClears(FuncOp function);
 
 /// A place in the frame.

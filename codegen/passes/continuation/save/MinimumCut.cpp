@@ -71,7 +71,8 @@ std::int64_t Network::augment(unsigned node, unsigned sink, std::int64_t limit) 
     unsigned index = edgesOf[node][next[node]];
     if (edges[index].capacity <= 0 || !isAhead(node, index))
       continue;
-    std::int64_t sent = augment(edges[index].to, sink, std::min(limit - all, edges[index].capacity));
+    std::int64_t sent =
+        augment(edges[index].to, sink, std::min(limit - all, edges[index].capacity));
     edges[index].capacity -= sent;
     edges[index ^ 1].capacity += sent;
     all += sent;
@@ -123,8 +124,9 @@ public:
         continue;
       }
       const bool isDecided = value.recomputeCost < value.saveCost &&
-                             std::all_of(value.operands.begin(), value.operands.end(),
-                                         [&](unsigned operand) { return isThere[operand]; });
+                             std::all_of(
+                                 value.operands.begin(), value.operands.end(),
+                                 [&](unsigned operand) { return isThere[operand]; });
       isThere[v] = isDecided && (value.needed || value.recomputeCost == 0);
       if (isThere[v] && value.needed)
         cost += value.recomputeCost;

@@ -18,8 +18,8 @@
 // needed behind the traces before it; therefore plans and liveness are computed in turn until
 // neither changes. Arguments of blocks are never recomputed.
 //
-// That each trace's choice is the cheapest for it does not make all of them together the cheapest: a
-// value that is saved for less here may have to be saved at the traces before only for that. So
+// That each trace's choice is the cheapest for it does not make all of them together the cheapest:
+// a value that is saved for less here may have to be saved at the traces before only for that. So
 // afterwards one after the other is forbidden to be saved at one trace, and if all plans together
 // are cheaper without, it stays so.
 //
@@ -29,13 +29,13 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
-#include "codegen/passes/continuation/save/Steps.h"
 #include "codegen/passes/continuation/common/CostTable.h"
 #include "codegen/passes/continuation/common/Liveness.h"
-#include "codegen/passes/continuation/save/MinimumCut.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/common/Recompute.h"
 #include "codegen/passes/continuation/common/SsaRepair.h"
+#include "codegen/passes/continuation/save/MinimumCut.h"
+#include "codegen/passes/continuation/save/Steps.h"
 
 #include "mlir/Analysis/CFGLoopInfo.h"
 #include "mlir/IR/Dominance.h"
@@ -87,7 +87,8 @@ private:
   mlir::CFGLoopInfo loops;
   Value object; // a parameter of every state
   llvm::SmallVector<ir::SuspendOp> suspends = suspendsOf(function);
-  llvm::SmallVector<BitVector> forbidden; // what is not saved at each trace, whatever that costs; empty: nothing
+  // what is not saved at each trace, whatever that costs; empty: nothing
+  llvm::SmallVector<BitVector> forbidden;
   std::vector<std::optional<llvm::SmallVector<unsigned, 4>>> operandNumbers; // made when asked for
   std::vector<std::int64_t> costs; // of executing what makes a value once; -1: not asked for yet
 };
@@ -335,7 +336,8 @@ mlir::FailureOr<llvm::SmallVector<SuspendPlan>> Planner::run() {
 } // namespace
 
 mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
-planContinuations(FuncOp function, const RematerialiseOptions &options, const WriteSummary &summary) {
+planContinuations(FuncOp function, const RematerialiseOptions &options,
+                  const WriteSummary &summary) {
   if (suspendsOf(function).empty())
     return llvm::SmallVector<SuspendPlan>();
   return Planner(function, options, summary).run();
@@ -343,7 +345,8 @@ planContinuations(FuncOp function, const RematerialiseOptions &options, const Wr
 
 mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
 planContinuations(FuncOp function, const RematerialiseOptions &options) {
-  return planContinuations(function, options, WriteSummary(function->getParentOfType<mlir::ModuleOp>()));
+  return planContinuations(function, options,
+                           WriteSummary(function->getParentOfType<mlir::ModuleOp>()));
 }
 
 void rematerialise(FuncOp function, llvm::ArrayRef<SuspendPlan> plans) {

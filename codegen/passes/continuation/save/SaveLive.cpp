@@ -9,9 +9,9 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/Liveness.h"
-#include "codegen/passes/continuation/save/Steps.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/common/SsaRepair.h"
+#include "codegen/passes/continuation/save/Steps.h"
 
 namespace rtsl::continuation {
 

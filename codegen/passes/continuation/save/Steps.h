@@ -20,8 +20,8 @@ struct TrimmedPayload {
   std::uint32_t bytesBefore = 0, bytes = 0;
 };
 
-/// TrimPayloads.cpp: takes fields out of payloads that nobody reads, and those that only the senders
-/// of rays use. Does nothing to a module that is not linked: other classes may read them.
+/// TrimPayloads.cpp: takes fields out of payloads that nobody reads, and those that only the
+/// senders of rays use. Does nothing to a module that is not linked: other classes may read them.
 std::vector<TrimmedPayload> trimPayloads(mlir::ModuleOp module);
 
 /// TrimVectors.cpp: parts that are taken out of a vector behind a trace are taken out before it.
@@ -31,8 +31,8 @@ void trimVectors(FuncOp function);
 struct SuspendPlan {
   ir::SuspendOp suspend;
   llvm::SmallVector<mlir::Value> saved; // in program order
-  llvm::SmallVector<mlir::Value>
-      recomputed; // in program order; operands before what is made of them
+  // in program order; operands before what is made of them
+  llvm::SmallVector<mlir::Value> recomputed;
 };
 
 struct RematerialiseOptions {
@@ -46,7 +46,8 @@ mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
 planContinuations(FuncOp function, const RematerialiseOptions &options);
 /// Where the summary is known already: it takes a walk over the module.
 mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
-planContinuations(FuncOp function, const RematerialiseOptions &options, const WriteSummary &summary);
+planContinuations(FuncOp function, const RematerialiseOptions &options,
+                  const WriteSummary &summary);
 
 /// Recomputes behind each trace what the plan says. What is still live across it afterwards is what
 /// the plan saves.

@@ -196,7 +196,8 @@ TrimmedPayload PayloadTrimmer::run() {
     else if (!uses[field].byPrograms)
       makeVariables(field);
   }
-  return {type.getName().str(), std::move(dropped), ir::sizeInBytes(type), ir::sizeInBytes(changeType(kept))};
+  return {type.getName().str(), std::move(dropped), ir::sizeInBytes(type),
+          ir::sizeInBytes(changeType(kept))};
 }
 
 } // namespace

@@ -89,10 +89,12 @@ void trimVectors(FuncOp function) {
     return;
   llvm::SmallVector<mlir::Operation *> operations;
   function.walk([&](mlir::Operation *op) {
-    if (!llvm::isa<vector::ExtractOp>(op)) // those go with their operand, which may be looked at first
+    if (!llvm::isa<vector::ExtractOp>(
+            op)) // those go with their operand, which may be looked at first
       operations.push_back(op);
   });
-  for (mlir::Operation *op : llvm::reverse(operations)) // users first: what they read is extracts then
+  for (mlir::Operation *op :
+       llvm::reverse(operations)) // users first: what they read is extracts then
     narrow(op);
 
   Liveness liveness(function);
@@ -115,7 +117,8 @@ void trimVectors(FuncOp function) {
     mlir::Value whole = other != replaced.end() ? other->second : live;
     llvm::SmallVector<mlir::Operation *> parts; // in program order: uses have none
     for (mlir::Operation *user : whole.getUsers())
-      if (isPart(*user) && user->getOperand(0) == whole && user->getBlock() != whole.getParentBlock() &&
+      if (isPart(*user) && user->getOperand(0) == whole &&
+          user->getBlock() != whole.getParentBlock() &&
           !llvm::is_contained(parts, user)) // a shuffle has its operand twice
         parts.push_back(user);
     llvm::sort(parts, isBefore);

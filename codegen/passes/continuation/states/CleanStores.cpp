@@ -32,11 +32,12 @@ private:
   /// Does the slot hold `value` just before `op`, however control came there?
   bool holdsBefore(mlir::Operation *op, mlir::Value value);
   bool overlaps(std::uint32_t offset, mlir::Type type, std::optional<std::uint32_t> bit);
-  /// Is it of the slot that is stored to? Of its name too: where a frame is printed for people, slots that share words are
-  /// fields of their own.
+  /// Is it of the slot that is stored to? Of its name too: where a frame is printed for people,
+  /// slots that share words are fields of their own.
   template <typename Op>
   bool isSame(Op op) {
-    return op.getOffset() == store.getOffset() && op.getBit() == store.getBit() && op.getName() == store.getName();
+    return op.getOffset() == store.getOffset() && op.getBit() == store.getBit() &&
+           op.getName() == store.getName();
   }
 
   ir::FrameStoreOp store;

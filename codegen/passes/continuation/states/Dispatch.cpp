@@ -1,6 +1,7 @@
 //===- Dispatch.cpp - from states to a machine ----------------------------===//
 //
-// Makes the frame a parameter and numbers the states, and adds what runtime/device/engines/Machine.h calls:
+// Makes the frame a parameter and numbers the states, and adds what
+// runtime/device/engines/Machine.h calls:
 //
 //   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, gives what comes next
 //   func @rtsl_frame_size(%chain: i32) -> i32                   bytes of the largest frame
@@ -58,7 +59,8 @@ private:
   void expand(ir::CallReturnedOp returned, mlir::Value frame, std::uint32_t frameSize);
   void expand(ir::LeaveOp leave, mlir::Value frame);
   void keep(mlir::Value value, mlir::Value frame, std::uint32_t offset);
-  mlir::Value loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset, mlir::Type type);
+  mlir::Value loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset,
+                       mlir::Type type);
   mlir::LogicalResult number(ir::NextOp next);
   FuncOp makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type> inputs);
   FuncOp makeConstant(llvm::StringRef name, std::int32_t value);
@@ -130,7 +132,8 @@ void Dispatcher::keep(mlir::Value value, mlir::Value frame, std::uint32_t offset
     ir::KeepAddressOp::create(builder, location, value,
                               address(location, frame, offset, builder.getI32Type()));
   else
-    ir::StoreOp::create(builder, location, value, address(location, frame, offset, value.getType()));
+    ir::StoreOp::create(builder, location, value,
+                        address(location, frame, offset, value.getType()));
 }
 
 mlir::Value Dispatcher::loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset,
@@ -142,19 +145,23 @@ mlir::Value Dispatcher::loadFrom(mlir::Location location, mlir::Value frame, std
 }
 
 /// The frame of what is called begins where this one ends.
-mlir::LogicalResult Dispatcher::expand(ir::EnterOp call, mlir::Value frame, std::uint32_t frameSize) {
+mlir::LogicalResult Dispatcher::expand(ir::EnterOp call, mlir::Value frame,
+                                       std::uint32_t frameSize) {
   builder.setInsertionPoint(call);
   mlir::Location location = call.getLoc();
   const std::int32_t resume = numbers.lookup(call.getResume().value_or(""));
   if (resume == 0)
-    return call.emitOpError() << "goes on in `" << call.getResume().value_or("") << "`, which is no state";
+    return call.emitOpError() << "goes on in `" << call.getResume().value_or("")
+                              << "`, which is no state";
   auto state = call->getParentOfType<FuncOp>();
   mlir::Value own = objectOf(state);
   if (!own)
-    own = ir::NullRefOp::create(builder, location, ir::RefType::get(builder.getContext(), "object"));
+    own =
+        ir::NullRefOp::create(builder, location, ir::RefType::get(builder.getContext(), "object"));
   keep(constant(location, resume), frame, frameSize + RTSL_CALL_RESUME);
   keep(own, frame, frameSize + RTSL_CALL_OBJECT);
-  keep(constant(location, static_cast<std::int32_t>(frameSize)), frame, frameSize + RTSL_CALL_BELOW);
+  keep(constant(location, static_cast<std::int32_t>(frameSize)), frame,
+       frameSize + RTSL_CALL_BELOW);
   mlir::OperandRange arguments = call.getOperands();
   mlir::Value object = own;
   if (arguments.size() > call.getOffsets().size()) {
@@ -163,7 +170,8 @@ mlir::LogicalResult Dispatcher::expand(ir::EnterOp call, mlir::Value frame, std:
   }
   for (auto [value, offset] : llvm::zip(arguments, call.getOffsets()))
     keep(value, frame, frameSize + static_cast<std::uint32_t>(offset));
-  ir::MoveFrameOp::create(builder, location, constant(location, static_cast<std::int32_t>(frameSize)), object);
+  ir::MoveFrameOp::create(builder, location,
+                          constant(location, static_cast<std::int32_t>(frameSize)), object);
   call.erase();
   return mlir::success();
 }
@@ -171,7 +179,8 @@ mlir::LogicalResult Dispatcher::expand(ir::EnterOp call, mlir::Value frame, std:
 void Dispatcher::expand(ir::CallReturnedOp returned, mlir::Value frame, std::uint32_t frameSize) {
   builder.setInsertionPoint(returned);
   for (auto [result, offset] : llvm::zip(returned.getResults(), returned.getOffsets()))
-    result.replaceAllUsesWith(loadFrom(returned.getLoc(), frame, frameSize + static_cast<std::uint32_t>(offset),
+    result.replaceAllUsesWith(loadFrom(returned.getLoc(), frame,
+                                       frameSize + static_cast<std::uint32_t>(offset),
                                        result.getType()));
   returned.erase();
 }
@@ -181,8 +190,8 @@ void Dispatcher::expand(ir::LeaveOp leave, mlir::Value frame) {
   mlir::Location location = leave.getLoc();
   mlir::Value below = loadFrom(location, frame, RTSL_CALL_BELOW, builder.getI32Type());
   mlir::Value down = arith::SubIOp::create(builder, location, constant(location, 0), below);
-  mlir::Value object = loadFrom(location, frame, RTSL_CALL_OBJECT,
-                                ir::RefType::get(builder.getContext(), "object"));
+  mlir::Value object =
+      loadFrom(location, frame, RTSL_CALL_OBJECT, ir::RefType::get(builder.getContext(), "object"));
   ir::MoveFrameOp::create(builder, location, down, object);
   leave.erase();
 }
@@ -246,7 +255,8 @@ mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
     mlir::Value frame = next->getParentOfType<FuncOp>().getArguments().back();
     mlir::Value resume = loadFrom(next.getLoc(), frame, RTSL_CALL_RESUME, builder.getI32Type());
     next.replaceAllUsesWith(
-        arith::SubIOp::create(builder, next.getLoc(), constant(next.getLoc(), 0), resume).getResult());
+        arith::SubIOp::create(builder, next.getLoc(), constant(next.getLoc(), 0), resume)
+            .getResult());
   } else {
     next.replaceAllUsesWith(constant(next.getLoc(), value));
   }
@@ -301,7 +311,8 @@ void Dispatcher::makeFrameSize() {
   if (areas.size() < 2) {
     FuncOp function = makeFunction("rtsl_frame_size", {builder.getI32Type()});
     (void)function;
-    mlir::func::ReturnOp::create(builder, location, constant(location, areas.empty() ? 0 : asInt(areas.back())));
+    mlir::func::ReturnOp::create(builder, location,
+                                 constant(location, areas.empty() ? 0 : asInt(areas.back())));
     return;
   }
   FuncOp table = makeTable("rtsl_frame_area", areas);
@@ -309,13 +320,17 @@ void Dispatcher::makeFrameSize() {
   table->removeAttr("rtsl.export");
   FuncOp function = makeFunction("rtsl_frame_size", {builder.getI32Type()});
   mlir::Value chain = function.getArgument(0), last = constant(location, asInt(areas.size() - 1));
-  mlir::Value isLong = arith::CmpIOp::create(builder, location, arith::CmpIPredicate::ugt, chain, last);
+  mlir::Value isLong =
+      arith::CmpIOp::create(builder, location, arith::CmpIPredicate::ugt, chain, last);
   mlir::Value index = arith::SelectOp::create(builder, location, isLong, last, chain);
-  mlir::Value known = mlir::func::CallOp::create(builder, location, table, mlir::ValueRange(index)).getResult(0);
+  mlir::Value known =
+      mlir::func::CallOp::create(builder, location, table, mlir::ValueRange(index)).getResult(0);
   mlir::Value further = arith::SubIOp::create(builder, location, chain, index);
-  mlir::Value more = arith::MulIOp::create(builder, location, further,
-                                           constant(location, asInt(areas.back() - areas[areas.size() - 2])));
-  mlir::func::ReturnOp::create(builder, location, mlir::ValueRange(arith::AddIOp::create(builder, location, known, more)));
+  mlir::Value more =
+      arith::MulIOp::create(builder, location, further,
+                            constant(location, asInt(areas.back() - areas[areas.size() - 2])));
+  mlir::func::ReturnOp::create(
+      builder, location, mlir::ValueRange(arith::AddIOp::create(builder, location, known, more)));
 }
 
 /// A switch over all states. A number that is none ends the method.
@@ -350,7 +365,8 @@ void Dispatcher::makeRunState() {
                              llvm::ArrayRef<std::int32_t>(values), blocks, noOperands);
 }
 
-/// Methods that trace, are in no state and are called by nobody, as --keep has them, cannot be of a machine.
+/// Methods that trace, are in no state and are called by nobody, as --keep has them, cannot be of a
+/// machine.
 void Dispatcher::dropUncalled() {
   llvm::SmallVector<FuncOp> uncalled;
   do {
@@ -360,11 +376,13 @@ void Dispatcher::dropUncalled() {
     for (FuncOp function : module.getOps<FuncOp>()) {
       const bool traces = function
                               .walk([](mlir::Operation *op) {
-                                return llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op) ? mlir::WalkResult::interrupt()
-                                                                                      : mlir::WalkResult::advance();
+                                return llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op)
+                                           ? mlir::WalkResult::interrupt()
+                                           : mlir::WalkResult::advance();
                               })
                               .wasInterrupted();
-      if (traces && !function->hasAttr("rtsl.state") && mlir::SymbolTable::symbolKnownUseEmpty(function, module))
+      if (traces && !function->hasAttr("rtsl.state") &&
+          mlir::SymbolTable::symbolKnownUseEmpty(function, module))
         uncalled.push_back(function);
     }
   } while (!uncalled.empty());
@@ -417,7 +435,8 @@ mlir::LogicalResult Dispatcher::run() {
   tellOfScene(makeConstant("rtsl_ray_kinds", static_cast<std::int32_t>(rays.kinds.size())));
   tellOfScene(makeTable("rtsl_rays_sent", sent));
   tellOfScene(makeTable("rtsl_rays_sent_last", sentLast));
-  const auto low = static_cast<std::uint32_t>(kept.fields), high = static_cast<std::uint32_t>(kept.fields >> 32);
+  const auto low = static_cast<std::uint32_t>(kept.fields),
+             high = static_cast<std::uint32_t>(kept.fields >> 32);
   tellOfScene(makeTable("rtsl_rays_kept", {low, high, kept.attributes, payloadsOf(rays)}));
   tellOfScene(makeConstant("rtsl_rays_wait_once", rays.waitsOnce));
   return mlir::success();

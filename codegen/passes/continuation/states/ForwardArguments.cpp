@@ -4,10 +4,11 @@
 //   ^a(%x): br ^b(%x)                   ==>     ^a: br ^b
 //   ^b(%y): cond_br ..., ^a(%y), ^c             ^b: cond_br ..., ^a, ^c        and %v for %x and %y
 //
-// A state lacks the ways on which other values came. Arguments that pass each other on round a loop are a component of the
-// graph from an argument to what comes for it. One into which a single value comes is that value; of one into which several
-// come, those arguments are looked at by themselves that take only from the component (Braun et al., "Simple and Efficient
-// Construction of Static Single Assignment Form", 2013, algorithm 5).
+// A state lacks the ways on which other values came. Arguments that pass each other on round a loop
+// are a component of the graph from an argument to what comes for it. One into which a single value
+// comes is that value; of one into which several come, those arguments are looked at by themselves
+// that take only from the component (Braun et al., "Simple and Efficient Construction of Static
+// Single Assignment Form", 2013, algorithm 5).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/Components.h"
@@ -40,7 +41,8 @@ private:
   llvm::DenseMap<Value, Value> forwarded;                    // what it is
 };
 
-/// The operands for the arguments of `block` on each way from `from`; false for a terminator that makes some itself.
+/// The operands for the arguments of `block` on each way from `from`; false for a terminator that
+/// makes some itself.
 template <typename Visit>
 bool forEachWay(mlir::Block *from, mlir::Block &block, Visit visit) {
   auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(from->getTerminator());

@@ -137,9 +137,8 @@ Fields Finder::implicitReads(mlir::Operation *op) const {
         if (!spawn.getRoot())
           fields.add(Fields::of({device::keptRayRoot}));
       })
-      .Case([&](ir::RandOp) {
-        fields = Fields::of({device::keptRandomKey, device::keptDimension});
-      })
+      .Case(
+          [&](ir::RandOp) { fields = Fields::of({device::keptRandomKey, device::keptDimension}); })
       .Case([&](ir::IlluminateOp) {
         fields = readsOfSending();
         fields.add(inherited);

@@ -1,7 +1,7 @@
 //===- KeptState.h - what of a waiting ray's state is kept ----------------===//
 //
-// The machine has one state, that of the ray whose turn it is (runtime/device/engines/Machine.h). What
-// states that run behind a trace read of it before they write it has to be kept while the ray
+// The machine has one state, that of the ray whose turn it is (runtime/device/engines/Machine.h).
+// What states that run behind a trace read of it before they write it has to be kept while the ray
 // waits: found here by liveness of state variables over all states of a program, with what the
 // runtime reads on behalf of an operation. One set serves all traces.
 //

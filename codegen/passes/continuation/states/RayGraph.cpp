@@ -30,7 +30,8 @@ private:
 
   mlir::ModuleOp module;
   RayGraph graph;
-  /// The kinds whose rays may run a function that has frames of its own: those that run its callers.
+  /// The kinds whose rays may run a function that has frames of its own: those that run its
+  /// callers.
   llvm::StringMap<std::uint32_t> kindsOfCallers;
 };
 
@@ -59,7 +60,8 @@ std::uint32_t Finder::payload(llvm::StringRef name, std::optional<std::uint32_t>
 void Finder::numberPayloads() {
   for (auto state : module.getOps<mlir::func::FuncOp>())
     if (isState(state))
-      state.walk([&](ir::SpawnPayloadOp spawn) { payload(payloadName(spawn), spawn.getRayType()); });
+      state.walk(
+          [&](ir::SpawnPayloadOp spawn) { payload(payloadName(spawn), spawn.getRayType()); });
 }
 
 std::uint32_t Finder::allPayloads() const {
@@ -129,7 +131,8 @@ bool Finder::waitsOnce() {
   for (std::size_t kind = 0; kind < graph.kinds.size(); ++kind)
     if (graph.kinds[kind].sent != 0 && kind != generate)
       return false;
-  const bool noneWaits = llvm::all_of(graph.kinds, [](const RayGraph::Kind &kind) { return kind.sent == 0; });
+  const bool noneWaits =
+      llvm::all_of(graph.kinds, [](const RayGraph::Kind &kind) { return kind.sent == 0; });
   for (mlir::func::FuncOp state : module.getOps<mlir::func::FuncOp>()) {
     bool hasCalls = false, hasFrame = false;
     if (isState(state))

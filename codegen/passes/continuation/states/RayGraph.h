@@ -18,13 +18,14 @@ namespace rtsl {
 
 struct RayGraph {
   struct Kind {
-    std::string name;       // "color", the payload's struct, or "generate"
-    std::uint32_t sent = 0; // bits: kinds of rays that its programs wait for
+    std::string name;           // "color", the payload's struct, or "generate"
+    std::uint32_t sent = 0;     // bits: kinds of rays that its programs wait for
     std::uint32_t sentLast = 0; // and that take the place of one of this kind
   };
   std::vector<Kind> kinds; // as rtsl_ray_kinds numbers them
   bool hasGenerate = false;
-  /// No ray waits but `generate`, or none does, and no other method has a frame: one level serves all.
+  /// No ray waits but `generate`, or none does, and no other method has a frame: one level serves
+  /// all.
   bool waitsOnce = false;
 
   /// Levels that any sample needs at most, exactly.

@@ -18,8 +18,8 @@
 // several ways is there several times, as `^loop` here.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/suspend/CutJoins.h"
 #include "codegen/passes/continuation/states/Steps.h"
+#include "codegen/passes/continuation/suspend/CutJoins.h"
 
 #include "mlir/IR/IRMapping.h"
 #include "llvm/ADT/SmallPtrSet.h"
@@ -118,7 +118,7 @@ void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
       if (isFramed(function))
         ir::LeaveOp::create(builder, op.getLoc());
       endState(builder, op.getLoc(),
-               isFramed(function)         ? ir::Transition::Return
+               isFramed(function)        ? ir::Transition::Return
                : op.hasAttr("rtsl.last") ? ir::Transition::Last
                                          : ir::Transition::Done);
     } else if (auto copy = llvm::dyn_cast<ir::EnterOp>(builder.clone(op, mapping))) {

@@ -13,7 +13,8 @@ namespace rtsl::continuation {
 /// each trace.
 mlir::FailureOr<llvm::SmallVector<FuncOp>> splitStates(FuncOp function);
 
-/// ForwardArguments.cpp: an argument of a block to which only one value comes, on whatever way, is that value.
+/// ForwardArguments.cpp: an argument of a block to which only one value comes, on whatever way, is
+/// that value.
 void forwardArguments(FuncOp function);
 
 /// CleanStores.cpp: removes stores of what the slot already holds. True if there were any.
@@ -25,8 +26,8 @@ bool sinkLoads(FuncOp state);
 
 /// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in the order in which they
 /// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`,
-/// `@rtsl_ray_kinds` with its tables (RayGraph.h), and `@f_first` for each of machineEntries(), 0 if
-/// there is no such function or it does nothing, and for each other exported function that was
+/// `@rtsl_ray_kinds` with its tables (RayGraph.h), and `@f_first` for each of machineEntries(), 0
+/// if there is no such function or it does nothing, and for each other exported function that was
 /// split.
 mlir::LogicalResult makeDispatch(mlir::ModuleOp module);
 

@@ -5,10 +5,11 @@
 //     rest                                                  ^join: rtsl.trace_returned
 //                                                             rest
 //
-// Each state has a copy of what its beginning reaches before the next trace. Where traces stand in branches one behind
-// the other, the first state has copies of all that follows, the second of one branch less, and so on: code that grows
-// with the square of the program. Where copies would come to far more than the program itself, some joins become the
-// beginnings of states: what is live there goes through the frame, and a jump leads from state to state. No ray is sent.
+// Each state has a copy of what its beginning reaches before the next trace. Where traces stand in
+// branches one behind the other, the first state has copies of all that follows, the second of one
+// branch less, and so on: code that grows with the square of the program. Where copies would come
+// to far more than the program itself, some joins become the beginnings of states: what is live
+// there goes through the frame, and a jump leads from state to state. No ray is sent.
 //
 // Joins in loops are taken only if others do not suffice.
 //
@@ -53,7 +54,8 @@ bool suspends(mlir::Block *block) {
   return llvm::isa<ir::SuspendOp>(block->back());
 }
 
-JoinCutter::JoinCutter(FuncOp function, const JoinOptions &options) : function(function), options(options) {
+JoinCutter::JoinCutter(FuncOp function, const JoinOptions &options)
+    : function(function), options(options) {
   llvm::ReversePostOrderTraversal<mlir::Block *> traversal(&function.getBody().front());
   order.assign(traversal.begin(), traversal.end());
   for (mlir::Block *block : order) {
@@ -151,8 +153,8 @@ void JoinCutter::cut(mlir::Block *join) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(join);
   ir::TraceReturnedOp::create(builder, location);
   builder.setInsertionPointToEnd(before);
-  auto jump = ir::SuspendOp::create(builder, location, mlir::Value(), mlir::Value(), mlir::ValueRange{},
-                                    builder.getArrayAttr({}), join);
+  auto jump = ir::SuspendOp::create(builder, location, mlir::Value(), mlir::Value(),
+                                    mlir::ValueRange{}, builder.getArrayAttr({}), join);
   jump->setAttr(joinMark, builder.getUnitAttr());
 }
 
@@ -164,7 +166,8 @@ void JoinCutter::run() {
   Cuts best;
   for (bool inLoops : {false, true}) {
     std::size_t bestCopied = ~std::size_t(0);
-    for (std::size_t distance = size / 2; distance != 0 && distance >= options.shortest; distance /= 2) {
+    for (std::size_t distance = size / 2; distance != 0 && distance >= options.shortest;
+         distance /= 2) {
       const Cuts cuts = choose(distance, inLoops);
       const std::size_t copied = copiedOperations(cuts, std::min(bestCopied, 64 * limit));
       if (copied < bestCopied) {

@@ -20,7 +20,8 @@ struct JoinOptions {
 /// On suspends that send no ray: the state goes on in the next at once.
 constexpr llvm::StringLiteral joinMark = "rtsl.join";
 
-/// Gives code that many states would have copies of a state of its own. After insertSuspends() and endAtLastTraces().
+/// Gives code that many states would have copies of a state of its own. After insertSuspends() and
+/// endAtLastTraces().
 void cutJoins(FuncOp function, const JoinOptions &options = {});
 
 } // namespace rtsl::continuation

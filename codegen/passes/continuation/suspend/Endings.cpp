@@ -31,9 +31,9 @@ llvm::SmallPtrSet<mlir::Block *, 16> blocksThatMayEnd(FuncOp function) {
     for (mlir::Block &block : llvm::reverse(function.getBody())) { // successors mostly stand behind
       if (mayEnd.contains(&block) || traces(block))
         continue;
-      if (block.getNumSuccessors() == 0 || llvm::any_of(block.getSuccessors(), [&](mlir::Block *next) {
-            return mayEnd.contains(next);
-          }))
+      if (block.getNumSuccessors() == 0 ||
+          llvm::any_of(block.getSuccessors(),
+                       [&](mlir::Block *next) { return mayEnd.contains(next); }))
         changed |= mayEnd.insert(&block).second;
     }
   }
@@ -79,9 +79,8 @@ Endings endingsOf(FuncOp function) {
   llvm::SetVector<mlir::Value> seen;
   for (mlir::Block &block : function.getBody()) {
     const bool isDecision = mayEnd.contains(&block) &&
-                            llvm::any_of(block.getSuccessors(), [&](mlir::Block *next) {
-                              return !mayEnd.contains(next);
-                            });
+                            llvm::any_of(block.getSuccessors(),
+                                         [&](mlir::Block *next) { return !mayEnd.contains(next); });
     if (isDecision)
       for (mlir::Value operand : block.getTerminator()->getOperands())
         if (operand.getType().isInteger())

@@ -24,8 +24,8 @@
 //                                             after
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/common/Recompute.h"
 #include "codegen/passes/continuation/calls/Steps.h"
+#include "codegen/passes/continuation/common/Recompute.h"
 #include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/IR/PatternMatch.h"
@@ -34,12 +34,14 @@
 namespace rtsl::continuation {
 
 /// The call is prepared; what it gives comes where `builder` stands.
-static void suspendAtCall(mlir::func::CallOp call, mlir::OpBuilder builder, const WriteSummary &summary) {
+static void suspendAtCall(mlir::func::CallOp call, mlir::OpBuilder builder,
+                          const WriteSummary &summary) {
   const bool hasObject =
       call.getNumOperands() != 0 && llvm::isa<ir::RefType>(call.getOperand(0).getType());
-  const CallLayout layout =
-      layoutCall(call.getOperands().drop_front(hasObject ? 1 : 0).getTypes(), call.getResultTypes());
-  auto returned = ir::CallReturnedOp::create(builder, call.getLoc(), call.getResultTypes(), layout.results);
+  const CallLayout layout = layoutCall(call.getOperands().drop_front(hasObject ? 1 : 0).getTypes(),
+                                       call.getResultTypes());
+  auto returned =
+      ir::CallReturnedOp::create(builder, call.getLoc(), call.getResultTypes(), layout.results);
   call.replaceAllUsesWith(returned.getResults());
   builder.setInsertionPoint(call);
   const StateWrites writes = summary.of(call);
@@ -49,8 +51,8 @@ static void suspendAtCall(mlir::func::CallOp call, mlir::OpBuilder builder, cons
     llvm::sort(sorted);
     names = builder.getStrArrayAttr(sorted);
   }
-  ir::EnterOp::create(builder, call.getLoc(), call.getCallee(), call.getOperands(), layout.arguments,
-                      names, /*resume=*/nullptr);
+  ir::EnterOp::create(builder, call.getLoc(), call.getCallee(), call.getOperands(),
+                      layout.arguments, names, /*resume=*/nullptr);
   call.erase();
 }
 

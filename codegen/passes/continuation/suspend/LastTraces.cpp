@@ -125,14 +125,14 @@ bool walkToTheEnd(mlir::Operation *op,
 /// Is the result of this trace what is left in SampleColor, and does nothing else happen?
 bool isLastColor(ir::TraceResultOp result) {
   Value color;
-  const bool isOneWay = walkToTheEnd(
-      result->getNextNode(), [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
-        if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
-          color = arguments.lookupOrDefault(store.getValue());
-          return Place(store.getAddress()).isSampleColor();
-        }
-        return mlir::isMemoryEffectFree(op);
-      });
+  const bool isOneWay = walkToTheEnd(result->getNextNode(),
+                                     [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
+                                       if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
+                                         color = arguments.lookupOrDefault(store.getValue());
+                                         return Place(store.getAddress()).isSampleColor();
+                                       }
+                                       return mlir::isMemoryEffectFree(op);
+                                     });
   return isOneWay && color == result.getResult();
 }
 
@@ -155,9 +155,9 @@ private:
 
   ir::SpawnPayloadOp spawn;
   ir::VarOp copy;
-  llvm::MapVector<Value, Place> addresses;  // in the copy
-  std::map<std::string, ir::StoreOp> sent;  // the last store of each part
-  llvm::SmallVector<mlir::Operation *> gone; // the copy's users, as they stand
+  llvm::MapVector<Value, Place> addresses;       // in the copy
+  std::map<std::string, ir::StoreOp> sent;       // the last store of each part
+  llvm::SmallVector<mlir::Operation *> gone;     // the copy's users, as they stand
   llvm::SmallPtrSet<mlir::Operation *, 8> loads; // of the copy, that were not met behind the ray
   std::set<std::string> returned;
 };
@@ -196,26 +196,26 @@ bool LastPayload::findStores() {
 /// happens.
 bool LastPayload::findReturn() {
   auto suspend = llvm::cast<ir::SuspendOp>(spawn->getBlock()->back());
-  const bool isOneWay = walkToTheEnd(
-      suspend.getResume()->front().getNextNode(),
-      [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
-        if (auto load = llvm::dyn_cast<ir::LoadOp>(op))
-          return loads.erase(load);
-        auto store = llvm::dyn_cast<ir::StoreOp>(op);
-        if (!store)
-          return mlir::isMemoryEffectFree(op);
-        const Place place(store.getAddress());
-        auto payload = llvm::dyn_cast_or_null<ir::PayloadOp>(place.base);
-        auto load =
-            arguments.lookupOrDefault(store.getValue()).getDefiningOp<ir::LoadOp>();
-        if (!payload || payload.getType() != copy.getType() || !load)
-          return false;
-        const auto *from = addresses.find(load.getAddress());
-        if (from == addresses.end() || from->second.path != place.path)
-          return false;
-        returned.insert(place.path);
-        return true;
-      });
+  const bool isOneWay =
+      walkToTheEnd(suspend.getResume()->front().getNextNode(),
+                   [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
+                     if (auto load = llvm::dyn_cast<ir::LoadOp>(op))
+                       return loads.erase(load);
+                     auto store = llvm::dyn_cast<ir::StoreOp>(op);
+                     if (!store)
+                       return mlir::isMemoryEffectFree(op);
+                     const Place place(store.getAddress());
+                     auto payload = llvm::dyn_cast_or_null<ir::PayloadOp>(place.base);
+                     auto load =
+                         arguments.lookupOrDefault(store.getValue()).getDefiningOp<ir::LoadOp>();
+                     if (!payload || payload.getType() != copy.getType() || !load)
+                       return false;
+                     const auto *from = addresses.find(load.getAddress());
+                     if (from == addresses.end() || from->second.path != place.path)
+                       return false;
+                     returned.insert(place.path);
+                     return true;
+                   });
   return isOneWay && loads.empty() && returned.size() == sent.size();
 }
 
@@ -307,7 +307,8 @@ namespace {
 /// where it adds, of any.
 bool isAffine(mlir::Operation *op, llvm::function_ref<bool(Value)> isTraced) {
   if (llvm::isa<mlir::arith::AddFOp, mlir::arith::SubFOp, mlir::arith::NegFOp,
-                mlir::vector::BroadcastOp, mlir::vector::FromElementsOp, mlir::vector::ShuffleOp>(op))
+                mlir::vector::BroadcastOp, mlir::vector::FromElementsOp, mlir::vector::ShuffleOp>(
+          op))
     return true;
   if (auto extract = llvm::dyn_cast<mlir::vector::ExtractOp>(op))
     return !extract.hasDynamicPosition();
@@ -332,26 +333,24 @@ bool onlyScalesAndAdds(ir::SuspendOp suspend) {
     traced.insert(result.getResult());
   else if (auto spawn = spawnBefore(suspend))
     payload = Place(spawn.getPayload()).base;
-  return walkToTheEnd(
-      first->getNextNode(), [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
-        auto isTraced = [&](Value value) {
-          return traced.contains(arguments.lookupOrDefault(value));
-        };
-        if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
-          const Place place(store.getAddress());
-          return place.isSampleColor() || llvm::isa_and_nonnull<ir::PayloadOp>(place.base);
-        }
-        if (auto load = llvm::dyn_cast<ir::LoadOp>(op);
-            load && payload && Place(load.getAddress()).base == payload) {
-          traced.insert(load.getResult());
-          return true;
-        }
-        if (llvm::any_of(op->getOperands(), isTraced)) {
-          traced.insert(op->result_begin(), op->result_end());
-          return isAffine(op, isTraced);
-        }
-        return mlir::isMemoryEffectFree(op) || llvm::isa<ir::LoadOp>(op);
-      });
+  return walkToTheEnd(first->getNextNode(), [&](mlir::Operation *op,
+                                                const mlir::IRMapping &arguments) {
+    auto isTraced = [&](Value value) { return traced.contains(arguments.lookupOrDefault(value)); };
+    if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
+      const Place place(store.getAddress());
+      return place.isSampleColor() || llvm::isa_and_nonnull<ir::PayloadOp>(place.base);
+    }
+    if (auto load = llvm::dyn_cast<ir::LoadOp>(op);
+        load && payload && Place(load.getAddress()).base == payload) {
+      traced.insert(load.getResult());
+      return true;
+    }
+    if (llvm::any_of(op->getOperands(), isTraced)) {
+      traced.insert(op->result_begin(), op->result_end());
+      return isAffine(op, isTraced);
+    }
+    return mlir::isMemoryEffectFree(op) || llvm::isa<ir::LoadOp>(op);
+  });
 }
 
 } // namespace rtsl::continuation

@@ -26,8 +26,8 @@ void insertSuspends(FuncOp function);
 /// Where the summary is known already: it takes a walk over the module.
 void insertSuspends(FuncOp function, const WriteSummary &summary);
 
-/// LastTraces.cpp: a method ends at a trace behind which nothing happens; its ray takes the place of
-/// this one. Gives where these traces stood.
+/// LastTraces.cpp: a method ends at a trace behind which nothing happens; its ray takes the place
+/// of this one. Gives where these traces stood.
 llvm::SmallVector<mlir::Location> endAtLastTraces(FuncOp function);
 
 /// LastTraces.cpp: whether nothing happens behind a trace but sums and products of what it brings

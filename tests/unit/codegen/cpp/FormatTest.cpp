@@ -1,5 +1,6 @@
-// What is printed is what clang-format leaves as it is, with the .clang-format in the root: whoever keeps printed C++ in a
-// repository may run it over all files. The library is that of the program `clang-format`.
+// What is printed is what clang-format leaves as it is, with the .clang-format in the root: whoever
+// keeps printed C++ in a repository may run it over all files. The library is that of the program
+// `clang-format`.
 #include "codegen/cpp/Format.h"
 
 #include "clang/Format/Format.h"

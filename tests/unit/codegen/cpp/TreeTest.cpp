@@ -8,12 +8,24 @@ namespace {
 
 const Code a = name("a"), b = name("b"), c = name("c");
 
-std::string text(const Code &code) { return print(code); }
-Code minus(const Code &code) { return unary(UnaryOperator::Minus, code); }
-Code sum(const Code &x, const Code &y) { return binary(Operator::Add, x, y); }
-Code product(const Code &x, const Code &y) { return binary(Operator::Multiply, x, y); }
-Code both(const Code &x, const Code &y) { return binary(Operator::And, x, y); }
-Code either(const Code &x, const Code &y) { return binary(Operator::Or, x, y); }
+std::string text(const Code &code) {
+  return print(code);
+}
+Code minus(const Code &code) {
+  return unary(UnaryOperator::Minus, code);
+}
+Code sum(const Code &x, const Code &y) {
+  return binary(Operator::Add, x, y);
+}
+Code product(const Code &x, const Code &y) {
+  return binary(Operator::Multiply, x, y);
+}
+Code both(const Code &x, const Code &y) {
+  return binary(Operator::And, x, y);
+}
+Code either(const Code &x, const Code &y) {
+  return binary(Operator::Or, x, y);
+}
 
 TEST(TreeExpressions, HaveTheParenthesesThatTheirOperatorsNeed) {
   EXPECT_EQ(text(sum(a, product(b, c))), "a + b * c");
@@ -25,7 +37,8 @@ TEST(TreeExpressions, HaveTheParenthesesThatTheirOperatorsNeed) {
   EXPECT_EQ(text(subscript(a, sum(b, c))), "a[b + c]");
   EXPECT_EQ(text(call("f", {sum(a, b), comma(b, c)})), "f(a + b, (b, c))");
   EXPECT_EQ(text(sum(conditional(a, b, c), a)), "(a ? b : c) + a");
-  EXPECT_EQ(text(conditional(conditional(a, b, c), a, conditional(b, a, c))), "(a ? b : c) ? a : b ? a : c");
+  EXPECT_EQ(text(conditional(conditional(a, b, c), a, conditional(b, a, c))),
+            "(a ? b : c) ? a : b ? a : c");
   EXPECT_EQ(text(assign(a, assign(b, c))), "a = b = c");
   EXPECT_EQ(text(assign(Operator::Add, a, sum(b, c))), "a += b + c");
   EXPECT_EQ(text(member(unary(UnaryOperator::Dereference, a), "x")), "(*a).x");
@@ -37,8 +50,9 @@ TEST(TreeExpressions, HaveParenthesesWhereReadersWantThem) {
   EXPECT_EQ(text(both(a, both(b, c))), "a && (b && c)");
   EXPECT_EQ(text(binary(Operator::Less, sum(a, b), c)), "(a + b) < c");
   EXPECT_EQ(text(binary(Operator::ShiftLeft, a, sum(b, c))), "a << (b + c)");
-  EXPECT_EQ(text(binary(Operator::BitOr, binary(Operator::BitOr, a, b), binary(Operator::BitAnd, a, c))),
-            "a | b | (a & c)");
+  EXPECT_EQ(
+      text(binary(Operator::BitOr, binary(Operator::BitOr, a, b), binary(Operator::BitAnd, a, c))),
+      "a | b | (a & c)");
 }
 
 TEST(TreeExpressions, KeepSignsApart) {
@@ -79,9 +93,11 @@ TEST(TreeExpressions, KnowWhatTheyMention) {
 }
 
 TEST(TreeExpressions, KnowZerosAndOpposites) {
-  for (const Code &zero : {integer(0), literal("0.0f", true), boolean(false), list("", {}), construct("glm::vec3", {literal("0.0f", true)})})
+  for (const Code &zero : {integer(0), literal("0.0f", true), boolean(false), list("", {}),
+                           construct("glm::vec3", {literal("0.0f", true)})})
     EXPECT_TRUE(isZero(zero)) << print(zero);
-  for (const Code &other : {integer(1), minus(literal("0.0f", true)), construct("glm::vec2", {integer(0), integer(1)}), a})
+  for (const Code &other : {integer(1), minus(literal("0.0f", true)),
+                            construct("glm::vec2", {integer(0), integer(1)}), a})
     EXPECT_FALSE(isZero(other)) << print(other);
   EXPECT_EQ(text(negated(a)), "!a");
   EXPECT_EQ(text(negated(unary(UnaryOperator::Not, parentheses(both(a, b))))), "a && b");
@@ -93,7 +109,8 @@ TEST(TreeDeclarations, DoNotNameATypeTwice) {
   EXPECT_EQ(print(declaration("Ray", "r", list("", {}))), "Ray r{};\n");
   EXPECT_EQ(print(declaration("Ray", "r", member(list("Ray", {a}), "x"))), "Ray r = Ray{a}.x;\n");
   EXPECT_EQ(print(declaration("Ray", "r", list("Other", {a}))), "Ray r = Other{a};\n");
-  EXPECT_EQ(print(declaration("static constexpr", "rtsl::array<int, 2>", "t", array("rtsl::array<int, 2>", {integer(1), integer(2)}))),
+  EXPECT_EQ(print(declaration("static constexpr", "rtsl::array<int, 2>", "t",
+                              array("rtsl::array<int, 2>", {integer(1), integer(2)}))),
             "static constexpr rtsl::array<int, 2> t{{1, 2}};\n");
   EXPECT_EQ(print(declaration("float", "x", comma(a, b))), "float x = (a, b);\n");
 }
@@ -126,7 +143,8 @@ TEST(TreeStatements, KeepWhatTheAuthorWroteAroundThem) {
   one.trailing = "// behind";
   one.place = SourcePlace{"a \"b\".rtsl", 7};
   one.hasSpace = true;
-  EXPECT_EQ(print(Statements{statement(b), one}), "b;\n\n// above\n#line 7 \"a \\\"b\\\".rtsl\"\na; // behind\n");
+  EXPECT_EQ(print(Statements{statement(b), one}),
+            "b;\n\n// above\n#line 7 \"a \\\"b\\\".rtsl\"\na; // behind\n");
 }
 
 TEST(TreeStatements, PrintLoopsAndSwitches) {
@@ -140,7 +158,8 @@ TEST(TreeStatements, PrintLoopsAndSwitches) {
   choice.value = a;
   choice.arms = {{{integer(1), integer(-2)}, false, true, {simple(StatementKind::Break)}},
                  {{}, true, false, {returning(b)}}};
-  EXPECT_EQ(print(choice), "switch (a) {\ncase 1:\ncase -2: {\nbreak;\n}\ndefault:\nreturn b;\n}\n");
+  EXPECT_EQ(print(choice),
+            "switch (a) {\ncase 1:\ncase -2: {\nbreak;\n}\ndefault:\nreturn b;\n}\n");
 }
 
 TEST(TreeStatements, SayWhatTheyAssign) {

@@ -2,9 +2,9 @@
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
-#include "runtime/program/DeviceBitcode.h"
-#include "runtime/device/ray/Abi.h"
 #include "math/Elementary.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/program/DeviceBitcode.h"
 
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/IR/MLIRContext.h"

@@ -25,23 +25,30 @@ std::unique_ptr<mlir::MLIRContext> makeContext() {
   mlir::DialectRegistry registry;
   registerPassDependencies(registry);
   registerLlvmTranslation(registry);
-  auto context = std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
+  auto context =
+      std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
   context->loadAllAvailableDialects();
   return context;
 }
 
-/// `count` separate functions of so many additions, of which each calls the one before, and `f`, which calls the last.
+/// `count` separate functions of so many additions, of which each calls the one before, and `f`,
+/// which calls the last.
 std::string chain(unsigned count, unsigned additions) {
-  std::string text = "func.func private @helper(%x: i32) -> i32 { %y = arith.muli %x, %x : i32\n return %y : i32 }\n";
+  std::string text = "func.func private @helper(%x: i32) -> i32 { %y = arith.muli %x, %x : i32\n "
+                     "return %y : i32 }\n";
   for (unsigned i = 0; i != count; ++i) {
-    text += "func.func private @M" + std::to_string(i) + ".shade(%x: i32) -> i32 attributes {rtsl.separate} {\n";
-    text += " %v0 = func.call @" + (i == 0 ? std::string("helper") : "M" + std::to_string(i - 1) + ".shade") + "(%x) : (i32) -> i32\n";
+    text += "func.func private @M" + std::to_string(i) +
+            ".shade(%x: i32) -> i32 attributes {rtsl.separate} {\n";
+    text += " %v0 = func.call @" +
+            (i == 0 ? std::string("helper") : "M" + std::to_string(i - 1) + ".shade") +
+            "(%x) : (i32) -> i32\n";
     for (unsigned k = 0; k != additions; ++k)
-      text += " %v" + std::to_string(k + 1) + " = arith.addi %v" + std::to_string(k) + ", %x : i32\n";
+      text +=
+          " %v" + std::to_string(k + 1) + " = arith.addi %v" + std::to_string(k) + ", %x : i32\n";
     text += " return %v" + std::to_string(additions) + " : i32 }\n";
   }
-  return text + "func.func @f(%x: i32) -> i32 attributes {rtsl.export} { %y = func.call @M" + std::to_string(count - 1) +
-         ".shade(%x) : (i32) -> i32\n return %y : i32 }\n";
+  return text + "func.func @f(%x: i32) -> i32 attributes {rtsl.export} { %y = func.call @M" +
+         std::to_string(count - 1) + ".shade(%x) : (i32) -> i32\n return %y : i32 }\n";
 }
 
 ObjectCode compile(mlir::ModuleOp part) {
@@ -71,7 +78,8 @@ TEST(Parts, OfASmallProgramAreNone) {
 
 TEST(Parts, HaveAllSeparateFunctionsInAboutEqualShares) {
   const auto context = makeContext();
-  auto ir = mlir::parseSourceString<mlir::ModuleOp>(chain(100, 398), context.get()); // 400 operations and the function itself
+  auto ir = mlir::parseSourceString<mlir::ModuleOp>(
+      chain(100, 398), context.get()); // 400 operations and the function itself
   const auto parts = takeParts(*ir);
   ASSERT_EQ(parts.size(), 4u);
   for (const auto &part : parts)

@@ -31,11 +31,13 @@ void use(char *frame) {
 std::string function(const std::string &name, unsigned bytes, const std::string &calls, int step) {
   return "define void @\"" + name + "\"(i32 %n) {\n  %frame = alloca [" + std::to_string(bytes) +
          " x i8]\n  call void @use(ptr %frame)\n  %less = sub i32 %n, " + std::to_string(step) +
-         "\n  %more = icmp sgt i32 %less, 0\n  br i1 %more, label %next, label %end\nnext:\n" + calls +
-         "  br label %end\nend:\n  call void @use(ptr %frame)\n  ret void\n}\n";
+         "\n  %more = icmp sgt i32 %less, 0\n  br i1 %more, label %next, label %end\nnext:\n" +
+         calls + "  br label %end\nend:\n  call void @use(ptr %frame)\n  ret void\n}\n";
 }
 
-std::string call(const std::string &name) { return "  call void @\"" + name + "\"(i32 %less)\n"; }
+std::string call(const std::string &name) {
+  return "  call void @\"" + name + "\"(i32 %less)\n";
+}
 
 std::unique_ptr<Jit> compile(const std::string &functions) {
   const std::string text = "declare void @use(ptr)\n" + functions;
@@ -80,20 +82,23 @@ TEST(StackUse, OfRaysIsThatOfTheLargestMaterialForEach) {
 }
 
 TEST(StackUse, OfCallsIsThatOfTheLongestWayDown) {
-  const auto jit = compile(function("function.a", 1000, call("function.b") + call("function.c"), 0) +
-                           function("function.b", 40000, "", 0) +
-                           function("function.c", 10000, call("function.d"), 0) +
-                           function("function.d", 35000, "", 0));
+  const auto jit = compile(
+      function("function.a", 1000, call("function.b") + call("function.c"), 0) +
+      function("function.b", 40000, "", 0) + function("function.c", 10000, call("function.d"), 0) +
+      function("function.d", 35000, "", 0));
   const std::uint64_t said = jit->stackUse()->bytes(9, 9);
   EXPECT_GE(said, 46000u);
   EXPECT_LE(said, 46000u + 500);
 }
 
 TEST(StackUse, OfMethodsThatFollowReferencesGrowsWithTheirChain) {
-  const auto jit = compile(function("rtsl_trace", 1000, call("Layer.shade"), 1) +
-                           function("Layer.shade", 100, call("Layer.follow"), 0) +
-                           function("Layer.follow", 20000, call("Layer.follow") + call("rtsl_trace"), 1));
-  const auto said = [&](unsigned rays, unsigned chain) { return jit->stackUse()->bytes(rays, chain); };
+  const auto jit =
+      compile(function("rtsl_trace", 1000, call("Layer.shade"), 1) +
+              function("Layer.shade", 100, call("Layer.follow"), 0) +
+              function("Layer.follow", 20000, call("Layer.follow") + call("rtsl_trace"), 1));
+  const auto said = [&](unsigned rays, unsigned chain) {
+    return jit->stackUse()->bytes(rays, chain);
+  };
   EXPECT_GE(said(2, 3), 2 * (1100u + 4 * 20000u));
   EXPECT_LE(said(2, 3), 2 * (1100u + 4 * 20000u + 1000));
   EXPECT_GE(said(2, 7) - said(2, 3), 2 * 4 * 20000u);

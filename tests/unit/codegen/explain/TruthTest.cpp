@@ -125,8 +125,7 @@ TEST_P(Truth, WhatIsNeededChangesTheProgramAndWhatIsLeftOutDoesNot) {
 
 INSTANTIATE_TEST_SUITE_P(Examples, Truth, testing::ValuesIn(examples()), [](const auto &info) {
   std::string name = std::filesystem::path(info.param).parent_path().filename().string();
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  std::replace_if(name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
   return name;
 });
 

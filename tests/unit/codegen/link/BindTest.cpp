@@ -27,7 +27,8 @@ class Ball : rt_Primitive {
 };
 )";
 
-/// Records of objects as a runtime would have them: class id, index, axis, coat and, of Thick, depth.
+/// Records of objects as a runtime would have them: class id, index, axis, coat and, of Thick,
+/// depth.
 struct Records {
   std::vector<std::vector<float>> words;
   runtime::SceneFacts facts;
@@ -35,12 +36,14 @@ struct Records {
   void add(const std::string &className, std::vector<float> values) {
     values.insert(values.begin(), 0.0f); // the class id, which nobody asks for
     words.push_back(std::move(values));
-    facts.objects.push_back({className, reinterpret_cast<const std::uint8_t *>(words.back().data())});
+    facts.objects.push_back(
+        {className, reinterpret_cast<const std::uint8_t *>(words.back().data())});
   }
 };
 
 /// The words noted on a member; nothing if it is not bound.
-std::vector<float> boundTo(Linked &linked, const std::string &className, const std::string &member) {
+std::vector<float> boundTo(Linked &linked, const std::string &className,
+                           const std::string &member) {
   auto declaration = linked.ir->lookupSymbol<ir::ClassOp>(className).findMember(member);
   auto words = declaration->getAttrOfType<mlir::DenseI32ArrayAttr>(codegen::boundWords);
   std::vector<float> values(words ? static_cast<std::size_t>(words.size()) : 0);
@@ -109,11 +112,13 @@ TEST(Bind, WhatMakesObjectsAndWhatRendersArePartedFromEachOther) {
     auto function = ir.lookupSymbol<mlir::func::FuncOp>(name);
     return function && function.isPublic();
   };
-  for (const char *name : {"Lens.initialize", "Lens.construct", "rtsl_rt_Primitive_computeBounds"}) {
+  for (const char *name :
+       {"Lens.initialize", "Lens.construct", "rtsl_rt_Primitive_computeBounds"}) {
     EXPECT_TRUE(isPublic(*constructors, name)) << name;
     EXPECT_FALSE(isPublic(*linked.ir, name)) << name;
   }
-  for (const char *name : {"rtsl_rt_Material_shade", "rtsl_rt_Primitive_intersect", "Ball.intersect"}) {
+  for (const char *name :
+       {"rtsl_rt_Material_shade", "rtsl_rt_Primitive_intersect", "Ball.intersect"}) {
     EXPECT_FALSE(isPublic(*constructors, name)) << name;
     EXPECT_TRUE(isPublic(*linked.ir, name)) << name;
   }

@@ -21,7 +21,8 @@ std::string primitive(const std::string &statements) {
 class Ball : rt_Primitive {
   public vec3 center;
   public float heights[];
-  void intersect() {)" + statements + R"(}
+  void intersect() {)" +
+         statements + R"(}
   void computeBounds() { rt_BoundMin = vec3(-1.0); rt_BoundMax = vec3(1.0); }
 };
 )";
@@ -80,8 +81,10 @@ TEST(HitErrors, WhatNothingBoundsIsAWarning) {
   const struct {
     const char *statements, *hit, *why;
   } cases[] = {
-      {"float t = 1.0; for (int i = 0; i < 9; ++i) t -= (t * t - center.x) / (2.0 * t); hit(t);", "hit(t)", "a loop computes it"},
-      {"float t[4]; t[int(center.x)] = center.y / 3.0; hit(t[int(center.z)]);", "hit(t[int(center.z)])", "an array"},
+      {"float t = 1.0; for (int i = 0; i < 9; ++i) t -= (t * t - center.x) / (2.0 * t); hit(t);",
+       "hit(t)", "a loop computes it"},
+      {"float t[4]; t[int(center.x)] = center.y / 3.0; hit(t[int(center.z)]);",
+       "hit(t[int(center.z)])", "an array"},
       {"hit(1.0 + rand());", "hit(1.0 + rand())", "`rand`"},
       {"hit(floor(center.x / 3.0));", "hit(floor(center.x / 3.0))", "may jump"},
       {"hit(float(int(center.x / 3.0)));", "hit(float(int(center.x / 3.0)))", "may jump"},
@@ -100,12 +103,18 @@ TEST(HitErrors, WhatNothingBoundsIsAWarning) {
 
 TEST(HitErrors, AreDerivedThroughWhatAuthorsWrite) {
   for (const char *statements : {
-           "vec3 n = normalize(center); hit(dot(n, center - rt_RayOrigin) / dot(n, rt_RayDirection));",
-           "mat3 m = mat3(center, center.yzx, center.zxy); hit((m * rt_RayOrigin).z / (m * rt_RayDirection).z);",
-           "float b = dot(center, rt_RayDirection); float d = b * b - dot(center, center); if (d < 0.0) return; "
-           "float t = b - sqrt(d); if (t < rt_Epsilon) t = b + sqrt(d); if (t < rt_HitDistance) hit(t);",
-           "float least = 1e30; for (int i = 0; i < heights.length(); ++i) least = min(least, (heights[i] - rt_RayOrigin.z) / rt_RayDirection.z); hit(least);",
-           "hit(pow(center.x / 3.0, 0.33333) + acos(center.y / 3.0) + cos(center.z / 3.0) + tan(center.z / 7.0) + exp(center.x * center.y) + log(1.0 + center.x * center.x));",
+           "vec3 n = normalize(center); hit(dot(n, center - rt_RayOrigin) / dot(n, "
+           "rt_RayDirection));",
+           "mat3 m = mat3(center, center.yzx, center.zxy); hit((m * rt_RayOrigin).z / (m * "
+           "rt_RayDirection).z);",
+           "float b = dot(center, rt_RayDirection); float d = b * b - dot(center, center); if (d < "
+           "0.0) return; "
+           "float t = b - sqrt(d); if (t < rt_Epsilon) t = b + sqrt(d); if (t < rt_HitDistance) "
+           "hit(t);",
+           "float least = 1e30; for (int i = 0; i < heights.length(); ++i) least = min(least, "
+           "(heights[i] - rt_RayOrigin.z) / rt_RayDirection.z); hit(least);",
+           "hit(pow(center.x / 3.0, 0.33333) + acos(center.y / 3.0) + cos(center.z / 3.0) + "
+           "tan(center.z / 7.0) + exp(center.x * center.y) + log(1.0 + center.x * center.x));",
            "hit(center.x);",
        }) {
     Linked linked(primitive(statements), ballOf("Mirror"));

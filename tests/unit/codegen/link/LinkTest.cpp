@@ -36,7 +36,8 @@ TEST(Link, OneClassIsCalledDirectly) {
 TEST(Link, SeveralClassesAreASwitchOverThoseThatAreThere) {
   Linked linked(textures, {{"Solid", "Stripes", "Matte"}, {}});
   ASSERT_TRUE(linked.succeeded);
-  EXPECT_EQ(linked.callees("dispatch.rt_Texture.lookup"), (std::vector<std::string>{"Solid.lookup", "Stripes.lookup"}));
+  EXPECT_EQ(linked.callees("dispatch.rt_Texture.lookup"),
+            (std::vector<std::string>{"Solid.lookup", "Stripes.lookup"}));
   EXPECT_EQ(linked.count<ir::SwitchOp>("dispatch.rt_Texture.lookup"), 1u);
 }
 
@@ -62,15 +63,16 @@ TEST(Link, OnlyEntriesAreVisible) {
   ASSERT_TRUE(linked.succeeded);
   for (auto function : linked.ir->getOps<mlir::func::FuncOp>()) {
     const llvm::StringRef name = function.getSymName();
-    const bool isEntry = name.starts_with("rtsl_") || name.ends_with(".construct") || name.ends_with(".initialize") ||
-                         name.ends_with(".intersect");
+    const bool isEntry = name.starts_with("rtsl_") || name.ends_with(".construct") ||
+                         name.ends_with(".initialize") || name.ends_with(".intersect");
     EXPECT_EQ(function.isPublic(), isEntry) << name.str();
   }
 }
 
 TEST(Link, NeedsAreWhatIsRead) {
   EXPECT_EQ(Linked(textures, {{"Solid", "Matte"}, {}}).program.needs, 0u);
-  EXPECT_EQ(Linked(textures, {{"Stripes", "Matte"}, {}}).program.needs, RTSL_NEEDS_TEXTURE_COORDINATES);
+  EXPECT_EQ(Linked(textures, {{"Stripes", "Matte"}, {}}).program.needs,
+            RTSL_NEEDS_TEXTURE_COORDINATES);
 }
 
 TEST(Link, AClassNeedsWhatItReadsItself) {
@@ -110,7 +112,8 @@ class Derived : Base {
     names.push_back(member.name);
     offsets.push_back(member.offset);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"first", "second", "third", "pairs", "picture", "points"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"first", "second", "third", "pairs", "picture", "points"}));
   EXPECT_EQ(offsets, (std::vector<std::uint32_t>{4, 8, 20, 32, 64, 68}));
   EXPECT_EQ(derived.recordSize, 68 + sizeof(RtslBuffer));
   EXPECT_TRUE(derived.members[0].isPublic && derived.members[0].hasDefault);
@@ -156,7 +159,9 @@ class Strange : rt_Material {
 )";
 
 TEST(Link, AttributesAreMatchedByNameAndHaveOnePlace) {
-  Linked linked(surfaces, {{"Ball", "Plate", "Wood", "Fog"}, {}, {{"Ball", "Wood"}, {"Plate", "Fog"}, {"Ball", "Fog"}}});
+  Linked linked(surfaces, {{"Ball", "Plate", "Wood", "Fog"},
+                           {},
+                           {{"Ball", "Wood"}, {"Plate", "Fog"}, {"Ball", "Fog"}}});
   ASSERT_TRUE(linked.succeeded);
   std::map<std::string, std::set<std::int64_t>> places;
   linked.ir->walk([&](ir::AttributeOp op) {
@@ -196,7 +201,10 @@ TEST(Link, AnAttributeOfAnotherTypeIsAnErrorWithBothPlaces) {
   const Diagnostic &error = linked.diagnostics.all().front();
   EXPECT_EQ(error.code, Code::attributeTypeMismatch);
   ASSERT_EQ(error.labels.size(), 1u);
-  EXPECT_EQ(linked.sources.lineColumn(error.labels.front().range.file, error.labels.front().range.begin).line, 4u);
+  EXPECT_EQ(
+      linked.sources.lineColumn(error.labels.front().range.file, error.labels.front().range.begin)
+          .line,
+      4u);
 }
 
 TEST(Link, AMethodThatAClassOfTheSceneLacksIsAnError) {

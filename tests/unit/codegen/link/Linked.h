@@ -21,7 +21,8 @@ public:
   Linked(std::string source, LinkRequest request) : request(std::move(request)) {
     const FileId file = sources.add("test.rtsl", std::move(source));
     unit = parse(file, diagnostics);
-    module = check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
+    module =
+        check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
     EXPECT_FALSE(diagnostics.hasErrors()) << renderText(diagnostics, false);
     if (diagnostics.hasErrors())
       return;
@@ -34,7 +35,9 @@ public:
       succeeded = link(*ir, *module, this->request, 3, diagnostics, program);
   }
 
-  mlir::func::FuncOp function(const std::string &name) { return ir->lookupSymbol<mlir::func::FuncOp>(name); }
+  mlir::func::FuncOp function(const std::string &name) {
+    return ir->lookupSymbol<mlir::func::FuncOp>(name);
+  }
 
   template <typename Op>
   std::size_t count(const std::string &name) {

@@ -6,7 +6,8 @@
 namespace rtsl {
 namespace {
 
-/// A scene with these materials in which the ray generation sends a `Shadow`. Returns `how` of its ray.
+/// A scene with these materials in which the ray generation sends a `Shadow`. Returns `how` of its
+/// ray.
 std::uint32_t howToSearch(const std::string &materials, std::vector<std::string> classes) {
   classes.push_back("Eye");
   Linked linked(R"(
@@ -28,14 +29,20 @@ class Eye : rt_RayGeneration {
 }
 
 std::string material(const std::string &anyHit, const std::string &more = "") {
-  return "class M : rt_Material { public float opacity; void anyHit(inout Shadow s) {" + anyHit + "} " + more + " };";
+  return "class M : rt_Material { public float opacity; void anyHit(inout Shadow s) {" + anyHit +
+         "} " + more + " };";
 }
 
 constexpr std::uint32_t ask = RTSL_ASK_ANY_HIT, first = RTSL_FIRST_HIT, inOrder = RTSL_IN_ORDER;
 
 TEST(RayTypes, WhoAnswersDecidesWhatIsSearched) {
-  EXPECT_EQ(howToSearch("class M : rt_Material { void closestHit(inout Shadow s) { s.light = 0.0; } };", {"M"}), 0u);
-  EXPECT_EQ(howToSearch("class M : rt_Miss { void miss(inout Shadow s) { s.isLit = true; } };", {"M"}), first);
+  EXPECT_EQ(
+      howToSearch("class M : rt_Material { void closestHit(inout Shadow s) { s.light = 0.0; } };",
+                  {"M"}),
+      0u);
+  EXPECT_EQ(
+      howToSearch("class M : rt_Miss { void miss(inout Shadow s) { s.isLit = true; } };", {"M"}),
+      first);
 }
 
 TEST(RayTypes, OrderDoesNotShowWhereNothingIsWritten) {
@@ -47,36 +54,53 @@ TEST(RayTypes, OrderDoesNotShowWhereNothingIsWritten) {
   EXPECT_EQ(howToSearch(material(refuse + "terminateRay();"), {"M"}), ask | first);
   // Whoever terminates would choose which hit is the nearest.
   EXPECT_EQ(howToSearch(material(refuse + "terminateRay();", closest), {"M"}), ask | inOrder);
-  EXPECT_EQ(howToSearch(material("if (rand() < opacity) ignoreIntersection();"), {"M"}), ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("if (rand() < opacity) ignoreIntersection();"), {"M"}),
+            ask | first | inOrder);
 }
 
 TEST(RayTypes, OrderShowsInWhatIsWritten) {
-  EXPECT_EQ(howToSearch(material("s.light *= opacity; ignoreIntersection();"), {"M"}), ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material("s.parts[0].x = 1.0; ignoreIntersection();"), {"M"}), ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material("darken(s); ignoreIntersection();", "void darken(inout Shadow s) { s.light = 0.0; }"), {"M"}),
+  EXPECT_EQ(howToSearch(material("s.light *= opacity; ignoreIntersection();"), {"M"}),
             ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material("Shadow t = s; t.light = 0.0; s = t; terminateRay();"), {"M"}), ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("s.parts[0].x = 1.0; ignoreIntersection();"), {"M"}),
+            ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("darken(s); ignoreIntersection();",
+                                 "void darken(inout Shadow s) { s.light = 0.0; }"),
+                        {"M"}),
+            ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("Shadow t = s; t.light = 0.0; s = t; terminateRay();"), {"M"}),
+            ask | first | inOrder);
 }
 
 TEST(RayTypes, SameConstantsAndTheEndShowNoOrder) {
   const std::string end = "s.light = 0.0; s.parts[1] = vec2(1.0); terminateRay();";
   EXPECT_EQ(howToSearch(material(end), {"M"}), ask | first);
-  EXPECT_EQ(howToSearch(material("if (opacity < 0.5) ignoreIntersection();" + end), {"M"}), ask | first);
+  EXPECT_EQ(howToSearch(material("if (opacity < 0.5) ignoreIntersection();" + end), {"M"}),
+            ask | first);
   // One way through accepts without writing.
-  EXPECT_EQ(howToSearch(material("if (opacity > 0.5) {" + end + "}"), {"M"}), ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material("s.light = opacity; terminateRay();"), {"M"}), ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material("s.light = 0.0; ignoreIntersection();"), {"M"}), ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material("if (opacity < 0.5) { s.light = 0.0; terminateRay(); } s.light = 1.0; terminateRay();"), {"M"}),
+  EXPECT_EQ(howToSearch(material("if (opacity > 0.5) {" + end + "}"), {"M"}),
+            ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("s.light = opacity; terminateRay();"), {"M"}),
+            ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("s.light = 0.0; ignoreIntersection();"), {"M"}),
+            ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("if (opacity < 0.5) { s.light = 0.0; terminateRay(); } s.light = "
+                                 "1.0; terminateRay();"),
+                        {"M"}),
             ask | first | inOrder);
   // An array is written at a place that is not known.
-  EXPECT_EQ(howToSearch(material("s.parts[int(opacity)] = vec2(1.0); terminateRay();"), {"M"}), ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material("s.parts[int(opacity)] = vec2(1.0); terminateRay();"), {"M"}),
+            ask | first | inOrder);
   // So does another class, in the same way or in another; or it accepts without being asked.
   const std::string other = "class N : rt_Material { void anyHit(inout Shadow s) {";
   EXPECT_EQ(howToSearch(material(end) + other + end + "} };", {"M", "N"}), ask | first);
-  EXPECT_EQ(howToSearch(material(end) + other + "s.light = 0.5; s.parts[1] = vec2(1.0); terminateRay(); } };", {"M", "N"}),
+  EXPECT_EQ(howToSearch(material(end) + other +
+                            "s.light = 0.5; s.parts[1] = vec2(1.0); terminateRay(); } };",
+                        {"M", "N"}),
             ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material(end) + "class N : rt_Material { void shade() {} };", {"M", "N"}), ask | first | inOrder);
-  EXPECT_EQ(howToSearch(material(end) + "class N : rt_Material { void shade() {} };", {"M"}), ask | first);
+  EXPECT_EQ(howToSearch(material(end) + "class N : rt_Material { void shade() {} };", {"M", "N"}),
+            ask | first | inOrder);
+  EXPECT_EQ(howToSearch(material(end) + "class N : rt_Material { void shade() {} };", {"M"}),
+            ask | first);
 }
 
 TEST(RayTypes, NobodyAnswersIsAWarning) {
@@ -115,11 +139,14 @@ class N : rt_Material {
                 {{"Eye", "M", "N"}, {}, {}, {}, runtime::Engine::Programs});
   ASSERT_TRUE(linked.succeeded);
   EXPECT_EQ(linked.callees("rtsl_rt_Material_closestHit_payload"),
-            (std::vector<std::string>{"dispatch.rt_Material.closestHit.A", "dispatch.rt_Material.closestHit.B"}));
+            (std::vector<std::string>{"dispatch.rt_Material.closestHit.A",
+                                      "dispatch.rt_Material.closestHit.B"}));
   EXPECT_EQ(linked.callees("dispatch.rt_Material.closestHit.A"),
             (std::vector<std::string>{"M.closestHit.A", "N.closestHit.A"}));
-  EXPECT_EQ(linked.callees("dispatch.rt_Material.closestHit.B"), (std::vector<std::string>{"N.closestHit.B"}));
-  EXPECT_EQ(linked.callees("rtsl_rt_Material_anyHit_payload"), (std::vector<std::string>{"dispatch.rt_Material.anyHit.B"}));
+  EXPECT_EQ(linked.callees("dispatch.rt_Material.closestHit.B"),
+            (std::vector<std::string>{"N.closestHit.B"}));
+  EXPECT_EQ(linked.callees("rtsl_rt_Material_anyHit_payload"),
+            (std::vector<std::string>{"dispatch.rt_Material.anyHit.B"}));
   EXPECT_TRUE(linked.callees("rtsl_rt_Miss_miss_payload").empty());
   EXPECT_EQ(linked.classInfo("M").anyHit, rtslRayTypeBit(2));
   EXPECT_EQ(linked.classInfo("N").anyHit, 0u);

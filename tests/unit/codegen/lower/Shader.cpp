@@ -190,10 +190,10 @@ Shader::Shader(const std::string &source, Options options) : code(std::make_uniq
     return;
   }
   codegen::optimize(*module, *target, machine);
-  code->jit =
-      take(codegen::Jit::create(std::move(context), std::move(module), std::move(target),
-                                {{"rtsl_traverse", reinterpret_cast<void *>(&testTraverse)},
-                                 {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)}}));
+  code->jit = take(codegen::Jit::create(
+      std::move(context), std::move(module), std::move(target),
+      {{"rtsl_traverse", reinterpret_cast<void *>(&testTraverse)},
+       {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)}}));
 }
 
 Shader::~Shader() = default;
@@ -253,7 +253,8 @@ Outcome Outcome::with(const std::string &declarations, const std::string &body,
     run.u[i++] = static_cast<std::uint32_t>(integer);
   }
   const std::string source =
-      declarations + "\nvoid run(inout float x[16], inout int n[16], inout uint u[16]) {\n" + body + "\n}\n";
+      declarations + "\nvoid run(inout float x[16], inout int n[16], inout uint u[16]) {\n" + body +
+      "\n}\n";
   if (options.checkIndices && options.colorComponents == 3)
     Recorder::source(source);
   auto record = [&](const char *when) {
@@ -271,7 +272,8 @@ Outcome Outcome::with(const std::string &declarations, const std::string &body,
 }
 
 FloatFunction::FloatFunction(const std::string &body, Options options)
-    : source("void run(inout float x[16]) {\n" + body + "\n}\n"), shader(source, std::move(options)) {}
+    : source("void run(inout float x[16]) {\n" + body + "\n}\n"),
+      shader(source, std::move(options)) {}
 
 std::array<float, 16> FloatFunction::operator()(std::initializer_list<float> inputs) {
   return (*this)(std::vector<float>(inputs));

@@ -6,8 +6,8 @@
 #include "codegen/emit/Jit.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
-#include "runtime/program/DeviceBitcode.h"
 #include "runtime/device/ray/Abi.h"
+#include "runtime/program/DeviceBitcode.h"
 
 #include "mlir/IR/MLIRContext.h"
 #include "mlir/Parser/Parser.h"
@@ -111,11 +111,11 @@ public:
     std::string entry = split ? "rtsl_sample_split" : "rtsl_sample";
     llvm::cantFail(codegen::linkDeviceCode(*module, runtime::deviceBitcode(), {entry}));
     codegen::optimize(*module, *machine, options);
-    auto made =
-        codegen::Jit::create(std::move(llvmContext), std::move(module), std::move(machine),
-                             {{"rtsl_traverse", reinterpret_cast<void *>(&traverse)},
-                              {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)},
-                              {"rtsl_machine_stack", reinterpret_cast<void *>(&machineStack)}});
+    auto made = codegen::Jit::create(
+        std::move(llvmContext), std::move(module), std::move(machine),
+        {{"rtsl_traverse", reinterpret_cast<void *>(&traverse)},
+         {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)},
+         {"rtsl_machine_stack", reinterpret_cast<void *>(&machineStack)}});
     if (!made) {
       ADD_FAILURE() << llvm::toString(made.takeError());
       return;
@@ -223,11 +223,10 @@ func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) att
 }
 )";
   // As linking makes them where no class has the method: they do nothing.
-  for (const char *slot :
-       {"rt_Exception_exception", "rt_Miss_miss", "rt_Miss_miss_payload",
-        "rt_RayGeneration_generate", "rt_Camera_generateRay", "rt_Primitive_computeNormal",
-        "rt_Primitive_computeTextureCoordinates", "rt_Primitive_computeDerivatives",
-        "rt_Light_illumination"})
+  for (const char *slot : {"rt_Exception_exception", "rt_Miss_miss", "rt_Miss_miss_payload",
+                           "rt_RayGeneration_generate", "rt_Camera_generateRay",
+                           "rt_Primitive_computeNormal", "rt_Primitive_computeTextureCoordinates",
+                           "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
     text += std::string("func.func @rtsl_") + slot +
             "(%o: !rtsl.ref<\"object\">) attributes {rtsl.export} {\n  rtsl.return\n}\n";
   return text;
@@ -307,8 +306,9 @@ TEST(Machine, RandomShadersGiveTheSameBitsSplitAndRecursively) {
   EXPECT_GT(saved, 0u);
 }
 
-/// The stack has exactly the levels that samples use: each ray that waits has one, and the ray whose turn it is has
-/// room for its frame. So the last level but one is written, and nothing behind the stack (as AddressSanitizer would see).
+/// The stack has exactly the levels that samples use: each ray that waits has one, and the ray
+/// whose turn it is has room for its frame. So the last level but one is written, and nothing
+/// behind the stack (as AddressSanitizer would see).
 TEST(Machine, TheStackIsAsLargeAsSamplesNeed) {
   struct Case {
     const char *name;

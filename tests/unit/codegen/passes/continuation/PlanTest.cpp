@@ -1,8 +1,8 @@
-// Plans of functions with more values than a BitVector holds in itself, for AddressSanitizer too: what a trace saves
-// depends on what stands behind it alone.
+// Plans of functions with more values than a BitVector holds in itself, for AddressSanitizer too:
+// what a trace saves depends on what stands behind it alone.
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/suspend/Steps.h"
 #include "codegen/passes/continuation/save/Steps.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/IR/MLIRContext.h"
 #include "mlir/Parser/Parser.h"
@@ -21,7 +21,8 @@ std::string functionWithManyValues() {
   std::string text = "rtsl.class @M root \"rt_Material\" {\n"
                      "  rtsl.member_decl @a : f32 access \"public\"\n"
                      "}\n"
-                     "func.func @f(%self: !rtsl.ref<\"M\">, %o: vector<3xf32>, %i: i32) -> (f32, f32, f32, f32, f32, f32, f32, f32) {\n"
+                     "func.func @f(%self: !rtsl.ref<\"M\">, %o: vector<3xf32>, %i: i32) -> (f32, "
+                     "f32, f32, f32, f32, f32, f32, f32) {\n"
                      "  %x0 = arith.constant 1.0 : f32\n";
   for (int i = 0; i != 100; ++i)
     text += fmt::format("  %t{0} = rtsl.var \"t{0}\" : !rtsl.ptr<!rtsl.array<4 x f32>>\n"
@@ -37,7 +38,8 @@ std::string functionWithManyValues() {
   for (int i = 0; i != 8; ++i)
     text += fmt::format("  %s{} = arith.addf %s{}, %s0 : f32\n", i + 1, i);
   return text + "  %c = rtsl.trace %o, %o : vector<3xf32>\n"
-                "  return %s1, %s2, %s3, %s4, %s5, %s6, %s7, %s8 : f32, f32, f32, f32, f32, f32, f32, f32\n"
+                "  return %s1, %s2, %s3, %s4, %s5, %s6, %s7, %s8 : f32, f32, f32, f32, f32, f32, "
+                "f32, f32\n"
                 "}\n";
 }
 

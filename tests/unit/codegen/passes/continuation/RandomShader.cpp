@@ -480,8 +480,9 @@ func.func @rtsl_rt_Primitive_computeNormal(%o: !rtsl.ref<"rt_Primitive">) attrib
   rtsl.return
 }
 )";
-  for (const char *slot : {"rt_Primitive_rt_boundHitError", "rt_Primitive_computeTextureCoordinates",
-                           "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
+  for (const char *slot :
+       {"rt_Primitive_rt_boundHitError", "rt_Primitive_computeTextureCoordinates",
+        "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
     text += std::string("func.func @rtsl_") + slot +
             "(%o: !rtsl.ref<\"object\">) attributes {rtsl.export} {\n  rtsl.return\n}\n";
   return text;

@@ -1,10 +1,11 @@
-// What is saved over the traces of small shaders against the optimum. The checker makes a shader out of its own description, so it
-// knows nothing of liveness, dominance or flows: it tries every set of saved values at every trace, over all traces together.
+// What is saved over the traces of small shaders against the optimum. The checker makes a shader
+// out of its own description, so it knows nothing of liveness, dominance or flows: it tries every
+// set of saved values at every trace, over all traces together.
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/save/MinimumCut.h"
 #include "codegen/passes/continuation/common/Names.h"
-#include "codegen/passes/continuation/suspend/Steps.h"
+#include "codegen/passes/continuation/save/MinimumCut.h"
 #include "codegen/passes/continuation/save/Steps.h"
+#include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/IR/MLIRContext.h"
 #include "mlir/Parser/Parser.h"
@@ -26,15 +27,17 @@ struct Node {
   std::string text;               // what makes it; empty: a trace brought it back
   std::vector<unsigned> operands; // earlier nodes
   std::int64_t save, recompute;
-  unsigned segment = 0;    // how many traces stand before it
-  unsigned lostAfter = ~0u; // behind traces with this number and later ones nobody can have it again
+  unsigned segment = 0; // how many traces stand before it
+  unsigned lostAfter =
+      ~0u; // behind traces with this number and later ones nobody can have it again
 };
 
 struct Shader {
   std::vector<Node> nodes;
   unsigned traces = 0;
   std::string text;
-  /// The nodes that the code between two traces asks for, by that segment: operands of what stands there.
+  /// The nodes that the code between two traces asks for, by that segment: operands of what stands
+  /// there.
   std::vector<std::set<unsigned>> asked;
 };
 
@@ -45,9 +48,12 @@ public:
 
 private:
   unsigned below(unsigned bound) { return unsigned(random() % bound); }
-  unsigned add(const std::string &text, std::vector<unsigned> operands, std::int64_t save, std::int64_t recompute);
+  unsigned add(const std::string &text, std::vector<unsigned> operands, std::int64_t save,
+               std::int64_t recompute);
   /// A float that is there already; some are asked for often.
-  unsigned anyFloat() { return floats[below(2) ? below(unsigned(floats.size())) : unsigned(floats.size()) - 1]; }
+  unsigned anyFloat() {
+    return floats[below(2) ? below(unsigned(floats.size())) : unsigned(floats.size()) - 1];
+  }
   void addFloat();
   void addTrace();
 
@@ -57,7 +63,8 @@ private:
   std::vector<unsigned> stateLoads; // of SampleColor, since it was written last
 };
 
-unsigned Maker::add(const std::string &text, std::vector<unsigned> operands, std::int64_t save, std::int64_t recompute) {
+unsigned Maker::add(const std::string &text, std::vector<unsigned> operands, std::int64_t save,
+                    std::int64_t recompute) {
   const unsigned index = unsigned(shader.nodes.size());
   for (unsigned operand : operands)
     if (shader.nodes[operand].segment < shader.traces)
@@ -72,27 +79,44 @@ void Maker::addFloat() {
   const unsigned a = anyFloat(), b = anyFloat();
   const unsigned next = unsigned(shader.nodes.size());
   switch (below(9)) {
-  case 0: floats.push_back(add("rtsl.rand", {}, 16, impossible)); break;
-  case 1: floats.push_back(add(fmt::format("arith.divf %n{}, %n{} : f32", a, b), {a, b}, 16, 8)); break;
-  case 2: floats.push_back(add(fmt::format("rtsl.elementary <sin> %n{} : f32", a), {a}, 16, 40)); break;
+  case 0:
+    floats.push_back(add("rtsl.rand", {}, 16, impossible));
+    break;
+  case 1:
+    floats.push_back(add(fmt::format("arith.divf %n{}, %n{} : f32", a, b), {a, b}, 16, 8));
+    break;
+  case 2:
+    floats.push_back(add(fmt::format("rtsl.elementary <sin> %n{} : f32", a), {a}, 16, 40));
+    break;
   case 3:
-    shader.text += fmt::format("  %p{} = rtsl.member %self[\"m\"] : !rtsl.ref<\"M\"> -> !rtsl.ptr<f32> loc(\"p\")\n", next);
+    shader.text += fmt::format(
+        "  %p{} = rtsl.member %self[\"m\"] : !rtsl.ref<\"M\"> -> !rtsl.ptr<f32> loc(\"p\")\n",
+        next);
     floats.push_back(add(fmt::format("rtsl.load %p{} : !rtsl.ptr<f32>", next), {}, 16, 2));
     break;
   case 4: { // of the ray's state, which a store may change
-    shader.text += fmt::format("  %p{} = rtsl.state \"SampleColor\" : !rtsl.ptr<vector<3xf32>> loc(\"p\")\n", next);
-    const unsigned whole = add(fmt::format("rtsl.load %p{} : !rtsl.ptr<vector<3xf32>>", next), {}, 48, 12);
+    shader.text += fmt::format(
+        "  %p{} = rtsl.state \"SampleColor\" : !rtsl.ptr<vector<3xf32>> loc(\"p\")\n", next);
+    const unsigned whole =
+        add(fmt::format("rtsl.load %p{} : !rtsl.ptr<vector<3xf32>>", next), {}, 48, 12);
     stateLoads.push_back(whole);
-    floats.push_back(add(fmt::format("vector.extract %n{}[1] : f32 from vector<3xf32>", whole), {whole}, 16, 0));
+    floats.push_back(
+        add(fmt::format("vector.extract %n{}[1] : f32 from vector<3xf32>", whole), {whole}, 16, 0));
     break;
   }
   case 5: {
-    const unsigned whole = add(fmt::format("vector.from_elements %n{}, %n{}, %n{} : vector<3xf32>", a, b, a), {a, b}, 48, 0);
-    const unsigned root = add(fmt::format("math.sqrt %n{} : vector<3xf32>", whole), {whole}, 48, 24);
-    floats.push_back(add(fmt::format("vector.extract %n{}[0] : f32 from vector<3xf32>", root), {root}, 16, 0));
+    const unsigned whole =
+        add(fmt::format("vector.from_elements %n{}, %n{}, %n{} : vector<3xf32>", a, b, a), {a, b},
+            48, 0);
+    const unsigned root =
+        add(fmt::format("math.sqrt %n{} : vector<3xf32>", whole), {whole}, 48, 24);
+    floats.push_back(
+        add(fmt::format("vector.extract %n{}[0] : f32 from vector<3xf32>", root), {root}, 16, 0));
     break;
   }
-  default: floats.push_back(add(fmt::format("arith.addf %n{}, %n{} : f32", a, b), {a, b}, 16, 1)); break;
+  default:
+    floats.push_back(add(fmt::format("arith.addf %n{}, %n{} : f32", a, b), {a, b}, 16, 1));
+    break;
   }
 }
 
@@ -100,10 +124,12 @@ void Maker::addTrace() {
   const unsigned number = shader.traces;
   if (below(4) == 0) {
     const unsigned color = anyFloat();
-    const unsigned whole = add(fmt::format("vector.broadcast %n{} : f32 to vector<3xf32>", color), {color}, 48, 0);
-    shader.text += fmt::format("  %s{0} = rtsl.state \"SampleColor\" : !rtsl.ptr<vector<3xf32>> loc(\"p\")\n"
-                               "  rtsl.store %n{1}, %s{0} : !rtsl.ptr<vector<3xf32>>\n",
-                               number, whole);
+    const unsigned whole =
+        add(fmt::format("vector.broadcast %n{} : f32 to vector<3xf32>", color), {color}, 48, 0);
+    shader.text +=
+        fmt::format("  %s{0} = rtsl.state \"SampleColor\" : !rtsl.ptr<vector<3xf32>> loc(\"p\")\n"
+                    "  rtsl.store %n{1}, %s{0} : !rtsl.ptr<vector<3xf32>>\n",
+                    number, whole);
     for (unsigned load : stateLoads)
       shader.nodes[load].lostAfter = number;
     stateLoads.clear();
@@ -114,7 +140,8 @@ void Maker::addTrace() {
   ++shader.traces;
   shader.asked.emplace_back();
   const unsigned whole = add("", {}, 48, impossible);
-  floats.push_back(add(fmt::format("vector.extract %n{}[2] : f32 from vector<3xf32>", whole), {whole}, 16, 0));
+  floats.push_back(
+      add(fmt::format("vector.extract %n{}[2] : f32 from vector<3xf32>", whole), {whole}, 16, 0));
 }
 
 Shader Maker::make(unsigned traces) {
@@ -126,13 +153,15 @@ Shader Maker::make(unsigned traces) {
     if (trace < traces)
       addTrace();
   }
-  shader.text = "rtsl.class @M root \"rt_Material\" {\n  rtsl.member_decl @m : f32 access \"public\"\n}\n"
-                "func.func @f(%self: !rtsl.ref<\"M\">) {\n" +
-                shader.text + "  return\n}\n";
+  shader.text =
+      "rtsl.class @M root \"rt_Material\" {\n  rtsl.member_decl @m : f32 access \"public\"\n}\n"
+      "func.func @f(%self: !rtsl.ref<\"M\">) {\n" +
+      shader.text + "  return\n}\n";
   return shader;
 }
 
-/// The cost of a trace that saves this set, with what has to be there behind it; `impossible` if that cannot be.
+/// The cost of a trace that saves this set, with what has to be there behind it; `impossible` if
+/// that cannot be.
 std::int64_t costAt(const Shader &shader, unsigned trace, unsigned saved, unsigned needed) {
   std::int64_t cost = 0;
   for (unsigned v = unsigned(shader.nodes.size()); v-- > 0;) { // operands have smaller numbers
@@ -169,7 +198,8 @@ unsigned neededBehind(const Shader &shader, unsigned trace, unsigned savedNext) 
 /// The least cost of the traces up to this one, by what the one behind it saves.
 std::int64_t cheapest(const Shader &shader, unsigned trace, unsigned savedNext,
                       std::map<std::pair<unsigned, unsigned>, std::int64_t> &known) {
-  const unsigned needed = neededBehind(shader, trace, savedNext), candidates = madeBefore(shader, trace);
+  const unsigned needed = neededBehind(shader, trace, savedNext),
+                 candidates = madeBefore(shader, trace);
   auto [at, isNew] = known.try_emplace({trace, needed}, impossible);
   if (!isNew)
     return at->second;
@@ -236,8 +266,14 @@ void compare(unsigned traces, unsigned shaders) {
   EXPECT_GT(saving, compared / 2);
 }
 
-TEST(ShaderOptimum, OfOneTrace) { compare(1, 400); }
-TEST(ShaderOptimum, OfTwoTraces) { compare(2, 400); }
-TEST(ShaderOptimum, OfThreeTraces) { compare(3, 300); }
+TEST(ShaderOptimum, OfOneTrace) {
+  compare(1, 400);
+}
+TEST(ShaderOptimum, OfTwoTraces) {
+  compare(2, 400);
+}
+TEST(ShaderOptimum, OfThreeTraces) {
+  compare(3, 300);
+}
 
 } // namespace

@@ -44,8 +44,8 @@ TEST(StackBound, IsTheLongestWay) {
           [&](uint32_t kind) { return graph.sentLast[kind]; });
     };
     for (uint32_t depth = 0; depth < 5; ++depth)
-      ASSERT_EQ(levels(depth), hasGenerate ? longest(graph, kinds - 1, 1, depth + 1)
-                                           : longest(graph, 0, 1, depth))
+      ASSERT_EQ(levels(depth),
+                hasGenerate ? longest(graph, kinds - 1, 1, depth + 1) : longest(graph, 0, 1, depth))
           << "round " << round << ", depth " << depth;
     grows += levels(200) > levels(100);
   }
