@@ -15,7 +15,8 @@ JOBS ?= $(shell nproc)
 
 .PHONY: demo check build configure dependencies golden bench fuzz mutations memory numerics format install clean
 
-demo: build
+demo: configure
+	cmake --build --preset $(PRESET) -j $(JOBS) --target rtslc
 	$(BUILD)/bin/rtslc render examples/glass/scene.json -o $(BUILD)/glass.png
 	@echo "the picture is $(BUILD)/glass.png"
 

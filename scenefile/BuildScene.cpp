@@ -11,8 +11,6 @@
 
 namespace rtsl::scene {
 
-using Error;
-using ErrorCode;
 using runtime::ClassInfo;
 using runtime::MemberInfo;
 using runtime::NamedValue;

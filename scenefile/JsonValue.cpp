@@ -17,10 +17,6 @@
 
 namespace rtsl::scene {
 
-using Error;
-using ErrorCode;
-using Place;
-
 namespace {
 
 constexpr std::size_t deepestNesting = 256;

@@ -9,10 +9,6 @@
 
 namespace rtsl::scene {
 
-using Error;
-using ErrorCode;
-using Place;
-
 namespace {
 
 /// Says of a whole value that it came from the command line.

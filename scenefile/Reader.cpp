@@ -11,9 +11,6 @@
 
 namespace rtsl::scene {
 
-using Error;
-using ErrorCode;
-
 const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what) {
   if (value.kind != kind)
     throw Error(ErrorCode::WrongType,

@@ -16,9 +16,6 @@
 
 namespace rtsl::scene {
 
-using Error;
-using ErrorCode;
-
 namespace {
 
 using Kind = JsonValue::Kind;

@@ -29,8 +29,6 @@
 
 namespace rtsl::scene {
 
-using Place;
-
 /// A text with its place.
 struct LocatedName {
   std::string text;

@@ -6,8 +6,6 @@
 
 namespace rtsl::scene {
 
-using Error;
-using ErrorCode;
 using runtime::Transform;
 
 namespace {

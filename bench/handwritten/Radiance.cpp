@@ -139,8 +139,8 @@ vec3 radiance(const Scene &scene, const Picture &picture, const Ray &ray) {
   const vec3 point = ray.origin + distance * ray.direction;
   switch (found.hit.geomID) {
   case floorGeometry: {
-    const vec3 normal =
-        ray.direction.y < 0 ? scene.floor.normal : -scene.floor.normal; // the floor is level
+    // the floor is level
+    const vec3 normal = ray.direction.y < 0 ? scene.floor.normal : -scene.floor.normal;
     return lambert(scene, ray, point, normal, checker({found.hit.u, found.hit.v}));
   }
   case sphereGeometry: {

@@ -322,8 +322,8 @@ Code FunctionPrinter::construct(const typed::ConstructExpr &expr) {
     return cpp::call(withParameters("rtsl::matrixOf", {typeName}), std::move(args));
   }
   const bool isExact = scalars == type->count && !hasMatrix;
-  const bool isOne =
-      expr.args.size() == 1 && !hasMatrix; // to every component, or the first of a longer one
+  // to every component, or the first of a longer one
+  const bool isOne = expr.args.size() == 1 && !hasMatrix;
   if (isExact || isOne)
     return cpp::construct(typeName, std::move(args));
   return cpp::call(withParameters("rtsl::vectorOf", {typeName}), std::move(args));

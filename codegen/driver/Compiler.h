@@ -49,8 +49,8 @@ struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool checkIndices = true;
   unsigned optimization = 2; // of machine code, 0 to 3; up to 2 the parts of a large program have 1
-  unsigned threads =
-      0; // 1: none but the caller's. Otherwise large programs are compiled on all cores
+  // 1: none but the caller's. Otherwise large programs are compiled on all cores
+  unsigned threads = 0;
   TraceMode trace = TraceMode::Recurse; // of Target::Host; there is no recursion elsewhere
   Target target = Target::Host;
   /// States save all that is live over a trace, and nothing is computed again: to compare with.

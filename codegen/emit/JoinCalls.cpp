@@ -36,8 +36,8 @@ class Sizes {
 public:
   /// Instructions of a function with all that becomes part of it, or more than mostInstructions.
   std::uint64_t of(const llvm::Function &function) {
-    const auto [known, isNew] =
-        sizes.try_emplace(&function, tooMany); // of a function that calls itself
+    // of a function that calls itself
+    const auto [known, isNew] = sizes.try_emplace(&function, tooMany);
     if (!isNew)
       return known->second;
     std::uint64_t size = 0;

@@ -15,9 +15,6 @@
 
 namespace rtsl {
 
-using Error;
-using ErrorCode;
-
 namespace {
 
 /// A file for one of the streams of `dot`; removed by the destructor.

@@ -1,6 +1,6 @@
 //===- RtslFolds.cpp - what the operations are of constants ---------------===//
 //
-// Elementary functions are computed by runtime/device/math, the same code that a shader calls: the
+// Elementary functions are computed by math, the same code that a shader calls: the
 // value does not depend on whether, or on which machine, it was folded.
 //
 //===----------------------------------------------------------------------===//

@@ -106,8 +106,8 @@ private:
         return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())};
       };
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
-        const bool isDispatch =
-            function.getSymName().starts_with(dispatchPrefix); // stands for those that call it
+        // stands for those that call it
+        const bool isDispatch = function.getSymName().starts_with(dispatchPrefix);
         add(context.function(call.getCallee()),
             isDispatch ? reached.lookup(function) : by("called by"));
       } else if (auto slot = llvm::dyn_cast<ir::CallMethodOp>(op)) { // not resolved yet

@@ -28,8 +28,8 @@ public:
       : symbols(symbols), payload(payload) {}
 
   bool operator()(FuncOp function) {
-    const auto [known, isNew] =
-        answers.try_emplace(function, false); // false while it is being asked
+    // false while it is being asked
+    const auto [known, isNew] = answers.try_emplace(function, false);
     if (!isNew || function.isExternal())
       return known->second;
     const Untraced ways = walk(function.getBody());

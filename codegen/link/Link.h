@@ -2,23 +2,22 @@
 //
 // Lowering leaves classes beside each other: a method called through a reference is a declared
 // slot, an attribute has no place yet. Linking knows which classes a scene uses. In order, it
-//   1. drops the classes that the scene has no objects of (DropUnusedClasses.cpp), and finds those
-//   whose objects nothing refers to
-//      (UsedObjects.cpp): they are made and checked, and no code calls them; what is done only if a
-//      reference that the scene leaves empty were none is gone before (EmptyReferences.cpp),
-//   2. derives how exact the hits of primitives are that rays leave (HitErrors.cpp),
-//   3. resolves each slot to a switch over the classes that are there, or a direct call if there is
-//   one
-//      (ResolveSlots.cpp),
-//   4. drops the methods that nothing runs (DropUnreached.cpp) and the results that nobody reads
-//   (Outputs.cpp),
-//   5. gives each attribute its place, matched by name and type between primitives and materials
-//   (PlaceAttributes.cpp),
-//   6. numbers the types of rays that carry a payload, and finds out how their hits are searched
-//   for (RayTypes.cpp),
-//   7. makes an entry for each way in from the runtime, and hides everything else
-//   (MakeEntries.cpp),
-//   8. finds out what of a hit anybody reads (FindNeeds.cpp).
+//   1. drops the classes that the scene has no objects of (DropUnusedClasses.cpp) and finds those
+//      whose objects nothing refers to (UsedObjects.cpp), whose code is left out although their
+//      objects are made; removes what runs only if a reference is set that the scene leaves empty
+//      (EmptyReferences.cpp),
+//   2. derives the error bounds of hits that rays leave (HitErrors.cpp),
+//   3. resolves each slot to a switch over the classes that are there, or to a direct call if there
+//      is one (ResolveSlots.cpp),
+//   4. drops methods that nothing calls (DropUnreached.cpp) and results that nothing reads
+//      (Outputs.cpp),
+//   5. places attributes, matched by name and type between primitives and materials
+//      (PlaceAttributes.cpp),
+//   6. numbers the types of rays that carry a payload, and decides how their hits are searched for
+//      (RayTypes.cpp),
+//   7. makes an entry point for each call of the runtime's, and hides everything else
+//      (MakeEntries.cpp),
+//   8. finds out what of a hit the program reads (FindNeeds.cpp).
 // What LinkRequest::keep names stays although the scene does not need it. Each step notes what it
 // left out, and why.
 //

@@ -136,8 +136,8 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
 }
 
 void resolveSlots(LinkContext &context) {
-  const bool mayBeNone =
-      typed::mayReferToNothing(context.module); // then nothing happens, and zero is returned
+  // then nothing happens, and zero is returned
+  const bool mayBeNone = typed::mayReferToNothing(context.module);
   replaceSlots(context.ir, context.symbols, [&](const SlotCall &slot, mlir::func::FuncOp function) {
     std::vector<const LinkedClass *> classes;
     for (const LinkedClass &linked : context.classes) {

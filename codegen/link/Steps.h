@@ -19,8 +19,8 @@ namespace rtsl::linking {
 struct LinkedClass {
   const typed::Class *info = nullptr;
   bool hasObjects = true; // without, it is there to be kept
-  bool isUsed =
-      true; // an object of it may be met by a ray; otherwise its constructor alone is of use
+  // an object of it may be met by a ray; otherwise its constructor alone is of use
+  bool isUsed = true;
   ir::ClassOp record;
   std::uint32_t id = 0;      // from 1, in the order of the module
   ir::StructType parameters; // packed arguments of the constructor; null: it has none
@@ -42,8 +42,8 @@ struct LinkContext {
   Findings &findings; // what the steps leave out, and what not
   ElementaryErrors elementaryErrors;
   std::vector<LinkedClass> classes = {};
-  std::map<std::string, Finding> dispatches =
-      {}; // of the functions of this name, to be noted if something runs them
+  // of the functions of this name, to be noted if something runs them
+  std::map<std::string, Finding> dispatches = {};
   std::vector<RayType> rayTypes = {};
   /// Of `ir`. Who adds or erases a function does it through this, so that every name is found at
   /// once.

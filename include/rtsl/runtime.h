@@ -13,3 +13,8 @@
 #include "runtime/render/Renderer.h"
 #include "runtime/scene/Scene.h"
 #include "support/Error.h"
+
+namespace rtsl::runtime {
+using rtsl::Error;
+using rtsl::ErrorCode;
+} // namespace rtsl::runtime

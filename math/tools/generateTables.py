@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the headers in runtime/device/math/tables/.
+"""Writes the headers in math/tables/.
 
 Every number is computed with 80 decimal digits from its definition and then rounded to double, so that the tables can
 be checked by reading this file. Needs nothing but Python 3:

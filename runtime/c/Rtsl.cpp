@@ -79,7 +79,7 @@ const char *rtslError(void) {
 RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   return guarded<RtslScene *>(nullptr, [&] {
     if (!shaders)
-      throw Error(ErrorCode::IncompleteScene, "there are no shaders");
+      throw rtsl::Error(rtsl::ErrorCode::IncompleteScene, "there are no shaders");
     return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}};
   });
 }

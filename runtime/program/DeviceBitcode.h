@@ -11,7 +11,7 @@
 namespace rtsl::runtime {
 
 /// What Abi.h calls "defined by the runtime" but rtsl_traverse, which the host defines
-/// (runtime/HostTraversal.h), and the elementary functions.
+/// (runtime/embree/HostScene.h), and the elementary functions.
 std::string_view deviceBitcode();
 std::string_view gpuDeviceBitcode();
 

@@ -82,8 +82,8 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
                                              threadCount(options));
     if (options.traversal == Traversal::Device)
       self->launch = self->host->deviceLaunch();
-    self->image =
-        newImage(options.width, options.height, program.colorComponents); // while little was done
+    // while little was done
+    self->image = newImage(options.width, options.height, program.colorComponents);
   } catch (const std::bad_alloc &) {
     throw Error(ErrorCode::OutOfMemory, "not enough memory for the scene's acceleration structure");
   }

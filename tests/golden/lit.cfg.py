@@ -13,9 +13,7 @@ config.test_exec_root = config.binary_root
 
 for name, path in config.programs.items():
     config.substitutions.append((r"(?<![\w/.-])" + name + r"(?![\w/.-])", path))
-config.substitutions.append(("%inputs", os.path.join(config.test_source_root, "Inputs")))
+config.substitutions.append(("%root", os.path.dirname(os.path.dirname(config.test_source_root))))
 config.environment["FILECHECK_OPTS"] = "--dump-input=fail"
 # A stack trace with names, where a tool crashes.
 config.environment["LLVM_SYMBOLIZER_PATH"] = os.path.join(config.llvm_tools, "llvm-symbolizer")
-if not os.path.exists(config.programs["rtslc"]):
-    config.excludes += [name for name in os.listdir(config.test_source_root) if name in ("compile", "explain", "ptx")]

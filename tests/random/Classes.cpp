@@ -299,8 +299,8 @@ void Generator::addPayloadMethod(ClassPlan &plan, Node &members, const std::stri
                                  const Type *payload, std::vector<Variable> state, Context rules) {
   const std::string parameter = fresh("p");
   const bool asks = name == "anyHit";
-  const bool writes =
-      !asks || chance(60); // if it does not, the order in which hits are asked for does not show
+  // if it does not, the order in which hits are asked for does not show
+  const bool writes = !asks || chance(60);
   state.push_back({parameter, payload, writes});
   std::string result = writes ? parameter + ".h = h; " : "";
   if (asks) // for some hits

@@ -104,8 +104,8 @@ struct Summary {
 };
 
 nlohmann::ordered_json toJson(const SampleNotFinite &one) {
-  nlohmann::ordered_json color =
-      nlohmann::ordered_json::array(); // JSON has no numbers that are not finite
+  // JSON has no numbers that are not finite
+  nlohmann::ordered_json color = nlohmann::ordered_json::array();
   for (const float value : one.color)
     color.push_back(std::isfinite(value) ? nlohmann::ordered_json(value)
                     : std::isnan(value)  ? nlohmann::ordered_json("nan")

@@ -168,8 +168,8 @@ Code StateWriter::opposite(mlir::Value condition, const Code &code) {
   auto *compared = entry && entry->kind == SourceTable::Kind::Value
                        ? dynCast<typed::BinaryExpr>(entry->expr)
                        : nullptr;
-  const bool isOfLights =
-      condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr; // below their count
+  // below their count
+  const bool isOfLights = condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr;
   const Code inner = bare(code);
   if ((!compared && !isOfLights) || !inner->is(ExpressionKind::Binary))
     return negated(code);

@@ -123,8 +123,8 @@ private:
   /// A statement, and what it is of in the IR.
   struct Line {
     Statement statement;
-    mlir::Operation *declares =
-        nullptr; // a variable whose declaration this is, to be joined with its first assignment
+    // a variable whose declaration this is, to be joined with its first assignment
+    mlir::Operation *declares = nullptr;
     mlir::Operation *assigns = nullptr; // the variable of `x = value;`
     mlir::Value made;                   // what `type name = value;` is the variable of
     const Type *copies = nullptr;       // the struct whose field is assigned

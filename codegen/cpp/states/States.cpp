@@ -290,8 +290,8 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition,
           calledMethod(call.getCallee().str());
     });
   machine.joins = joinsOf(machine.states);
-  std::set<std::string> taken =
-      namesInClass(definition); // what is printed beside the author's own stands behind it
+  // what is printed beside the author's own stands behind it
+  std::set<std::string> taken = namesInClass(definition);
   std::vector<std::string> functions = {name};
   for (std::size_t i = 1; i < machine.states.size(); ++i) {
     const std::string symbol = machine.states[i].getSymName().str();
@@ -313,8 +313,8 @@ std::string ModulePrinter::stateMachine(const typed::Class &definition,
     const auto isBool = [](const FrameField &field) {
       return field.type && field.type->is(TypeKind::Bool) && !field.isObject;
     };
-    const bool packs =
-        std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1; // bools share a byte
+    // bools share a byte
+    const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1;
     for (const FrameField &field : machine.frame) {
       if (!field.type) {
         unsupported(method.range, fmt::format("`{}` in the frame of a method in C++", field.slot));

@@ -402,8 +402,8 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
   const Wide x = widened(emitter, narrowed(arguments.front())), one = x.like(1);
   const Wide moved = arguments.front() - x;
   const Value found = unrounded(call.getOperands().front()).error;
-  const Wide spread =
-      found ? abs(moved) + Wide(emitter, found) : abs(moved); // that x may be off by
+  // that x may be off by
+  const Wide spread = found ? abs(moved) + Wide(emitter, found) : abs(moved);
   const Wide none = x.like(0), infinite = x.like(std::numeric_limits<double>::infinity());
   const auto same = [&](F other) { return single(other, x); }; // of the same argument
   /// `room`: within half of this the tangent is off by at most twice the share of it that x is off

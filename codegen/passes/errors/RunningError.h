@@ -70,8 +70,8 @@ private:
   ElementaryErrors elementary;
   lowering::Emitter emitter;
   llvm::DenseMap<mlir::Value, Unrounded> known;
-  bool hasErrors =
-      false; // the value depends on an elementary function or a rounded literal: block arguments carry errors
+  // the value depends on an elementary function or a rounded literal: block arguments carry errors
+  bool hasErrors = false;
   std::optional<ErrorUnknown> obstacle;
 };
 

@@ -1,7 +1,7 @@
 //===- Elementary.h - sin, pow, sqrt and the like -------------------------===//
 //
 // Correctly rounded: the runtime library holds them, compiled from the source that the compiler's
-// own machine code uses (runtime/device/math). With RTSL_FAST they are those of the C library.
+// own machine code uses (math). With RTSL_FAST they are those of the C library.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

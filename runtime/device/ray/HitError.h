@@ -4,7 +4,7 @@
 // `intersect` computes for t is off by rounding twice: when the surface was hit, which put the new
 // ray's origin off it (Spawn.h), and when the new ray is tested against the same primitive. The
 // author states a bound of the error with `hit(t, error)`, or the compiler derives one from the
-// arithmetic of `intersect` (codegen/passes/BoundHitError.h). The second error is dealt with here.
+// arithmetic of `intersect` (codegen/passes/errors/BoundHitError.h). The second error is dealt with here.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

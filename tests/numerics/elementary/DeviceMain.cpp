@@ -152,8 +152,8 @@ int main(int argc, char **argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     return runAll(options) ? 0 : 1;
-  } catch (const Error &error) {
-    const bool isMissing = error.code == ErrorCode::NoDevice;
+  } catch (const rtsl::Error &error) {
+    const bool isMissing = error.code == rtsl::ErrorCode::NoDevice;
     fmt::print(stderr, "{}: {}\n", isMissing ? "skipped" : "error", error.what());
     return isMissing ? 77 : 2;
   } catch (const std::exception &error) {

@@ -143,8 +143,8 @@ TEST(Crossing, HoldsTheTruthInNineteenOfTwentyCases) {
       for (std::vector<double> &level : rounds.x)
         level[round] += shared + 0.2 * noise(random);
     }
-    const Estimate crossing =
-        findCrossing(rounds, -0.585)->estimate(); // between 0.36 and 0.81, the middle
+    // between 0.36 and 0.81, the middle
+    const Estimate crossing = findCrossing(rounds, -0.585)->estimate();
     held += crossing.low <= 0.75 && 0.75 <= crossing.high;
   }
   expectShare(held, 0.95);

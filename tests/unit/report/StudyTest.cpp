@@ -117,8 +117,8 @@ TEST_F(Studies, FindEfficiencyAndTheCostOfASlowerWay) {
 }
 
 TEST_F(Studies, KeepToTheBudget) {
-  options.budgetSeconds =
-      0.2; // 8 runs x (1 + 2 + 4 + 8) ms is 0.12 s, and 16 more would be 0.248 s
+  // 8 runs x (1 + 2 + 4 + 8) ms is 0.12 s, and 16 more would be 0.248 s
+  options.budgetSeconds = 0.2;
   const Summary summary = study({noisy("strict", 0.2), noisy("slow", 0.2, 100)});
   EXPECT_EQ(summary.subjects[0].levels.back().samplesPerPixel, 8u);
   EXPECT_EQ(summary.subjects[1].levels.back().samplesPerPixel, 4u); // a line needs three

@@ -24,7 +24,7 @@ std::string read(const std::filesystem::path &path) {
 std::vector<std::filesystem::path> printed() {
   const std::filesystem::path root = RTSL_ROOT;
   std::vector<std::filesystem::path> found;
-  for (const char *folder : {"docs/cpp-output", "tests/golden/compile"})
+  for (const char *folder : {"docs/cpp-output", "tests/golden/codegen/driver"})
     for (const auto &entry : std::filesystem::directory_iterator(root / folder)) {
       const std::string name = entry.path().filename().string();
       if (entry.path().extension() == ".cpp" || name.find(".cpp.expected") != std::string::npos)

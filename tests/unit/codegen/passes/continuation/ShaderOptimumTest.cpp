@@ -28,8 +28,8 @@ struct Node {
   std::vector<unsigned> operands; // earlier nodes
   std::int64_t save, recompute;
   unsigned segment = 0; // how many traces stand before it
-  unsigned lostAfter =
-      ~0u; // behind traces with this number and later ones nobody can have it again
+  // behind traces with this number and later ones nobody can have it again
+  unsigned lostAfter = ~0u;
 };
 
 struct Shader {
