@@ -36,6 +36,7 @@ endif
 
 golden: build
 	tests/golden/update $(BUILD)
+	tests/language/renew $(BUILD)
 
 bench: build
 	cmake --build --preset $(PRESET) --target bench

@@ -23,6 +23,5 @@ list(APPEND CMAKE_MODULE_PATH "${MLIR_CMAKE_DIR}" "${LLVM_CMAKE_DIR}")
 
 if(RTSL_TESTS)
   find_package(GTest REQUIRED)
-  include(GoogleTest)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
 endif()

@@ -21,7 +21,7 @@ namespace {
 
 runtime::Image renderGlass(std::uint32_t components) {
   const scene::SceneDescription description =
-      scene::readSceneFile(RTSL_EXAMPLES "/glass/scene.json");
+      scene::readSceneFile(RTSL_ROOT "/examples/glass/scene.json");
   SourceManager sources;
   Diagnostics diagnostics(sources);
   SourceLoader loader(sources, diagnostics);

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<ProgramFile> chapters() {
   std::vector<ProgramFile> files;
-  for (const auto &chapter : std::filesystem::directory_iterator(RTSL_LANGUAGE_TESTS)) {
+  for (const auto &chapter : std::filesystem::directory_iterator(RTSL_ROOT "/tests/language")) {
     std::ifstream stream(chapter.path() / "run.rtsl");
     if (stream)
       files.push_back({chapter.path().filename().string() + "/run.rtsl",

@@ -15,7 +15,7 @@ using runtime::Image;
 namespace {
 
 Image readData(const std::string &name) {
-  return runtime::readImage(std::string(RTSL_REPORT_TEST_DATA) + "/" + name);
+  return runtime::readImage(std::string(RTSL_ROOT) + "/tests/unit/report/data/" + name);
 }
 
 Image flat(float red, float green, float blue, std::uint32_t size = 32) {

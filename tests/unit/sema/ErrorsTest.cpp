@@ -75,17 +75,4 @@ TEST(Errors, EveryMessageOfSemaAndThePreprocessorHasATest) {
   }
 }
 
-// `RTSL_RENEW_GOLDEN=1` rewrites the expectations in place; what changed is then read as a
-// difference in version control.
-TEST(Errors, AreRenewedOnRequest) {
-  if (!renewing())
-    GTEST_SKIP() << "only with RTSL_RENEW_GOLDEN=1";
-  for (const std::string &path : languageFiles("errors.rtsl")) {
-    std::string renewed;
-    for (const Case &each : splitCases(readFile(path)))
-      renewed += "//--- " + each.title + "\n" + withActualMessages(each.text);
-    writeFile(path, renewed);
-  }
-}
-
 } // namespace

@@ -5,7 +5,6 @@
 #include "frontend/syntax/Parser.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -161,7 +160,7 @@ void writeFile(const std::string &path, const std::string &text) {
 
 std::vector<std::string> languageFiles(const std::string &name) {
   std::vector<std::string> paths;
-  for (const auto &chapter : std::filesystem::directory_iterator(RTSL_LANGUAGE_TESTS))
+  for (const auto &chapter : std::filesystem::directory_iterator(RTSL_ROOT "/tests/language"))
     if (const auto path = chapter.path() / name; std::filesystem::exists(path))
       paths.push_back(path.string());
   std::sort(paths.begin(), paths.end());
@@ -170,11 +169,6 @@ std::vector<std::string> languageFiles(const std::string &name) {
 
 std::string chapterOf(const std::string &path) {
   return std::filesystem::path(path).parent_path().filename().string();
-}
-
-bool renewing() {
-  const char *value = std::getenv("RTSL_RENEW_GOLDEN");
-  return value && *value == '1';
 }
 
 } // namespace rtsl::test

@@ -58,7 +58,4 @@ void writeFile(const std::string &path, const std::string &text);
 std::vector<std::string> languageFiles(const std::string &name);
 /// The folder of such a file: "04-numbers".
 std::string chapterOf(const std::string &path);
-/// Expected output is renewed instead of compared: `RTSL_RENEW_GOLDEN=1`, as `make golden` sets it.
-bool renewing();
-
 } // namespace rtsl::test

@@ -87,7 +87,7 @@ std::string describe(const Finding &finding) {
 
 std::vector<std::string> examples() {
   std::vector<std::string> files;
-  for (const auto &entry : std::filesystem::directory_iterator(RTSL_EXAMPLES))
+  for (const auto &entry : std::filesystem::directory_iterator(RTSL_ROOT "/examples"))
     if (const auto scene = entry.path() / "scene.json"; std::filesystem::exists(scene))
       files.push_back(scene.string());
   std::sort(files.begin(), files.end());
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, Truth, testing::ValuesIn(examples()), [](cons
 // The numbers of the glass example with a material that nothing has: the program is the one
 // without.
 TEST(Unused, AMaterialOnNoObjectLeavesTheProgramAsItIs) {
-  const std::string glass = std::string(RTSL_EXAMPLES) + "/glass/scene.json";
+  const std::string glass = std::string(RTSL_ROOT) + "/examples/glass/scene.json";
   const std::string unused =
       R"(materials.unused={"class":"Glass","constructor":{"index":1.7,"surroundings":1.0,"tint":[0.5,0.5,0.5]}})";
   Explained plain(glass), with(glass, {unused});

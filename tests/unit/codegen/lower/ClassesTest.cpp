@@ -338,7 +338,7 @@ class T : rt_Texture {
 
 TEST(Examples, AreLowered) {
   std::size_t number = 0;
-  for (const auto &entry : std::filesystem::recursive_directory_iterator(RTSL_EXAMPLES)) {
+  for (const auto &entry : std::filesystem::recursive_directory_iterator(RTSL_ROOT "/examples")) {
     if (entry.path().extension() != ".rtsl")
       continue;
     std::ifstream file(entry.path());
