@@ -1,13 +1,14 @@
 //===- Dump.cpp - the typed module as text --------------------------------===//
 //
-// One node a line, indented below what holds it: `kind details : type`. The text depends on the
-// source alone.
+// One node per line, indented below its parent: `kind details : type`. The text depends only on the
+// source.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/Sema.h"
 #include "sema/fold/ConstantFold.h"
 #include "sema/typed/Casting.h"
 #include "sema/typed/TypeProperties.h"
+#include "sema/typed/Walk.h"
 
 #include <fmt/format.h>
 
@@ -26,14 +27,11 @@ private:
   void comment(const std::string &comment);
   void member(const Member &member);
   void function(const Function &function);
+  void variable(const Variable &variable);
   void stmt(const Stmt &stmt);
   void optional(const char *label, const Stmt *stmt);
   void optional(const char *label, const Expr *expr);
   void expr(const Expr &expr);
-  void exprs(const std::vector<ExprPtr> &list);
-  void node(const std::string &content, const Expr &expr) {
-    line(content + " : " + toString(expr.type));
-  }
 
   unsigned depth = 0;
 
@@ -182,6 +180,25 @@ void Dumper::optional(const char *label, const Expr *inner) {
   expr(*inner);
 }
 
+static std::string labelsOf(const SwitchStmt::Arm &arm) {
+  std::string labels;
+  for (std::int64_t value : arm.values)
+    labels += (labels.empty() ? "case " : ", ") + std::to_string(value);
+  if (arm.isDefault)
+    labels += labels.empty() ? "default" : ", default";
+  return labels;
+}
+
+void Dumper::variable(const Variable &variable) {
+  const std::string value =
+      variable.constant ? " = " + constantText(*variable.constant, variable.type) : "";
+  line(fmt::format("{} {}{} : {}", variable.isConst ? "const" : "var", variable.name, value,
+                   toString(variable.type)));
+  Indent indent(*this);
+  if (variable.init && !variable.constant)
+    expr(*variable.init);
+}
+
 void Dumper::stmt(const Stmt &node) {
   comment(node.comment);
   switch (node.kind) {
@@ -193,15 +210,8 @@ void Dumper::stmt(const Stmt &node) {
     return;
   }
   case ast::StmtKind::Declaration:
-    for (const Variable *variable : cast<DeclarationStmt>(node).variables) {
-      const std::string value =
-          variable->constant ? " = " + constantText(*variable->constant, variable->type) : "";
-      line(fmt::format("{} {}{} : {}", variable->isConst ? "const" : "var", variable->name, value,
-                       toString(variable->type)));
-      Indent indent(*this);
-      if (variable->init && !variable->constant)
-        expr(*variable->init);
-    }
+    for (const Variable *declared : cast<DeclarationStmt>(node).variables)
+      variable(*declared);
     return;
   case ast::StmtKind::Expression:
     return expr(*cast<ExpressionStmt>(node).expr);
@@ -246,12 +256,7 @@ void Dumper::stmt(const Stmt &node) {
     Indent indent(*this);
     expr(*choice.value);
     for (const SwitchStmt::Arm &arm : choice.arms) {
-      std::string labels;
-      for (std::int64_t value : arm.values)
-        labels += (labels.empty() ? "case " : ", ") + std::to_string(value);
-      if (arm.isDefault)
-        labels += labels.empty() ? "default" : ", default";
-      line(labels);
+      line(labelsOf(arm));
       Indent inner(*this);
       for (const StmtPtr &each : arm.body)
         stmt(*each);
@@ -284,148 +289,74 @@ void Dumper::stmt(const Stmt &node) {
   }
 }
 
-void Dumper::exprs(const std::vector<ExprPtr> &list) {
-  for (const ExprPtr &each : list)
-    expr(*each);
+/// What kind of expression it is, without its operands.
+static std::string label(const Expr &e) {
+  switch (e.kind) {
+  case ExprKind::Literal:
+    return "literal " + constantText(cast<LiteralExpr>(e).value, e.type);
+  case ExprKind::Variable:
+    return "variable " + cast<VariableExpr>(e).variable->name;
+  case ExprKind::State:
+    return std::string("state rt_") + name(cast<StateExpr>(e).variable);
+  case ExprKind::Member:
+    return "member " + cast<MemberExpr>(e).member->name;
+  case ExprKind::Field: {
+    const auto &field = cast<FieldExpr>(e);
+    return "field ." + field.base->type->structure->fields[field.field].name;
+  }
+  case ExprKind::Swizzle: {
+    std::string letters;
+    for (std::uint8_t component : cast<SwizzleExpr>(e).components)
+      letters += "xyzw"[component];
+    return "swizzle ." + letters;
+  }
+  case ExprKind::Index:
+    return "index";
+  case ExprKind::Length:
+    return "length";
+  case ExprKind::Unary:
+    return std::string("unary ") + "-!~"[static_cast<int>(cast<UnaryExpr>(e).op)];
+  case ExprKind::IncDec: {
+    const auto &incDec = cast<IncDecExpr>(e);
+    return std::string(incDec.prefix ? "prefix " : "postfix ") + (incDec.increment ? "++" : "--");
+  }
+  case ExprKind::Binary:
+    return std::string("binary ") + opText(cast<BinaryExpr>(e).op);
+  case ExprKind::Assign: {
+    const auto &assign = cast<AssignExpr>(e);
+    return std::string("assign ") + (assign.compound ? opText(assign.op) : "") + "=";
+  }
+  case ExprKind::Conditional:
+    return "conditional";
+  case ExprKind::Comma:
+    return "comma";
+  case ExprKind::Convert:
+    return cast<ConvertExpr>(e).isImplicit ? "convert implicit" : "convert";
+  case ExprKind::Construct:
+    return "construct";
+  case ExprKind::Builtin:
+    return std::string("builtin ") + name(cast<BuiltinExpr>(e).builtin);
+  case ExprKind::Call: {
+    const auto &call = cast<CallExpr>(e);
+    const std::string on = call.isOfBase ? call.function->owner->name + "::"
+                           : call.onSelf ? "self."
+                                         : "";
+    return "call " + on + call.function->name;
+  }
+  case ExprKind::MethodCall:
+    return "call ." + cast<MethodCallExpr>(e).method;
+  case ExprKind::String:
+    return "string \"" + cast<StringExpr>(e).value + "\"";
+  }
+  return {};
 }
 
 void Dumper::expr(const Expr &e) {
   if (e.type->isError())
     return line("<error>");
-  switch (e.kind) {
-  case ExprKind::Literal: {
-    const auto &literal = cast<LiteralExpr>(e);
-    return node("literal " + constantText(literal.value, e.type), e);
-  }
-  case ExprKind::Variable:
-    node("variable " + cast<VariableExpr>(e).variable->name, e);
-    break;
-  case ExprKind::State:
-    node(std::string("state rt_") + name(cast<StateExpr>(e).variable), e);
-    break;
-  case ExprKind::Member:
-    node("member " + cast<MemberExpr>(e).member->name, e);
-    break;
-  case ExprKind::Field: {
-    const auto &field = cast<FieldExpr>(e);
-    node("field ." + field.base->type->structure->fields[field.field].name, e);
-    Indent indent(*this);
-    expr(*field.base);
-    break;
-  }
-  case ExprKind::Swizzle: {
-    const auto &swizzle = cast<SwizzleExpr>(e);
-    std::string letters;
-    for (std::uint8_t component : swizzle.components)
-      letters += "xyzw"[component];
-    node("swizzle ." + letters, e);
-    Indent indent(*this);
-    expr(*swizzle.base);
-    break;
-  }
-  case ExprKind::Index: {
-    const auto &index = cast<IndexExpr>(e);
-    node("index", e);
-    Indent indent(*this);
-    expr(*index.base);
-    expr(*index.index);
-    break;
-  }
-  case ExprKind::Length: {
-    node("length", e);
-    Indent indent(*this);
-    expr(*cast<LengthExpr>(e).base);
-    break;
-  }
-  case ExprKind::Unary: {
-    const auto &unary = cast<UnaryExpr>(e);
-    node(std::string("unary ") + "-!~"[static_cast<int>(unary.op)], e);
-    Indent indent(*this);
-    expr(*unary.operand);
-    break;
-  }
-  case ExprKind::IncDec: {
-    const auto &incDec = cast<IncDecExpr>(e);
-    node(std::string(incDec.prefix ? "prefix " : "postfix ") + (incDec.increment ? "++" : "--"), e);
-    Indent indent(*this);
-    expr(*incDec.target);
-    break;
-  }
-  case ExprKind::Binary: {
-    const auto &binary = cast<BinaryExpr>(e);
-    node(std::string("binary ") + opText(binary.op), e);
-    Indent indent(*this);
-    expr(*binary.left);
-    expr(*binary.right);
-    break;
-  }
-  case ExprKind::Assign: {
-    const auto &assign = cast<AssignExpr>(e);
-    node(std::string("assign ") + (assign.compound ? opText(assign.op) : "") + "=", e);
-    Indent indent(*this);
-    expr(*assign.target);
-    expr(*assign.value);
-    break;
-  }
-  case ExprKind::Conditional: {
-    const auto &conditional = cast<ConditionalExpr>(e);
-    node("conditional", e);
-    Indent indent(*this);
-    expr(*conditional.condition);
-    expr(*conditional.whenTrue);
-    expr(*conditional.whenFalse);
-    break;
-  }
-  case ExprKind::Comma: {
-    node("comma", e);
-    Indent indent(*this);
-    expr(*cast<CommaExpr>(e).left);
-    expr(*cast<CommaExpr>(e).right);
-    break;
-  }
-  case ExprKind::Convert: {
-    const auto &convert = cast<ConvertExpr>(e);
-    node(convert.isImplicit ? "convert implicit" : "convert", e);
-    Indent indent(*this);
-    expr(*convert.operand);
-    break;
-  }
-  case ExprKind::Construct: {
-    node("construct", e);
-    Indent indent(*this);
-    exprs(cast<ConstructExpr>(e).args);
-    break;
-  }
-  case ExprKind::Builtin: {
-    const auto &call = cast<BuiltinExpr>(e);
-    node(std::string("builtin ") + name(call.builtin), e);
-    Indent indent(*this);
-    exprs(call.args);
-    break;
-  }
-  case ExprKind::Call: {
-    const auto &call = cast<CallExpr>(e);
-    node((call.isOfBase ? "call " + call.function->owner->name + "::"
-          : call.onSelf ? "call self."
-                        : "call ") +
-             call.function->name,
-         e);
-    Indent indent(*this);
-    exprs(call.args);
-    break;
-  }
-  case ExprKind::MethodCall: {
-    const auto &call = cast<MethodCallExpr>(e);
-    node("call ." + call.method, e);
-    Indent indent(*this);
-    expr(*call.receiver);
-    exprs(call.args);
-    break;
-  }
-  case ExprKind::String:
-    line("string \"" + cast<StringExpr>(e).value + "\"");
-    break;
-  }
+  line(e.kind == ExprKind::String ? label(e) : label(e) + " : " + toString(e.type));
+  Indent indent(*this);
+  forEachChild(e, [&](const Expr &child) { expr(child); });
 }
 
 std::string dump(const Module &module) {

@@ -1,10 +1,10 @@
-//===- TokenCheck.cpp - what is checked on words, before parsing ----------===//
+//===- TokenCheck.cpp - checks on the tokens, before parsing --------------===//
 //
-// The parser calls itself for what is nested, and when a bracket is missing it understands nothing
-// of what follows. Both are looked after here, in one walk over the words, so that the parser
-// always gets balanced brackets and never overflows the stack.
+// The parser recurses for nested constructs, and a missing bracket makes the rest of the text
+// unintelligible. Both are handled here, in one pass over the tokens, so that the parser always
+// gets balanced brackets and never overflows the stack.
 //
-// How deep a tree will be is bounded from above without building it: a chain of operators (or of
+// The depth of the tree is bounded from above without building it: a chain of operators (or of
 // `if`, `for`, ... ) is as deep as it is long, plus the deepest bracket in it.
 //
 //===----------------------------------------------------------------------===//
@@ -54,7 +54,7 @@ bool isOperator(unsigned type) {
   return (type >= RtslLexer::PLUS_PLUS && type <= RtslLexer::OR_ASSIGN) || type == RtslLexer::DOT;
 }
 
-/// Statements that have a statement as their last part.
+/// Statements that end with a nested statement.
 bool isPrefixStatement(unsigned type) {
   return type == RtslLexer::IF || type == RtslLexer::FOR || type == RtslLexer::WHILE ||
          type == RtslLexer::DO || type == RtslLexer::SWITCH || type == RtslLexer::ILLUMINANCE;
@@ -69,12 +69,12 @@ public:
   void run();
 
 private:
-  /// What stands between two brackets, or outside of all.
+  /// The tokens between two brackets, or outside of all.
   struct Level {
     enum Kind { Block, InitializerList, Group, Arguments, ForHeader, Index };
     Kind kind = Block;
     Token open; // end of file: the outermost level
-    // The chain at hand: since the last separator.
+    // The current chain: since the last separator.
     unsigned operators = 0, statements = 0;
     unsigned inner = 0;            // height of the highest bracket in it
     unsigned pendingQuestions = 0; // `?` without their `:`
@@ -91,7 +91,7 @@ private:
 
   const Token &at(std::size_t index) const { return in[std::min(index, in.size() - 1)]; }
   unsigned typeAt(std::size_t index) const { return at(index).type; }
-  /// Type of the word that was put out `back` words ago.
+  /// Type of the token that was output `back` tokens ago.
   unsigned before(std::size_t back = 1) const {
     return back <= out.size() ? out[out.size() - back].type : unsigned{Token::endOfFile};
   }
@@ -109,6 +109,8 @@ private:
   bool isClosedSoon(std::size_t index) const;
   void handleClosing(const Token &token);
   void handleUnclosedAtEnd();
+  void closeBefore(Token &token, std::size_t index);
+  bool openAfter(unsigned previous, const Token &token);
   void measure(const Token &token, unsigned next);
   bool checkHeight(const Token &token);
 
@@ -119,15 +121,15 @@ private:
   std::vector<Token> in, out;
   ForeignWords foreign;
   std::vector<Level> levels{1};
-  Token lastOuterClose; // the last brace that closed all
+  Token lastOuterClose; // the last brace that closed the outermost block
   bool isStatementBroken = false;
 };
 
 //===----------------------------------------------------------------------===//
-// Words that are not what they look like
+// Tokens with another meaning in their context
 //===----------------------------------------------------------------------===//
 
-/// Turns keywords that stand where a name must stand into names, and `illuminance` into a keyword.
+/// Turns keywords where a name is required into names, and `illuminance` into a keyword.
 void TokenChecker::retag(Token &token, std::size_t index) {
   const unsigned next = typeAt(index + 1);
   if (token.type == RtslLexer::IDENTIFIER) {
@@ -169,7 +171,7 @@ void TokenChecker::retag(Token &token, std::size_t index) {
 
 void TokenChecker::put(Token token) {
   token.depth = static_cast<std::uint16_t>(levels.size() - 1);
-  // A mistake with brackets explains what the parser says about the rest of the statement.
+  // A bracket error explains later syntax errors in the same statement.
   if (token.type == RtslLexer::SEMICOLON || token.type == RtslLexer::LEFT_BRACE ||
       token.type == RtslLexer::RIGHT_BRACE)
     isStatementBroken = false;
@@ -177,11 +179,10 @@ void TokenChecker::put(Token token) {
   out.push_back(token);
 }
 
-/// What the parser says about the statement at hand is explained by a mistake with its brackets.
+/// Marks syntax errors in the current statement as consequences of a bracket error.
 void TokenChecker::breakStatement() {
   isStatementBroken = true;
-  // So far as it goes: a list of thousands of values need not be looked through for each mistake in
-  // it.
+  // Bounded: a list of thousands of values need not be searched for each error in it.
   constexpr std::size_t farthest = 500;
   for (std::size_t back = 1; back <= std::min(out.size(), farthest); ++back) {
     Token &token = out[out.size() - back];
@@ -225,7 +226,7 @@ void TokenChecker::close(const Token &token) {
     lastOuterClose = token;
 }
 
-/// Puts in the closing bracket of the innermost level, right behind the last word.
+/// Inserts the closing bracket of the innermost level, directly after the last token.
 void TokenChecker::closeMissing(bool isReported) {
   const Token opening = levels.back().open;
   Token closing;
@@ -238,7 +239,7 @@ void TokenChecker::closeMissing(bool isReported) {
   close(closing);
 }
 
-/// True if the parenthesis around the word at `index` is closed before the next brace.
+/// True if the parenthesis around the token at `index` is closed before the next brace.
 bool TokenChecker::isClosedSoon(std::size_t index) const {
   int depth = 0;
   for (; index < in.size(); ++index) {
@@ -265,7 +266,7 @@ void TokenChecker::handleClosing(const Token &token) {
   if (level > 0 && token.type == closingOf(levels[level].open.type)) {
     const std::size_t missing = levels.size() - 1 - level;
     for (std::size_t i = 0; i < missing; ++i)
-      closeMissing(i + 1 == missing); // one message: the outermost
+      closeMissing(i + 1 == missing); // one message: for the outermost
     Token closing = token;
     closing.followsMistake = true;
     close(closing);
@@ -294,14 +295,14 @@ void TokenChecker::handleClosing(const Token &token) {
       diagnostics.report(Code::unmatchedBracket, rangeOf(token), textOf(token));
   if (lastOuterClose.end != 0)
     diagnostic.label(rangeOf(lastOuterClose), "all brackets were closed here");
-  // Directly behind another closing brace it is just one too many. Elsewhere, an earlier one closed
-  // too much, and what stood in between makes no sense outside.
+  // Directly after another closing brace it is just one too many. Elsewhere, an earlier one closed
+  // too much, and what is in between makes no sense outside.
   if (before() != RtslLexer::RIGHT_BRACE)
     list.isUsable = false;
 }
 
-/// Something is still open at the end of the file. Which bracket the author forgot shows in the
-/// indentation: the first one that was closed by a brace further to the left.
+/// A bracket is still open at the end of the file. The indentation shows which one is not closed:
+/// the first one whose closing brace is further to the left.
 void TokenChecker::handleUnclosedAtEnd() {
   struct Open {
     Token token;
@@ -325,7 +326,7 @@ void TokenChecker::handleUnclosedAtEnd() {
       if (token.type == RtslLexer::RIGHT_BRACE && token.startsLine &&
           indent < stack.back().indent) {
         diagnostics.report(Code::unclosedBracket, rangeOf(stack.back().token), "{")
-            .label(rangeOf(token), "this one is indented like that of an outer bracket");
+            .label(rangeOf(token), "indented like the end of an outer block");
         return;
       }
       stack.pop_back();
@@ -346,13 +347,13 @@ bool TokenChecker::checkHeight(const Token &token) {
   const bool isStatement = level.statements > level.operators;
   Diagnostic &diagnostic = diagnostics.report(Code::nestedTooDeep, rangeOf(token),
                                               isStatement ? "statement" : "expression", maxNesting);
-  diagnostic.note(isStatement ? "divide it into functions"
-                              : "divide it: compute parts of it into variables");
+  diagnostic.note(isStatement ? "split it into functions"
+                              : "split it: assign parts of it to variables");
   list.isUsable = false;
   return false;
 }
 
-/// Follows the chains of operators and statements. Brackets are measured where they are opened and
+/// Updates the chains of operators and statements. Brackets are measured where they are opened and
 /// closed.
 void TokenChecker::measure(const Token &token, unsigned next) {
   Level &level = levels.back();
@@ -383,8 +384,58 @@ void TokenChecker::measure(const Token &token, unsigned next) {
 }
 
 //===----------------------------------------------------------------------===//
-// The walk
+// The pass
 //===----------------------------------------------------------------------===//
+
+/// Parentheses end at the end of a statement at the latest: closes those that are open before a
+/// brace or a semicolon that ends one.
+void TokenChecker::closeBefore(Token &token, std::size_t index) {
+  const unsigned previous = before();
+  const bool isOfFunction = previous == RtslLexer::LEFT_PAREN &&
+                            before(2) == RtslLexer::IDENTIFIER &&
+                            before(3) == RtslLexer::IDENTIFIER; // `void f( {`
+  const bool isList = previous == RtslLexer::ASSIGN || previous == RtslLexer::COMMA ||
+                      previous == RtslLexer::LEFT_PAREN;
+  const bool opensBlock = token.type == RtslLexer::LEFT_BRACE && !levels.back().isBlock() &&
+                          (!isList || isOfFunction || levels.back().kind == Level::Index);
+  const auto endsHeader = [&] {
+    Level &level = levels.back();
+    if (token.type != RtslLexer::SEMICOLON || level.isBlock())
+      return false;
+    // A superfluous semicolon is left to the parser, as long as the header ends at all.
+    return level.kind != Level::ForHeader || (++level.semicolons > 2 && !isClosedSoon(index));
+  };
+  if (!opensBlock && !endsHeader())
+    return;
+  // One message for all of them, at the outermost; a `for` whose semicolons are not complete stays
+  // open.
+  std::size_t missing = 0;
+  for (std::size_t i = levels.size() - 1; i > 0 && !levels[i].isBlock(); --i, ++missing)
+    if (token.type == RtslLexer::SEMICOLON && levels[i].kind == Level::ForHeader &&
+        levels[i].semicolons < 2) {
+      ++levels[i].semicolons;
+      break;
+    }
+  token.followsMistake |= missing > 0;
+  for (; missing > 0; --missing)
+    closeMissing(missing == 1);
+}
+
+/// False, with a message, if brackets are nested too deeply. `previous`: the type of the token
+/// before it.
+bool TokenChecker::openAfter(unsigned previous, const Token &token) {
+  if (levels.size() - 1 == maxBracketDepth) {
+    diagnostics.report(Code::bracketsTooDeep, rangeOf(token), maxBracketDepth);
+    list.isUsable = false;
+    return false;
+  }
+  // A bracket after an operand is an operator: a call or an index.
+  if (previous == RtslLexer::IDENTIFIER || previous == RtslLexer::RIGHT_PAREN ||
+      previous == RtslLexer::RIGHT_BRACKET)
+    levels.back().operators += token.type != RtslLexer::LEFT_BRACE;
+  open(token);
+  return true;
+}
 
 void TokenChecker::run() {
   out.reserve(in.size());
@@ -411,48 +462,11 @@ void TokenChecker::run() {
       break;
     }
 
-    // Parentheses end at the latest where a statement does.
     const unsigned previous = before();
-    const bool isOfFunction = previous == RtslLexer::LEFT_PAREN &&
-                              before(2) == RtslLexer::IDENTIFIER &&
-                              before(3) == RtslLexer::IDENTIFIER; // `void f( {`
-    const bool isList = previous == RtslLexer::ASSIGN || previous == RtslLexer::COMMA ||
-                        previous == RtslLexer::LEFT_PAREN;
-    const bool opensBlock = token.type == RtslLexer::LEFT_BRACE && !levels.back().isBlock() &&
-                            (!isList || isOfFunction || levels.back().kind == Level::Index);
-    const auto endsHeader = [&] {
-      Level &level = levels.back();
-      if (token.type != RtslLexer::SEMICOLON || level.isBlock())
-        return false;
-      // One semicolon too many is a matter for the parser, so long as the header ends at all.
-      return level.kind != Level::ForHeader || (++level.semicolons > 2 && !isClosedSoon(index));
-    };
-    if (opensBlock || endsHeader()) {
-      // One message for them all, at the outermost; a `for` whose semicolons are still to come
-      // stays open.
-      std::size_t missing = 0;
-      for (std::size_t i = levels.size() - 1; i > 0 && !levels[i].isBlock(); --i, ++missing)
-        if (token.type == RtslLexer::SEMICOLON && levels[i].kind == Level::ForHeader &&
-            levels[i].semicolons < 2) {
-          ++levels[i].semicolons;
-          break;
-        }
-      token.followsMistake |= missing > 0;
-      for (; missing > 0; --missing)
-        closeMissing(missing == 1);
-    }
-
+    closeBefore(token, index);
     if (isOpening(token.type)) {
-      if (levels.size() - 1 == maxBracketDepth) {
-        diagnostics.report(Code::bracketsTooDeep, rangeOf(token), maxBracketDepth);
-        list.isUsable = false;
+      if (!openAfter(previous, token))
         break;
-      }
-      // A bracket behind an operand is an operator: a call or an index.
-      if (previous == RtslLexer::IDENTIFIER || previous == RtslLexer::RIGHT_PAREN ||
-          previous == RtslLexer::RIGHT_BRACKET)
-        levels.back().operators += token.type != RtslLexer::LEFT_BRACE;
-      open(token);
     } else if (isClosing(token.type)) {
       const std::size_t size = out.size();
       handleClosing(token);
