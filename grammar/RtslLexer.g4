@@ -1,18 +1,18 @@
 /*
- * The words of RTSL.
+ * The tokens of RTSL.
  *
- * The lexer reads bytes, not Unicode characters: only comments and strings may hold anything but ASCII, and so a
- * token's start and end are offsets into the file. It never fails: what it cannot read becomes one of the tokens
- * under "mistakes" at the end, and the parser never sees those; the message is written by frontend/lex/Tokenizer.cpp.
+ * The lexer reads bytes, not Unicode characters: only comments and strings may contain anything but ASCII, and so a
+ * token's start and end are offsets into the file. It never fails: invalid input becomes one of the tokens under
+ * "Mistakes" at the end, which frontend/lex/Tokenizer.cpp reports and keeps from the parser.
  *
- * Names of types (`float`, `vec3`, `color`, `rt_Material`) and of built-in functions are ordinary identifiers. The
- * words below are all that cannot be a name.
+ * Names of types (`float`, `vec3`, `color`, `rt_Material`) and of built-in functions are ordinary identifiers.
+ * Only the keywords below cannot be names.
  */
 lexer grammar RtslLexer;
 
 tokens {
-    // `illuminance` in front of `(` where a statement begins; everywhere else it is an ordinary identifier
-    // (frontend/syntax/TokenCheck.cpp tells them apart).
+    // `illuminance` before `(` at the beginning of a statement; elsewhere it is an ordinary identifier
+    // (distinguished in frontend/syntax/TokenCheck.cpp).
     ILLUMINANCE
 }
 
@@ -22,14 +22,14 @@ IMPORT   : 'import' ;
 CLASS    : 'class' ;
 STRUCT   : 'struct' ;
 
-// What a member is for.
+// Access to members.
 PUBLIC   : 'public' ;     // set by the scene
 PRIVATE  : 'private' ;    // set by the constructor
 SCRATCH  : 'scratch' ;    // of one ray
 CONST    : 'const' ;
-OPTIONAL : 'optional' ;   // a reference that may stay empty
+OPTIONAL : 'optional' ;   // a reference that may be empty
 
-// Which way a parameter passes its value.
+// Direction of parameters.
 IN       : 'in' ;
 OUT      : 'out' ;
 INOUT    : 'inout' ;
@@ -49,7 +49,7 @@ RETURN   : 'return' ;
 TRUE     : 'true' ;
 FALSE    : 'false' ;
 
-// Words of GLSL without a meaning here: kept, so that the message can say what to do.
+// Keywords of GLSL that RTSL does not have: tokens of their own for better messages.
 PRECISION           : 'precision' ;
 PRECISION_QUALIFIER : 'highp' | 'mediump' | 'lowp' ;
 
@@ -130,7 +130,7 @@ AND_ASSIGN         : '&=' ;
 XOR_ASSIGN         : '^=' ;
 OR_ASSIGN          : '|=' ;
 
-// --- Between the words ----------------------------------------------------------------------------------------------
+// --- Between the tokens ---------------------------------------------------------------------------------------------
 
 WHITESPACE
     : [ \t\r\n\f\u000B]+ -> skip
@@ -148,7 +148,7 @@ BLOCK_COMMENT
 fragment COMMENT_TEXT : ( ~'*' | '*'+ ~[*/] )* ;
 
 // --- Mistakes -------------------------------------------------------------------------------------------------------
-// The longest match wins, and of equally long ones the rule that stands first: these take what no rule above does.
+// The longest match wins, and of equally long ones that of the first rule: these rules match what no rule above does.
 
 UNTERMINATED_COMMENT
     : '/*' COMMENT_TEXT '*'*
@@ -163,7 +163,7 @@ MALFORMED_NUMBER
     : '.'? DIGIT ( [a-zA-Z_0-9.] | [eE] [+-] )*
     ;
 
-// A directive that the preprocessor did not take, to the end of its line (a backslash joins lines)
+// A directive that the preprocessor has left, to the end of its line (a backslash joins lines)
 DIRECTIVE
     : '#' ( ~[\\\n] | '\\' '\r'? '\n' | '\\' )*
     ;

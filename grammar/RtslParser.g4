@@ -1,15 +1,15 @@
 /*
  * The syntax of RTSL.
  *
- * RTSL is GLSL 4.60 without the rasteriser, with classes. This file is the one definition of the syntax; what a program
- * means (types, what may be written where) is checked later, and messages are better when the syntax lets a little more
- * pass than the language: qualifiers, for one, may stand here in front of any declaration.
+ * RTSL is GLSL 4.60 without the rasteriser, with classes. This file is the one definition of the syntax; the
+ * semantics (types, what may be written where) are checked later, and messages are better if the syntax accepts a little
+ * more than the language: qualifiers, for example, are accepted before any declaration.
  *
- * Every decision but one (does a statement that begins with a name declare something?) is made on the next token, and
- * that one mostly on two: parsing is fast, and mistakes are found where they are.
+ * Every decision but one (is a statement that begins with a name a declaration?) needs one token of lookahead, and that
+ * one mostly two: parsing is fast, and mistakes are detected where they are.
  *
- * Before the parser sees the tokens, frontend/syntax/TokenCheck.cpp has balanced the brackets and refused what is nested too
- * deep, so that rules may call themselves without fear for the stack.
+ * Before the parser sees the tokens, frontend/syntax/TokenCheck.cpp has balanced the brackets and rejected what is nested
+ * too deep, so that recursive rules cannot overflow the stack.
  */
 parser grammar RtslParser;
 
@@ -25,7 +25,7 @@ fileItem
     : importDeclaration
     | structDeclaration
     | classDeclaration
-    | declaration           // a function, or constants; behind `class Name : Base;` its members
+    | declaration           // a function, or constants; after `class Name : Base;` its members
     ;
 
 // import std.cameras;      a module of the standard library
@@ -51,8 +51,8 @@ classDeclaration
 
 // --- Declarations ---------------------------------------------------------------------------------------------------
 
-// A function, or one or more variables: they begin alike, and differ behind the name. Members of classes, fields of
-// structs and constants of a file are all declared so.
+// A function, or one or more variables: they begin alike, and differ after the name. This includes members of classes,
+// fields of structs and constants of a file.
 //
 //     vec3 reflected(vec3 d, vec3 n) { return d - 2 * dot(d, n) * n; }
 //     public float roughness = 0.2, sheen;
@@ -60,7 +60,7 @@ declaration
     : qualifier* typeName
       ( IDENTIFIER parameters functionBody
       | declarator ( COMMA declarator )* SEMICOLON )
-    | SEMICOLON             // a stray one does no harm
+    | SEMICOLON             // a stray one is harmless
     ;
 
 qualifier
@@ -76,7 +76,7 @@ dimension
     : LEFT_BRACKET expr? RIGHT_BRACKET
     ;
 
-// Dimensions may stand behind the name too, and are then the outer ones: vec4[2] a[3] is vec4[3][2] a.
+// Dimensions may follow the name, too, and are then the outer ones: vec4[2] a[3] is vec4[3][2] a.
 declarator
     : IDENTIFIER dimension* ( ASSIGN initializer )?
     ;
@@ -120,7 +120,7 @@ statement
     | simpleStatement
     ;
 
-// What stands between semicolons, and in front of the first one of a `for`.
+// A statement before a semicolon, also the first one of a `for`.
 simpleStatement
     : localDeclaration
     | expressionStatement
@@ -160,7 +160,7 @@ condition
     : LEFT_PAREN expression RIGHT_PAREN
     ;
 
-// The labels stand between the statements, as in C.
+// Labels are between the statements, as in C.
 switchStatement
     : SWITCH condition LEFT_BRACE statement* RIGHT_BRACE
     ;
@@ -195,8 +195,8 @@ expression
 // From the tightest operator to the loosest. All are left-associative but the last two, which share a level:
 // a ? b : c = d is a ? b : (c = d).
 //
-// A call is whatever stands in front of parentheses: `max(a, b)`, `albedo.lookup()`, `vec3(1)`, `float[3](1, 2, 3)`,
-// and only there may brackets be empty, as in `float[](1, 2)`. `Base::shade()` calls the definition of a base class.
+// A call is an expression followed by parentheses: `max(a, b)`, `albedo.lookup()`, `vec3(1)`, `float[3](1, 2, 3)`,
+// and brackets may be empty only there, as in `float[](1, 2)`. `Base::shade()` calls the definition of a base class.
 expr
     : LEFT_PAREN expression RIGHT_PAREN                                                 # paren
     | literal                                                                           # constant

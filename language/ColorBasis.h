@@ -7,14 +7,14 @@
 //   B = 1 - s(460, 520), R = s(550, 610), G = 1 - B - R, s(a, b) the cubic step from 0 at a to 1 at
 //   b.
 //
-// So no component is ever negative, white is flat, and a reflectance of at most 1 stays one (the
-// requirements of Smits, "An RGB-to-Spectrum Conversion for Reflectances", 1999). The way back is
-// the least-squares projection on the bands (their pseudo-inverse), which gives a triple back
+// So no component is ever negative, white is flat, and a reflectance of at most 1 remains at most 1
+// (the requirements of Smits, "An RGB-to-Spectrum Conversion for Reflectances", 1999). The inverse
+// is the least-squares projection on the bands (their pseudo-inverse), which restores a triple
 // exactly: in single precision the error is at most 4e-7 of its largest component. The luminance of
 // a spectrum is that of its projection.
 //
-// K = 1 holds luminance; K = 2 holds it twice, for two bins cannot hold three numbers. K = 3 is RGB
-// as it is.
+// K = 1 is luminance; K = 2 is luminance twice, because two bins cannot represent three numbers. K
+// = 3 is RGB unchanged.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -78,7 +78,7 @@ inline ColorBasis makeColorBasis(std::size_t components) {
   }
 
   constexpr double shortest = 380, longest = 720;
-  constexpr std::size_t samples = 64; // a bin
+  constexpr std::size_t samples = 64; // per bin
   const double step = (longest - shortest) / static_cast<double>(components * samples);
   for (std::size_t i = 0; i < components; ++i) {
     double red = 0, blue = 0;

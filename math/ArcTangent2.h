@@ -29,9 +29,9 @@ inline Double2 accurateAngle(double y, double x, bool behind) {
 
 inline float roundedAngle(double y, double x, bool behind) {
   if (!behind && y < x * 0x1p-27) {
-    // atan(q) = q (1 - q^2/3 + ...) lies between q (1 - 2^-54) and q. The quotient q of two floats
-    // either is a midpoint between floats, which happens below the normal floats, or is at least
-    // 2^-50 away from it; so a nudge towards zero decides.
+    // atan(q) = q (1 - q^2/3 + ...) is between q (1 - 2^-54) and q. The quotient q of two floats
+    // either is a midpoint between floats, which occurs below the normal floats, or is at least
+    // 2^-50 away from one; so moving it slightly towards zero decides.
     double q = y / x;
     return float(fma(q, -0x1p-52, q));
   }
@@ -52,7 +52,7 @@ inline float atan2(float y, float x) {
   float height = absolute(y), width = absolute(x);
   bool behind = bitsOf(x) >= floatSignBit;
   if (height == 0.0f && width == 0.0f)
-    width = 1.0f; // the sign of the zero x still chooses between 0 and pi
+    width = 1.0f; // the sign of the zero x still selects 0 or pi
   if (height == infinity() || width == infinity()) {
     // Like a point on an axis, or on the diagonal.
     bool both = height == width;

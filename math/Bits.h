@@ -1,9 +1,9 @@
-// What every function of this folder needs of the machine: bit patterns, the fused multiply-add and
+// Machine-level basics of all functions in this folder: bit patterns, the fused multiply-add and
 // the square root.
 //
 // All arithmetic here is IEEE double in round-to-nearest, to be compiled with -ffp-contract=off. No
-// result hangs on that (a build with =fast passed the same exhaustive test), but only arithmetic
-// that is compiled as it is written was analysed.
+// result depends on that (a build with =fast passed the same exhaustive test), but the error
+// analysis assumes arithmetic that is compiled as written.
 #pragma once
 
 #include <stdint.h> // not <cstdint>: the device has no C++ library
@@ -85,7 +85,7 @@ inline double powerOfTwo(int exponent) {
   return doubleOf(uint64_t(exponent + 1023) << 52);
 }
 
-/// Adding it leaves no bits behind the binary point and puts the integer into the low bits of the
+/// Adding it leaves no bits after the binary point and puts the integer into the low bits of the
 /// sum.
 inline constexpr double integerShifter = 0x1.8p52;
 

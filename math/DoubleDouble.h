@@ -11,7 +11,7 @@
 namespace rtsl::device::detail {
 
 /// The number hi + lo, where |lo| is at most half a unit in the last place of hi (or a little more
-/// where said).
+/// where stated).
 struct Double2 {
   double hi, lo;
 };

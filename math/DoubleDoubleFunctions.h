@@ -1,4 +1,4 @@
-// e^x, ln x and angles to about 2^-100: the last resort of pow and atan2, taken about once in 10^9
+// e^x, ln x and angles to about 2^-100: the last step of pow and atan2, needed about once in 10^9
 // calls. Short, not fast.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Four doubles that are computed with at once, for functions of the components of a vector: the
-// same operations as on one double, so the same bits. For the host, with AVX2 and FMA.
+// Four doubles that are computed at once, for functions of the components of a vector: the same
+// operations as on one double, so the same bits. For the host, with AVX2 and FMA.
 #pragma once
 
 #include "math/Bits.h"
@@ -10,7 +10,7 @@ namespace rtsl::device::detail {
 
 class DoubleLanes {
 public:
-  /// Not explicit: coefficients are the same in all lanes.
+  /// Not explicit: coefficients are equal in all lanes.
   DoubleLanes(double x) : lanes(_mm256_set1_pd(x)) {}
   explicit DoubleLanes(__m256d lanes) : lanes(lanes) {}
 

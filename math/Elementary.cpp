@@ -10,7 +10,7 @@
   float rtsl_##name(float x) {                                                                     \
     return rtsl::device::name(x);                                                                  \
   }
-/// Of vectors of that many components.
+/// For vectors with that number of components.
 #define RTSL_EXPORT_REFRACT(count)                                                                 \
   void rtsl_refract##count(const float *incident, const float *normal, float eta,                  \
                            float *refracted) {                                                     \
@@ -21,8 +21,8 @@
     return rtsl::device::name(x, y);                                                               \
   }
 
-/// Whoever asks for the sine and the cosine of one angle calls this twice, which the optimiser
-/// makes one call.
+/// Code that needs the sine and the cosine of an angle calls this twice, which the optimiser merges
+/// into one call.
 [[gnu::const, gnu::noinline]] static rtsl::device::SineAndCosine sineAndCosine(float x) {
   return rtsl::device::sineAndCosine(x);
 }

@@ -1,13 +1,12 @@
 // Correctly rounded elementary functions in binary32, one source for the host and for nvptx64.
 //
 // Every function of one argument returns the float nearest to the exact result: tested for all 2^32
-// arguments against MPFR. pow and atan2 have an error bound with which their rounding is tested,
-// and fall back to double-double where that does not decide. docs/elementary-functions.md has the
-// method, the bounds and the figures.
+// arguments against MPFR. pow and atan2 have an error bound that decides whether their rounding is
+// certain; otherwise they fall back to double-double. docs/elementary-functions.md has the method,
+// the bounds and the figures.
 //
-// NaN results are always 0x7fc00000. Signed zeros and infinities are as in C99; errors of domain
-// give NaN. There is no global state: no errno, no rounding mode but round-to-nearest, no flush to
-// zero.
+// NaN results are always 0x7fc00000. Signed zeros and infinities are as in C99; domain errors give
+// NaN. There is no global state: no errno, no rounding mode but round-to-nearest, no flush to zero.
 //
 //     Trigonometric.h         sin cos tan            ArgumentReduction.h
 //     TrigonometricOfPi.h     sinpi cospi            Trigonometric.h

@@ -8,7 +8,7 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// e^x where plain double does not decide, or the result is no normal float.
+/// e^x if plain double does not decide, or the result is not a normal float.
 [[gnu::cold, gnu::noinline]] inline float carefulExponential(float x) {
   if (isNaN(x))
     return canonicalNaN();
@@ -30,7 +30,7 @@ inline BinaryReduction reduceBinary(double x) {
   return {step, fma(step.asDouble, -1.0 / exponentialTableSize, x)}; // exact
 }
 
-/// 2^x where plain double does not decide, or the result is no normal float.
+/// 2^x if plain double does not decide, or the result is not a normal float.
 [[gnu::cold, gnu::noinline]] inline float carefulBinaryExponential(float x) {
   if (isNaN(x))
     return canonicalNaN();

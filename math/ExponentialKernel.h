@@ -1,5 +1,4 @@
-// e^x in double with a low part: the common ground of exp, exp2, expm1, the hyperbolic functions
-// and pow.
+// e^x in double with a low part, shared by exp, exp2, expm1, the hyperbolic functions and pow.
 //
 // Table-driven as in Tang, "Table-driven implementation of the exponential function", ACM TOMS
 // 15(2), 1989:

@@ -1,10 +1,10 @@
 // Approximations in single precision, for --fp=fast: the functions that shaders call most.
 //
-// Only float arithmetic (but for sin, cos and tan of |x| >= 2^13, which reduce in integers). Each
+// Only float arithmetic (except in sin, cos and tan of |x| >= 2^13, which reduce in integers). Each
 // function states its error bound; `elementary-exhaustive fast` measures it over all floats. Errors
-// are relative to the result, or to the smallest normal float where the result is smaller. Zeros,
-// infinities, NaNs and errors of domain come out as in Elementary.h, except that any NaN may
-// result. Functions that are missing here are those of Elementary.h.
+// are relative to the result, or to the smallest normal float if the result is smaller. Zeros,
+// infinities, NaNs and domain errors are as in Elementary.h, except that any NaN may result.
+// Functions that are missing here are those of Elementary.h.
 #pragma once
 
 #include "math/ArcTangent2.h"
@@ -109,7 +109,7 @@ inline Quadrant reduce(float a) {
 }
 
 /// sin(r) or cos(r) for |r| <= pi/4, by Taylor's series up to r^9 or r^8. The coefficients are
-/// chosen, and not the series: a branch on the quadrant could not be predicted.
+/// selected, not the code: a branch on the quadrant would be unpredictable.
 inline float series(float r, bool isCosine) {
   float z = r * r;
   float q = fma(z, isCosine ? 1.0f / 40320 : 1.0f / 362880, isCosine ? -1.0f / 720 : -1.0f / 5040);
@@ -147,7 +147,7 @@ inline float firstQuadrantAngle(float y, float x) {
   return steep ? float(halfPi.hi) - angle : angle;
 }
 
-// ---- what is rare
+// ---- rare cases
 
 [[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
   return device::pow(x, y);
@@ -196,7 +196,7 @@ inline float log2(float x) {
   return fma(parts.ofM, float(inverseLn2.hi), parts.exponent);
 }
 
-/// x^y, relative error below 2^-21 (1 + |y log2 x|); what is special (x <= 0, infinities, NaNs) is
+/// x^y, relative error below 2^-21 (1 + |y log2 x|); special cases (x <= 0, infinities, NaNs) are
 /// as in Elementary.h.
 inline float pow(float x, float y) {
   using namespace detail;

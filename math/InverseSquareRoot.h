@@ -8,15 +8,15 @@ namespace rtsl::device {
 /// The IEEE square root.
 inline float sqrt(float x) {
   using namespace detail;
-  // Asked of the bits, because LLVM drops a choice between a NaN and sqrt(x) that depends on x < 0:
-  // all NaNs are the same to it.
+  // Tests the bits, because LLVM removes a select between a NaN and sqrt(x) that depends on x < 0:
+  // it treats all NaNs as equal.
   uint32_t bits = bitsOf(x);
   if (bits > floatInfinityBits && bits != floatSignBit)
     return canonicalNaN();
   return squareRoot(x);
 }
 
-/// 1/sqrt(x). As C's rSqrt of TS 18661-4: infinity with the sign of a zero, zero at infinity, NaN
+/// 1/sqrt(x). Like C's rSqrt of TS 18661-4: infinity with the sign of a zero, zero at infinity, NaN
 /// below zero.
 inline float inversesqrt(float x) {
   using namespace detail;

@@ -8,12 +8,12 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// A logarithm of zero, infinity, what is negative and NaN.
+/// A logarithm of zero, infinity, a negative number or NaN.
 inline float specialLogarithm(float x) {
   return x == 0.0f ? -infinity() : x > 0.0f ? x : canonicalNaN();
 }
 
-/// Where x is not normal, or plain double does not decide.
+/// For x that is not normal, or if plain double does not decide.
 [[gnu::cold, gnu::noinline]] inline float carefulNaturalLogarithm(float x) {
   return x > 0.0f && x < infinity() ? roundToFloat(naturalLogarithm({x, 0.0}))
                                     : specialLogarithm(x);

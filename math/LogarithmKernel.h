@@ -22,8 +22,8 @@ struct LogarithmReduction {
 
 /// For positive x, normal as doubles (all floats are). r is exact if x.hi has 40 bits or fewer.
 inline LogarithmReduction reduceLogarithm(Double2 x) {
-  // The doubles from 11/16 to 11/8 are one run of 2^52 bit patterns, so that the distance from
-  // 11/16 holds both the exponent and, in the seven bits below it, the table's cell.
+  // The doubles from 11/16 to 11/8 are 2^52 consecutive bit patterns, so that the distance from
+  // 11/16 contains both the exponent and, in the seven bits below it, the table's cell.
   uint64_t distance = bitsOf(x.hi) - bitsOf(0.6875);
   int exponent = int(int64_t(distance) >> 52);
   LogarithmEntry entry = logarithmTable[(distance >> 45) & 127];
@@ -32,8 +32,8 @@ inline LogarithmReduction reduceLogarithm(Double2 x) {
           x.lo * powerOfTwo(-exponent) * entry.inverse};
 }
 
-/// (ln(1 + r) - r) / r^2 by Taylor's series, in pairs of terms that do not wait for each other.
-/// `rest` holds the coefficients from r^4 on.
+/// (ln(1 + r) - r) / r^2 by Taylor's series, in independent pairs of terms. `rest` has the
+/// coefficients from r^4 on.
 inline double logarithmCurvature(double r, double square, double rest) {
   double q = fma(square, rest, fma(r, 1.0 / 5, -1.0 / 4));
   return fma(square, q, fma(r, 1.0 / 3, -1.0 / 2));
@@ -51,8 +51,8 @@ inline Double2 logarithm(const LogarithmReduction &x, int exponent) {
   return {sum.hi, sum.lo + low};
 }
 
-/// The reduction of a positive normal float by its own bits, which a shader waits for less long
-/// than for those of a double; rLow is 0.
+/// The reduction of a positive normal float by its own bits, with less latency than by those of a
+/// double; rLow is 0.
 inline LogarithmReduction reduceLogarithmOfNormal(float x) {
   uint32_t distance = bitsOf(x) - bitsOf(0.6875f);
   LogarithmEntry entry = logarithmTable[(distance >> 16) & 127];
@@ -61,8 +61,8 @@ inline LogarithmReduction reduceLogarithmOfNormal(float x) {
 }
 
 /// exponent * ln(2) + (hi + lo) + ln(1 + r) in plain double, relative error below 2^-51.3. The
-/// series leaves out less than 2^-52 |r|; its terms are summed so that few wait for each other.
-/// `Real` is double or DoubleLanes.
+/// series leaves out less than 2^-52 |r|; its terms are summed with few dependencies. `Real` is
+/// double or DoubleLanes.
 template <typename Real>
 inline Real plainLogarithm(Real exponent, Real hi, Real lo, Real r) {
   Real head = fma(exponent, ln2Parts[0], hi); // exact

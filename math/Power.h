@@ -56,7 +56,7 @@ inline Double2 accuratePower(double x, double y) {
   return accurateExponential(multiply(accurateLogarithm(x), {y, 0.0}));
 }
 
-/// x^y where plain double does not decide, or the result is subnormal or zero.
+/// x^y if plain double does not decide, or the result is subnormal or zero.
 [[gnu::cold, gnu::noinline]] inline float carefulPower(double x, double y, double exponent) {
   if (exponent < -104.0) // e^-104 < 2^-150
     return 0.0f;
@@ -66,9 +66,9 @@ inline Double2 accuratePower(double x, double y) {
   return roundToFloat(accuratePower(x, y));
 }
 
-/// x^y for finite x > 0 and finite y; `exponent` is y ln(x). On the host a function of its own:
-/// without it `pow` is small enough to be inlined where x is a constant, and its logarithm then
-/// too.
+/// x^y for finite x > 0 and finite y; `exponent` is y ln(x). On the host a separate function:
+/// otherwise `pow` would not be small enough to be inlined, with its logarithm, where x is a
+/// constant.
 #ifndef __NVPTX__
 [[gnu::noinline]]
 #endif
@@ -97,7 +97,7 @@ inline Parity parityOf(float y) {
   return (truncated & 1) != 0 ? Parity::odd : Parity::even;
 }
 
-/// pow() of what is zero, subnormal, negative, infinite or not a number.
+/// pow() of zero, subnormal, negative and infinite numbers and NaN.
 [[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
   if (y == 0.0f || x == 1.0f)
     return 1.0f;

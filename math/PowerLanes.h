@@ -1,5 +1,5 @@
-// pow of four pairs of numbers at once, with the bits of pow of each: colors have a power taken of
-// each component. For the host.
+// pow of four pairs of numbers at once, with the same bits as pow of each: for powers of colors, by
+// component. For the host.
 #pragma once
 
 #include "math/DoubleLanes.h"
@@ -9,7 +9,7 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// What table(lane) is in each lane.
+/// table(lane) in each lane.
 template <typename Table>
 inline DoubleLanes lookUp(Table table) {
   return DoubleLanes(_mm256_set_pd(table(3), table(2), table(1), table(0)));
@@ -41,7 +41,7 @@ inline DoubleLanes plainExponential(DoubleLanes x) {
   _mm256_store_si256(reinterpret_cast<__m256i *>(steps), shifted.bits());
   constexpr int last = exponentialTableSize - 1;
   DoubleLanes entry = lookUp([&](int i) { return exponentialTable[steps[i] & last].hi; });
-  // Step/64 into the exponent: what stands above the step's 32 bits falls out on the left.
+  // Shift Step/64 into the exponent: the bits above the step's 32 are shifted out.
   __m256i exponent = _mm256_slli_epi64(_mm256_srli_epi64(shifted.bits(), 6), 52);
   __m256i one = _mm256_castpd_si256(_mm256_set1_pd(1.0));
   DoubleLanes scale(_mm256_castsi256_pd(_mm256_add_epi64(exponent, one)));
@@ -69,7 +69,7 @@ inline bool roundSafely(DoubleLanes y) {
 /// x^y in each lane.
 inline __m128 pow(__m128 x, __m128 y) {
   using namespace detail;
-  // As integers, positive floats are in order, and all others are below or above.
+  // As integers, positive floats are ordered, and all others are below or above.
   __m128i base = _mm_castps_si128(x);
   __m128i magnitude = _mm_and_si128(_mm_castps_si128(y), _mm_set1_epi32(0x7fffffff));
   __m128i infinity = _mm_set1_epi32(int(floatInfinityBits));

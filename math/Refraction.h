@@ -2,10 +2,10 @@
 //
 //     d = n . i,  k = 1 - eta^2 (1 - d^2),  eta i - (eta d + sqrt(k)) n, and 0 where k < 0
 //
-// Near the angle of total reflection k is a small difference, and its root is off by as much as the
-// root of its error: computed in single precision, directions were wrong by thousands of rounding
-// units there. So everything is computed in double and rounded once at the end; where double cannot
-// tell whether k is negative, k is computed again, in double-double.
+// Near the angle of total reflection k is a small difference, and the error of its root is the root
+// of its error: computed in single precision, directions were wrong by thousands of rounding units
+// there. So everything is computed in double and rounded once at the end; if double cannot decide
+// whether k is negative, k is computed again in double-double.
 #pragma once
 
 #include "math/DoubleDouble.h"
@@ -33,8 +33,8 @@ inline constexpr double smallRadicand = 0x1p-40;
 } // namespace detail
 
 /// The refracted direction, each component within a rounding unit of max(1, |eta|) for i and n of
-/// unit length, up to rounding; 0 for total reflection, which is decided for i, n and eta as they
-/// are, without rounding.
+/// unit length, up to rounding; 0 for total reflection, which is decided for the given i, n and
+/// eta, without rounding.
 template <int count, typename T>
 inline void refract(const T *i, const T *n, T eta, T *refracted) {
   using namespace detail;

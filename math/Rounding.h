@@ -45,9 +45,9 @@ inline bool roundsSafely(Double2 y, float &result) {
   return result == float(y.hi + (y.lo - margin));
 }
 
-/// The relative error that roundsSafely(double) bears.
+/// The relative error that roundsSafely(double) permits.
 inline constexpr double plainBound = 0x1p-44;
-/// Twice that in last places of a double, at most, so that roundings of it do not count.
+/// At least twice that in last places of a double, so that its own rounding does not matter.
 inline constexpr uint64_t plainMargin = uint64_t(1) << 10;
 
 /// The last 29 bits of a double midway between two floats.

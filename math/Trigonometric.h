@@ -57,7 +57,7 @@ inline Double2 cosineKernel(Double2 r) {
                     roundToFloat(odd ? sine : cosine));
 }
 
-/// Below this the reduction in plain double, and what follows, stays below plainBound.
+/// Below this the reduction in plain double, and the following steps, stay within plainBound.
 inline constexpr float plainTrigonometricLimit = 0x1p10f;
 
 /// sin(r) for |r| <= pi/4, by Taylor's series up to r^15/15!; what is left out is below 2^-53 |r|.
@@ -80,7 +80,7 @@ inline double plainCosine(double r) {
 
 } // namespace detail
 
-/// Both of x radians, for little more than the cost of one. Plain double decides the rounding but
+/// Both of x radians, at little more than the cost of one. Plain double decides the rounding except
 /// for about one number in 2^17.
 inline SineAndCosine sineAndCosine(float x) {
   using namespace detail;
@@ -93,7 +93,7 @@ inline SineAndCosine sineAndCosine(float x) {
   NearestInteger q = nearestInteger(double(a) * twoOverPi);
   double first = fma(-q.asDouble, halfPiParts[0], double(a)); // exact
   double rest = fma(-q.asDouble, halfPiParts[1], first);
-  // Both series are needed anyway, and a choice is cheaper than a branch that nobody can predict.
+  // Both series are needed anyway, and a select is cheaper than an unpredictable branch.
   double sine = plainSine(rest), cosine = plainCosine(rest);
   bool odd = (q.asInt & 1) != 0;
   double upright = odd ? cosine : sine, level = odd ? sine : cosine;

@@ -50,7 +50,7 @@ inline SineAndCosine sineAndCosineOfPiUpToZeros(float x) {
   double sine = plainSine(angle), cosine = plainCosine(angle);
   bool odd = (reduced.quadrant & 1) != 0;
   double upright = odd ? cosine : sine, level = odd ? sine : cosine;
-  // Below, the sine may be subnormal, where roundsSafely() tells nothing.
+  // Below, the sine may be subnormal, where roundsSafely() is not valid.
   if (!(a >= 0x1p-120f && roundsSafely(upright) && roundsSafely(level)))
     return carefulSineAndCosineOfPi(x);
   return inQuadrant(reduced.quadrant, bitsOf(x) >= floatSignBit, float(upright), float(level));

@@ -10,7 +10,7 @@ namespace rtsl::report {
 
 namespace {
 
-/// sRGB colours whose lightness grows evenly, for values 0, 1/4, ... 1.
+/// sRGB colours whose lightness increases evenly, for values 0, 1/4, ... 1.
 constexpr int stops = 5;
 constexpr double ramp[stops][3] = {
     {0, 0, 0}, {66, 18, 112}, {174, 47, 120}, {248, 132, 84}, {252, 250, 190}};

@@ -1,4 +1,4 @@
-//===- ErrorMap.h - where a picture is wrong, in false colours ------------===//
+//===- ErrorMap.h - the errors of a picture, in false colours -------------===//
 #pragma once
 
 #include "report/Flip.h"
@@ -14,7 +14,7 @@ runtime::Image colorFlipMap(const FlipMap &map);
 /// A map of one channel on a logarithmic scale from `low` (black) to `high` (pale yellow).
 runtime::Image colorLogMap(const runtime::Image &map, double low, double high);
 
-/// "data:image/png;base64,...": a picture as part of a page.
+/// "data:image/png;base64,...": a picture embedded in a page.
 std::string dataUrl(const runtime::Image &rgb);
 
 } // namespace rtsl::report

@@ -1,4 +1,4 @@
-//===- ErrorMetrics.h - how far a picture is from a reference -------------===//
+//===- ErrorMetrics.h - the error of a picture against a reference --------===//
 #pragma once
 
 #include "runtime/image/Image.h"
@@ -7,8 +7,8 @@
 
 namespace rtsl::report {
 
-/// Added to the squared reference in relMSE, so that black pixels do not rule it (F. Rousselle, C.
-/// Knaus, M. Zwicker, "Adaptive Sampling and Reconstruction using Greedy Error Minimization",
+/// Added to the squared reference in relMSE, so that black pixels do not dominate it (F. Rousselle,
+/// C. Knaus, M. Zwicker, "Adaptive Sampling and Reconstruction using Greedy Error Minimization",
 /// 2011).
 constexpr double relMseEpsilon = 1e-2;
 
@@ -19,8 +19,8 @@ struct ErrorMetrics {
   double bias = 0;                  // mean of test - reference
   double largest = 0;               // |test - reference|
   std::size_t pixels = 0;           // finite in both
-  std::size_t pixelsThatDiffer = 0; // not the same bits in some channel
-  std::size_t incomparable = 0;     // of those, the ones that are not finite in one picture or both
+  std::size_t pixelsThatDiffer = 0; // some channel has different bits
+  std::size_t incomparable = 0;     // of those, the ones that are not finite in either picture
   std::size_t nanPixels = 0, infinitePixels = 0; // of the test picture
 };
 

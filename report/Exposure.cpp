@@ -9,8 +9,8 @@ namespace rtsl::report {
 
 namespace {
 
-constexpr double brightest = 0.02; // of the pixels: they may be white
-constexpr double dim = 0.1;        // below, a picture is too dark to be looked at
+constexpr double brightest = 0.02; // share of the pixels that may be white
+constexpr double dim = 0.1;        // below, a picture is too dark to view
 
 /// The largest channel of each pixel.
 std::vector<float> peaks(const runtime::Image &rgb) {

@@ -1,16 +1,16 @@
-//===- Exposure.h - how bright pictures are shown -------------------------===//
+//===- Exposure.h - the exposure for showing a picture --------------------===//
 #pragma once
 
 #include "runtime/image/Image.h"
 
 namespace rtsl::report {
 
-/// The exposure in stops at which an RGB picture in linear light can be looked at on a screen: 0
-/// where it can be as it is; or else half a stop or less from the one that brings the brightest but
-/// 2 % of its pixels to 0.9.
+/// The exposure in stops for viewing an RGB picture in linear light on a screen: 0 if it can be
+/// shown unchanged; otherwise within half a stop of the one that maps the brightest pixels, except
+/// for 2 %, to 0.9.
 double stopsFor(const runtime::Image &rgb);
 
-/// The share of pixels of which some channel is brighter than a screen.
+/// The share of pixels with a channel brighter than a screen.
 double shareBeyondScreen(const runtime::Image &rgb);
 
 /// The picture with that exposure.

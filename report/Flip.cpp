@@ -27,7 +27,7 @@ struct Plane {
   const T &at(std::uint32_t x, std::uint32_t y) const { return values[std::size_t(y) * width + x]; }
 };
 
-/// The pixel `offset` steps from `i`; the border repeats outwards.
+/// The pixel `offset` steps from `i`; the border is repeated outwards.
 std::uint32_t clampedStep(std::uint32_t i, int offset, std::uint32_t size) {
   return static_cast<std::uint32_t>(
       std::clamp<std::int64_t>(std::int64_t(i) + offset, 0, std::int64_t(size) - 1));
@@ -85,7 +85,7 @@ Color fromOpponent(const Color &opponent) {
   return rgb;
 }
 
-/// CIE 1976 L*a*b*, with colours that fade in the dark as they do for the eye (Hunt's effect).
+/// CIE 1976 L*a*b*, with colours that fade in the dark as for the eye (Hunt's effect).
 Color toHuntLab(const Color &rgb) {
   const auto f = [](double t) {
     constexpr double delta = 6.0 / 29;
@@ -128,7 +128,7 @@ double sumOf(const Kernel &kernel) {
   return sum;
 }
 
-/// Positive weights to the sum 1, negative ones to -1.
+/// Scales positive weights to the sum 1, negative ones to -1.
 void normalise(Kernel &kernel) {
   double positive = 0, negative = 0;
   for (float weight : kernel.weights)
@@ -137,9 +137,8 @@ void normalise(Kernel &kernel) {
     weight = float(weight / (weight > 0 ? positive : -negative));
 }
 
-/// What the eye's contrast sensitivity leaves of one channel: a sum of Gaussians of the distance x
-/// in degrees, a sqrt(pi / b) exp(-pi^2 x^2 / b) each (2020, table 1). Each is separable, their sum
-/// is not.
+/// The eye's contrast sensitivity in one channel: a sum of Gaussians of the distance x in degrees,
+/// a sqrt(pi / b) exp(-pi^2 x^2 / b) each (2020, table 1). Each is separable, their sum is not.
 struct Sensitivity {
   double a[2], b[2];
 };
@@ -199,7 +198,7 @@ Plane<float> convolveColumns(const Plane<float> &input, const Kernel &kernel) {
   return output;
 }
 
-/// What the eye resolves of a picture in YCxCz, as Hunt-adjusted L*a*b*.
+/// The colours that the eye resolves in a picture in YCxCz, as Hunt-adjusted L*a*b*.
 Plane<Color> seenColors(const Plane<Color> &opponent, double pixelsPerDegree) {
   constexpr double widest = 0.04; // of all b above
   const int radius = int(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixelsPerDegree));
@@ -273,7 +272,7 @@ double featureError(double edge, double point) {
   return std::sqrt(std::max(edge, point) / std::sqrt(2.0));
 }
 
-/// What LDR-FLIP keeps of one picture; values in [0, 1].
+/// The data of one picture for LDR-FLIP; values in [0, 1].
 struct Seen {
   Plane<Color> colors;
   Features features;
@@ -332,14 +331,14 @@ constexpr double c0 = 0.6 * 0.6 * 2.51, c1 = 0.6 * 0.03, c3 = 0.6 * 0.6 * 2.43, 
 
 /// Light to the screen's [0, 1].
 float aces(double x) {
-  if (!(x > 0)) // not a number either
+  if (!(x > 0)) // also for NaN
     return 0;
   if (x > 1e6) // where the curve is flat, and x^2 still finite
     x = 1e6;
   return float(std::clamp((c0 * x * x + c1 * x) / (c3 * x * x + c4 * x + c5), 0.0, 1.0));
 }
 
-/// The light that the curve brings to `screen`.
+/// The light that the curve maps to `screen`.
 double inverseAces(double screen) {
   const double a = c0 - screen * c3, b = c1 - screen * c4, c = -screen * c5;
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
@@ -391,7 +390,7 @@ FlipExposures exposuresFor(const runtime::Image &reference) {
   const auto middle = luminances.begin() + std::ptrdiff_t(luminances.size() / 2);
   std::nth_element(luminances.begin(), middle, luminances.end());
   const double median = *middle, brightest = *std::max_element(middle, luminances.end());
-  constexpr double screen = 0.85, darkest = 1e-6; // a black picture has no exposure of its own
+  constexpr double screen = 0.85, darkest = 1e-6; // the exposure of a black picture is undefined
   const double light = inverseAces(screen);
   FlipExposures exposures;
   exposures.first = std::log2(light / std::max(brightest, darkest));

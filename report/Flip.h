@@ -1,4 +1,4 @@
-//===- Flip.h - the difference that a person sees -------------------------===//
+//===- Flip.h - the perceived difference of two pictures ------------------===//
 //
 // FLIP: how strongly two pictures differ when a person flips between them on a screen.
 //
@@ -35,18 +35,18 @@ struct FlipExposures {
   double at(unsigned i) const { return first + (last - first) * i / (count - 1); }
 };
 
-/// LDR-FLIP of two RGB pictures in linear light; values are clamped to [0, 1], where a screen ends.
+/// LDR-FLIP of two RGB pictures in linear light; values are clamped to the [0, 1] of a screen.
 /// Throws BadImage if the shapes differ or a picture is not RGB or empty.
 FlipMap flip(const runtime::Image &reference, const runtime::Image &test,
              double pixelsPerDegree = defaultPixelsPerDegree);
 
 /// HDR-FLIP: the largest LDR-FLIP of each pixel over `exposures`, tone mapped with the ACES curve
-/// (K. Narkowicz's fit, 2016). Values that are not finite or negative count as 0 light.
+/// (K. Narkowicz's fit, 2016). Values that are negative or not finite count as 0.
 FlipMap flipHdr(const runtime::Image &reference, const runtime::Image &test,
                 const FlipExposures &exposures, double pixelsPerDegree = defaultPixelsPerDegree);
 
-/// The exposures for a reference (2021, section 3): from the one that brings its brightest
-/// pixel to 0.85 on the screen to the one that brings its median there, a stop apart or less.
+/// The exposures for a reference (2021, section 3): from the one that maps its brightest pixel to
+/// 0.85 on the screen to the one that maps its median there, a stop apart or less.
 FlipExposures exposuresFor(const runtime::Image &reference);
 
 } // namespace rtsl::report

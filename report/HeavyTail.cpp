@@ -15,7 +15,7 @@ namespace rtsl::report {
 namespace {
 
 constexpr double mostOfTheSpread = 0.5;
-constexpr double fewestForTails = 20; // values behind an estimate of a tail index
+constexpr double fewestForTails = 20; // values for an estimate of a tail index
 
 } // namespace
 
@@ -56,7 +56,7 @@ TailEvidence findTail(const RunningVariance &runs) {
   TailEvidence evidence;
   evidence.runs = std::uint32_t(runs.pictures());
   evidence.normalShare = normalMaximumShare(runs.pictures());
-  // Once as they are, for RMSE, and once relative to the mean, for relMSE.
+  // Once for the values themselves, for RMSE, and once relative to the mean, for relMSE.
   double largest = 0, all = 0, largestRelative = 0, allRelative = 0;
   std::vector<double> deviations;
   runs.forEachValue([&](double mean, double squares, double deviation) {

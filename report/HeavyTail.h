@@ -1,9 +1,9 @@
-//===- HeavyTail.h - samples that are rare and large ----------------------===//
+//===- HeavyTail.h - rare and large samples -------------------------------===//
 //
-// A sample that is met once in a million and is a million times as bright as the others rules the
-// error of a picture, and where few pixels have met one, the spread of independent runs says little
-// of how wrong their mean is. No interval can be given then. This finds out from the runs whether
-// that is so; what none of them has met, it cannot see.
+// A sample that occurs once in a million and is a million times as bright as the others dominates
+// the error of a picture. If few pixels have such a sample, the spread of independent runs says
+// little about the error of their mean, and no interval can be given. This is detected from the
+// runs; a sample that none of them has is not detected.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,12 +19,13 @@ namespace rtsl::report {
 
 struct TailEvidence {
   std::uint32_t runs = 0;
-  /// How much of the squared deviations of a value over the runs its farthest run has alone: the
-  /// mean over values, each with the weight of its variance. As runs are added this goes to 0 if
-  /// and only if the variance is finite (P. Embrechts, C. Klueppelberg, T. Mikosch, "Modelling
-  /// Extremal Events", 1997, section 6.2.6).
+  /// The share of the squared deviations of a value over the runs that is due to its farthest run:
+  /// the mean over values, weighted by their variance. As runs are added this goes to 0 if and only
+  /// if the variance is finite (P. Embrechts, C. Klueppelberg, T. Mikosch, "Modelling Extremal
+  /// Events", 1997, section 6.2.6).
   double maximumShare = 0;
-  /// A normal distribution exceeds this share in one value of a thousand (F. E. Grubbs, "Procedures
+  /// A normal distribution exceeds this share for one value in a thousand (F. E. Grubbs,
+  /// "Procedures
   /// for Detecting Outlying Observations in Samples", 1969).
   double normalShare = 1;
   /// The index of the tail of the largest relative deviations (B. M. Hill, "A simple general
@@ -37,13 +38,13 @@ struct TailEvidence {
   std::string text() const;
 };
 
-/// Needs at least three runs to find anything, and about sixteen to be of use.
+/// Requires at least three runs, and about sixteen for a useful result.
 TailEvidence findTail(const RunningVariance &runs);
 
 /// TailEvidence::normalShare for a number of runs.
 double normalMaximumShare(std::size_t runs);
 
-/// Hill's estimate from the `count` largest of positive values; infinite if there are not as many.
+/// Hill's estimate from the `count` largest of positive values; infinite if there are fewer.
 double hillIndex(std::vector<double> values, std::size_t count);
 
 } // namespace rtsl::report

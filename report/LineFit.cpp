@@ -33,8 +33,7 @@ double dot(const std::vector<double> &a, const std::vector<double> &b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Unit vectors that are orthogonal to each other: the polynomials of the levels' effort of degree
-/// 0, 1, ...
+/// Orthonormal vectors: the polynomials of the levels' effort of degree 0, 1, ...
 std::vector<std::vector<double>> orthogonalPolynomials(const std::vector<double> &effort,
                                                        std::size_t count) {
   const double middle = mean(effort), size = std::max(effort.back() - effort.front(), 1e-300);
@@ -131,7 +130,8 @@ LineFit fitLine(const Rounds &rounds) {
   const double meanY = meanOfMeans(rounds.y);
   fit.intercept = meanY - slope * fit.meanX;
 
-  // What each round says beside the mean of all: of the slope, and of the line's height at meanX.
+  // The results of each round, as deviations from the mean: the slope, and the line's height at
+  // meanX.
   const std::vector<double> equal(levels, 1 / double(levels));
   const std::vector<double> heightX = weighted(equal, rounds.x),
                             heightY = weighted(equal, rounds.y);

@@ -1,9 +1,9 @@
-//===- LineFit.h - a straight line through measurements, and how sure it is ===//
+//===- LineFit.h - a line through measurements, with its uncertainty ------===//
 //
-// Measurements are made in rounds: in each round one at every level. What disturbs a machine for a
-// while (another process, heat, a clock that changes) disturbs the neighbouring measurements of a
-// round alike, so that these are not independent. Every interval here rests on the differences
-// between rounds alone.
+// Measurements are made in rounds: in each round one at every level. A temporary disturbance of a
+// machine (another process, heat, a changing clock) affects the neighbouring measurements of a
+// round alike, so that these are not independent. All intervals here are computed from the
+// differences between rounds only.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -15,13 +15,13 @@
 
 namespace rtsl::report {
 
-/// A value and how far it may be off, with 95 % confidence.
+/// A value with its 95 % confidence interval.
 struct Estimate {
   double value = 0, low = 0, high = 0;
 };
 
-/// What was measured: x[level][round] and y[level][round]. `effort` is what the levels differ in,
-/// such as the logarithm of a number of samples; it is known without error, and ascends.
+/// Measurements: x[level][round] and y[level][round]. `effort` is the quantity that the levels
+/// vary, such as the logarithm of a number of samples; it has no error, and ascends.
 struct Rounds {
   std::vector<double> effort;
   std::vector<std::vector<double>> x, y;
@@ -38,8 +38,8 @@ struct LineFit {
   double intercept = 0;
   Estimate slope;
 
-  /// How likely the means of the levels leave a straight line by as much as they do, if the truth
-  /// is one. 1: it cannot be tested.
+  /// The probability of a deviation of the levels' means from a straight line of at least this
+  /// size, if the truth is a line. 1: it cannot be tested.
   double lackOfFit = 1;
   double largestResidual = 0; // of a level's mean, in y
   bool bends() const { return points != 0 && lackOfFit < 0.01; }
@@ -64,23 +64,22 @@ struct LineFit {
 /// together by Bonferroni's inequality.
 LineFit fitLine(const Rounds &rounds);
 
-/// The x at which y comes down to a value, between the two levels on both sides of it, by linear
-/// interpolation.
+/// The x at which y falls to a value, by linear interpolation between the two levels around it.
 struct Crossing {
-  /// One value a round. Their mean is the crossing of the means, and their spread its uncertainty
+  /// One value per round. Their mean is the crossing of the means, and their spread its uncertainty
   /// (to first order).
   std::vector<double> perRound;
-  /// The first level is below the value already: x may be smaller still.
+  /// Already the first level is below the value: the true x may be smaller.
   bool isBound = false;
 
   Estimate estimate() const;
 };
 
-/// The first crossing; nothing if no level's mean comes down to the value.
+/// The first crossing; nothing if no level's mean falls to the value.
 std::optional<Crossing> findCrossing(const Rounds &rounds, double y);
 
-/// The mean of values with its confidence interval by Student's t; one value has an interval of no
-/// width.
+/// The mean of values with its confidence interval by Student's t; for one value the interval has
+/// width 0.
 Estimate meanOf(const std::vector<double> &values);
 
 /// The median of values with its distribution-free interval: order statistics by the binomial

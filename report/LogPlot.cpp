@@ -13,8 +13,8 @@ namespace {
 
 constexpr double width = 480, height = 372;
 constexpr double left = 66, right = 14, top = 62, bottom = 52; // margins
-constexpr double textLeft = 8;                                 // of what stands above the frame
-constexpr double nearMark = 0.35; // decades that an axis may be longer for a mark
+constexpr double textLeft = 8;                                 // of the text above the frame
+constexpr double nearMark = 0.35; // decades by which an axis may be extended to include a mark
 constexpr unsigned styles = 8;
 
 struct Range {
@@ -26,7 +26,7 @@ struct Range {
     high = std::max(high, value);
   }
   bool isEmpty() const { return !(low <= high); }
-  /// A little air on both sides, and at least so many decades.
+  /// Adds a margin on both sides, and extends the range to at least this number of decades.
   void widen(double least) {
     const double air = std::max(0.06 * (high - low), (least - (high - low)) / 2);
     low -= air;
@@ -34,7 +34,7 @@ struct Range {
   }
 };
 
-/// Values to places on the paper; ranges are of log10.
+/// Maps values to positions in the plot; ranges are of log10.
 struct Axes {
   Range x, y;
   double toX(double logarithm) const {
@@ -49,8 +49,8 @@ bool isDrawable(const PlotPoint &point) {
   return point.x > 0 && point.y.value > 0 && std::isfinite(point.x) && std::isfinite(point.y.value);
 }
 
-/// The lower end of an interval may reach 0, which is nowhere on the axis, and an estimate may have
-/// no interval.
+/// The lower end of an interval may be 0, which is not on the axis, and an estimate may have no
+/// interval.
 double lowEnd(const Estimate &estimate) {
   return estimate.low > 0 ? estimate.low : estimate.value;
 }
@@ -82,7 +82,7 @@ Axes findAxes(const LogPlot &plot) {
   return axes;
 }
 
-/// 1000 is 1000, 2e-5 is 2·10 with a raised -5.
+/// 1000 as 1000, 2e-5 as 2·10 with a superscript -5.
 std::string tickText(int factor, int decade) {
   if (decade >= -3 && decade <= 4)
     return fmt::format("{:g}", factor * std::pow(10.0, decade));
@@ -96,8 +96,8 @@ struct Tick {
   bool isMain = true;
 };
 
-/// Multiples of powers of ten: the more decades there are, the fewer. Not all have a text, for two
-/// might meet.
+/// Multiples of powers of ten: fewer for more decades. Only some have labels, so that labels do not
+/// overlap.
 std::vector<Tick> decadeTicks(const Range &range) {
   const double decades = range.high - range.low;
   const std::vector<int> factors = decades > 2.5   ? std::vector<int>{1}
@@ -172,8 +172,8 @@ std::string drawMarker(unsigned style, double x, double y) {
   }
 }
 
-/// A marker that can be pointed at, tapped and reached by keyboard. What it says stands above the
-/// frame, where no curve is.
+/// A marker that can be pointed at, tapped and reached by keyboard. Its text is shown above the
+/// frame, where there are no curves.
 std::string drawPoint(const PlotPoint &point, unsigned style, double x, double y) {
   std::string svg = fmt::format("<g class=\"point\" tabindex=\"0\" role=\"img\" aria-label=\"{}, "
                                 "{}\"><circle class=\"halo\" cx=\"{:.1f}\" cy=\"{:.1f}\"/>",
@@ -185,7 +185,7 @@ std::string drawPoint(const PlotPoint &point, unsigned style, double x, double y
   return svg;
 }
 
-/// The part of `x` where the line lies within the range `y`; a steep one leaves the frame.
+/// The part of `x` where the line is within the range `y`; a steep line leaves the frame.
 Range withinFrame(const LineFit &line, const Range &x, const Range &y) {
   const double first = line.at(x.low).value, rise = line.at(x.high).value - first;
   if (rise == 0 || x.low == x.high)
@@ -316,7 +316,7 @@ std::string plotStyle() {
                                  "#E69F00", "#56B4E9", "#7A6A00", "#555555"};
   const char *onBlack[styles] = {"#3E9FE0", "#F07A2E", "#22B98E", "#E39AC4",
                                  "#F2B63C", "#9AD4F5", "#BFAE3A", "#B5B5B5"};
-  // Text is 12 pixels high or more on a telephone (a column of 366) and on a desk (580).
+  // Text is at least 12 pixels high on a phone (a column of 366) and on a desktop (580).
   std::string css = R"(.plot { width: 100%; height: auto; display: block; overflow: visible; }
 .plot text { fill: var(--ink); font-size: 11px; }
 .plot .raised { font-size: 0.8em; }

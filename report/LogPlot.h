@@ -8,11 +8,11 @@
 
 namespace rtsl::report {
 
-/// A measured point and the interval of its y, if its ends are numbers.
+/// A measured point and the interval of its y, if its ends are not NaN.
 struct PlotPoint {
   double x = 0;
   Estimate y;
-  std::string name, figures; // shown when the pointer rests on it, or when it has the focus
+  std::string name, figures; // shown when the pointer is on it, or when it has the focus
 };
 
 struct PlotSeries {
@@ -25,26 +25,25 @@ struct PlotSeries {
 struct LogPlot {
   std::string title, xLabel, yLabel;
   std::vector<PlotSeries> series;
-  /// A horizontal line at `mark`, with a text; 0: none. The axis reaches down to it only if it is
-  /// near; if it is not, the text stands at the lower edge.
+  /// A horizontal line at `mark`, with a text; 0: none. The axis is extended to it only if it is
+  /// near; otherwise the text is at the lower edge.
   double mark = 0;
   std::string markText;
   /// The least that the y axis spans.
   double leastDecades = 0.5;
-  std::string nothing = "no error above 0 was measured"; // said where there is no point
+  std::string nothing = "no error above 0 was measured"; // shown if there are no points
 };
 
-/// An `<svg>` of 480 by 372 units that scales with its column; the classes that it names are in
-/// plotStyle(). Points that are not positive have no place on a logarithmic axis and are left out;
-/// a plot with no point says so. Each point can be pointed at, tapped and reached by keyboard, and
-/// then shows its figures.
+/// An `<svg>` of 480 by 372 units that scales with its column; plotStyle() defines its CSS classes.
+/// Points that are not positive cannot be shown on a logarithmic axis and are left out; a plot
+/// without points shows a text instead. Each point can be pointed at, tapped and reached by
+/// keyboard, and then shows its figures.
 std::string drawLogPlot(const LogPlot &plot);
 
-/// The sample of line and marker that stands beside a name in a legend, as a small `<svg>`.
+/// The sample of line and marker beside a name in a legend, as a small `<svg>`.
 std::string drawLegendKey(unsigned style);
 
-/// The id of the check box that shows and hides the curves of a style, wherever it stands on the
-/// page.
+/// The id of the check box that shows and hides the curves of a style, anywhere on the page.
 std::string curveSwitch(unsigned style);
 
 /// The CSS of plots and keys. The eight colours can be told apart by people who are colour-blind

@@ -12,7 +12,7 @@ namespace rtsl::report {
 
 namespace {
 
-/// What stands behind `key` in a file of lines "key : value" or "key=value".
+/// The value of `key` in a file of lines "key : value" or "key=value".
 std::string valueIn(const char *file, const std::string &key, char separator) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {

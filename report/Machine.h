@@ -1,4 +1,4 @@
-//===- Machine.h - where a measurement was made ---------------------------===//
+//===- Machine.h - the machine of a measurement ---------------------------===//
 #pragma once
 
 #include <string>
@@ -7,8 +7,7 @@
 
 namespace rtsl::report {
 
-/// Facts as (name, value): processor, cores, memory, system. What the system does not tell is left
-/// out.
+/// Facts as (name, value): processor, cores, memory, system. Unknown ones are left out.
 std::vector<std::pair<std::string, std::string>> machineFacts();
 
 } // namespace rtsl::report

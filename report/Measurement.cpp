@@ -14,8 +14,8 @@ namespace rtsl::report {
 
 namespace {
 
-/// A column: its name, and how it is written and read. Reading gives false for text that is no
-/// value.
+/// A column: its name, and how it is written and read. Reading returns false for text that is not a
+/// valid value.
 template <typename Row>
 struct Column {
   const char *name;
@@ -45,7 +45,7 @@ Column<Row> column(const char *name, Value Row::*member) {
   return {name,
           [member](const Row &row) {
             return fmt::format("{}", row.*member);
-          }, // the shortest that reads back the same
+          }, // the shortest that reads back to the same value
           [member](Row &row, const std::string &text) { return parse(text, row.*member); }};
 }
 
@@ -112,21 +112,22 @@ std::vector<Row> readTable(const std::string &path) {
   if (::access(path.c_str(), F_OK) != 0)
     return {};
   std::vector<std::string> lines = split(readFile(path), '\n');
-  lines.pop_back(); // what follows the last line end: nothing, or a line that was cut off
+  lines.pop_back(); // after the last line end: nothing, or a truncated line
   if (lines.empty())
     return {};
   const auto refuse = [&](std::size_t line, const char *why) {
     throw Error(ErrorCode::BadImage, why, Place{path, std::uint32_t(line + 1), 1, 1});
   };
   if (lines.front() + "\n" != headerOf<Row>())
-    refuse(0,
-           "this is no table of this version's report; choose another folder, or pass `--fresh`");
+    refuse(
+        0,
+        "this is not a table of this version's report; choose another folder, or pass `--fresh`");
   std::vector<Row> rows;
   for (std::size_t line = 1; line < lines.size(); ++line) {
     const std::vector<std::string> cells = split(lines[line], ',');
     const auto &columns = columnsOf(static_cast<const Row *>(nullptr));
     if (cells.size() != columns.size())
-      refuse(line, "this line has not as many values as the table has columns");
+      refuse(line, "the number of values in this line is not the number of columns");
     Row row;
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (!columns[i].read(row, cells[i]))
@@ -136,8 +137,8 @@ std::vector<Row> readTable(const std::string &path) {
   return rows;
 }
 
-/// Appends `line`, after the header if the file is new. A line that an earlier run left half
-/// written is cut away.
+/// Appends `line`, after the header if the file is new. A line that an earlier run has left
+/// incomplete is removed.
 void appendLine(const std::string &path, const std::string &header, const std::string &line) {
   std::string bytes = ::access(path.c_str(), F_OK) == 0 ? readFile(path) : std::string();
   bytes.resize(bytes.rfind('\n') == std::string::npos ? 0 : bytes.rfind('\n') + 1);

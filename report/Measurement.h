@@ -1,4 +1,4 @@
-//===- Measurement.h - what one picture cost and how wrong it is ----------===//
+//===- Measurement.h - the cost and the error of one picture --------------===//
 #pragma once
 
 #include "support/Error.h"
@@ -11,23 +11,23 @@
 
 namespace rtsl::report {
 
-/// One picture of a study. Errors are not a number where the reference cannot be compared with.
+/// One picture of a study. Errors are NaN if the reference cannot be compared with.
 struct Measurement {
   std::string configuration;
   std::uint32_t samplesPerPixel = 0;
-  std::uint32_t run = 0;  // from 0: which of the independent runs with this number of samples
+  std::uint32_t run = 0;  // from 0: the number of the run among those with this number of samples
   std::uint32_t seed = 0; // of the random numbers
   double buildSeconds = 0, renderSeconds = 0;
   double rmse = 0, relMse = 0, bias = 0, flip = 0, flipHdr = 0;
   std::uint64_t nanPixels = 0, infinitePixels = 0;
   std::uint64_t samplesNotFinite = 0; // left out of the means of their pixels
-  std::uint64_t raysTooDeep = 0;      // not sent, for the limit of depth
-  std::uint64_t pictureHash = 0;      // the same for the same bits
+  std::uint64_t raysTooDeep = 0;      // not sent because of the limit of depth
+  std::uint64_t pictureHash = 0;      // equal for the same bits
   double pairVariance = 0; // of this picture and that of the run before: unbiased, mean over pixels
                            // and channels; 0 for run 0
 };
 
-/// What all runs of a configuration with one number of samples say together.
+/// The results of all runs of a configuration with one number of samples.
 struct LevelVariance {
   std::string configuration;
   std::uint32_t samplesPerPixel = 0;
@@ -37,9 +37,9 @@ struct LevelVariance {
   double efficiency = 0;  // 1 / (variance x time); not finite if the variance is 0
 };
 
-/// Tables with a header line that grow by whole lines, so that an interrupted study can go on.
-/// Reading leaves out a last line that was cut off. Writing throws FileUnwritable; reading gives
-/// nothing for a file that is not there and throws BadImage for one that is no such table.
+/// Tables with a header line that grow by whole lines, so that an interrupted study can be
+/// continued. Reading ignores a truncated last line. Writing throws FileUnwritable; reading returns
+/// nothing for a missing file and throws BadImage for a file that is not such a table.
 std::vector<Measurement> readMeasurements(const std::string &path);
 void appendMeasurement(const std::string &path, const Measurement &measurement);
 /// A whole table.

@@ -47,7 +47,7 @@ code { background: var(--card); padding: 1px 5px; border-radius: 3px; overflow-w
 summary { cursor: pointer; margin: 24px 0 8px; font-weight: 600; }
 )";
 
-/// Three significant digits, and words for what is no number.
+/// Three significant digits, and words for infinities and NaN.
 std::string figure(double value) {
   if (std::isnan(value))
     return "–";
@@ -68,7 +68,7 @@ std::string interval(const Estimate &estimate, const char *format = "{:.3f}") {
                      text(estimate.low), text(estimate.high));
 }
 
-/// A slope, and that of the end of a line that bends.
+/// A slope, and that of the end of a line if it bends.
 std::string slope(const LineFit &line, const std::optional<Estimate> &last) {
   if (line.points == 0)
     return "–";
@@ -103,7 +103,7 @@ std::string definitions(const std::vector<std::pair<std::string, std::string>> &
   return html + "</dl>\n";
 }
 
-//===-- what it says ------------------------------------------------------===//
+//===-- text ------------------------------------------------------===//
 
 std::string verdict(const Estimate &slope) {
   return slope.high < -1 ? "steeper than the -1 of independent samples, as it is where samples are "
@@ -125,7 +125,7 @@ std::vector<std::string> findings(const Summary &summary) {
     };
     const SubjectSummary *fastest = *std::min_element(timed.begin(), timed.end(), sooner);
     const SubjectSummary *slowest = *std::max_element(timed.begin(), timed.end(), sooner);
-    sentences.push_back(fmt::format("<b>{}</b> comes to a relMSE of {} first, in {} a picture.",
+    sentences.push_back(fmt::format("<b>{}</b> reaches a relMSE of {} first, in {} per picture.",
                                     escapeHtml(fastest->name), figure(summary.commonRelMse),
                                     timeTo(*fastest->toCommonRelMse)));
     if (fastest != slowest && slowest->timesTheQuickest)
@@ -188,7 +188,7 @@ std::string drawError(const Summary &summary, const std::string &title, const st
   return drawLogPlot(plot);
 }
 
-/// Curves that lie on one another in the other plots are apart here.
+/// Curves that coincide in the other plots are separate here.
 std::string drawRatios(const Summary &summary) {
   LogPlot plot;
   const std::string first = summary.subjects.front().name;
@@ -197,7 +197,7 @@ std::string drawRatios(const Summary &summary) {
   plot.yLabel = "times " + first;
   plot.mark = 1;
   plot.leastDecades = 0.05;
-  plot.nothing = "no error was met by two configurations";
+  plot.nothing = "no error was reached by two configurations";
   for (std::size_t i = 1; i < summary.subjects.size(); ++i) {
     const SubjectSummary &subject = summary.subjects[i];
     PlotSeries series{subject.name, unsigned(i), {}, {}};
@@ -318,12 +318,14 @@ std::string writePage(const Context &context, const Summary &summary, const Refe
   html += fmt::format("<p>The reference is {}.</p>\n", escapeHtml(reference.origin));
   html += "<h2>Error against seconds</h2>\n" + plots(summary, reference);
   html += "<h2>Configurations</h2>\n" + configurations(summary);
-  html += "<p class=\"muted\">Slopes are of log relMSE, less that of the reference, with intervals "
-          "that hold with 95 %: they rest on the differences between rounds of runs, for the "
-          "runs of a round share what disturbs the machine. Where a line bends (a test of lack of "
-          "fit, at 1 %) the slope of its end is given too. The time to an error is read off the "
-          "points on both sides of it. Compile, build and trace are apart: compiling the shaders, "
-          "building acceleration structures, tracing one picture.</p>\n";
+  html +=
+      "<p class=\"muted\">Slopes are of log relMSE, less that of the reference, with 95 % "
+      "confidence "
+      "intervals: they are computed from the differences between rounds of runs, because the "
+      "runs of a round share disturbances of the machine. Where a line bends (a test of lack of "
+      "fit, at 1 %) the slope of its end is given too. The time to an error is read off the "
+      "points on both sides of it. Compile, build and trace are apart: compiling the shaders, "
+      "building acceleration structures, tracing one picture.</p>\n";
   if (!exhibits.empty()) {
     html += "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
     for (const Exhibit &exhibit : exhibits)

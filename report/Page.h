@@ -9,12 +9,12 @@
 
 namespace rtsl::report {
 
-/// What a report says beside its figures.
+/// The information in a report beside its figures.
 struct Context {
   std::string scene;
   std::uint32_t width = 0, height = 0, runs = 0;
   double budgetSeconds = 0;
-  std::string command;                                       // that makes it again
+  std::string command;                                       // to reproduce it
   std::vector<std::pair<std::string, std::string>> versions; // of the compiler and its libraries
   std::vector<std::pair<std::string, std::string>> machine;
 };
@@ -25,7 +25,7 @@ struct Exhibit {
   runtime::Image rgb; // linear
 };
 
-/// One self-contained HTML page: no scripts, nothing loaded from elsewhere, dark where the reader's
+/// One self-contained HTML page: no scripts, nothing loaded from elsewhere, dark if the reader's
 /// system is.
 std::string writePage(const Context &context, const Summary &summary, const Reference &reference,
                       const std::vector<Exhibit> &exhibits);

@@ -1,4 +1,4 @@
-//===- ParallelRows.h - work on the rows of a picture, on all cores -------===//
+//===- ParallelRows.h - processing the rows of a picture, on all cores ----===//
 #pragma once
 
 #include <cstdint>

@@ -30,15 +30,15 @@ std::string factsPath(const std::string &folder) {
 std::string describe(const std::string &subject, const Reference::OwnError &own) {
   const std::string error =
       own.tail.isHeavy()
-          ? "how wrong it is cannot be told, for rare, large samples rule it (" + own.tail.text() +
-                ")"
+          ? "its error cannot be estimated, because rare, large samples dominate it (" +
+                own.tail.text() + ")"
           : fmt::format("its own RMSE is about {:.2g}, its relMSE {:.2g}", own.rmse, own.relMse);
   return fmt::format("the mean of {} runs with {} samples a pixel ({}), in {:.3g} s; {}; single "
-                     "precision moves a run by {:.2g} (RMSE)",
+                     "precision changes a run by {:.2g} (RMSE)",
                      own.runs, own.samplesPerPixel, subject, own.seconds, error, own.rounding);
 }
 
-/// JSON has no infinity and nothing that is not a number.
+/// JSON has neither infinity nor NaN.
 double numberOr(const nlohmann::json &facts, const char *key, double otherwise) {
   const auto found = facts.find(key);
   return found != facts.end() && found->is_number() ? found->get<double>() : otherwise;
@@ -46,14 +46,14 @@ double numberOr(const nlohmann::json &facts, const char *key, double otherwise) 
 
 constexpr int factsVersion = 2;
 
-/// Samples a pixel so that one run takes about `seconds`, from runs that take less.
+/// Samples per pixel for a run of about `seconds`, estimated from shorter runs.
 std::uint32_t samplesFor(const Subject &subject, double seconds) {
   std::uint32_t samples = 1;
   for (;;) {
     const double taken =
         std::max(subject.render(samples, firstSeed - 1).statistics.renderSeconds, 1e-6);
     const double possible = samples * seconds / taken;
-    if (possible < 8.0 * samples || samples >= mostSamples / 8) // long enough to go by
+    if (possible < 8.0 * samples || samples >= mostSamples / 8) // long enough for an estimate
       return std::uint32_t(std::clamp(possible, 1.0, double(mostSamples)));
     samples *= 8;
   }

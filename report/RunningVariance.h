@@ -16,14 +16,14 @@ public:
   void add(const runtime::Image &picture);
 
   std::size_t pictures() const { return count; }
-  /// Not a number where no picture has a finite value.
+  /// NaN where no picture has a finite value.
   runtime::Image mean() const;
   /// Over all values; 0 with fewer than two pictures.
   double meanVariance() const;
   /// Of variance / (mean^2 + epsilon) over all values.
   double meanRelativeVariance(double epsilon) const;
-  /// Gives the mean of each value that is finite in some picture, its sum of squared deviations,
-  /// and the largest deviation of a picture.
+  /// Calls `visit` with the mean of each value that is finite in some picture, its sum of squared
+  /// deviations, and the largest deviation of a picture.
   void forEachValue(
       const std::function<void(double mean, double squares, double deviation)> &visit) const;
 

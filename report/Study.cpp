@@ -21,7 +21,7 @@ namespace rtsl::report {
 
 namespace {
 
-constexpr unsigned levelsInAnyCase = 3; // a line needs them
+constexpr unsigned levelsInAnyCase = 3; // required for a line
 
 class StudyRun {
 public:
@@ -52,7 +52,7 @@ public:
 private:
   using Key = std::tuple<std::string, std::uint32_t, std::uint32_t>; // configuration, samples, run
 
-  /// What is known of a subject.
+  /// The state of a subject.
   struct State {
     unsigned levels = 0;           // that fit into its budget
     double spent = 0, inRound = 0; // seconds of rendering: in all, and in the first round
@@ -67,7 +67,7 @@ private:
   runtime::Image screen; // the reference in RGB
   FlipExposures exposures;
   std::vector<State> state;
-  /// Of the subjects that take turns with one number of samples: strict configurations all give the
+  /// For subjects with the same number of samples in one round: strict configurations all give the
   /// same pictures.
   std::map<std::uint64_t, Measurement> errorsOfPictures;
   std::map<std::pair<std::uint64_t, std::uint64_t>, double> variancesOfPairs;
@@ -119,8 +119,8 @@ private:
     dropPicturesBefore(round);
   }
 
-  /// Whether the next level, which takes twice as long as the last, fits into what is left of a
-  /// subject's time: that of all rounds.
+  /// Whether the next level, which takes twice as long as the last, fits into the remaining time of
+  /// a subject, over all rounds.
   bool hasTimeFor(std::size_t subject, unsigned level) const {
     if (level < levelsInAnyCase)
       return true;
@@ -144,7 +144,7 @@ private:
     variancesOfPairs.clear();
   }
 
-  /// Renders a picture and notes what it shows, unless that is known. Gives the seconds that it
+  /// Renders a picture and records its errors, unless they are known. Returns the seconds that it
   /// took.
   double measure(std::size_t index, unsigned level, std::uint32_t run) {
     const Subject &subject = subjects[index];
@@ -155,7 +155,7 @@ private:
       state[index].spent += earlier->second.renderSeconds;
       return earlier->second.renderSeconds;
     }
-    if (!state[index].isWarm) { // memory and caches that only a first picture meets
+    if (!state[index].isWarm) { // the first picture warms up memory and caches
       subject.render(1, seedOf(level, run));
       state[index].isWarm = true;
     }
@@ -184,14 +184,14 @@ private:
     return known.emplace(key, std::move(measurement)).first->second.renderSeconds;
   }
 
-  /// Of this picture and that of the run before, which has another seed.
+  /// Of this picture and that of the previous run, which has another seed.
   double varianceOfPair(const Subject &subject, unsigned level, std::uint32_t run,
                         std::uint64_t hash, const runtime::Image &image) {
     const std::uint64_t before = known.at(keyOf(subject.name, 1u << level, run - 1)).pictureHash;
     const auto [found, isNew] = variancesOfPairs.try_emplace({before, hash}, 0.0);
     if (isNew) {
       const std::string path =
-          partialPath(before); // gone if the study was interrupted at a bad moment
+          partialPath(before); // missing if the study was interrupted in between
       RunningVariance pair;
       pair.add(std::filesystem::exists(path)
                    ? runtime::readImage(path)
@@ -203,8 +203,8 @@ private:
   }
 
   /// Deletes the pictures of earlier rounds. Those of this round are compared with the next one's.
-  /// After a round that an earlier study made there is nothing to delete: what lies there belongs
-  /// to the round in which it was interrupted.
+  /// After a round that an earlier study made nothing is deleted: the pictures there belong to the
+  /// round in which it was interrupted.
   void dropPicturesBefore(std::uint32_t round) {
     if (!measuredInRound)
       return;
@@ -227,7 +227,8 @@ private:
       return known->second;
     Measurement &measurement = known->second;
     measurement.pictureHash = hash;
-    // A picture without a reference is compared with itself: that counts what is not finite.
+    // A picture without a reference is compared with itself, which counts values that are not
+    // finite.
     const ErrorMetrics error =
         measureError(reference.problem.empty() ? reference.image : image, image);
     measurement.nanPixels = error.nanPixels;

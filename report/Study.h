@@ -1,11 +1,10 @@
 //===- Study.h - error against run time, measured -------------------------===//
 //
-// Renders each subject with 1, 2, 4, ... samples a pixel, several independent runs each, and
+// Renders each subject with 1, 2, 4, ... samples per pixel, several independent runs each, and
 // compares every picture with the reference. The runs are made in rounds: a round has each number
-// of samples once, for every subject in turn, and each round has an order of its own. So a machine
-// that grows slower, or is busy for a while, disturbs all subjects and all numbers of samples
-// alike, and what it does differently in each round shows in the differences between rounds
-// (LineFit.h).
+// of samples once, for every subject in turn, and each round has its own order. So a machine that
+// becomes slower, or is busy for a while, affects all subjects and all numbers of samples alike,
+// and its changes between rounds appear in the differences between rounds (LineFit.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -22,9 +21,8 @@ namespace rtsl::report {
 
 struct StudyOptions {
   std::string folder; // keeps measurements.csv, levels.csv, pictures/ and, while running, partial/
-  std::uint32_t runs = 8; // with each number of samples: the rounds
-  double budgetSeconds =
-      10; // of rendering, for each subject; the first three levels run in any case
+  std::uint32_t runs = 8;    // with each number of samples: the rounds
+  double budgetSeconds = 10; // of rendering, for each subject; the first three levels always run
   std::uint32_t mostSamples = 1u << 16;
   ProgressFunction progress = [](double, const std::string &) {};
 };
@@ -34,15 +32,15 @@ struct Study {
   std::vector<LevelVariance> levels;
 };
 
-/// The order of levels in a round: ascending in the first, which finds out how many there are, and
-/// then at random, so that no disturbance can keep time with it. The same for the same arguments.
+/// The order of levels in a round: ascending in the first, which finds the number of levels, and
+/// then random, so that no disturbance can be synchronous with it. Deterministic.
 std::vector<unsigned> levelOrder(std::uint32_t round, unsigned levels);
 
 /// The picture of a subject with the most samples so far, first run.
 std::string lastPicturePath(const std::string &folder, const Subject &subject);
 
-/// Goes on where an earlier run in the same folder was interrupted; what it finds there it does not
-/// measure again.
+/// Continues an interrupted study in the same folder; pictures that were measured are not measured
+/// again.
 Study runStudy(const std::vector<Subject> &subjects, const Reference &reference,
                const StudyOptions &options);
 

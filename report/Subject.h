@@ -1,4 +1,4 @@
-//===- Subject.h - what a study compares ----------------------------------===//
+//===- Subject.h - a configuration that a study compares ------------------===//
 #pragma once
 
 #include "runtime/image/Image.h"
@@ -16,17 +16,17 @@ struct Picture {
   runtime::RenderStatistics statistics;
 };
 
-/// One way to render the scene. The name has no commas, for it goes into tables.
+/// One way to render the scene. The name has no commas, because it is written to CSV tables.
 struct Subject {
   std::string name;
-  // what tells it from the others: {"traversal", "embree"}
+  // the differences from other subjects: {"traversal", "embree"}
   std::vector<std::pair<std::string, std::string>> settings;
   double compileSeconds = 0;
   /// The same arguments must give the same bits, and different seeds independent pictures.
   std::function<Picture(std::uint32_t samplesPerPixel, std::uint32_t seed)> render;
 };
 
-/// Called with the share of a long piece of work that is done, in [0, 1], and what is done now.
+/// Called with the finished share of a long piece of work, in [0, 1], and its current step.
 using ProgressFunction = std::function<void(double, const std::string &)>;
 
 } // namespace rtsl::report

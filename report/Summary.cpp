@@ -46,7 +46,7 @@ LevelSummary summariseLevel(const std::vector<const Measurement *> &runs, const 
 }
 
 /// log10 of seconds and of relMSE, less the reference's own, at the levels of a subject that the
-/// reference can tell.
+/// reference can resolve.
 Rounds roundsOf(const SubjectSummary &subject, const ByLevel &byLevel, const Reference &reference) {
   const double own = reference.ownError ? reference.ownError->relMse : 0;
   Rounds rounds;
@@ -116,7 +116,7 @@ double meanError(const Rounds &rounds, std::size_t level) {
   return meanOf(rounds.y[level]).value;
 }
 
-/// How many times as long as the first subject another takes, at each of its levels.
+/// The time of another subject relative to the first, at each of its levels.
 void compareWithFirst(const Rounds &first, const Rounds &other, SubjectSummary &subject) {
   for (std::size_t i = 0; i < other.levels(); ++i) {
     const double error = meanError(other, i);
@@ -130,7 +130,7 @@ void compareWithFirst(const Rounds &first, const Rounds &other, SubjectSummary &
   }
 }
 
-/// Finds the error that all came down to, and when they did.
+/// Finds an error that all subjects reached, and when they reached it.
 void findTimes(Summary &summary, const std::vector<Rounds> &rounds) {
   double common = -std::numeric_limits<double>::infinity();
   for (const Rounds &one : rounds)
@@ -156,7 +156,7 @@ void findTimes(Summary &summary, const std::vector<Rounds> &rounds) {
 }
 
 double medianEfficiency(const std::vector<LevelSummary> &levels) {
-  constexpr double longEnough = 0.01; // below, starting threads shows
+  constexpr double longEnough = 0.01; // below, the time of starting threads matters
   std::vector<double> all, slow;
   for (const LevelSummary &level : levels)
     if (std::isfinite(level.efficiency) && level.efficiency > 0) {
@@ -193,7 +193,7 @@ SubjectSummary summariseSubject(const Subject &subject, const Study &study,
   return summary;
 }
 
-/// How many times as large as the median the largest error of a level's runs is, over all subjects.
+/// The largest ratio of the largest to the median error of a level's runs, over all subjects.
 double largestSpread(const Study &study) {
   std::map<std::pair<std::string, std::uint32_t>, std::vector<double>> errors;
   for (const Measurement &measurement : study.measurements)
@@ -205,21 +205,21 @@ double largestSpread(const Study &study) {
   return spread;
 }
 
-/// Why errors have no intervals, if they have none.
+/// Why errors have no intervals, or empty.
 std::string findHeavyTails(const Study &study, const Reference &reference) {
   if (reference.ownError && reference.ownError->tail.isHeavy())
     return "the runs of the reference: " + reference.ownError->tail.text();
-  constexpr double muchMore = 4; // a mean over pixels with light tails is nowhere near
+  constexpr double muchMore = 4; // a mean over pixels with light tails is far below
   if (const double spread = largestSpread(study); spread > muchMore)
     return fmt::format(
         "of the runs with one number of samples one has {:.2g} times the median error", spread);
   return {};
 }
 
-/// Errors keep their values, which were measured, and lose what would be concluded from them.
+/// Removes all results that depend on intervals, and keeps the measured errors.
 void dropIntervals(Summary &summary) {
   for (SubjectSummary &subject : summary.subjects) {
-    subject.noFit = "rare, large samples rule the errors";
+    subject.noFit = "rare, large samples dominate the errors";
     subject.efficiency = std::numeric_limits<double>::quiet_NaN();
     for (LevelSummary &level : subject.levels) {
       level.efficiency = std::numeric_limits<double>::quiet_NaN();
@@ -229,7 +229,8 @@ void dropIntervals(Summary &summary) {
   }
 }
 
-/// Which pictures are the same bits, at the largest number of samples that every subject reached.
+/// Finds which pictures have the same bits, at the largest number of samples that every subject
+/// reached.
 void comparePictures(Summary &summary, const Study &study) {
   std::uint32_t common = std::numeric_limits<std::uint32_t>::max();
   for (const SubjectSummary &subject : summary.subjects)
@@ -241,7 +242,7 @@ void comparePictures(Summary &summary, const Study &study) {
         subject.commonPicture = measurement.pictureHash;
 }
 
-/// One sentence for all subjects whose line bends.
+/// One sentence for all subjects with a bent line.
 void describeBends(const Summary &summary, const char *over, LineFit SubjectSummary::*line,
                    std::vector<std::string> &problems) {
   std::string names;
@@ -255,14 +256,14 @@ void describeBends(const Summary &summary, const char *over, LineFit SubjectSumm
     }
   if (count != 0)
     problems.push_back(fmt::format(
-        "relMSE over {} does not follow a straight line ({}; the points leave it by up to {:.2g} "
+        "relMSE over {} does not follow a straight line ({}; the points deviate by up to {:.2g} "
         "%): the slope is a mean of "
-        "several, and that of the last {} numbers of samples stands beside it",
+        "several, and that of the last {} numbers of samples is given as well",
         over, count == summary.subjects.size() && count > 1 ? "in all configurations" : names,
         100 * largest, lastLevels));
 }
 
-/// What is to be said of configurations: one line for all of which the same is true.
+/// Remarks on configurations: one line for all with the same remark.
 class Remarks {
 public:
   void add(const std::string &name, std::string text) {
@@ -308,7 +309,7 @@ void remark(const SubjectSummary &subject, const Summary &summary, const Referen
         return level.runs > 1 && level.variance == 0;
       }))
     remarks.add(subject.name, "all runs gave the same picture (zero variance), so its efficiency "
-                              "has no meaning");
+                              "is undefined");
   if (!subject.noFit.empty() && summary.heavyTails.empty())
     remarks.add(subject.name, "no line was fitted: " + subject.noFit);
   const auto unresolved = std::count_if(
@@ -330,22 +331,23 @@ void findProblems(Summary &summary, const Reference &reference) {
   else if (std::all_of(reference.image.pixels.begin(), reference.image.pixels.end(),
                        [](float value) { return value == 0; }))
     problems.push_back("the reference is black: relMSE is the squared error over a constant here, "
-                       "and FLIP has no exposure to go by");
+                       "and FLIP has no exposure");
   if (std::any_of(reference.image.pixels.begin(), reference.image.pixels.end(),
                   [](float v) { return !std::isfinite(v); }) &&
       reference.problem.empty())
     problems.push_back(
         "some pixels of the reference are not finite; they are left out of every error");
   if (!summary.heavyTails.empty())
-    problems.push_back("rare, large samples rule the errors, so that no interval can be given and "
-                       "no line is fitted (" +
-                       summary.heavyTails + "); sample what is bright more often, or clamp it");
+    problems.push_back(
+        "rare, large samples dominate the errors, so that no interval can be given and "
+        "no line is fitted (" +
+        summary.heavyTails + "); sample bright regions more often, or clamp them");
   if (const double beyond =
           reference.problem.empty() ? shareBeyondScreen(runtime::toRgb(reference.image)) : 0;
       beyond > 0.25)
     problems.push_back(
         fmt::format("{:.0f} % of the reference's pixels are brighter than a screen: FLIP takes "
-                    "them for white and sees no error there, HDR-FLIP does",
+                    "them as white and measures no error there, HDR-FLIP does",
                     100 * beyond));
   Remarks remarks;
   for (const SubjectSummary &subject : summary.subjects)

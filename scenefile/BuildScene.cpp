@@ -37,8 +37,7 @@ public:
       else
         scene.setRayGeneration(add(description.rayGeneration.value(), "rayGeneration"));
     });
-    // Named objects come into being in the order of their names, those that they refer to before
-    // them.
+    // Named objects are created in the order of their names, after those that they refer to.
     for (const auto *section : sections)
       for (const auto &object : *section)
         attempt([&, &object = object] { named(object.first, object.second.className.place); });
@@ -71,10 +70,10 @@ public:
   }
 
 private:
-  /// Thrown where an object is asked for that was refused already, with its own message.
+  /// Thrown when a reference is to an object that was rejected, which has been reported.
   struct Refused {};
 
-  /// A mistake in one part of the scene keeps no other part from being looked at.
+  /// An error in one part of the scene does not prevent checking the others.
   template <typename Step>
   void attempt(Step step) {
     try {
@@ -134,8 +133,8 @@ private:
     return member ? &member->type : nullptr;
   }
 
-  /// JSON as a value. Strings name objects where the type is a reference, and mean nothing
-  /// elsewhere; null is no object, of references that `mayBeEmpty`.
+  /// Converts JSON to a value. Strings name objects if the type is a reference, and are not allowed
+  /// otherwise; null is no object, for references that `mayBeEmpty`.
   Value convert(const JsonValue &json, const ValueType *type, const std::string &what,
                 bool mayBeEmpty = false) {
     switch (json.kind) {
@@ -174,7 +173,7 @@ private:
                   json.place());
   }
 
-  /// An object written where a reference is asked for.
+  /// An object written in place of a reference.
   static ObjectDescription inPlace(const JsonValue &json, const std::string &what) {
     const JsonValue *className = json.find("class");
     if (!className || className->kind != Kind::String)
@@ -197,13 +196,13 @@ private:
     return object;
   }
 
-  /// The helper, texture or material of this name, made when it is first asked for.
+  /// The helper, texture or material of this name, created on first use.
   RtslRef named(const std::string &name, const Place &place) {
     auto found = made.find(name);
     if (found != made.end()) {
       if (found->second == 0)
         throw Error(ErrorCode::ReferenceCycle,
-                    fmt::format("`{}` refers to itself through others", name), place);
+                    fmt::format("`{}` refers to itself indirectly", name), place);
       return found->second;
     }
     const ObjectDescription *object = nullptr;
@@ -221,7 +220,7 @@ private:
     }
     if (refused.count(name))
       throw Refused();
-    made[name] = 0; // on the way
+    made[name] = 0; // being created
     try {
       return made[name] = add(*object, name);
     } catch (...) {
@@ -256,7 +255,7 @@ private:
     scene.addMeshInstance(mesh(geometry), material, geometry.mask);
   }
 
-  /// With the place of the reference, which is where the mistake is.
+  /// The error is at the reference to the material.
   void requireMaterial(RtslRef material, const GeometryDescription &geometry) const {
     const ClassInfo &classInfo = scene.classOf(material);
     if (classInfo.root == "rt_Material")
@@ -269,7 +268,7 @@ private:
                 name.place);
   }
 
-  /// Objects that have the same file in the same place share its mesh.
+  /// Objects with the same file and the same transform share its mesh.
   std::uint32_t mesh(const GeometryDescription &geometry) {
     const std::size_t number = files.numberOf(geometry);
     auto found = meshes.find(number);
@@ -305,7 +304,7 @@ private:
       &description.helpers, &description.textures, &description.materials}; // of named objects
   const Program &program;
   Scene scene;
-  std::map<std::string, RtslRef> made; // 0: on the way
+  std::map<std::string, RtslRef> made; // 0: being created
   std::set<std::string> refused;
   ErrorCollector errors;
   MeshFiles files;

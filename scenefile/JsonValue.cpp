@@ -1,9 +1,8 @@
-//===- JsonValue.cpp - nlohmann's parser, and a cursor that keeps its place ===//
+//===- JsonValue.cpp - nlohmann's parser, and a cursor for positions ------===//
 //
-// nlohmann's SAX parser checks the syntax and unescapes strings but does not tell where a token
-// lies. Its events come in the order of the tokens, so a cursor that steps over one token for each
-// event knows the places; it may be simple-minded, for the parser has already found the token
-// well-formed.
+// nlohmann's SAX parser checks the syntax and unescapes strings but does not give the positions of
+// tokens. Its events come in the order of the tokens, so a cursor that steps over one token for
+// each event knows them; it can be simple, because the parser has already checked the token.
 //
 //===----------------------------------------------------------------------===//
 #include "scenefile/JsonValue.h"
@@ -21,7 +20,7 @@ namespace {
 
 constexpr std::size_t deepestNesting = 256;
 
-/// What stands between values, or brackets them.
+/// White space, separators and brackets.
 bool isPunctuation(char c) {
   return c != '\0' && std::strchr(" \t\r\n,:{}[]", c);
 }
@@ -33,7 +32,7 @@ struct Token {
 class Cursor {
 public:
   explicit Cursor(const std::string &text) : text(text) {
-    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) // a byte order mark is no column
+    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) // a byte order mark has no column
       position = lineStart = 3;
   }
 
@@ -75,7 +74,7 @@ private:
 Place placeOfOffset(const std::string &text, const std::string &file, std::size_t offset,
                     std::size_t length) {
   offset = std::min(offset, text.size());
-  // The end of the text is shown at the end of its last line that is not empty.
+  // The end of the text is shown at the end of its last non-empty line.
   if (offset == text.size()) {
     while (offset > 0 && std::strchr(" \t\r\n", text[offset - 1]))
       --offset;
@@ -108,7 +107,7 @@ public:
     added->string = std::move(value);
     return good;
   }
-  bool binary(nlohmann::json::binary_t &) override { return false; } // not in text
+  bool binary(nlohmann::json::binary_t &) override { return false; } // cannot occur in text
 
   bool start_object(std::size_t) override { return open(JsonValue::Kind::Object); }
   bool start_array(std::size_t) override { return open(JsonValue::Kind::Array); }
@@ -156,7 +155,7 @@ public:
                 (end == std::string::npos || end < last ? "" : message.substr(end + 1));
     }
     bool atEnd = message.find("unexpected end of input") != std::string::npos;
-    // The parser has read up to the end of the token that it cannot use.
+    // The parser has read up to the end of the offending token.
     std::size_t end = atEnd ? text.size() : std::clamp<std::size_t>(position, 1, text.size());
     std::size_t start = atEnd ? end : end - 1;
     if (message.find("unexpected string literal") != std::string::npos) {
@@ -175,7 +174,7 @@ public:
     std::size_t before =
         start == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", start - 1);
     if ((wrong == '}' || wrong == ']') && before != std::string::npos && text[before] == ',')
-      error->note("JSON has no comma behind the last element");
+      error->note("JSON allows no comma after the last element");
     else if (wrong == '/')
       error->note("JSON has no comments");
     return false;
@@ -185,7 +184,7 @@ public:
   std::optional<Error> error;
 
 private:
-  /// Puts a value of `kind` where the next value belongs, and points `added` at it.
+  /// Adds a value of `kind` at the current position, and points `added` at it.
   bool add(JsonValue::Kind kind) {
     Token token = cursor.next();
     if (stack.empty()) {
@@ -213,8 +212,8 @@ private:
 
   bool open(JsonValue::Kind kind) {
     add(kind);
-    // The open values are each the last of their parents, which do not grow meanwhile: pointers
-    // stay valid.
+    // Each open value is the last of its parent, which does not grow meanwhile: pointers stay
+    // valid.
     stack.push_back(added);
     if (stack.size() <= deepestNesting)
       return true;

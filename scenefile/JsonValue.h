@@ -1,4 +1,4 @@
-//===- JsonValue.h - JSON of which every value knows its place ------------===//
+//===- JsonValue.h - JSON with the position of every value ----------------===//
 #pragma once
 
 #include "support/Error.h"
@@ -28,11 +28,11 @@ struct JsonValue {
   double number = 0;
   std::string string;
   std::vector<JsonValue> elements; // Array
-  // Object, in the order of the file; no key twice
+  // Object, in the order of the file; keys are unique
   std::vector<std::pair<JsonKey, JsonValue>> members;
 
-  // Where it begins: a string inside its quotes, an array or object at its bracket (length 1). Line
-  // 0 for an override.
+  // Its beginning: a string inside its quotes, an array or object at its bracket (length 1). Line 0
+  // for an override.
   std::shared_ptr<const std::string> file;
   std::uint32_t line = 0, column = 0, length = 0;
   bool fromOverride = false; // came from --set
@@ -46,8 +46,8 @@ struct JsonValue {
 /// "a number", "an object": for messages.
 const char *describe(JsonValue::Kind kind);
 
-/// Parses a whole text. Throws Error with JsonSyntax, or DuplicateKey. Nesting deeper than
-/// 256 is refused.
+/// Parses a whole text. Throws Error with JsonSyntax, or DuplicateKey. Nesting deeper than 256 is
+/// rejected.
 JsonValue parseJson(const std::string &text, const std::string &file);
 
 /// Applies "path.to.key=value": see readSceneFile. A missing last key of an object is added, an

@@ -9,7 +9,7 @@ using runtime::Transform;
 
 namespace {
 
-/// Where a file's mesh is to be.
+/// A mesh file with the transform of its objects.
 struct Placement {
   std::size_t file;
   const Transform *transform;

@@ -13,8 +13,8 @@
 
 namespace rtsl::scene {
 
-/// Reads each file of a scene once and moves its mesh to where objects have it, on all cores.
-/// Objects that have a file in the same place share a mesh.
+/// Reads each mesh file of a scene once and applies the transforms of its objects, on all cores.
+/// Objects with the same file and transform share a mesh.
 class MeshFiles {
 public:
   explicit MeshFiles(const SceneDescription &description);
@@ -22,11 +22,11 @@ public:
   /// The number of an object's mesh.
   std::size_t numberOf(const GeometryDescription &geometry) const;
 
-  /// A mesh that nobody has taken yet. Throws what runtime::loadMesh throws.
+  /// A mesh, which can be taken once. Throws the errors of runtime::loadMesh.
   runtime::Mesh take(std::size_t number);
 
 private:
-  /// A mesh, or why there is none.
+  /// A mesh, or the error of loading it.
   struct Result {
     runtime::Mesh mesh;
     std::exception_ptr failure;

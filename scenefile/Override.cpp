@@ -11,7 +11,7 @@ namespace rtsl::scene {
 
 namespace {
 
-/// Says of a whole value that it came from the command line.
+/// Marks a value and its parts as given on the command line.
 void mark(JsonValue &value, const std::shared_ptr<const std::string> &origin) {
   value.file = origin;
   value.line = value.column = value.length = 0;
@@ -28,7 +28,7 @@ JsonValue parseValue(const std::string &text, const std::string &origin) {
   try {
     return parseJson(text, origin);
   } catch (const Error &error) {
-    // What begins like JSON was meant to be JSON, and a number that is too large to be a number.
+    // Text that begins like JSON must be JSON, and a number must be in range.
     if (error.code == ErrorCode::OutOfRange ||
         (!text.empty() && (text[0] == '{' || text[0] == '[' || text[0] == '"')))
       throw Error(ErrorCode::BadOverride, error.what(), Place{origin});
@@ -92,8 +92,7 @@ private:
       fail(fmt::format("`{}` is {}: it has no `{}` in it", walked, describe(from.kind), part));
     if (JsonValue *found = from.find(part))
       return *found;
-    // A section of the file may be left out; deeper down a name that is not there is more likely a
-    // slip.
+    // A section of the file may be missing; deeper down a missing name is more likely a mistake.
     if (!last && !first) {
       std::string message = fmt::format("`{}` has no `{}`", walked, part);
       if (const std::string near = closestName(part, keysOf(from)); !near.empty())
@@ -112,7 +111,7 @@ private:
     std::size_t index = 0;
     auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
     if (error != std::errc() || end != part.data() + part.size())
-      fail(fmt::format("`{}` is a list: `{}` is no index into it", walked, part));
+      fail(fmt::format("`{}` is a list: `{}` is not an index", walked, part));
     if (last && index == list.elements.size())
       list.elements.emplace_back();
     if (index >= list.elements.size())

@@ -53,13 +53,13 @@ std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uin
                           const std::string &what) {
   double number = readNumber(value, what);
   if (number != std::floor(number))
-    throw Error(ErrorCode::WrongType, fmt::format("{} is a whole number, not {:g}", what, number),
+    throw Error(ErrorCode::WrongType, fmt::format("{} must be an integer, not {:g}", what, number),
                 value.place());
   if (number < lowest || number > highest)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("{} lies between {} and {}, it cannot be {:.0f}", what, lowest, highest,
-                            number),
-                value.place());
+    throw Error(
+        ErrorCode::OutOfRange,
+        fmt::format("{} must be between {} and {}, not {:.0f}", what, lowest, highest, number),
+        value.place());
   return std::uint32_t(number);
 }
 

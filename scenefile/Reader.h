@@ -1,4 +1,4 @@
-//===- Reader.h - picking JSON apart, with messages -----------------------===//
+//===- Reader.h - reading JSON values, with error messages ----------------===//
 #pragma once
 
 #include "scenefile/JsonValue.h"
@@ -11,18 +11,17 @@ namespace rtsl::scene {
 /// Throws WrongType unless `value` is of `kind`. `what` begins the message: "`camera`".
 const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what);
 
-/// Throws UnknownKey for the keys of an object that are not in `known`, with what may have been
-/// meant.
+/// Throws UnknownKey for the keys of an object that are not in `known`, with a suggestion.
 void checkKeys(const JsonValue &object, std::initializer_list<const char *> known,
                const std::string &what);
 
-/// A member that must be there: MissingKey otherwise.
+/// A required member: throws MissingKey.
 const JsonValue &require(const JsonValue &object, const char *key, const std::string &what);
 
 /// A finite number.
 double readNumber(const JsonValue &value, const std::string &what);
 
-/// A whole number in [lowest, highest]: WrongType, OutOfRange.
+/// An integer in [lowest, highest]: throws WrongType, OutOfRange.
 std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uint32_t highest,
                           const std::string &what);
 

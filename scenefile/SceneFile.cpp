@@ -62,19 +62,18 @@ public:
   }
 
 private:
-  /// Keys of the format that this version does not know what to do with.
+  /// Rejects keys of the format that this version does not support.
   void refuseWhatComesLater() const {
     for (const char *key : {"nodes", "variables"})
       for (const auto &member : root.members)
         if (member.first.text == key)
-          throw Error(
-              ErrorCode::NotSupported,
-              fmt::format("`{}` is not supported yet: list what there is to see in `objects`", key),
-              member.second.fromOverride ? member.second.place() : root.place(member.first));
+          throw Error(ErrorCode::NotSupported,
+                      fmt::format("`{}` is not supported yet: list the geometry in `objects`", key),
+                      member.second.fromOverride ? member.second.place()
+                                                 : root.place(member.first));
   }
 
-  /// Reads what stands behind a key, if it is there. A mistake in it keeps no other section from
-  /// being read.
+  /// Reads the value of a key, if present. An error in it does not prevent reading other sections.
   template <typename Read>
   void section(const char *key, Read read) {
     if (const JsonValue *value = root.find(key))
@@ -95,7 +94,7 @@ private:
             [&](const JsonValue &value) { object = readObject(value, fmt::format("`{}`", key)); });
   }
 
-  /// What begins a sample.
+  /// Requires the object that starts samples.
   void requireStart() const {
     bool isClassic = scene.render.engine == runtime::Engine::Classic;
     require(root, isClassic ? "camera" : "rayGeneration",
@@ -137,8 +136,8 @@ private:
     scene.imports.push_back(std::move(import));
   }
 
-  /// Relative to the folder of the scene file; what the command line gives, to the working
-  /// directory.
+  /// Paths are relative to the folder of the scene file; those from the command line, to the
+  /// working directory.
   std::string resolve(const JsonValue &value) const {
     std::filesystem::path path(value.string);
     if (path.is_absolute() || value.fromOverride)
@@ -185,12 +184,12 @@ private:
     });
   }
 
-  /// Helpers, textures and materials share their names.
+  /// Helpers, textures and materials share one namespace.
   void refuseTakenName(const std::string &name, const Place &place) const {
     const auto refuse = [&](const auto &objects, const char *what) {
       if (auto other = objects.find(name); other != objects.end())
         throw Error(ErrorCode::DuplicateKey,
-                    fmt::format("`{}` is the name of a {} already", name, what), place)
+                    fmt::format("`{}` is already the name of a {}", name, what), place)
             .related(other->second.place, fmt::format("the {}", what));
     };
     refuse(scene.helpers, "helper");
@@ -234,7 +233,7 @@ private:
     return geometry;
   }
 
-  /// What there is to hit, and where.
+  /// The geometry of an object, and its transform.
   void readShape(const JsonValue &value, GeometryDescription &geometry) const {
     const JsonValue *primitive = value.find("primitive"), *mesh = value.find("mesh");
     if (!primitive == !mesh)
@@ -259,7 +258,7 @@ private:
     }
   }
 
-  /// A number or a list of numbers; how many there may be is the program's to say.
+  /// A number or a list of numbers; the program determines how many.
   static const JsonValue &readColor(const JsonValue &value, const std::string &what) {
     if (value.kind == Kind::Number) {
       readNumber(value, what);
@@ -304,11 +303,11 @@ private:
   ErrorCollector errors;
 };
 
-/// An object of the scene, wherever it is written: its class, and its members.
+/// Visits an object of the scene, in any position: its class, and its members.
 using ObjectVisitor = std::function<void(
     const LocatedName &, const std::vector<std::pair<LocatedName, const JsonValue *>> &)>;
 
-/// Objects written where a reference is asked for are objects too.
+/// Objects written in place of a reference are visited, too.
 void forEachObject(const JsonValue &value, const ObjectVisitor &visit) {
   if (value.kind == Kind::Object) {
     if (const JsonValue *className = value.find("class");
@@ -335,7 +334,7 @@ void forEachObject(const ObjectDescription &object, const ObjectVisitor &visit) 
 
 /// In the order of the file's sections.
 void forEachObject(const SceneDescription &description, const ObjectVisitor &visit) {
-  // Of what begins a sample only one takes part.
+  // Only one of camera and ray generation is used.
   const auto &start = description.render.engine == runtime::Engine::Classic
                           ? description.camera
                           : description.rayGeneration;

@@ -7,8 +7,8 @@
 //   runtime::Scene built = scene::buildScene(description, program);
 //
 // docs/scene-format.md describes the format, docs/scene-schema.json is its schema. All errors are
-// Error with file, line, column and length; the one
-// that is thrown carries the others that the same scene has.
+// Error with file, line, column and length; the one that is thrown carries the other errors of the
+// scene.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -29,7 +29,7 @@
 
 namespace rtsl::scene {
 
-/// A text with its place.
+/// A text with its position.
 struct LocatedName {
   std::string text;
   Place place;
@@ -56,11 +56,11 @@ struct GeometryDescription {
   std::string meshPath;                       // resolved
   ReferenceDescription material;
   runtime::Transform transform;
-  std::uint32_t mask = ~0u; // rays see it whose mask has a bit of it
+  std::uint32_t mask = ~0u; // visible to rays whose mask has a common bit
   Place place;
 };
 
-/// "render", with the defaults where the file is silent.
+/// "render", with the defaults for missing values.
 struct RenderSettings {
   runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t width = 960, height = 540;
@@ -69,7 +69,7 @@ struct RenderSettings {
   std::uint32_t seed = 1;
 };
 
-/// What the settings ask of the renderer; the rest has its defaults.
+/// The options of the renderer for these settings; the others keep their defaults.
 runtime::RenderOptions renderOptions(const RenderSettings &settings);
 
 struct ImportDescription {
@@ -94,26 +94,26 @@ struct SceneDescription {
 };
 
 /// Reads a scene file and applies overrides (each "path.to.key=value", as given to --set) in order.
-/// An override's value is JSON, or else taken as a string; its paths to files are relative to the
-/// working directory, those of the file to the file's folder.
+/// An override's value is JSON, or else a string; paths in it are relative to the working
+/// directory, those in the file to the file's folder.
 SceneDescription readSceneFile(const std::string &path,
                                const std::vector<std::string> &overrides = {});
 
-/// The same for a text that is at hand; `path` is for messages and for relative paths.
+/// The same for a text in memory; `path` is for messages and for relative paths.
 SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides = {});
 
 /// The classes that the scene names, each once, sorted. Linking keeps these.
 std::vector<std::string> classesUsed(const SceneDescription &description);
 
-/// Every mention of a class, with its place, in the order of the file's sections.
+/// Every mention of a class, with its position, in the order of the file's sections.
 std::vector<LocatedName> classMentions(const SceneDescription &description);
 
 /// The members that are set in some object of each class that the scene names, inherited ones
-/// included. What is null, or a list of nothing else, is not set.
+/// included. Null, or a list of nulls, does not count.
 std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description);
 
-/// Loads the meshes, makes the objects and checks all names and types against the program.
+/// Loads the meshes, creates the objects and checks all names and types against the program.
 runtime::Scene buildScene(const SceneDescription &description,
                           std::shared_ptr<const runtime::Program> program);
 

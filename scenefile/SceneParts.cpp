@@ -13,7 +13,7 @@ public:
   explicit Collector(const SceneDescription &scene) : scene(scene) {}
 
   std::vector<Part> run() {
-    // Names first, so that they have indices when somebody refers to them.
+    // Names first, so that they have indices before they are referred to.
     for (const auto &[name, helper] : scene.helpers)
       named(name, "helper ", helper);
     for (const auto &[name, texture] : scene.textures)
@@ -77,7 +77,7 @@ private:
       add(*member.second, part);
   }
 
-  /// Strings are names of objects, but for that of a class.
+  /// Strings are names of objects, except for that of a class.
   void add(const JsonValue &value, Part &part) {
     if (value.kind == Kind::String)
       refer(value.string, part);

@@ -1,4 +1,4 @@
-//===- SceneParts.h - what refers to what in a scene ----------------------===//
+//===- SceneParts.h - the references between objects of a scene -----------===//
 #pragma once
 
 #include "scenefile/SceneFile.h"
@@ -9,22 +9,21 @@
 
 namespace rtsl::scene {
 
-/// An object that has a name or a place in a list, with the objects that are written in place
-/// inside of it.
+/// A named object or an element of a list, with the objects that are written in place inside it.
 struct Part {
   enum class Role : std::uint8_t {
     Root,
     Light,
     Named
-  }; // named textures and materials are there for others alone
+  }; // named textures and materials are used only through references
   Role role = Role::Root;
   std::string name; // for people: "material clay", "lights.0"
   std::vector<std::string> classes;
-  std::vector<std::size_t> refersTo; // indices of parts; names that nothing has are left out
+  std::vector<std::size_t> refersTo; // indices of parts; unknown names are left out
   Place place;
 };
 
-/// All parts of a scene. Of what begins a sample only one takes part.
+/// All parts of a scene. Only one of camera and ray generation is included.
 std::vector<Part> partsOf(const SceneDescription &description);
 
 } // namespace rtsl::scene

@@ -19,7 +19,7 @@ Transform readScale(const JsonValue &value) {
   return Transform::scale(s[0], s[1], s[2]);
 }
 
-/// {"axis": [x, y, z], "angle": degrees}, or degrees round x, then y, then z.
+/// {"axis": [x, y, z], "angle": degrees}, or degrees about x, then y, then z.
 Transform readRotation(const JsonValue &value) {
   if (value.kind == JsonValue::Kind::Array) {
     std::vector<double> angles = readNumbers(value, 3, "`rotate`");
@@ -64,7 +64,7 @@ Transform readTransform(const JsonValue &value) {
   if (const JsonValue *matrix = value.find("matrix")) {
     if (value.members.size() > 1)
       throw Error(ErrorCode::WrongType,
-                  "`matrix` stands alone in a transform; a list of transforms can hold more",
+                  "`matrix` cannot be combined with other keys; use a list of transforms",
                   value.place());
     transform = readMatrix(*matrix);
   }

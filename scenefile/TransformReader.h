@@ -7,8 +7,8 @@
 namespace rtsl::scene {
 
 /// An object with scale, rotate and translate (applied in this order) or with matrix; or a list of
-/// such objects, applied in the order of the list. Throws what Reader.h throws, and OutOfRange for
-/// a transform that flattens space.
+/// such objects, applied in the order of the list. Throws the errors of Reader.h, and OutOfRange
+/// for a transform that flattens space.
 runtime::Transform readTransform(const JsonValue &value);
 
 } // namespace rtsl::scene

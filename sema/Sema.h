@@ -12,13 +12,13 @@
 namespace rtsl {
 
 /// Checks all `units` and what they import, once each. Reports through `diagnostics`. Returns a
-/// module even if there were errors (what was broken is left out), so that tools may look at the
+/// module even if there were errors (broken parts are left out), so that tools can inspect the
 /// rest.
 std::unique_ptr<typed::Module> check(const std::vector<const ast::TranslationUnit *> &units,
                                      const ImportResolver &resolver, Diagnostics &diagnostics);
 
 namespace typed {
-/// The module as indented text, one node a line with its type: `--emit=typed-ast`.
+/// The module as indented text, one node per line with its type: `--emit=typed-ast`.
 std::string dump(const Module &module);
 } // namespace typed
 

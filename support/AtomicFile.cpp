@@ -26,18 +26,18 @@ constexpr const char *standardOutput = "-";
               fmt::format("cannot write `{}`: {}", path, std::strerror(error)), Place{path});
 }
 
-/// A name in the folder of `path`, so that renaming stays within one file system.
+/// A name in the same folder, so that renaming stays within one file system.
 std::string temporaryName(const std::string &path) {
   static std::atomic<unsigned> counter{0};
   std::size_t slash = path.find_last_of('/');
   std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
   std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
-  // Shortened, for the whole must stay a legal name.
+  // Shortened, so that the result is a valid name.
   return fmt::format("{}.{}.{}-{}.tmp", folder, file.substr(0, 200), ::getpid(), counter++);
 }
 
-/// Creates the temporary file with the rights that a new file would have, or those of the one that
-/// it replaces.
+/// Creates the temporary file with the permissions of a new file, or those of the file that it
+/// replaces.
 int createTemporary(const std::string &path, std::string &temporary) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     temporary = temporaryName(path);
@@ -74,7 +74,7 @@ bool isFolder(const std::string &path) {
          (path.back() == '/' || (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)));
 }
 
-/// The file that a symbolic link stands for: the link is to stay, its target to be replaced.
+/// The target of a symbolic link: the link is kept, its target replaced.
 std::string followLinks(std::string path) {
   for (int depth = 0; depth < 40; ++depth) {
     char target[4096];
@@ -125,7 +125,7 @@ void checkFileWritable(const std::string &path) {
 
 void writeFileAtomically(const std::string &path, std::string_view bytes) {
   if (path == standardOutput) {
-    std::fflush(stdout); // what was printed before comes first
+    std::fflush(stdout); // earlier output comes first
     if (const int error = writeAll(STDOUT_FILENO, bytes))
       throwUnwritable(path, error);
     return;
@@ -139,7 +139,7 @@ void writeFileAtomically(const std::string &path, std::string_view bytes) {
   std::string target = followLinks(path), temporary;
   struct stat replaced;
   bool replaces = ::stat(target.c_str(), &replaced) == 0;
-  // Renaming would get past the write protection of a file.
+  // Renaming would ignore the write protection of a file.
   if (replaces && ::access(target.c_str(), W_OK) != 0)
     throwUnwritable(path, errno);
   int file = createTemporary(target, temporary);
@@ -148,7 +148,7 @@ void writeFileAtomically(const std::string &path, std::string_view bytes) {
   int error = writeAll(file, bytes);
   if (error == 0 && replaces && ::fchmod(file, replaced.st_mode & 07777) != 0)
     error = errno;
-  // Some file systems find out only here that they are full.
+  // Some file systems report only here that they are full.
   if (error == 0 && ::fsync(file) != 0 && errno != EINVAL && errno != ENOSYS)
     error = errno;
   if (::close(file) != 0 && error == 0)

@@ -9,20 +9,20 @@
 
 namespace rtsl {
 
-/// Writes `bytes` to a temporary file beside `path`, makes sure that they reached the disk, and
-/// renames it. A path that is no regular file (a pipe, /dev/stdout) is written directly; "-" is
-/// standard output. On an error nothing is left behind. Throws FileUnwritable.
+/// Writes `bytes` to a temporary file beside `path`, flushes it to disk, and renames it. A path
+/// that is not a regular file (a pipe, /dev/stdout) is written directly; "-" is standard output. On
+/// an error no partial file remains. Throws FileUnwritable.
 void writeFileAtomically(const std::string &path, std::string_view bytes);
 
 /// Throws FileUnwritable if writeFileAtomically could not create its file.
 void checkFileWritable(const std::string &path);
 
-/// Throws OverwritesInput if `output` is the same file as one of `inputs`, by whatever name or
-/// link. "-" is standard output.
+/// Throws OverwritesInput if `output` is the same file as one of `inputs`, under any name or link.
+/// "-" is standard output.
 void refuseToOverwrite(const std::string &output, const std::vector<std::string> &inputs);
 
-/// The whole of a file; of "-", standard input. Throws FileNotFound, FileUnreadable: a device
-/// cannot be read, for it may never end.
+/// The contents of a file; of "-", standard input. Throws FileNotFound or FileUnreadable: devices
+/// are not read, because they may never end.
 std::string readFile(const std::string &path);
 
 } // namespace rtsl

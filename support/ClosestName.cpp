@@ -34,8 +34,8 @@ static std::string lowered(const std::string &text) {
 }
 
 std::string closestName(const std::string &name, const std::vector<std::string> &candidates) {
-  // Nobody mistypes a name of hundreds of letters, and the distance takes the product of the
-  // lengths.
+  // Names of hundreds of letters are not misspelled, and the distance takes time proportional to
+  // the product of the lengths.
   if (name.empty() || name.size() > 80)
     return "";
   std::string best;

@@ -20,14 +20,14 @@ enum class ErrorCode : std::uint8_t {
   FileNotFound,
   FileUnreadable,
   FileUnwritable,  // a path that cannot be written, or a disk that is full
-  OverwritesInput, // an output that is a file which is read
+  OverwritesInput, // an output that is also an input
   UnsupportedFormat,
   // Meshes and images.
   BadMesh, // truncated, empty, not finite, an index out of range
   BadImage,
-  BadPackage, // no package, of another version, truncated, damaged
+  BadPackage, // not a package, of another version, truncated, damaged
   // Scene files.
-  NotAScene, // shaders where a scene is taken
+  NotAScene, // shaders where a scene is expected
   JsonSyntax,
   DuplicateKey,
   UnknownKey,
@@ -51,21 +51,21 @@ enum class ErrorCode : std::uint8_t {
   // Running.
   Cancelled,
   OutOfMemory,
-  NoDevice, // no GPU, or none that can be used
+  NoDevice, // no GPU, or no usable one
   Internal,
 };
 
 /// The name of a code as scripts see it: "fileNotFound".
 const char *name(ErrorCode code);
 
-/// A place in a file. Lines and columns count from 1, columns and lengths in bytes; line 0 means
+/// A position in a file. Lines and columns count from 1, columns and lengths in bytes; line 0 means
 /// the whole file.
 struct Place {
   std::string file;
   std::uint32_t line = 0, column = 0, length = 0;
 };
 
-/// A second place that helps to understand an error.
+/// A second position that helps to understand an error.
 struct RelatedPlace {
   Place place;
   std::string text;
@@ -76,7 +76,7 @@ public:
   Error(ErrorCode code, const std::string &message, std::optional<Place> place = std::nullopt)
       : std::runtime_error(message), code(code), place(std::move(place)) {}
 
-  /// Suggests what to write instead of the text at `place`.
+  /// Suggests a replacement for the text at `place`.
   Error &fix(std::string text) {
     replacement = std::move(text);
     return *this;
@@ -95,11 +95,11 @@ public:
   std::optional<std::string> replacement;
   std::vector<RelatedPlace> relatedPlaces;
   std::vector<std::string> notes;
-  /// What else is wrong with the same input, if its reader could go on.
+  /// Further errors in the same input, if its reader could continue.
   std::vector<Error> further;
 };
 
-/// What does not stop a run but deserves a word.
+/// A problem that does not stop a run.
 struct Warning {
   std::string message;
   std::optional<Place> place;

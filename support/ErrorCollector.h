@@ -1,4 +1,4 @@
-//===- ErrorCollector.h - all that is wrong, in one run -------------------===//
+//===- ErrorCollector.h - all errors of an input, in one run --------------===//
 //
 //   ErrorCollector errors;
 //   for (const Part &part : parts)
@@ -16,11 +16,11 @@
 
 namespace rtsl {
 
-/// Lets a reader go on behind an error in its input. Faults that are not the input's (memory,
-/// cancellation, our own) pass through at once.
+/// Lets a reader continue after an error in its input. Other errors (memory, cancellation, internal
+/// ones) are passed on at once.
 class ErrorCollector {
 public:
-  /// More than anybody reads: the reader stops here.
+  /// More errors are not useful: the reader stops.
   static constexpr std::size_t limit = 100;
 
   template <typename Step>

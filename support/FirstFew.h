@@ -1,4 +1,4 @@
-//===- FirstFew.h - the first of many, whatever order they come in ---------===//
+//===- FirstFew.h - the first of many items, in any order -----------------===//
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace rtsl {
 
-/// Keeps those `most` items that come first by `Less`, and counts all.
+/// Keeps the `most` items that come first by `Less`, and counts all.
 template <typename Item, typename Less>
 class FirstFew {
 public:
@@ -19,7 +19,7 @@ public:
   void add(Item item) {
     ++count;
     items.push_back(std::move(item));
-    if (items.size() >= 2 * most + 1) // seldom enough to cost little
+    if (items.size() >= 2 * most + 1) // rare enough to cost little
       shorten();
   }
 

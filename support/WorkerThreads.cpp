@@ -1,4 +1,4 @@
-//===- WorkerThreads.cpp - threads with the stack that they need ------------===//
+//===- WorkerThreads.cpp - threads with a stack of the required size ------===//
 #include "support/WorkerThreads.h"
 
 #include "support/Error.h"
@@ -17,7 +17,7 @@ namespace rtsl {
 
 namespace {
 
-/// What is left of this thread's stack.
+/// The remaining stack of this thread.
 std::uint64_t stackLeft() {
   pthread_attr_t attributes;
   if (::pthread_getattr_np(::pthread_self(), &attributes) != 0)
@@ -54,11 +54,11 @@ void *runWorker(void *worker) {
   return nullptr;
 }
 
-/// Whether the thread runs.
+/// Starts the thread; returns whether that succeeded.
 bool start(Worker &worker, std::uint64_t stackBytes) {
   pthread_attr_t attributes;
   ::pthread_attr_init(&attributes);
-  std::size_t usual = 0; // where what is needed is not known
+  std::size_t usual = 0; // if the default size is unknown
   ::pthread_attr_getstacksize(&attributes, &usual);
   const bool isStarted =
       ::pthread_attr_setstacksize(&attributes, std::max<std::size_t>(stackBytes, usual)) == 0 &&
@@ -70,8 +70,8 @@ bool start(Worker &worker, std::uint64_t stackBytes) {
 [[noreturn]] void refuse(std::uint64_t stackBytes) {
   throw Error(
       ErrorCode::OutOfMemory,
-      fmt::format("the rays of one sample take {:.1f} MiB of stack, and there is no memory for "
-                  "so much: make the limit of depth or the local variables of shaders smaller",
+      fmt::format("the rays of one sample take {:.1f} MiB of stack, and there is not enough "
+                  "memory: reduce the limit of depth or the local variables of shaders",
                   double(stackBytes) / (1 << 20)));
 }
 
@@ -79,17 +79,17 @@ bool start(Worker &worker, std::uint64_t stackBytes) {
 
 void runOnThreads(unsigned count, std::uint64_t stackBytes,
                   const std::function<void(unsigned)> &work) {
-  // Whole pages, for the system asks for them.
+  // Whole pages, as the system requires.
   const std::uint64_t page = std::uint64_t(::sysconf(_SC_PAGESIZE));
   const std::uint64_t needed = (stackBytes + stackMargin + page - 1) / page * page;
   const std::uint64_t memory = machineMemory();
   if (stackBytes > memory)
     refuse(stackBytes);
-  // Stacks take memory only where they are used, and all of them may be.
+  // Stacks take memory only where they are used, but all of them may be used.
   count = unsigned(std::min<std::uint64_t>(count, std::max<std::uint64_t>(memory / needed, 1)));
   const bool takesPart = needed <= stackLeft();
 
-  std::deque<Worker> workers; // which stay where they are
+  std::deque<Worker> workers; // which are never moved
   for (unsigned number = takesPart ? 1 : 0; number < count; ++number) {
     workers.push_back({&work, number});
     if (!start(workers.back(), needed)) {

@@ -19,6 +19,7 @@
 #include "codegen/lower/KnownConditions.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
+#include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/Dispatch.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 #include "codegen/passes/restructure/Restructure.h"

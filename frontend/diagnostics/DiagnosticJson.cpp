@@ -25,7 +25,7 @@ Json rangeJson(const SourceManager &sources, SourceRange range) {
   const std::string_view file = sources.shown(range.file, range.begin).file;
   Json result = {
       {"file", std::string(file)}, {"begin", shown(range.begin)}, {"end", shown(range.end)}};
-  // `#line` changed what is reported; an editor wants to know the file that the text lies in.
+  // `#line` changed what is reported; an editor also needs the file that contains the text.
   if (const Json begin = real(range.begin);
       file != sources.name(range.file) || begin != result["begin"])
     result["written"] = {{"file", std::string(sources.name(range.file))},
@@ -63,7 +63,7 @@ std::string renderJson(const Diagnostics &diagnostics) {
   const Json document = {{"version", 1},
                          {"diagnostics", std::move(messages)},
                          {"hiddenErrors", diagnostics.hiddenErrors()}};
-  // Source text may hold any bytes; what is not UTF-8 is replaced rather than thrown at the caller.
+  // Source text may hold any bytes; what is not UTF-8 is replaced instead of throwing an exception.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

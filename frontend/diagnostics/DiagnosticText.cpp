@@ -14,9 +14,9 @@
 //   12 |   color c = mix(a, (b + 1));
 //      |                           +
 //
-// Source text is shown as cells of a terminal: tabs reach to the next multiple of four, bytes that
-// are not UTF-8 and control characters are written as \xNN (so that a source cannot send escape
-// sequences to the terminal), and of a very long line only the surroundings of the place are shown.
+// Source text is shown as terminal cells: tabs extend to the next multiple of four, bytes that are
+// not UTF-8 and control characters are written as \xNN (so that a source cannot send escape
+// sequences to the terminal), and of a very long line only the part around the range is shown.
 //
 //===----------------------------------------------------------------------===//
 #include "frontend/diagnostics/Diagnostics.h"
@@ -30,9 +30,9 @@ namespace rtsl {
 namespace {
 
 constexpr std::size_t tabWidth = 4;
-/// Lines with more bytes than this are shown as a window around the place.
+/// Lines with more bytes than this are shown as a window around the range.
 constexpr std::size_t maxLineBytes = 160;
-/// Bytes of a long line that are shown before the place.
+/// Bytes of a long line that are shown before the range.
 constexpr std::size_t bytesBefore = 50;
 /// Code longer than this is not repeated in the text of a `help:` line.
 constexpr std::size_t maxQuotedBytes = 40;
@@ -41,7 +41,7 @@ constexpr std::size_t maxQuotedBytes = 40;
 // Text in cells
 //===----------------------------------------------------------------------===//
 
-/// A piece of text as a terminal shows it, and where each of its bytes stands there.
+/// A piece of text as a terminal shows it, and the column of each of its bytes.
 struct Cells {
   std::string text;
   std::vector<std::size_t> columnOfByte; // one more than there are bytes
@@ -110,14 +110,14 @@ Window windowAround(std::string_view line, std::size_t place) {
 // Marks under a line
 //===----------------------------------------------------------------------===//
 
-/// The part of a range that lies on one line: bytes [begin, end) of the line.
+/// The part of a range on one line: bytes [begin, end) of the line.
 struct Mark {
   std::size_t begin = 0, end = 0;
   bool isPrimary = false;
   std::string text;
 };
 
-/// Colours of a terminal; empty strings if there are none.
+/// Colours of a terminal; empty strings if colour is off.
 struct Palette {
   std::string_view severity, label, gutter, bold, help, reset;
 };
@@ -138,7 +138,7 @@ private:
   void renderMarks(const Cells &cells, std::size_t windowBegin, const std::vector<Mark> &marks);
   void renderFix(const Fix &fix);
 
-  /// The number under which a line is shown.
+  /// The line number that is displayed for a line.
   std::uint32_t shownLine(FileId file, std::uint32_t line) const {
     return sources.shown(file, sources.offset(file, {line, 1})).at.line;
   }
@@ -173,13 +173,13 @@ void TextRenderer::endLine() {
   out += '\n';
 }
 
-/// Splits a range into marks. Of a range over several lines the first and the last line are shown;
-/// the text stands at the last.
+/// Splits a range into marks. Of a range over several lines the first and the last line are shown,
+/// with the text at the last one.
 void TextRenderer::addMarks(Lines &lines, SourceRange range, bool isPrimary,
                             const std::string &text) {
   const LineColumn first = sources.lineColumn(range.file, range.begin);
   LineColumn last = sources.lineColumn(range.file, std::max(range.begin, range.end));
-  if (last.line > first.line && last.column == 1) { // up to the end of the line before
+  if (last.line > first.line && last.column == 1) { // up to the end of the previous line
     --last.line;
     last.column = static_cast<std::uint32_t>(sources.line(range.file, last.line).size()) + 1;
   }
@@ -233,8 +233,7 @@ void TextRenderer::renderMarks(const Cells &cells, std::size_t windowBegin,
     at = end;
   }
 
-  // The text of the mark that stands last follows its underline; the others hang below, the
-  // rightmost first.
+  // The text of the last mark follows its underline; the others hang below, the rightmost first.
   std::vector<Underline> hanging;
   for (const Underline &underline : underlines)
     if (!underline.mark->text.empty())
@@ -252,7 +251,7 @@ void TextRenderer::renderMarks(const Cells &cells, std::size_t windowBegin,
     std::size_t at = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (hanging[i].begin < at)
-        continue; // two marks that begin at the same place share their line
+        continue; // two marks that begin at the same column share their line
       out.append(hanging[i].begin - at, ' ');
       out += paint(style(hanging[i]), "|");
       at = hanging[i].begin + 1;
@@ -308,7 +307,7 @@ void TextRenderer::renderLine(FileId file, std::uint32_t number, std::vector<Mar
 void TextRenderer::renderLines(FileId file, const Lines &lines) {
   std::uint32_t previous = 0;
   for (const auto &[number, marks] : lines) {
-    if (previous != 0 && number == previous + 2) { // a single line between is shown
+    if (previous != 0 && number == previous + 2) { // a single line between them is shown
       const std::string_view between = sources.line(file, previous + 1);
       const Window window = windowAround(between, 0);
       gutter(file, previous + 1);
@@ -348,7 +347,7 @@ void TextRenderer::renderFix(const Fix &fix) {
   const LineColumn begin = sources.lineColumn(fix.range.file, fix.range.begin);
   const LineColumn end = sources.lineColumn(fix.range.file, fix.range.end);
   if (begin.line != end.line || fix.replacement.find('\n') != std::string::npos) {
-    // Lines come or go: the new text alone, a line each.
+    // The edit changes the number of lines: only the new text is shown, one line each.
     std::string_view rest = fix.replacement;
     for (int shown = 0; !rest.empty() && shown < 8; ++shown) {
       const std::size_t size = std::min(rest.find('\n'), rest.size());
@@ -407,8 +406,8 @@ void TextRenderer::render(const Diagnostic &diagnostic) {
     out += fmt::format(" [-W{}{}]", isError ? "error=" : "", warning);
   endLine();
 
-  // Each text that is shown, that of the message first. A label at the range of the message is its
-  // text.
+  // All texts to show, beginning with that of the message. A label at the range of the message
+  // replaces its text.
   std::vector<std::pair<FileId, Lines>> files;
   const auto linesOf = [&](FileId file) -> Lines & {
     for (auto &[id, lines] : files)

@@ -32,7 +32,8 @@ Diagnostic &Diagnostics::add(Diagnostic diagnostic) {
   const bool isError = !isWarning || warnings.isError(diagnostic.code);
   diagnostic.severity = isError ? Severity::Error : Severity::Warning;
   const auto code = static_cast<int>(diagnostic.code);
-  // What a macro makes twice of one argument, and what is included twice, is one mistake.
+  // A mistake in a macro argument that is expanded twice, or in a file that is included twice, is
+  // reported once.
   const WrittenRange place = sourceManager.written(diagnostic.range);
   std::string key = diagnostic.range.isValid() ? fmt::format("{} {} {} {}", code, place.range.file,
                                                              place.range.begin, place.range.end)
@@ -82,7 +83,7 @@ void explainOrigin(Diagnostic &diagnostic, const WrittenRange &place,
   if (!place.macros.empty())
     diagnostic.label(place.range,
                      fmt::format("in this use of macro `{}`", place.macros.front().macro));
-  // Of a long way its beginning and its end.
+  // Of a long chain, only its beginning and its end.
   constexpr std::size_t shown = 4;
   const std::size_t size = place.macros.size();
   for (std::size_t i = 0; i < size; ++i)
@@ -103,7 +104,7 @@ Diagnostic asWritten(const Diagnostic &diagnostic, const SourceManager &sources)
   result.range = place.range;
   for (Label &label : result.labels) {
     const WrittenRange labelled = sources.written(label.range);
-    // Two words of one macro: where they differ, in its body.
+    // Two tokens of the same macro: point to where their expansions differ, in its body.
     const auto differs = [&](std::size_t i) {
       return i >= place.macros.size() || !(place.macros[i].range == labelled.macros[i].range);
     };
@@ -121,12 +122,12 @@ Diagnostic asWritten(const Diagnostic &diagnostic, const SourceManager &sources)
   for (Fix &fix : result.fixes) {
     const WrittenRange fixed = sources.written(fix.range);
     if (!fixed.isVerbatim)
-      continue; // there is no one text to change
+      continue; // there is no single text to change
     fix.range = fixed.range;
     fix.sure &= fixed.macros.empty() && fixed.includes.empty();
     fixes.push_back(std::move(fix));
   }
-  // The fixes of one message belong together.
+  // All fixes of a message are applied, or none.
   const bool isComplete = fixes.size() == diagnostic.fixes.size();
   for (Fix &fix : fixes)
     fix.sure &= isComplete;

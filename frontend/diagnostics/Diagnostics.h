@@ -20,13 +20,13 @@ namespace rtsl {
 
 enum class Severity : std::uint8_t { Warning, Error };
 
-/// One enumerator a row of DiagnosticCodes.def.
+/// One enumerator for each row of DiagnosticCodes.def.
 enum class Code : std::uint16_t {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) id,
 #include "frontend/diagnostics/DiagnosticCodes.def"
 };
 
-/// What turns a warning on: nothing more, or `-Wperf`.
+/// What turns a warning on: `Usual` ones are on by default, `Perf` ones need `-Wperf`.
 enum class WarningGroup : std::uint8_t { Usual, Perf };
 
 /// The row of the table for a code.
@@ -35,42 +35,42 @@ struct CodeInfo {
   const char *number; // "E0201"
   Severity severity;
   const char *message;                      // fmt format string
-  const char *warning = nullptr;            // "unused-variable", as `-W` says it; null for errors
+  const char *warning = nullptr;            // "unused-variable", as in `-W`; null for errors
   WarningGroup group = WarningGroup::Usual; // of a warning
 };
 const CodeInfo &info(Code code);
-/// The table, one row a code.
+/// The table, one row for each code.
 extern const std::vector<CodeInfo> codeTable;
 
-/// Which warnings are shown, and which of these are errors.
+/// Which warnings are shown, and which of them are errors.
 class WarningOptions {
 public:
-  /// Takes over what stands behind `-W`: `NAME`, `no-NAME`, `error`, `error=NAME`, `no-error`,
-  /// `no-error=NAME`, where NAME is a warning, `perf` or `all`. What comes later counts. Returns
-  /// what is wrong with it, or an empty text.
+  /// Applies the text after `-W`: `NAME`, `no-NAME`, `error`, `error=NAME`, `no-error`,
+  /// `no-error=NAME`, where NAME is a warning, `perf` or `all`. Later options override earlier
+  /// ones. Returns an error text, or an empty one.
   std::string apply(std::string_view text);
 
   bool isOn(Code code) const;
-  /// Of a warning that is on.
+  /// For a warning that is on.
   bool isError(Code code) const;
 
 private:
   struct State {
-    bool isSet = false, isOn = false;         // otherwise as its group says
-    bool isErrorSet = false, isError = false; // otherwise as all of them
+    bool isSet = false, isOn = false;         // if not set, the default of the group
+    bool isErrorSet = false, isError = false; // if not set, `allAreErrors`
   };
-  std::vector<State> states; // by code; empty: nothing was asked
+  std::vector<State> states; // by code; empty: no option was given
   bool allAreErrors = false;
 };
 
-/// A second place that helps to understand the message.
+/// A second range that helps to understand the message.
 struct Label {
   SourceRange range;
   std::string text;
 };
 
-/// An edit that mends the mistake. `sure` fixes are applied by `rtslc check --fix`; the sure fixes
-/// of one message belong together, the others are alternatives for the reader.
+/// An edit that corrects the mistake. `sure` fixes are applied by `rtslc check --fix`: all sure
+/// fixes of a message, or none. The others are alternatives for the reader.
 struct Fix {
   SourceRange range; // empty range: insertion
   std::string replacement;
@@ -107,14 +107,13 @@ public:
 
   /// Formats the message of `code` with `args` and records it at `range`. The returned message may
   /// be extended until the next report. The same code at the same range is recorded once (without a
-  /// place, and in the same use of a macro: the same message).
+  /// range, or in the same use of a macro, the message is compared, too).
   template <typename... Args>
   Diagnostic &report(Code code, SourceRange range, const Args &...args) {
     return add(code, range, fmt::format(fmt::runtime(info(code).message), args...));
   }
 
-  /// Takes over the messages of `other`, in the order of their places: what several steps found in
-  /// one text.
+  /// Takes the messages of `other`, sorted by position: those of several steps over the same text.
   void addSorted(Diagnostics &&other);
 
   bool hasErrors() const { return numErrors != 0; }
@@ -136,23 +135,23 @@ private:
 
   const SourceManager &sourceManager;
   std::vector<Diagnostic> diagnostics;
-  std::unordered_set<std::string> seen; // code and place of what was reported
-  Diagnostic dropped{};                 // takes what is reported beyond the limit, or twice
+  std::unordered_set<std::string> seen; // code and range of all reported messages
+  Diagnostic dropped{};                 // absorbs messages beyond the limit and duplicates
   std::size_t numErrors = 0;
   std::size_t numHidden = 0;
 };
 
-/// The message as its author can follow it: all ranges lie in files. What came from a macro is
-/// shown where the macro is used, with labels in the definitions that it went through; what came
-/// from an included file names the files that led to it. A fix stays sure only if it changes a text
-/// that means the same wherever it is used: outside of macros and includes.
+/// The message in terms of what the author wrote: all ranges are in files. A range from a macro is
+/// shown where the macro is used, with labels in the definitions that it was expanded through; a
+/// range in an included file gets notes with the chain of includes. A fix stays sure only if its
+/// text is used once: outside of macros and includes.
 Diagnostic asWritten(const Diagnostic &diagnostic, const SourceManager &sources);
 
-/// Adds to a message at `place.range` the labels and notes that say how the text came from there.
+/// Adds to a message at `place.range` the labels and notes that say how the text was expanded.
 void explainOrigin(Diagnostic &diagnostic, const WrittenRange &place, const SourceManager &sources);
 
-/// Text for people: file:line:column, the source line, a caret, labels, notes and fixes. ANSI
-/// colour if asked.
+/// Text for people: file:line:column, the source line, a caret, labels, notes and fixes. With ANSI
+/// colours if `colour`.
 std::string renderText(const Diagnostics &diagnostics, bool colour);
 
 /// One JSON document for scripts: {"version": 1, "diagnostics": [...], "hiddenErrors": 0}. Each

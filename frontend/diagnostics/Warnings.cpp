@@ -55,7 +55,7 @@ std::string WarningOptions::apply(std::string_view text) {
       state.isErrorSet = true;
       state.isError = !isOff;
     }
-    if (!concernsError || !isOff) { // to make it an error turns it on; the contrary does not
+    if (!concernsError || !isOff) { // `error=` turns it on, too
       state.isSet = true;
       state.isOn = concernsError || !isOff;
     }

@@ -10,15 +10,14 @@
 namespace rtsl {
 
 /// The bytes of a text, each as a character of its own: indices are byte offsets, and nothing is
-/// copied. (The stream that comes with the parser library decodes the whole text into four bytes a
-/// character.)
+/// copied. (The stream of the parser library decodes the whole text into four bytes per character.)
 class ByteStream final : public antlr4::CharStream {
 public:
   explicit ByteStream(std::string_view bytes) : bytes(bytes) {}
 
   void consume() override { ++position; }
   std::size_t LA(ssize_t i) override {
-    // The lexer asks for the next byte and the one before only.
+    // The lexer reads only the next byte and the previous one.
     const std::size_t at = i > 0 ? position + static_cast<std::size_t>(i) - 1
                                  : position - static_cast<std::size_t>(-i);
     return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : IntStream::EOF;

@@ -1,4 +1,4 @@
-//===- Token.h - the words of a text, as the parser gets them -------------===//
+//===- Token.h - the tokens of a text, as the parser gets them ------------===//
 #pragma once
 
 #include <cstdint>
@@ -6,17 +6,16 @@
 
 namespace rtsl {
 
-/// One word. `type` is one of the token types of grammar/RtslLexer.g4, or `endOfFile`.
+/// One token. `type` is one of the token types of grammar/RtslLexer.g4, or `endOfFile`.
 struct Token {
   static constexpr std::uint16_t endOfFile = 0xFFFF;
 
   std::uint32_t begin = 0, end = 0; // bytes of the text
   std::uint16_t type = endOfFile;
-  std::uint16_t depth = 0; // brackets that are open around it; a bracket stands outside of itself
-  bool startsLine = false; // the first word of its line
-  bool isBroken = false;   // a literal that could not be read
-  bool followsMistake =
-      false; // text in front of it was refused: what the parser says here is a consequence
+  std::uint16_t depth = 0;     // open brackets around it; for a bracket, those outside it
+  bool startsLine = false;     // the first token of its line
+  bool isBroken = false;       // a literal that could not be read
+  bool followsMistake = false; // text before it was rejected: a syntax error here is a consequence
 };
 
 /// A comment, for the syntax tree.
@@ -28,8 +27,8 @@ struct Comment {
 struct TokenList {
   std::vector<Token> tokens; // the last one is the end of the file
   std::vector<Comment> comments;
-  /// False after mistakes (an unclosed comment, brackets that do not balance) behind which nothing
-  /// can be understood.
+  /// False after a mistake (an unclosed comment, unbalanced brackets) from which the parser cannot
+  /// recover.
   bool isUsable = true;
 };
 

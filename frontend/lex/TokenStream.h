@@ -1,4 +1,4 @@
-//===- TokenStream.h - words as the parser reads them ---------------------===//
+//===- TokenStream.h - tokens as the parser reads them --------------------===//
 #pragma once
 
 #include "frontend/lex/Token.h"
@@ -11,7 +11,7 @@
 
 namespace rtsl {
 
-/// A word in the parse tree.
+/// A token in the parse tree.
 class ParserToken final : public antlr4::Token {
 public:
   ParserToken(const rtsl::Token &word, std::size_t index) : word(word), index(index) {}
@@ -25,8 +25,7 @@ public:
   std::size_t getStartIndex() const override { return word.begin; }
   std::size_t getStopIndex() const override { return word.end - std::size_t{1}; }
   std::size_t getChannel() const override { return DEFAULT_CHANNEL; }
-  // Messages are written from offsets; the parser library's own texts and lines are never asked
-  // for.
+  // Messages are written from offsets; the parser library's own texts and lines are never used.
   std::string getText() const override { return {}; }
   std::size_t getLine() const override { return 0; }
   std::size_t getCharPositionInLine() const override { return 0; }
@@ -38,8 +37,8 @@ private:
   const std::size_t index;
 };
 
-/// The words of a text in a row, all in memory. The last one is the end of the file, and nothing
-/// goes beyond it.
+/// The tokens of a text, all in memory. The last one is the end of the file; reading never goes
+/// beyond it.
 class WordStream final : public antlr4::TokenStream {
 public:
   explicit WordStream(const std::vector<rtsl::Token> &words) {

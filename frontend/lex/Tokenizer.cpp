@@ -1,4 +1,4 @@
-//===- Tokenizer.cpp - text to words --------------------------------------===//
+//===- Tokenizer.cpp - text to tokens -------------------------------------===//
 #include "frontend/lex/Tokenizer.h"
 #include "frontend/lex/ByteStream.h"
 #include "frontend/source/Utf8.h"
@@ -40,9 +40,9 @@ private:
   ByteStream stream;
   RtslLexer lexer;
   TokenList list;
-  std::uint32_t previousEnd = 0; // of the last word or comment
+  std::uint32_t previousEnd = 0; // of the last token or comment
   bool startsLine = true;
-  bool isStartCarried = false; // by a comment, to the word behind it
+  bool isStartCarried = false; // by a comment, to the next token
   bool followsMistake = false;
 };
 
@@ -57,8 +57,8 @@ void Tokenizer::add(std::size_t type, std::uint32_t begin, std::uint32_t end) {
   followsMistake = false;
 }
 
-/// A string without an end takes the rest of its line; the brackets and semicolons at the end of it
-/// are given back.
+/// A string without an end extends to the end of its line, except for the brackets and semicolons
+/// there.
 void Tokenizer::addString(std::uint32_t begin, std::uint32_t end) {
   const std::string_view code = text.substr(begin, end - begin);
   const std::size_t last = code.find_last_not_of(" \t),;");
@@ -87,9 +87,9 @@ void Tokenizer::addNumber(std::uint32_t begin, std::uint32_t end) {
   else if (number.substr(0, 2) == "0b" || number.substr(0, 2) == "0B")
     diagnostic.note("numbers are decimal, octal with a `0` in front, or hexadecimal with `0x`");
   else if (number.find('_') != std::string_view::npos)
-    diagnostic.note("digits stand together");
+    diagnostic.note("digits cannot be separated");
   else if (number.substr(0, 2) == "0x" || number.substr(0, 2) == "0X")
-    diagnostic.note("behind `0x` stand the digits 0-9 and a-f");
+    diagnostic.note("the digits after `0x` are 0-9 and a-f");
   else if (number.size() > 1 && number[0] == '0' && rest.empty())
     diagnostic.note("a number that begins with 0 is octal, with the digits 0-7");
   else if (!isFloat && !isDigit(number.back()) && (rest.front() == 'e' || rest.front() == 'E'))
@@ -98,7 +98,7 @@ void Tokenizer::addNumber(std::uint32_t begin, std::uint32_t end) {
   list.tokens.back().isBroken = true;
 }
 
-/// Characters that look like one of RTSL, as editors and web pages put them in.
+/// The RTSL character that a character resembles, such as those that editors and web pages insert.
 std::string_view lookAlike(char32_t codePoint) {
   switch (codePoint) {
   case 0x00A0: // no-break space
@@ -129,12 +129,12 @@ std::string_view lookAlike(char32_t codePoint) {
   }
 }
 
-/// Of what stands between apostrophes, with them: `'\x7f'`.
+/// Length of a character literal, with its apostrophes: `'\x7f'`.
 constexpr std::size_t longestCharacter = 6;
 
-/// Reports each of some characters in a row that begin no word.
+/// Reports each character in a run of characters that begin no token.
 void Tokenizer::refuseCharacters(std::uint32_t begin, std::uint32_t end) {
-  // `'c'` is one mistake, not two with a name between.
+  // `'c'` is one mistake, not two with a name between them.
   if (text[begin] == '\'')
     if (const std::size_t close = text.find_first_of("'\n", begin + 1);
         close != std::string_view::npos && text[close] == '\'' && close - begin <= longestCharacter)
@@ -153,7 +153,7 @@ void Tokenizer::refuseCharacters(std::uint32_t begin, std::uint32_t end) {
 }
 
 TokenList Tokenizer::run() {
-  lexer.removeErrorListeners(); // there are no errors: the grammar has a rule for everything
+  lexer.removeErrorListeners(); // there are no errors: the grammar has a rule for every input
   if (reportIfNotText(file, diagnostics)) {
     list.isUsable = false;
   } else {
@@ -176,8 +176,8 @@ TokenList Tokenizer::run() {
       case RtslLexer::LINE_COMMENT:
       case RtslLexer::BLOCK_COMMENT:
         list.comments.push_back({begin, end, startsLine});
-        // The word behind a comment begins the line if the comment did, or if it ends on a line of
-        // its own.
+        // The token after a comment begins the line if the comment did, or if the comment contains
+        // a line break.
         isStartCarried =
             startsLine || text.substr(begin, end - begin).find('\n') != std::string_view::npos;
         break;
@@ -193,7 +193,8 @@ TokenList Tokenizer::run() {
         addNumber(begin, end);
         break;
       case RtslLexer::DIRECTIVE: {
-        // Directives are gone by now: this one stands behind something else, or a macro made it.
+        // Directives have been processed: this `#` is not at the start of a line, or comes from a
+        // macro.
         diagnostics.report(Code::misplacedDirective, range(begin, begin + 1));
         followsMistake = true;
         break;

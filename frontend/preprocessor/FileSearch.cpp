@@ -1,4 +1,4 @@
-//===- FileSearch.cpp - which file a name means ---------------------------===//
+//===- FileSearch.cpp - the file that a name denotes ----------------------===//
 #include "frontend/preprocessor/FileSearch.h"
 
 #include "support/ClosestName.h"
@@ -44,15 +44,15 @@ void explainSearch(Diagnostic &diagnostic, const std::string &name,
          !error && at != end && siblings.size() < 10000; at.increment(error))
       siblings.push_back(at->path().filename().string());
   }
-  // The order in which a folder lists its files is the file system's.
+  // A folder lists its files in an order that depends on the file system.
   std::sort(siblings.begin(), siblings.end());
   if (!path.is_absolute()) {
     std::string list;
     for (const std::string &folder : searched)
       list += fmt::format("{}`{}`", list.empty() ? "" : ", ", folder);
     diagnostic.note(searched.empty()
-                        ? "no folder was given with `-I`, and `<...>` looks nowhere else"
-                        : "looked in " + list);
+                        ? "`<...>` is searched only in the folders of `-I`, and none was given"
+                        : "searched in " + list);
   }
   const std::string closest = closestName(path.filename().string(), siblings);
   if (closest.empty())

@@ -1,4 +1,4 @@
-//===- Messages.cpp - what clang's preprocessor says, in our words --------===//
+//===- Messages.cpp - clang's preprocessor messages as ours ---------------===//
 #include "Messages.h"
 
 #include "frontend/preprocessor/FileSearch.h"
@@ -18,7 +18,7 @@ struct Messages::Place {
   Origin origin;
   std::string_view text; // there
 
-  /// From here to `end` of the same file.
+  /// From here to `end` in the same file.
   Origin to(std::uint32_t end) const {
     Origin result = origin;
     result.range.end = end;
@@ -44,7 +44,7 @@ std::string argument(const clang::Diagnostic &info, unsigned index) {
   }
 }
 
-/// The end of a line, without spaces and a comment in front of it.
+/// The end of a line, without a comment at its end and the spaces before it.
 std::uint32_t restOfLine(std::string_view text, std::size_t from) {
   std::size_t end = std::min(text.find('\n', from), text.size());
   for (const std::string_view comment : {"//", "/*"})
@@ -63,14 +63,14 @@ bool Messages::reportFile(const clang::Diagnostic &info, const Place &at) {
   case diag::err_pp_file_not_found_angled_include_not_fatal:
   case diag::err_pp_file_not_found_typo_not_fatal: {
     const Origin directive = directiveAround(at.origin);
-    if (session->sources.text(directive.range) != "include") { // a relative of clang's
+    if (session->sources.text(directive.range) != "include") { // an extension of clang's
       reportUnknownDirective(directive);
       session->stop();
       return true;
     }
     const std::string name = argument(info, 0);
     const SourceRange range = at.origin.range;
-    if (unreadable == range) // it is there
+    if (unreadable == range) // the file exists
       return true;
     const std::string_view text = session->sources.text(range.file);
     const bool isAngled = range.begin < text.size() && text[range.begin] == '<';
@@ -133,7 +133,7 @@ bool Messages::reportConditional(const clang::Diagnostic &info, const Place &at)
   case diag::err_pp_endif_without_if:
   case diag::pp_err_else_without_if:
   case diag::pp_err_elif_without_if:
-    if (at.text != "elifdef" && at.text != "elifndef") // these do not exist, which has been said
+    if (at.text != "elifdef" && at.text != "elifndef") // unknown directives: reported
       session->report(Code::conditionWithoutIf, at.origin, at.text);
     return true;
   case diag::pp_err_else_after_else:
@@ -152,7 +152,7 @@ bool Messages::reportConditional(const clang::Diagnostic &info, const Place &at)
   }
 }
 
-/// The condition itself.
+/// The condition of `#if`.
 bool Messages::reportCondition(const clang::Diagnostic &info, const Place &at) {
   const auto bad = [&](const std::string &why) -> Diagnostic & {
     return session->report(Code::badCondition, at.origin, why);
@@ -173,17 +173,17 @@ bool Messages::reportCondition(const clang::Diagnostic &info, const Place &at) {
     else if (const std::string closest = closestName(name, macros); !closest.empty())
       diagnostic.fix(at.origin.range, closest);
     else
-      diagnostic.note(fmt::format("`defined({})` asks whether it is one", name));
+      diagnostic.note(fmt::format("use `defined({})` to test whether it is defined", name));
     return true;
   }
   case diag::err_pp_expected_value_in_expr:
     bad("a value is missing");
     return true;
   case diag::err_pp_expr_bad_token_start_expr:
-    bad(fmt::format("`{}` begins no value", at.text));
+    bad(fmt::format("a value cannot begin with `{}`", at.text));
     return true;
   case diag::err_pp_expr_bad_token_binop:
-    bad(fmt::format("`{}` is no operator here", at.text));
+    bad(fmt::format("`{}` is not an operator here", at.text));
     return true;
   case diag::err_pp_expr_bad_token_lparen:
     if (!(undefined == at.origin.range))
@@ -196,20 +196,20 @@ bool Messages::reportCondition(const clang::Diagnostic &info, const Place &at) {
     bad("`defined` takes a name, or a name in parentheses");
     return true;
   case diag::err_pp_expected_eol:
-    bad("it goes on behind its end");
+    bad("extra tokens after its end");
     return true;
   case diag::err_pp_division_by_zero:
   case diag::err_pp_remainder_by_zero:
     bad("it divides by zero");
     return true;
   case diag::err_pp_illegal_floating_literal:
-    bad("its numbers are integers");
+    bad("only integers are allowed");
     return true;
   case diag::err_pp_colon_without_question:
     bad("`:` has no `?`");
     return true;
   case diag::ext_pp_comma_expr:
-    bad("`,` is no operator here");
+    bad("`,` is not an operator here");
     return true;
   case diag::err_expected:
     bad("`:` is missing");
@@ -223,7 +223,7 @@ bool Messages::reportCondition(const clang::Diagnostic &info, const Place &at) {
     bad(fmt::format("`{}` is not a number", at.text));
     return true;
   case diag::err_invalid_digit:
-    bad("a number has digits that it cannot have");
+    bad("a number has an invalid digit");
     return true;
   default:
     return false;
@@ -247,7 +247,7 @@ bool Messages::reportDefinition(const clang::Diagnostic &info, const Place &at) 
       return true;
     }
     last = &session->report(Code::macroRedefined, at.origin, argument(info, 0));
-    last->note(fmt::format("`#undef {}` in front of it makes way", argument(info, 0)));
+    last->note(fmt::format("write `#undef {}` before it", argument(info, 0)));
     return true;
   case diag::ext_pp_redef_builtin_macro:
   case diag::ext_pp_undef_builtin_macro:
@@ -267,7 +267,7 @@ bool Messages::reportDefinition(const clang::Diagnostic &info, const Place &at) 
   case diag::ext_missing_whitespace_after_macro_name:
   case diag::warn_missing_whitespace_after_macro_name:
     session->report(Code::badMacroName, at.origin,
-                    "a space is missing behind the name of the macro");
+                    "a space is missing after the name of the macro");
     return true;
   case diag::err_pp_missing_rparen_in_macro_def:
     return parameters("`)` is missing");
@@ -276,19 +276,19 @@ bool Messages::reportDefinition(const clang::Diagnostic &info, const Place &at) 
   case diag::err_pp_expected_comma_in_arg_list:
     return parameters("`,` is missing");
   case diag::err_pp_invalid_tok_in_arg_list:
-    return parameters("something other than names stands");
+    return parameters("only names are allowed");
   case diag::err_pp_duplicate_name_in_arg_list:
-    return parameters("a name stands twice");
+    return parameters("a name is repeated");
   case diag::ext_named_variadic_macro:
-    return parameters("`...` stands behind a name");
+    return parameters("`...` follows a name");
   case diag::err_pp_stringize_not_parameter:
-    return body("`#` stands in front of something that is no parameter");
+    return body("`#` is not followed by a parameter");
   case diag::err_paste_at_start:
-    return body("`##` has nothing in front of it");
+    return body("`##` has no token before it");
   case diag::err_paste_at_end:
-    return body("`##` has nothing behind it");
+    return body("`##` has no token after it");
   case diag::ext_pp_bad_vaargs_use:
-    return body("`__VA_ARGS__` belongs to macros with `...`");
+    return body("`__VA_ARGS__` is allowed only in macros with `...`");
   default:
     return false;
   }
@@ -300,7 +300,7 @@ bool Messages::reportUse(const clang::Diagnostic &info, const Place &at) {
   case diag::err_too_many_args_in_macro_invoc:
   case diag::err_too_few_args_in_macro_invoc:
   case diag::err_unterm_macro_invoc:
-    misuse = info.getID(); // said when clang names the macro, in a note
+    misuse = info.getID(); // reported when clang names the macro, in a note
     misused = at.origin;
     session->isUsable = false;
     return true;
@@ -318,7 +318,7 @@ bool Messages::reportUse(const clang::Diagnostic &info, const Place &at) {
   }
 }
 
-/// The macro that something was said about, or where it was defined.
+/// Adds the location of the macro of the last message, or of its earlier definition.
 void Messages::addNote(const clang::Diagnostic &info) {
   const Origin place = session->origins.of(info.getLocation());
   const bool isShown = place.range.file != 0;
@@ -345,7 +345,7 @@ void Messages::addNote(const clang::Diagnostic &info) {
   }
 }
 
-/// The word behind the `#` at the beginning of a line.
+/// The token after the `#` at the beginning of a line.
 Origin Messages::directiveAround(const Origin &place) const {
   const std::string_view text = session->sources.text(place.range.file);
   const std::size_t lineBegin = text.rfind('\n', place.range.begin) + 1; // 0 in the first line
@@ -378,7 +378,7 @@ void Messages::reportUnknownDirective(const Origin &word) {
   }
 }
 
-/// Other directives, and what stands where none can be.
+/// Other directives, and directives that are not allowed here.
 bool Messages::reportDirective(const clang::Diagnostic &info, const Place &at) {
   switch (info.getID()) {
   case diag::err_pp_invalid_directive:
@@ -445,7 +445,7 @@ void Messages::HandleDiagnostic(clang::DiagnosticsEngine::Level level,
     return;
 
   switch (info.getID()) {
-  case diag::err_character_not_allowed: // words and characters of the text: our lexer's business
+  case diag::err_character_not_allowed: // tokens and characters of the text: reported by our lexer
   case diag::err_character_not_allowed_identifier:
   case diag::err_invalid_utf8:
     return;

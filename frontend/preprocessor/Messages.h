@@ -1,4 +1,4 @@
-//===- Messages.h - what clang's preprocessor says, in our words ----------===//
+//===- Messages.h - clang's preprocessor messages as ours -----------------===//
 #pragma once
 
 #include "Session.h"
@@ -8,8 +8,8 @@
 
 namespace rtsl {
 
-/// Turns clang's diagnostics into messages of DiagnosticCodes.def. What clang says of words that
-/// our own lexer reads again (numbers, strings, characters) is left to that one.
+/// Turns clang's diagnostics into messages of DiagnosticCodes.def. Those about tokens that our own
+/// lexer reads again (numbers, strings, characters) are left to that lexer.
 class Messages final : public clang::DiagnosticConsumer {
 public:
   void start(Session &session, const Watcher &watcher) {
@@ -20,9 +20,9 @@ public:
                         const clang::Diagnostic &info) override;
 
 private:
-  struct Place; // of what clang speaks of
+  struct Place; // that clang's diagnostic refers to
   void addNote(const clang::Diagnostic &info);
-  // Each knows some of clang's diagnostics, and says whether this was one of them.
+  // Each handles some of clang's diagnostics, and returns whether this was one of them.
   bool reportFile(const clang::Diagnostic &info, const Place &at);
   bool reportConditional(const clang::Diagnostic &info, const Place &at);
   bool reportCondition(const clang::Diagnostic &info, const Place &at);
@@ -35,9 +35,9 @@ private:
   Session *session = nullptr;
   const Watcher *watcher = nullptr;
   Diagnostic *last = nullptr; // the redefinition that a note may belong to
-  unsigned misuse = 0;        // of a macro: what clang said about it; 0: nothing
+  unsigned misuse = 0;        // clang's diagnostic about the use of a macro; 0: none
   Origin misused;
-  SourceRange unreadable; // where the last file was included that cannot be read
+  SourceRange unreadable; // the last `#include` of a file that cannot be read
   SourceRange undefined;  // the last name in a condition that is no macro
 };
 

@@ -1,9 +1,8 @@
 //===- Origins.cpp - from clang's locations to ours -----------------------===//
 //
-// Clang gives each use of a macro, and each run of words of an argument that took the place of a
-// parameter, a range of locations of its own, which it calls by a FileID as it does with files.
-// Words that `##`, `#` and `__LINE__` make stand in a text of clang's ("scratch space"); for these,
-// what they were made of is shown.
+// Clang gives each use of a macro, and each run of tokens of an argument that replaced a parameter,
+// a range of locations of its own, with a FileID as for files. Tokens that `##`, `#` and `__LINE__`
+// make are in a buffer of clang's ("scratch space"); for these, the use of the macro is shown.
 //
 //===----------------------------------------------------------------------===//
 #include "Origins.h"
@@ -44,7 +43,7 @@ Origin Origins::of(clang::SourceLocation location, std::uint32_t size) {
 
   const clang::SrcMgr::ExpansionInfo &info = locations.getSLocEntry(place.first).getExpansion();
   const clang::SourceLocation spelling = locations.getImmediateSpellingLoc(location);
-  // An argument belongs to the macro in whose body the parameter stands.
+  // An argument belongs to the macro whose body contains the parameter.
   const auto name = [&] {
     return clang::Lexer::getImmediateMacroName(
                info.isMacroArgExpansion() ? info.getExpansionLocStart() : location, locations,

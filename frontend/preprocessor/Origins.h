@@ -11,28 +11,28 @@
 
 namespace rtsl {
 
-/// Says where the words that clang's preprocessor gives were written, and collects the ways that
-/// they took.
+/// Finds where the tokens that clang's preprocessor outputs were written, and records the chains of
+/// expansions that produced them.
 class Origins {
 public:
   Origins(const clang::SourceManager &locations, const clang::LangOptions &language,
           const SourceFileSystem &files, SourceManager &sources)
       : locations(locations), language(language), files(files), sources(sources) {}
 
-  /// Of the word of `size` bytes at a location, in a file or in the expansion of a macro.
+  /// Of the token of `size` bytes at a location, in a file or in the expansion of a macro.
   Origin of(clang::SourceLocation location, std::uint32_t size);
-  /// Of the word at a location.
+  /// Of the token at a location.
   Origin of(clang::SourceLocation location) { return of(location, sizeAt(location)); }
-  /// From one word to another.
+  /// From one token to another.
   Origin of(clang::SourceLocation first, clang::SourceLocation last);
 
-  /// The text that clang calls `id`; 0: none of ours.
+  /// The text for clang's `id`; 0: none of ours.
   FileId fileOf(clang::FileID id);
-  /// The way into that text.
+  /// The chain of includes that leads to that text.
   std::uint32_t includeOf(clang::FileID id);
   std::uint32_t sizeAt(clang::SourceLocation location) const;
 
-  /// Names a text that is not on any disk.
+  /// Registers a text that is not on disk.
   void setFile(clang::FileID id, FileId file) { fileIds[id] = file; }
 
   /// 0: the file that is preprocessed.
@@ -44,7 +44,7 @@ private:
   const SourceFileSystem &files;
   SourceManager &sources;
   llvm::DenseMap<clang::FileID, FileId> fileIds;
-  // expansions and includes by clang's name for them
+  // by clang's FileID: expansions and includes
   llvm::DenseMap<clang::FileID, std::uint32_t> known;
 };
 

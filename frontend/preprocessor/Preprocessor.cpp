@@ -20,7 +20,7 @@ namespace rtsl {
 
 namespace {
 
-/// What clang wants to know of a machine: nothing that shows in a text.
+/// The target that clang requires; it does not affect the text.
 class NoTarget final : public clang::TargetInfo {
 public:
   NoTarget() : TargetInfo(llvm::Triple("x86_64-unknown-linux")) {
@@ -39,15 +39,15 @@ public:
 constexpr const char *languageMacros = "#define __VERSION__ 460\n"
                                        "#define __RTSL__ 100\n";
 
-/// Every directive and macro needs one of these characters; names with two underscores are the
-/// language's.
+/// Every directive and macro needs one of these characters; names with two underscores are
+/// predefined.
 bool mayNeedPreprocessing(std::string_view text) {
   return text.find('#') != std::string_view::npos || text.find("__") != std::string_view::npos ||
          text.find("\\\n") != std::string_view::npos ||
          text.find("\\\r\n") != std::string_view::npos;
 }
 
-/// Each in a line of its own, in the order of the command line.
+/// Each on a line of its own, in the order of the command line.
 std::string macroDefinitions(const PreprocessorOptions &options) {
   std::string text = languageMacros;
   if (!options.macros.empty())
@@ -95,7 +95,7 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
   clang::DiagnosticsEngine engine(llvm::makeIntrusiveRefCnt<clang::DiagnosticIDs>(),
                                   diagnosticOptions, &messages,
                                   /*ShouldOwnClient=*/false);
-  engine.setEnableAllWarnings(true); // Messages.cpp chooses
+  engine.setEnableAllWarnings(true); // Messages.cpp selects
   engine.setFatalsAsError(true);
 
   const auto files = llvm::makeIntrusiveRefCnt<SourceFileSystem>(sources, file);
@@ -122,7 +122,7 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
   const std::string_view name = sources.name(file);
   const clang::OptionalFileEntryRef entry =
       fileManager.getOptionalFileRef(llvm::StringRef(name.data(), name.size()));
-  if (!entry) { // the file has gone since it was read
+  if (!entry) { // the file was removed after it was read
     diagnostics.report(Code::cannotReadSource, SourceRange{}, name, "it has changed");
     result.isUsable = false;
     return result;
@@ -137,7 +137,7 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
   origins.setFile(mainFile, file);
   TextBuilder builder(preprocessor, origins, sources, file);
   Session session{locations, preprocessor, origins, sources, options, diagnostics, builder};
-  // Clang has more macros of its own. A picture does not depend on the time of day.
+  // Clang has more predefined macros. An image must not depend on the time of day.
   session.undefineMacros({"__LINE__", "__FILE__"});
   auto watcher = std::make_unique<Watcher>(session);
   Watcher &events = *watcher;
@@ -160,7 +160,7 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
 
   result.includes = std::move(session.includes);
   result.text = sources.addExpanded(builder.finish(mainFile));
-  // That a text is empty is no news when a mistake explains it.
+  // An empty text is not reported if an earlier mistake explains it.
   const bool isBlank =
       sources.text(result.text).find_first_not_of(" \t\r\n") == std::string_view::npos;
   result.isUsable = session.isUsable && !(isBlank && diagnostics.errorCount() > errorsBefore);

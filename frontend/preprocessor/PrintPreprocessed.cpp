@@ -1,4 +1,4 @@
-//===- PrintPreprocessed.cpp - an expanded text, to look at ---------------===//
+//===- PrintPreprocessed.cpp - printing an expanded text ------------------===//
 #include "Preprocessor.h"
 #include "frontend/source/Expansion.h"
 
@@ -27,7 +27,7 @@ std::string printPreprocessed(FileId text, const SourceManager &sources) {
   const std::string_view all = sources.text(text);
   std::string result;
   std::string_view file = sources.name(text);
-  std::uint32_t line = 1; // of `file`: what a reader counts
+  std::uint32_t line = 1; // of `file`: the current line for the reader
   bool isFirst = true;
   for (std::size_t begin = 0; begin < all.size();) {
     const std::size_t end = std::min(all.find('\n', begin), all.size());

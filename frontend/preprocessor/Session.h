@@ -10,7 +10,7 @@
 
 namespace rtsl {
 
-/// What the parts of the preprocessor share: clang's objects, and the way to our messages.
+/// What the parts of the preprocessor share: clang's objects, and the reporting of our messages.
 struct Session {
   clang::SourceManager &locations;
   clang::Preprocessor &preprocessor;
@@ -22,12 +22,12 @@ struct Session {
 
   /// Files that were read, each once.
   std::vector<std::string> includes{};
-  /// False after a mistake behind which the rest cannot be understood.
+  /// False after a mistake from which later stages cannot recover.
   bool isUsable = true;
-  /// True once a limit was passed. Nothing is read and nothing is said any more.
+  /// True once a limit was exceeded. Nothing more is read or reported.
   bool isStopped = false;
 
-  /// Reports at the place where the words at `origin` were written, with the way from there.
+  /// Reports at the range where the tokens at `origin` were written, with the chain of expansions.
   template <typename... Args>
   Diagnostic &report(Code code, const Origin &origin, const Args &...args) {
     const WrittenRange place = written(origins.expansions, origin);
@@ -38,11 +38,11 @@ struct Session {
 
   void undefineMacros(const std::vector<std::string_view> &kept = {});
 
-  /// Ends the run: no macro is expanded any more, and what is included is taken as empty. Clang
-  /// cannot be interrupted where it is, but what it still does is bounded by what it holds.
+  /// Ends the run: no more macros are expanded, and included files are treated as empty. Clang
+  /// cannot be interrupted, but its remaining work is bounded by the text that it already holds.
   void stop();
 
-  /// Where `#include "..."`, or `<...>`, in the file at hand looks for a file.
+  /// The folders that are searched for `#include "..."`, or `<...>`, in the file `from`.
   std::vector<std::string> searchedFolders(FileId from, bool isAngled) const;
 };
 

@@ -11,7 +11,7 @@ namespace rtsl {
 
 namespace {
 
-/// A text that stays in its manager.
+/// A text that is owned by the source manager.
 class SourceText final : public llvm::vfs::File {
 public:
   SourceText(llvm::vfs::Status info, llvm::StringRef text) : info(std::move(info)), text(text) {}
@@ -28,7 +28,7 @@ private:
   llvm::StringRef text;
 };
 
-/// A path as messages show it: without the `./` that a search puts in front.
+/// A path as messages show it: without the leading `./` that a search adds.
 std::string shownPath(const llvm::Twine &path) {
   llvm::SmallString<256> result;
   path.toVector(result);
@@ -60,7 +60,7 @@ llvm::ErrorOr<llvm::vfs::Status> SourceFileSystem::status(const llvm::Twine &pat
   if (!file || (info && info->getType() == llvm::sys::fs::file_type::regular_file &&
                 info->getSize() == sources.text(file).size()))
     return info;
-  // Standard input, and texts that were never on a disk or have changed there since they were read.
+  // Standard input, and texts that were never on disk or have changed there since they were read.
   const llvm::sys::fs::UniqueID id =
       info ? info->getUniqueID() : llvm::sys::fs::UniqueID(~std::uint64_t{0}, file);
   return llvm::vfs::Status(path, id, {}, 0, 0, sources.text(file).size(),

@@ -11,9 +11,8 @@
 
 namespace rtsl {
 
-/// The disk, with the texts of a `SourceManager` in front of it: what is read goes into the
-/// manager, once, and what is in the manager is not read again. So messages show the very bytes
-/// that were preprocessed.
+/// The disk, overlaid with the texts of a `SourceManager`: a file that is read is added to the
+/// manager, and never read again. So messages show exactly the bytes that were preprocessed.
 class SourceFileSystem final : public llvm::vfs::FileSystem {
 public:
   /// `main` may be a text without a file, such as standard input.

@@ -1,8 +1,8 @@
-//===- TextBuilder.cpp - words to an expanded text ------------------------===//
+//===- TextBuilder.cpp - tokens to an expanded text -----------------------===//
 //
-// Between two words of a file lie spaces, and also what the preprocessor dropped: directives, the
-// parts that `#if` left out, uses of macros that were empty. Comments are words here, so that a `#`
-// between two words always begins a directive.
+// Between two tokens of a file are spaces, and also what the preprocessor dropped: directives, the
+// parts that `#if` skipped, uses of macros with empty expansions. Comments count as tokens here, so
+// that a `#` between two tokens always begins a directive.
 //
 //===----------------------------------------------------------------------===//
 #include "TextBuilder.h"
@@ -28,14 +28,14 @@ bool isBracketOrSeparator(char c) {
   return std::string_view("()[]{};,").find(c) != std::string_view::npos;
 }
 
-/// True if two words would be read as one, or as others, without a space between them.
+/// True if two tokens would be read as one, or as different ones, without a space between them.
 bool needSpace(char last, char first) {
   if (isSpace(last) || isSpace(first) || isBracketOrSeparator(last) || isBracketOrSeparator(first))
     return false;
   return isWordCharacter(last) == isWordCharacter(first);
 }
 
-/// Size of a backslash and the end of the line behind it; 0: something else stands at `at`.
+/// Size of a backslash and the line end after it; 0 if there is none at `at`.
 std::uint32_t continuationAt(std::string_view text, std::uint32_t at) {
   if (text[at] != '\\' || at + 1 >= text.size())
     return 0;
@@ -68,7 +68,7 @@ TextBuilder::Progress &TextBuilder::progressIn(clang::FileID id) {
   return progress;
 }
 
-/// True if the text ends with what stands in front of `begin` in a file.
+/// True if the text ends with what precedes `begin` in a file.
 bool TextBuilder::continuesAt(const Progress &progress, std::uint32_t begin) const {
   const Piece &last = result.pieces.back();
   return last.isVerbatim && last.origin.range.file == progress.file &&
@@ -89,7 +89,7 @@ void TextBuilder::append(const Progress &progress, std::uint32_t begin, std::uin
   result.text += sources.text({progress.file, begin, end});
 }
 
-/// Appends words that do not stand in a file as they are.
+/// Appends tokens whose text is not in a file.
 void TextBuilder::append(std::string_view words, const Origin &origin) {
   result.pieces.push_back({static_cast<std::uint32_t>(result.text.size()), origin, false});
   result.text += words;
@@ -106,14 +106,14 @@ void TextBuilder::addGap(clang::SourceLocation begin, clang::SourceLocation end,
   if (first.first != last.first || origins.fileOf(first.first) == 0)
     return;
   Progress &progress = progressIn(first.first);
-  // The condition of an `#if` is read before it is known what is left out.
+  // The condition of an `#if` is read before it is known what is skipped.
   const auto at = std::upper_bound(
       progress.gaps.begin() + static_cast<std::ptrdiff_t>(progress.nextGap), progress.gaps.end(),
       first.second, [](std::uint32_t offset, const Gap &gap) { return offset < gap.begin; });
   progress.gaps.insert(at, {first.second, last.second, isDirective});
 }
 
-/// Passes over a directive, to the end of its line, and what it leaves out.
+/// Skips a directive, to the end of its line, and the text that it excludes.
 std::uint32_t TextBuilder::skipDirective(Progress &progress, std::string_view text,
                                          std::uint32_t at, std::uint32_t to) {
   while (at < to && text[at] != '\n') {
@@ -138,7 +138,7 @@ std::uint32_t TextBuilder::skipDirective(Progress &progress, std::string_view te
   return std::min(at, to);
 }
 
-/// Takes what lies between the last word of a file and the next one.
+/// Takes the text between the last token of a file and the next one.
 void TextBuilder::advance(Progress &progress, std::uint32_t to) {
   const std::string_view text = sources.text(progress.file);
   to = std::min(to, static_cast<std::uint32_t>(text.size()));
@@ -180,7 +180,8 @@ void TextBuilder::add(const clang::Token &token) {
   if (progress.file == 0)
     return;
   if (begin.first != lastFile) {
-    // An empty line, so that a comment in front of the `#include` belongs to nothing in the file.
+    // An empty line, so that a comment before the `#include` is not attached to the first
+    // declaration in the file.
     if (!result.text.empty() && result.text.back() != '\n')
       result.text += '\n';
     if (lastFile.isValid())

@@ -1,4 +1,4 @@
-//===- TextBuilder.h - words to an expanded text --------------------------===//
+//===- TextBuilder.h - tokens to an expanded text -------------------------===//
 #pragma once
 
 #include "Origins.h"
@@ -11,18 +11,18 @@
 
 namespace rtsl {
 
-/// Puts together what the preprocessor gives, so that it reads as the author wrote it: what comes
-/// from a file is taken over with its comments and spaces, directives and what they leave out
-/// become empty lines, and the words of a macro stand where the macro was used.
+/// Assembles the output of the preprocessor so that it reads as the author wrote it: text from a
+/// file keeps its comments and spaces, directives and the text that they exclude become empty
+/// lines, and the tokens of a macro are where the macro was used.
 class TextBuilder {
 public:
   TextBuilder(const clang::Preprocessor &preprocessor, Origins &origins,
               const SourceManager &sources, FileId file);
 
-  /// The next word or comment.
+  /// Adds the next token or comment.
   void add(const clang::Token &token);
-  /// A use of a macro, or what an `#if` left out, from `begin` to `end`: no part of the text. In
-  /// the order of the file.
+  /// Leaves out a use of a macro, or what an `#if` skipped, from `begin` to `end`. In the order of
+  /// the file.
   void addGap(clang::SourceLocation begin, clang::SourceLocation end, bool isDirective);
   /// Takes the rest of the file that is preprocessed.
   ExpandedText finish(clang::FileID mainFile);
@@ -32,12 +32,12 @@ private:
     std::uint32_t begin, end;
     bool isDirective;
   };
-  /// How far a file, as it was included once, has been taken.
+  /// The position in a file that was included, for each inclusion.
   struct Progress {
     FileId file = 0;
     std::uint32_t include = 0;
     std::uint32_t end = 0;
-    std::vector<Gap> gaps; // that are still to come
+    std::vector<Gap> gaps; // those still ahead
     std::size_t nextGap = 0;
   };
   Progress &progressIn(clang::FileID id);
@@ -55,7 +55,7 @@ private:
   const SourceManager &sources;
   llvm::DenseMap<clang::FileID, Progress> files;
   clang::FileID lastFile;
-  clang::SourceLocation use; // of the macro that the last word came from
+  clang::SourceLocation use; // of the macro that the last token came from
   ExpandedText result;
 };
 

@@ -1,4 +1,4 @@
-//===- Watcher.cpp - what happens while the preprocessor runs -------------===//
+//===- Watcher.cpp - callbacks while the preprocessor runs ----------------===//
 #include "Watcher.h"
 
 #include "frontend/lex/Tokenizer.h"
@@ -26,7 +26,7 @@ std::size_t Watcher::depthOfIncludes(clang::FileID file) const {
   return depth;
 }
 
-/// Clang calls itself for each parenthesis and sign of a condition.
+/// Clang recurses for each parenthesis and sign of a condition.
 void Watcher::checkConditions(clang::FileID id) {
   const FileId file = session.origins.fileOf(id);
   const std::string_view text = session.sources.text(file);
@@ -66,7 +66,7 @@ void Watcher::LexedFileChanged(clang::FileID id, LexedFileChangeReason reason,
     if (from.isInvalid()) {
       checkConditions(id);
     } else if (depthOfIncludes(id) > maxIncludeDepth) {
-      // All of the way would be a hundred notes: where it began, and what comes back.
+      // The whole chain would be a hundred notes: only its beginning and the file that repeats.
       Diagnostic &diagnostic =
           session.report(Code::includesTooDeep, session.origins.of(from), maxIncludeDepth);
       std::vector<std::string> &notes = diagnostic.notes;
@@ -105,7 +105,7 @@ void Watcher::FileChanged(clang::SourceLocation location, FileChangeReason reaso
                           clang::SrcMgr::CharacteristicKind, clang::FileID) {
   if (reason != RenameFile || session.isStopped)
     return;
-  // `#line` speaks of the next line.
+  // `#line` refers to the next line.
   const clang::FileIDAndOffset place =
       session.locations.getDecomposedLoc(session.locations.getFileLoc(location));
   const FileId file = session.origins.fileOf(place.first);
@@ -157,8 +157,8 @@ void Watcher::Ident(clang::SourceLocation location, llvm::StringRef) {
   session.report(Code::unknownDirective, session.origins.of(location), "ident");
 }
 
-/// RTSL knows `#pragma once`. Clang knows more, which would change what a text means: the rest of
-/// the line is passed over.
+/// RTSL has `#pragma once` only. Clang has others that would change the meaning of a text: the rest
+/// of the line is skipped.
 void Watcher::PragmaDirective(clang::SourceLocation location, clang::PragmaIntroducerKind) {
   auto *lexer = static_cast<clang::Lexer *>(session.preprocessor.getCurrentFileLexer());
   if (!lexer || session.isStopped)
@@ -200,9 +200,9 @@ void Watcher::If(clang::SourceLocation location, clang::SourceRange, ConditionVa
 //===----------------------------------------------------------------------===//
 // Macros
 //
-// How much a macro makes cannot be seen from the words that come out: the arguments of a macro are
-// expanded before they take the places of its parameters, and F(F(F(x))) doubles what it holds with
-// each level before the first word is out. So each use is counted where it begins, times the copies
+// The size of an expansion cannot be seen from the tokens that come out: the arguments of a macro
+// are expanded before they replace its parameters, and F(F(F(x))) doubles its argument with each
+// level before the first token is output. So each use is counted where it begins, times the copies
 // that the uses around it will make of it.
 //===----------------------------------------------------------------------===//
 

@@ -1,4 +1,4 @@
-//===- Watcher.h - what happens while the preprocessor runs ---------------===//
+//===- Watcher.h - callbacks while the preprocessor runs ------------------===//
 #pragma once
 
 #include "Session.h"
@@ -11,16 +11,16 @@
 
 namespace rtsl {
 
-/// Follows clang's preprocessor: keeps it within the limits of Preprocessor.h, refuses directives
-/// that clang has and RTSL has not, and notes what the text cannot show: empty macros, parts that
-/// were left out, `#line`.
+/// Follows clang's preprocessor: enforces the limits of Preprocessor.h, rejects directives that
+/// clang has and RTSL has not, and records what the output does not show: macros with empty
+/// expansions, skipped parts, `#line`.
 class Watcher final : public clang::PPCallbacks {
 public:
   explicit Watcher(Session &session) : session(session) {}
 
-  /// A word came out: whatever took part in making it is done.
+  /// A token was output: all macros that took part in making it are done.
   void wordIsOut() { calls.clear(); }
-  /// Place of the `#else` that an `#if` has had already; not valid: none.
+  /// The `#else` that an `#if` already has; not valid: none.
   clang::SourceLocation elseOf(clang::SourceLocation ifLocation) const {
     return elses.lookup(ifLocation);
   }
@@ -71,11 +71,10 @@ public:
   }
 
 private:
-  /// A use of a macro whose arguments are being expanded, before they take the places of the
-  /// parameters.
+  /// A use of a macro whose arguments are being expanded, before they replace the parameters.
   struct Call {
-    std::vector<clang::SourceLocation> names; // words of the arguments that may use macros, sorted
-    std::size_t copies; // how often at most a word of the arguments will be in the text
+    std::vector<clang::SourceLocation> names; // tokens of the arguments that may use macros, sorted
+    std::size_t copies; // upper bound on how often a token of the arguments will be in the text
   };
   bool isArgumentOf(const Call &call, clang::SourceLocation name) const;
   std::size_t depthOf(clang::SourceLocation location);
@@ -84,7 +83,7 @@ private:
 
   Session &session;
   std::size_t includeCount = 0, includedBytes = 0;
-  std::size_t words = 0, conditionWords = 0; // that macros made
+  std::size_t words = 0, conditionWords = 0; // that macros produced
   std::vector<Call> calls;
   std::vector<clang::SourceLocation> conditions;
   llvm::DenseMap<clang::SourceLocation, clang::SourceLocation> elses;

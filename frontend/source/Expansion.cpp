@@ -7,15 +7,15 @@ namespace rtsl {
 
 namespace {
 
-/// The way of one word from a file into the text.
+/// The chain of expansions from a token in a file to the text.
 struct Path {
   struct Step {
     std::uint32_t expansion; // of the macro's body
     std::string_view macro;
-    // in the definition: the word, the parameter for which it stands, or the use of the next macro
+    // in the definition: the token, the parameter that it replaces, or the use of the next macro
     SourceRange range;
   };
-  Origin word;             // in a file: the word or the use of the macro that it came from
+  Origin word;             // in a file: the token or the use of the macro that it came from
   Origin use;              // in a file: the use of the outermost macro; `word` if there is none
   std::vector<Step> steps; // the outermost first
 
@@ -54,7 +54,7 @@ SourceRange join(SourceRange first, SourceRange last) {
   return first.file == last.file && first.begin <= last.end ? first.to(last) : first;
 }
 
-/// From the word at the end of `first` to that at the end of `last`.
+/// From the token at the end of `first` to that at the end of `last`.
 WrittenRange between(const std::vector<Expansion> &expansions, const Path &first,
                      const Path &last) {
   WrittenRange result;
@@ -70,7 +70,7 @@ WrittenRange between(const std::vector<Expansion> &expansions, const Path &first
   } else {
     result.range = first.use.range;
   }
-  // What both have in common of their ways; where they part, nothing more can be shown.
+  // The common part of their chains; after the first difference nothing more can be shown.
   for (std::size_t i = 0; isOneUse && i < std::min(first.steps.size(), last.steps.size()); ++i) {
     const Path::Step &a = first.steps[i], &b = last.steps[i];
     if (a.expansion != b.expansion)
@@ -86,7 +86,7 @@ WrittenRange between(const std::vector<Expansion> &expansions, const Path &first
   return result;
 }
 
-/// The origin of one byte, as an empty range, or of the whole word if it was not written as it is.
+/// The origin of one byte, as an empty range, or of the whole token if its text is not in a file.
 Origin originOf(const Piece &piece, std::uint32_t offset) {
   Origin origin = piece.origin;
   if (piece.isVerbatim)
@@ -115,7 +115,7 @@ WrittenRange written(const ExpandedText &text, std::uint32_t begin, std::uint32_
     return std::prev(next);
   };
   if (begin ==
-      end) { // behind the byte in front, unless that came from a macro and the one behind did not
+      end) { // after the previous byte, unless that is from a macro and the next one is not
     const auto after = pieceOf(begin);
     const auto before = begin > 0 ? pieceOf(begin - 1) : after;
     const Piece &piece = !before->isVerbatim && after->isVerbatim ? *after : *before;

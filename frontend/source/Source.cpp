@@ -42,7 +42,7 @@ void SourceManager::setLine(FileId file, std::uint32_t offset, std::uint32_t lin
       std::lower_bound(marks.begin(), marks.end(), offset,
                        [](const LineMark &mark, std::uint32_t o) { return mark.offset < o; });
   if (at == marks.end() ||
-      at->offset != offset) // a file that is included twice says the same twice
+      at->offset != offset) // a file that is included twice gives the same mark twice
     marks.insert(at, {offset, line, std::move(name)});
 }
 
@@ -71,7 +71,7 @@ std::optional<FileId> SourceManager::addFile(const std::string &path, std::strin
     const int error = errno;
     const bool isLast = got < text.size() - size;
     text.resize(size + got);
-    if (std::ferror(stream)) { // a directory opens, and fails here
+    if (std::ferror(stream)) { // opening a directory succeeds; reading it fails here
       whyNot = std::strerror(error ? error : EIO);
       break;
     }

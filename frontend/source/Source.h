@@ -4,9 +4,9 @@
 // `SourceManager`. A position is a file and a byte offset; lines and columns are computed only when
 // a message is shown.
 //
-// What the preprocessor made of a file is a text as well (Expansion.h): all later stages read that
-// one, and their positions lie in it. Where the author wrote something is asked for when a message
-// is shown: `written`.
+// The output of the preprocessor for a file is a text as well (Expansion.h): all later stages read
+// it, and their positions refer to it. Where the author wrote a range is computed when a message is
+// shown: `written`.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -21,7 +21,7 @@
 
 namespace rtsl {
 
-/// A text in a `SourceManager`. Zero is "no file": a message without a place, such as a bad
+/// A text in a `SourceManager`. Zero is "no file": a message without a position, such as a bad
 /// argument.
 using FileId = std::uint32_t;
 
@@ -32,7 +32,7 @@ struct SourceRange {
   std::uint32_t end = 0;
 
   bool isValid() const { return file != 0; }
-  /// The smallest range that holds both; both must lie in the same file.
+  /// The smallest range that contains both; both must be in the same file.
   SourceRange to(SourceRange last) const { return {file, begin, last.end}; }
   bool operator==(const SourceRange &other) const {
     return file == other.file && begin == other.begin && end == other.end;
@@ -45,7 +45,7 @@ struct LineColumn {
   std::uint32_t column = 1;
 };
 
-/// A place as messages name it: `#line` may have changed the file's name and the line.
+/// A position as messages show it: `#line` may have changed the file's name and the line.
 struct ShownPlace {
   std::string_view file;
   LineColumn at;
@@ -54,29 +54,29 @@ struct ShownPlace {
 struct ExpandedText;
 struct WrittenRange;
 
-/// Owns the texts. Texts stay where they are: a `string_view` into one lives as long as the
-/// manager.
+/// Owns the texts. Texts are never moved: a `string_view` into one is valid as long as the manager
+/// exists.
 class SourceManager {
 public:
   /// Adds a text under the name that messages show (the path as the user gave it).
   FileId add(std::string name, std::string text);
 
-  /// Reads a file and adds it; "-" is standard input. On failure returns no id and says why in
-  /// `whyNot` (as the operating system puts it).
+  /// Reads a file and adds it; "-" is standard input. On failure returns no id and sets `whyNot` to
+  /// the operating system's message.
   std::optional<FileId> addFile(const std::string &path, std::string &whyNot);
 
-  /// Ids are 1 to this.
+  /// Ids range from 1 to this.
   FileId count() const { return static_cast<FileId>(files.size()); }
 
-  /// Adds what the preprocessor made of a file.
+  /// Adds the preprocessor's output for a file.
   FileId addExpanded(ExpandedText text);
-  /// The text as it came from the preprocessor; null for a file.
+  /// The preprocessor's output; null for a file.
   const ExpandedText *expanded(FileId file) const { return get(file).expanded.get(); }
   /// Where a range of any text was written.
   WrittenRange written(SourceRange range) const;
 
-  /// From `offset`, where a line begins, the lines of a file are shown with the numbers from `line`
-  /// on and as those of the file `name`: `#line`.
+  /// `#line`: from `offset`, the beginning of a line, lines are shown with the numbers from `line`
+  /// on and as those of the file `name`.
   void setLine(FileId file, std::uint32_t offset, std::uint32_t line, std::string name);
 
   std::string_view name(FileId file) const;
@@ -84,7 +84,7 @@ public:
   std::string_view text(SourceRange range) const;
   LineColumn lineColumn(FileId file, std::uint32_t offset) const;
   ShownPlace shown(FileId file, std::uint32_t offset) const;
-  /// The other way round; a place behind the end of its line or of the text gives that end.
+  /// The inverse; a position after the end of its line or of the text gives that end.
   std::uint32_t offset(FileId file, LineColumn place) const;
   /// The file of that name, if there is one; otherwise 0.
   FileId find(std::string_view name) const;
@@ -101,7 +101,7 @@ private:
     std::string text;
     std::shared_ptr<const ExpandedText> expanded;  // `text` is empty then
     std::vector<LineMark> lineMarks;               // by offset
-    mutable std::vector<std::uint32_t> lineStarts; // filled at the first question
+    mutable std::vector<std::uint32_t> lineStarts; // filled on first use
   };
   const File &get(FileId file) const;
   const std::vector<std::uint32_t> &lineStarts(FileId file) const;

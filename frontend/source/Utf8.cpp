@@ -69,7 +69,7 @@ bool isUnprintable(char32_t codePoint) {
 
 unsigned cellWidth(char32_t codePoint) {
   static constexpr CodePoints combining[] = {{0x0300, 0x036F}, {0x20D0, 0x20FF}, {0xFE00, 0xFE0F}};
-  // The blocks of Unicode's EastAsianWidth.txt that are wide as a whole.
+  // The blocks of Unicode's EastAsianWidth.txt that are entirely wide.
   static constexpr CodePoints wide[] = {{0x1100, 0x115F},   {0x2E80, 0x303E},  {0x3041, 0xA4CF},
                                         {0xAC00, 0xD7A3},   {0xF900, 0xFAFF},  {0xFE30, 0xFE6F},
                                         {0xFF00, 0xFF60},   {0xFFE0, 0xFFE6},  {0x1F300, 0x1F64F},

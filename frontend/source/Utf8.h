@@ -13,8 +13,8 @@ struct Utf8Character {
   bool isValid = false;
 };
 
-/// Decodes the first character of a text that is not empty. Overlong forms, surrogates and what
-/// lies above U+10FFFF are not valid (Unicode 15, table 3-7).
+/// Decodes the first character of a text that is not empty. Overlong forms, surrogates and values
+/// above U+10FFFF are not valid (Unicode 15, table 3-7).
 Utf8Character decodeUtf8(std::string_view text);
 
 /// Offset of the first byte that is not part of valid UTF-8, or npos.

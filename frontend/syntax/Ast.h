@@ -1,8 +1,8 @@
 //===- Ast.h - the syntax tree of an RTSL file ----------------------------===//
 //
-// What the author wrote, and nothing that was concluded from it: names are text, types are as
-// spelled, parentheses and comments above declarations are kept (the C++ printer shows them again).
-// `sema` turns it into the typed tree of sema/typed/TypedAst.h.
+// What the author wrote, and nothing that is derived from it: names are text, types are as spelled,
+// parentheses and comments above declarations are kept (the C++ printer outputs them again). `sema`
+// turns it into the typed tree of sema/typed/TypedAst.h.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -25,7 +25,7 @@ struct Name {
   SourceRange range;
 };
 
-/// One `[n]` or `[]` behind a type or a name.
+/// One `[n]` or `[]` after a type or a name.
 struct ArrayDimension {
   ExprPtr size; // null: `[]`, a buffer
   SourceRange range;
@@ -59,7 +59,7 @@ enum class ExprKind {
   Member,
   Index,
   InitializerList,
-  Error, // what stands where the text could not be understood; sema stays silent about it
+  Error, // where the text could not be parsed; sema reports nothing about it
 };
 
 struct Expr {
@@ -156,11 +156,11 @@ struct CommaExpr : ExprOf<ExprKind::Comma> {
   ExprPtr left, right;
 };
 
-/// `callee(args)`, `receiver.callee(args)` or `Base::callee(args)`. The callee may turn out to be a
-/// type (`vec3(...)`, `Ray(...)`).
+/// `callee(args)`, `receiver.callee(args)` or `Base::callee(args)`. The callee may also
+/// be a type (`vec3(...)`, `Ray(...)`).
 struct CallExpr : ExprOf<ExprKind::Call> {
   ExprPtr receiver; // null: a plain call
-  Name base;        // whose definition is called; empty text: that of the object's own class
+  Name base;        // class whose definition is called; empty text: that of the object's own class
   Name callee;
   std::vector<ExprPtr> args;
 };
@@ -177,7 +177,7 @@ struct MemberExpr : ExprOf<ExprKind::Member> {
 struct IndexExpr : ExprOf<ExprKind::Index> {
   ExprPtr base, index;
 };
-/// `{a, b, c}` behind `=` in a declaration.
+/// `{a, b, c}` after `=` in a declaration.
 struct InitializerListExpr : ExprOf<ExprKind::InitializerList> {
   std::vector<ExprPtr> elements;
 };
@@ -197,9 +197,9 @@ struct VariableDecl {
   Access access = Access::None;
   SourceRange accessRange;
   bool isConst = false;
-  SourceRange optionalRange;           // of `optional`, of a member; not valid: it is not there
+  SourceRange optionalRange;           // of `optional` on a member; not valid: absent
   Direction direction = Direction::In; // parameters only
-  TypeName type; // dimensions behind the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
+  TypeName type; // dimensions after the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
   Name name;     // empty text: an unnamed parameter
   ExprPtr init;  // null: none
   SourceRange range;
@@ -326,10 +326,10 @@ struct ImportDecl {
   SourceRange range;
 };
 
-/// One file. Each list is in source order; the ranges tell the order between them.
+/// One file. Each list is in source order; the ranges give the order between them.
 struct TranslationUnit {
   FileId file = 0;
-  std::string comment; // at the head of the file
+  std::string comment; // at the beginning of the file
   std::vector<ImportDecl> imports;
   std::vector<StructDecl> structs;
   std::vector<VariableDecl> constants; // `const` at file level

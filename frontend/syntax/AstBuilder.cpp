@@ -1,4 +1,4 @@
-//===- AstBuilder.cpp - parse tree to syntax tree: places and comments ----===//
+//===- AstBuilder.cpp - parse tree to syntax tree: ranges and comments ----===//
 #include "frontend/syntax/AstBuilder.h"
 #include "frontend/lex/TokenStream.h"
 
@@ -14,7 +14,7 @@ AstBuilder::AstBuilder(FileId file, const std::vector<Token> &words,
 }
 
 std::unique_ptr<ast::TranslationUnit> AstBuilder::finish() {
-  // The head of the file is the first comment, unless it belongs to what it stands directly above.
+  // The first comment is that of the file, unless it belongs to what is directly below it.
   std::size_t last = 0;
   const std::uint32_t firstWord = words.front().begin;
   const std::string_view text = sources.text(file);
@@ -35,7 +35,7 @@ std::unique_ptr<ast::TranslationUnit> AstBuilder::finish() {
 }
 
 //===----------------------------------------------------------------------===//
-// Places
+// Ranges
 //===----------------------------------------------------------------------===//
 
 SourceRange AstBuilder::range(const antlr4::Token *token) const {
@@ -59,7 +59,7 @@ ast::Name AstBuilder::name(antlr4::tree::TerminalNode *node) const {
 // Comments
 //===----------------------------------------------------------------------===//
 
-/// The comments [first, last), a line each, as they stand below each other in the text.
+/// The comments [first, last), one per line, with the indentation of the text.
 std::string AstBuilder::commentText(std::size_t first, std::size_t last) const {
   std::string result;
   for (std::size_t i = first; i < last; ++i) {
@@ -72,7 +72,7 @@ std::string AstBuilder::commentText(std::size_t first, std::size_t last) const {
       rest.remove_prefix(std::min(size + 1, rest.size()));
       while (!line.empty() && (line.back() == ' ' || line.back() == '\t' || line.back() == '\r'))
         line.remove_suffix(1);
-      // The lines of a block keep their place relative to its first one.
+      // The lines of a block comment keep their indentation relative to its first line.
       if (!isFirstLine)
         line.remove_prefix(std::min({line.find_first_not_of(" \t"), column, line.size()}));
       result += result.empty() ? "" : "\n";

@@ -12,7 +12,7 @@
 
 namespace rtsl {
 
-/// Qualifiers in front of a declaration.
+/// Qualifiers before a declaration.
 struct Qualifiers {
   ast::Access access = ast::Access::None;
   bool isConst = false;
@@ -21,13 +21,13 @@ struct Qualifiers {
 };
 
 /// Turns the items of a parsed file into the syntax tree, one after the other, and reports what the
-/// grammar lets pass though it has no place in the tree. Broken parts (those with an exception) are
-/// left out or become `ErrorExpr`.
+/// grammar accepts but the tree cannot express. Broken parts (those with an exception) are left out
+/// or become `ErrorExpr`.
 class AstBuilder {
 public:
   using Parser = generated::RtslParser;
 
-  /// `words` are those that the parser got; `comments` those between them.
+  /// `words` are the tokens that the parser read; `comments` those between them.
   AstBuilder(FileId file, const std::vector<Token> &words, const std::vector<Comment> &comments,
              Diagnostics &diagnostics);
 
@@ -37,7 +37,7 @@ public:
 private:
   enum class Place { File, Member, Field, Local, Parameter };
 
-  // Places (AstBuilder.cpp).
+  // Ranges (AstBuilder.cpp).
   SourceRange range(const antlr4::ParserRuleContext *context) const;
   SourceRange range(const antlr4::Token *token) const;
   SourceRange range(antlr4::tree::TerminalNode *node) const { return range(node->getSymbol()); }
@@ -102,7 +102,7 @@ private:
   Diagnostics &diagnostics;
   const SourceManager &sources;
   std::unique_ptr<ast::TranslationUnit> unit;
-  bool hasFileClass = false;  // `class Name : Base;`, the last one of the unit
+  bool hasFileClass = false;  // `class Name : Base;`, the last class of the unit
   bool hasBrokenItem = false; // at file level
 };
 

@@ -6,7 +6,7 @@ namespace rtsl {
 using namespace ast;
 
 void AstBuilder::addItem(Parser::FileItemContext *item) {
-  // Behind a broken head of a class stand members, perhaps.
+  // A broken class head may be followed by members.
   for (const antlr4::tree::ParseTree *child : item->children)
     if (auto *part = dynamic_cast<const antlr4::ParserRuleContext *>(child))
       hasBrokenItem |= part->exception != nullptr;
@@ -27,7 +27,7 @@ void AstBuilder::addItem(Parser::FileItemContext *item) {
   }
 }
 
-/// `class Name : Base;` takes all that follows; what cannot be a member is reported.
+/// All that follows `class Name : Base;` belongs to it; what cannot be a member is reported.
 void AstBuilder::checkFollowsFileClass(SourceRange where, const char *what) {
   if (!hasFileClass)
     return;
@@ -108,7 +108,7 @@ void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
 //===----------------------------------------------------------------------===//
 
 void AstBuilder::refuseQualifier(SourceRange where, const std::string &reason) {
-  // With the space behind it.
+  // Including the space after it.
   const std::string_view source = sources.text(file);
   std::uint32_t end = where.end;
   while (end < source.size() && source[end] == ' ')
@@ -117,8 +117,8 @@ void AstBuilder::refuseQualifier(SourceRange where, const std::string &reason) {
       .fix({file, where.begin, end}, "");
 }
 
-/// Reads qualifiers; those without a meaning at their place are reported, where the next stage
-/// could not see them.
+/// Reads qualifiers; reports those that are not allowed at `place` and that the next stage could
+/// not see.
 Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContext *> &contexts,
                                        Place place) {
   Qualifiers result;
@@ -251,7 +251,7 @@ VariableDecl AstBuilder::buildParameter(Parser::ParameterContext *context) {
 // Functions
 //===----------------------------------------------------------------------===//
 
-/// Adds what a declaration declares. `functions` is null where there can be none.
+/// Adds what a declaration declares. `functions` is null where none are allowed.
 bool AstBuilder::addDeclaration(Parser::DeclarationContext *context, Place place,
                                 std::vector<VariableDecl> &variables,
                                 std::vector<FunctionDecl> *functions) {
@@ -302,7 +302,7 @@ void AstBuilder::addFunction(Parser::DeclarationContext *context, Place place,
     const bool isPrototype = body && !body->exception;
     if (isPrototype)
       diagnostics.report(Code::missingFunctionBody, function.name.range, function.name.text);
-    // Reported: a body about which nobody complains.
+    // Reported: a body that causes no further messages.
     auto result = std::make_unique<ReturnStmt>();
     result->range = function.name.range;
     result->value = error(function.name.range);

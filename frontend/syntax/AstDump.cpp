@@ -1,7 +1,7 @@
 //===- AstDump.cpp - the syntax tree as text ------------------------------===//
 //
-// One node a line, children indented below. Names, operators and values stand as the author wrote
-// them; comments are shown as they are.
+// One node per line, children indented below. Names, operators and values are printed as the author
+// wrote them; so are comments.
 //
 //===----------------------------------------------------------------------===//
 #include "frontend/syntax/Parser.h"
@@ -141,8 +141,7 @@ void Dumper::comment(const std::string &text) {
   }
 }
 
-/// The type with its dimensions; sizes that are more than a number or a name follow as children
-/// (`sizes`).
+/// The type with its dimensions; sizes other than a number or a name follow as children (`sizes`).
 std::string Dumper::type(const TypeName &type) {
   std::string text = type.name.text;
   for (const ArrayDimension &dimension : type.dimensions) {

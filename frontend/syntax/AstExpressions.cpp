@@ -149,7 +149,8 @@ ExprPtr AstBuilder::buildExpr(Parser::ExprContext *context) {
       diagnostics
           .report(Code::qualifiedName, range(context), text(range(identifier->IDENTIFIER(0))),
                   text(range(identifier->IDENTIFIER(1))))
-          .note("members have one name in a class and all of its bases");
+          .note(
+              "a member is named without its class: names are unique among a class and its bases");
       return error(range(context));
     }
     auto result = make<NameExpr>(context);
@@ -248,7 +249,7 @@ std::vector<ExprPtr> AstBuilder::buildArguments(Parser::ArgumentsContext *contex
 
 ExprPtr AstBuilder::buildCall(Parser::CallContext *context) {
   if (context->arguments()->exception)
-    return error(range(context)); // who knows which function that would have been
+    return error(range(context)); // it cannot be known which function was meant
   Parser::ExprContext *callee = context->expr();
   if (dynamic_cast<Parser::IndexContext *>(callee))
     return buildConstruct(context);
@@ -269,7 +270,7 @@ ExprPtr AstBuilder::buildCall(Parser::CallContext *context) {
   return result;
 }
 
-/// `float[3][](...)`: the callee reads like indices of a name.
+/// `float[3][](...)`: the callee parses as a name with indices.
 ExprPtr AstBuilder::buildConstruct(Parser::CallContext *context) {
   auto result = make<ConstructExpr>(context);
   Parser::ExprContext *callee = context->expr();

@@ -5,7 +5,7 @@ namespace rtsl {
 
 using namespace ast;
 
-/// Null for a broken statement, which was reported.
+/// Null for a broken statement, which has been reported.
 StmtPtr AstBuilder::buildStatement(Parser::StatementContext *context) {
   if (!context)
     return nullptr;
@@ -15,7 +15,7 @@ StmtPtr AstBuilder::buildStatement(Parser::StatementContext *context) {
   return statement;
 }
 
-/// A broken statement where there must be one becomes an empty one.
+/// A broken statement where one is required becomes an empty one.
 StmtPtr AstBuilder::orEmpty(Parser::StatementContext *context) {
   if (StmtPtr statement = buildStatement(context))
     return statement;
@@ -44,7 +44,7 @@ StmtPtr AstBuilder::buildSimple(Parser::SimpleStatementContext *context) {
   if (!context)
     return nullptr;
   if (auto *declaration = context->localDeclaration()) {
-    // Of a broken one, the variables that it did declare are kept: their uses are no mistakes.
+    // A broken one keeps the variables that it did declare: their uses are not mistakes.
     auto statement = make<DeclarationStmt>(declaration);
     addVariables(declaration, declaration->qualifier(), declaration->typeName(),
                  declaration->declarator(), Place::Local, statement->variables);
@@ -88,8 +88,7 @@ StmtPtr AstBuilder::buildStatementBody(Parser::StatementContext *context) {
       empty->range = statement->range;
       statement->init = std::move(empty);
     }
-    // Condition and step are told apart by the second semicolon; the first one belongs to the
-    // statement.
+    // The second semicolon separates condition and step; the first one belongs to the statement.
     bool isStep = false;
     for (auto *child : loop->children) {
       if (auto *word = dynamic_cast<antlr4::tree::TerminalNode *>(child))

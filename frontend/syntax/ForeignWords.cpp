@@ -1,4 +1,4 @@
-//===- ForeignWords.cpp - habits of other languages, seen before parsing -----===//
+//===- ForeignWords.cpp - constructs of other languages, before parsing ---===//
 #include "frontend/syntax/ForeignWords.h"
 
 #include "grammar/RtslLexer.h"
@@ -11,7 +11,7 @@ namespace {
 
 using generated::RtslLexer;
 
-/// Qualifiers of GLSL, HLSL, CUDA and C++, and what RTSL says instead (nothing: leave it out).
+/// Qualifiers of GLSL, HLSL, CUDA and C++, and the RTSL qualifier to use instead (empty: none).
 struct ForeignQualifier {
   std::string_view name, replacement;
 };
@@ -32,13 +32,13 @@ constexpr ForeignQualifier foreignQualifiers[] = {
     {"rayPayloadEXT", ""},   {"rayPayloadInEXT", ""}, {"hitAttributeEXT", "scratch"},
 };
 
-/// Words of which C makes the names of its types, `unsigned int` say.
+/// Tokens of which C forms the names of its types, such as `unsigned int`.
 bool isWordOfType(std::string_view word) {
   return word == "unsigned" || word == "signed" || word == "long" || word == "short" ||
          word == "int" || word == "char" || word == "double";
 }
 
-/// A type of a number, or of several, in RTSL or elsewhere.
+/// A scalar, vector or matrix type, in RTSL or elsewhere.
 bool isTypeOfNumbers(std::string_view word) {
   if (isWordOfType(word))
     return true;
@@ -65,12 +65,12 @@ bool isLiteral(unsigned type) {
          type == RtslLexer::FLOAT_LITERAL;
 }
 
-/// What an expression may begin with, but for signs and brackets.
+/// The first token of an expression, other than signs and brackets.
 bool isPlainOperand(unsigned type) {
   return type == RtslLexer::IDENTIFIER || isLiteral(type);
 }
 
-/// Rewriting what a cast converts must not take long, however casts are nested.
+/// Rewriting the operand of a cast must be fast even if casts are nested.
 constexpr std::size_t longestOperand = 200;
 
 } // namespace
@@ -86,10 +86,10 @@ bool isClosing(unsigned type) {
 }
 
 //===----------------------------------------------------------------------===//
-// Where words stand
+// Positions of tokens
 //===----------------------------------------------------------------------===//
 
-/// The words and the space behind them.
+/// The tokens and the space after them.
 SourceRange ForeignWords::removal(std::size_t index, std::size_t count) const {
   const Token &next = at(index + count);
   const std::uint32_t lastEnd = at(index + count - 1).end;
@@ -110,7 +110,7 @@ bool ForeignWords::isStatementStart() const {
          previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE;
 }
 
-/// True if the word in front cannot be the end of an expression.
+/// True if the previous token cannot be the end of an expression.
 bool ForeignWords::expectsOperand() const {
   const unsigned previous = before();
   return !isPlainOperand(previous) && previous != RtslLexer::RIGHT_PAREN &&
@@ -118,13 +118,13 @@ bool ForeignWords::expectsOperand() const {
          previous != RtslLexer::MINUS_MINUS && previous != RtslLexer::STRING_LITERAL;
 }
 
-/// Are there two such words at `index`, without a space between?
+/// Are there two tokens of these types at `index`, without a space between them?
 bool ForeignWords::touches(std::size_t index, unsigned first, unsigned second) const {
   return typeAt(index) == first && typeAt(index + 1) == second &&
          at(index).end == at(index + 1).begin;
 }
 
-/// Index of the word behind the brackets that open at `index`, or of the end of the file.
+/// Index of the token after the brackets that open at `index`, or of the end of the file.
 std::size_t ForeignWords::behindBrackets(std::size_t index) const {
   std::size_t depth = 0;
   for (; typeAt(index) != Token::endOfFile; ++index) {
@@ -135,8 +135,8 @@ std::size_t ForeignWords::behindBrackets(std::size_t index) const {
   return index;
 }
 
-/// Index of the word behind the statement or declaration that goes on at `index`: behind its
-/// semicolon or block.
+/// Index of the token after the statement or declaration that contains `index`: after its semicolon
+/// or block.
 std::size_t ForeignWords::behindStatement(std::size_t index) const {
   while (typeAt(index) != Token::endOfFile && !isClosing(typeAt(index))) {
     if (typeAt(index) == RtslLexer::SEMICOLON)
@@ -149,7 +149,7 @@ std::size_t ForeignWords::behindStatement(std::size_t index) const {
   return index;
 }
 
-/// Index of the word behind `p.x`, `f(a)[i]` and the like.
+/// Index of the token after `p.x`, `f(a)[i]` and the like.
 std::size_t ForeignWords::behindOperand(std::size_t index) const {
   for (std::size_t begin = index; isCast(index); index += 3)
     if (index - begin > longestOperand)
@@ -206,14 +206,14 @@ std::size_t ForeignWords::skipAccess(std::size_t index) {
   if (isAccess && before() == RtslLexer::COLON && before(3) == RtslLexer::CLASS) {
     diagnostics
         .report(Code::misplacedQualifier, rangeOf(token), textOf(token),
-                "a class derives in one way only")
+                "RTSL has only one kind of inheritance")
         .fix(removal(index, 1), "", true);
     return 1;
   }
   if ((isAccess || token.type == RtslLexer::SCRATCH) && typeAt(index + 1) == RtslLexer::COLON) {
     diagnostics.report(Code::misplacedQualifier, rangeOf(token).to(rangeOf(at(index + 1))),
                        fmt::format("{}:", textOf(token)),
-                       fmt::format("write `{}` in front of each member", textOf(token)));
+                       fmt::format("write `{}` before each member", textOf(token)));
     return 2;
   }
   return 0;
@@ -231,7 +231,7 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
         .fix(removal(index, count), "", true);
     return count;
   }
-  // `const T &x`: values are passed as if they were copied.
+  // `const T &x`: parameters are passed by value.
   if (token.type == RtslLexer::AMPERSAND && before() == RtslLexer::IDENTIFIER &&
       before(2) == RtslLexer::CONST && typeAt(index + 1) == RtslLexer::IDENTIFIER) {
     Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), "&");
@@ -240,10 +240,10 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
       diagnostic.fix(rangeOf(token), " ", true);
     else
       diagnostic.fix(isBetween ? removal(index, 1) : rangeOf(token), "", true);
-    diagnostic.note("a parameter is a copy; `inout` gives a value back");
+    diagnostic.note("parameters are copies; `inout` copies the value back to the caller");
     return 1;
   }
-  // Behind the parameters of a method.
+  // After the parameters of a method.
   const auto isSuffix = [&](std::size_t at) {
     const std::string_view suffix = textOf(this->at(at));
     return typeAt(at) == RtslLexer::CONST || suffix == "override" || suffix == "final" ||
@@ -273,7 +273,7 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
         .fix(removal(index, behind - index), "", true);
     return behind - index;
   }
-  // Two names in a row are a type and what it declares; three begin with a qualifier.
+  // Two names in a row are a type and what it declares; the first of three is a qualifier.
   if ((next != RtslLexer::IDENTIFIER && !isQualifier(next) &&
        next != RtslLexer::PRECISION_QUALIFIER) ||
       typeAt(index + 2) != RtslLexer::IDENTIFIER)
@@ -295,12 +295,12 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
 // Constructs
 //===----------------------------------------------------------------------===//
 
-/// `std::`. Another name in front of a function is that of a base class.
+/// `std::`. Another name before a function is that of a base class.
 std::size_t ForeignWords::skipNamespace(std::size_t index) {
   const bool isNamed = typeAt(index) == RtslLexer::IDENTIFIER;
   const std::size_t colons = index + (isNamed ? 1 : 0);
   if (typeAt(colons) != RtslLexer::COLON_COLON || typeAt(colons + 1) != RtslLexer::IDENTIFIER ||
-      (!isNamed && before() == RtslLexer::IDENTIFIER)) // the word before has been looked at
+      (!isNamed && before() == RtslLexer::IDENTIFIER)) // the previous token has been checked
     return 0;
   const std::string_view word = isNamed ? textOf(at(index)) : std::string_view();
   bool isKnown = false;
@@ -314,15 +314,15 @@ std::size_t ForeignWords::skipNamespace(std::size_t index) {
   return colons + 1 - index;
 }
 
-/// The word in front, which may be a type, begins a declaration. Variables may have such names,
-/// too: `f(x, double * y)`.
+/// True if the previous token, which may be a type, begins a declaration. Variables may have such
+/// names, too: `f(x, double * y)`.
 bool ForeignWords::isBehindType() const {
   const unsigned previous = before(2);
   if (previous != RtslLexer::LEFT_PAREN && previous != RtslLexer::COMMA)
     return previous == Token::endOfFile || previous == RtslLexer::SEMICOLON ||
            previous == RtslLexer::LEFT_BRACE || previous == RtslLexer::RIGHT_BRACE ||
            isQualifier(previous);
-  // Of parameters: a type, a name and a parenthesis stand in front.
+  // For parameters: preceded by a type, a name and a parenthesis.
   std::size_t open = 2, depth = 0;
   for (; open < longestOperand && open < out.size() &&
          (depth != 0 || before(open) != RtslLexer::LEFT_PAREN);
@@ -346,7 +346,7 @@ std::size_t ForeignWords::skipPointer(std::size_t index) {
   }
   if (type == RtslLexer::STAR && touches(index, RtslLexer::STAR, RtslLexer::STAR) &&
       !expectsOperand())
-    return 0; // the next one is reported
+    return 0; // the second `*` is reported
   const bool isDeclared = before() == RtslLexer::IDENTIFIER && next == RtslLexer::IDENTIFIER &&
                           isTypeOfNumbers(textOf(out.back())) && isBehindType();
   const bool isPrefix = expectsOperand() && !isDeclarationStart() && next == RtslLexer::IDENTIFIER;
@@ -362,11 +362,11 @@ std::size_t ForeignWords::skipPointer(std::size_t index) {
       .report(Code::foreignConstruct, rangeOf(at(index)),
               isReference ? "references to values" : "pointers")
       .fix(rangeOf(at(index)), "")
-      .note("a parameter is a copy; `inout` gives a value back");
+      .note("parameters are copies; `inout` copies the value back to the caller");
   return 1;
 }
 
-/// What begins a statement or declaration of another language.
+/// The beginning of a statement or declaration of another language.
 std::size_t ForeignWords::skipConstruct(std::size_t index) {
   const Token &token = at(index);
   const unsigned next = typeAt(index + 1);
@@ -402,30 +402,31 @@ std::size_t ForeignWords::skipConstruct(std::size_t index) {
   if (word == "using" && next == RtslLexer::IDENTIFIER && textOf(at(index + 1)) == "namespace")
     return report("namespaces", "", true);
   if (word == "namespace" && opensBlock)
-    return report("namespaces", "all files share one space of names");
+    return report("namespaces", "all files share one namespace");
   if (word == "typedef" && next == RtslLexer::IDENTIFIER &&
       typeAt(index + 2) == RtslLexer::IDENTIFIER)
-    return report("other names for types", "");
+    return report("type aliases", "");
   if (word == "typedef" && next == RtslLexer::STRUCT) { // struct S { ... } T;
-    const std::size_t count = report("other names for types", "write `struct Name { ... };`");
+    const std::size_t count = report("type aliases", "write `struct Name { ... };`");
     return typeAt(index + count) == RtslLexer::IDENTIFIER ? behindStatement(index + count) - index
                                                           : count;
   }
   if (word == "enum" && (opensBlock || next == RtslLexer::CLASS))
     return report("enumerations", "write constants: `const int A = 0, B = 1;`");
   if (word == "union" && opensBlock)
-    return report("unions", "`floatBitsToInt` and its relatives give the bits of a number");
+    return report("unions",
+                  "`floatBitsToInt` and similar functions reinterpret the bits of a number");
   if ((word == "cbuffer" || word == "tbuffer") && opensBlock)
     return report("constant buffers", "what a scene sets is a member: `public float roughness;`");
   if (word == "template" && next == RtslLexer::LESS)
-    return report("templates", "write a function for each type: they may have one name");
+    return report("templates", "overload a function for each type");
   if (word == "try" && next == RtslLexer::LEFT_BRACE) {
     diagnostics.report(Code::foreignConstruct, rangeOf(token), "`try`");
     return 1;
   }
   if (word == "catch" && next == RtslLexer::LEFT_PAREN &&
       typeAt(behindBrackets(index + 1)) == RtslLexer::LEFT_BRACE)
-    return behindStatement(index + 1) - index; // behind a `try`, which is reported
+    return behindStatement(index + 1) - index; // after a `try`, which is reported
   if (word == "throw" && isLiteral(next))
     return report("`throw`", "");
   for (std::string_view buffer :
@@ -436,7 +437,7 @@ std::size_t ForeignWords::skipConstruct(std::size_t index) {
 }
 
 //===----------------------------------------------------------------------===//
-// Operators and casts, which are put right
+// Operators and casts, which are rewritten
 //===----------------------------------------------------------------------===//
 
 void ForeignWords::rewriteOperator(std::size_t index) {
@@ -469,14 +470,14 @@ void ForeignWords::rewriteOperator(std::size_t index) {
   }
 }
 
-/// Is it `(float)`, with something behind it that it could convert?
+/// Is it `(float)`, followed by an operand?
 bool ForeignWords::isCast(std::size_t index) const {
   return typeAt(index) == RtslLexer::LEFT_PAREN && typeAt(index + 1) == RtslLexer::IDENTIFIER &&
          typeAt(index + 2) == RtslLexer::RIGHT_PAREN && isTypeOfNumbers(textOf(at(index + 1))) &&
          (isPlainOperand(typeAt(index + 3)) || typeAt(index + 3) == RtslLexer::LEFT_PAREN);
 }
 
-/// `(float) x` is read as `float(x)`.
+/// Rewrites `(float) x` as `float(x)`.
 void ForeignWords::rewriteCast(std::size_t index) {
   if (!isCast(index) || !expectsOperand() || before() == Token::endOfFile)
     return;

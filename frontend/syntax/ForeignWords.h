@@ -1,9 +1,9 @@
-//===- ForeignWords.h - habits of other languages, seen before parsing -------===//
+//===- ForeignWords.h - constructs of other languages, before parsing -----===//
 //
-// Qualifiers, attributes, namespaces, pointers, casts and the like are known at sight, and the
-// parser would only stumble over them. Each is reported once, with what RTSL says instead, and left
-// out or put right, so that the rest is understood. Only what no program of RTSL can mean is taken
-// for foreign: `a * b` is a product, whatever `a` is called.
+// Qualifiers, attributes, namespaces, pointers, casts and the like are recognised by their tokens,
+// which would only confuse the parser. Each is reported once, with the RTSL equivalent, and removed
+// or rewritten, so that the rest can be parsed. Only what no RTSL program can contain is treated as
+// foreign: `a * b` is a product, whatever `a` is called.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -22,18 +22,18 @@ bool isClosing(unsigned type);
 
 class ForeignWords {
 public:
-  /// Reads `in` from left to right, and changes it in front of what was read; `out` has what is
+  /// Reads `in` from left to right, and may change the tokens not yet read; `out` has the tokens
   /// kept so far.
   ForeignWords(FileId file, std::vector<Token> &in, const std::vector<Token> &out,
                Diagnostics &diagnostics)
       : file(file), in(in), out(out), diagnostics(diagnostics) {}
 
-  /// Number of words from `index` on that are reported and left out; 0: none.
+  /// Number of tokens from `index` on that are reported and removed; 0: none.
   std::size_t skip(std::size_t index);
-  /// Number of words from `index` on that C takes for one type and that stand one space apart: one
-  /// name, which the checker does not know and can replace. 1: it is none of those.
+  /// Number of tokens from `index` on that C combines into one type name, each one space apart.
+  /// They become one name, which sema reports as unknown and can replace. 1: not such a name.
   std::size_t wordsOfType(std::size_t index) const;
-  /// True if what comes next may be the first word of a declaration, of a parameter too.
+  /// True if the next token may be the first of a declaration, including that of a parameter.
   bool isDeclarationStart() const;
 
 private:
@@ -50,7 +50,7 @@ private:
 
   const Token &at(std::size_t index) const { return in[std::min(index, in.size() - 1)]; }
   unsigned typeAt(std::size_t index) const { return at(index).type; }
-  /// Type of the word that was kept `back` words ago.
+  /// Type of the token that was kept `back` tokens ago.
   unsigned before(std::size_t back = 1) const {
     return back <= out.size() ? out[out.size() - back].type : unsigned{Token::endOfFile};
   }

@@ -24,12 +24,12 @@ using antlr4::atn::ParserATNSimulator;
 using antlr4::atn::PredictionMode;
 using generated::RtslParser;
 
-/// Errors of one text that are held at most, to be sorted.
+/// Upper limit on the errors of one text that are collected for sorting.
 constexpr std::size_t maxFoundErrors = 1000;
 
 /// Parses with predictions that ignore the rules around a decision, which is fast and nearly always
-/// right. Only when that fails, for a mistake of the author as a rule, the text is parsed again
-/// with all that the parser can know, and then mistakes are reported.
+/// right. Only when that fails, usually because of a syntax error, the text is parsed again with
+/// full context, and mistakes are reported.
 RtslParser::TranslationUnitContext *parseWords(RtslParser &parser, SyntaxErrors &errors) {
   auto *simulator = parser.getInterpreter<ParserATNSimulator>();
   try {
@@ -71,7 +71,7 @@ std::unique_ptr<ast::TranslationUnit> parseText(FileId file, Diagnostics &diagno
 } // namespace
 
 std::unique_ptr<ast::TranslationUnit> parse(FileId file, Diagnostics &diagnostics) {
-  // Each step goes over the whole text; the author reads from top to bottom.
+  // Each step processes the whole text, but messages are reported from top to bottom.
   Diagnostics found(diagnostics.sources());
   found.errorLimit =
       diagnostics.errorLimit == 0 ? 0 : std::max(diagnostics.errorLimit, maxFoundErrors);

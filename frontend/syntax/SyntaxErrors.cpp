@@ -1,4 +1,4 @@
-//===- SyntaxErrors.cpp - what the parser says and does about mistakes ----===//
+//===- SyntaxErrors.cpp - reporting and recovering from syntax errors -----===//
 #include "frontend/syntax/SyntaxErrors.h"
 
 #include "grammar/RtslLexer.h"
@@ -28,13 +28,13 @@ bool isClosing(unsigned type) {
          type == RtslLexer::RIGHT_BRACE;
 }
 
-/// Keywords that stand at the beginning of a statement or declaration and nowhere else.
+/// Keywords that can only be at the beginning of a statement or declaration.
 bool isStatementKeyword(unsigned type) {
   return (type >= RtslLexer::IF && type <= RtslLexer::RETURN && type != RtslLexer::ELSE) ||
          type == RtslLexer::ILLUMINANCE || (type >= RtslLexer::IMPORT && type <= RtslLexer::CONST);
 }
 
-/// True for words behind which an expression may end.
+/// True for tokens that can end an expression.
 bool endsOperand(unsigned type) {
   return type == RtslLexer::IDENTIFIER || isClosing(type) || type == RtslLexer::PLUS_PLUS ||
          type == RtslLexer::MINUS_MINUS || type == RtslLexer::TRUE || type == RtslLexer::FALSE ||
@@ -44,12 +44,12 @@ bool endsOperand(unsigned type) {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// Words in messages
+// Tokens in messages
 //===----------------------------------------------------------------------===//
 
 SourceRange SyntaxErrors::rangeOf(std::size_t index) const {
   const Token &token = word(index);
-  if (token.type == Token::endOfFile && index > 0) // behind the last word, not behind empty lines
+  if (token.type == Token::endOfFile && index > 0) // after the last token, not after empty lines
     return {file, word(index - 1).end, word(index - 1).end};
   return {file, token.begin, token.end};
 }
@@ -62,16 +62,16 @@ std::string SyntaxErrors::describe(std::size_t index) const {
                                       : fmt::format("`{}`", text);
 }
 
-/// True if a mistake at this word is explained by a message that was given before parsing.
+/// True if an error at this token is a consequence of one that was reported before parsing.
 bool SyntaxErrors::isConsequence(std::size_t index) const {
   const Token &token = word(index);
   if (token.followsMistake || token.isBroken)
     return true;
-  // A string without an end may have taken anything.
+  // A string without an end may have swallowed anything.
   return index > 0 && word(index - 1).isBroken && word(index - 1).type == RtslLexer::STRING_LITERAL;
 }
 
-/// True if a statement that lacks its semicolon ends in front of this word.
+/// True if a statement without its semicolon ends before this token.
 bool SyntaxErrors::endsBefore(std::size_t index) const {
   const Token &token = word(index);
   return token.startsLine || token.type == RtslLexer::RIGHT_BRACE ||
@@ -93,20 +93,21 @@ void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expect
   if (type(0) == RtslLexer::ELSE)
     diagnostic.note("there is no `if` that it could belong to");
   else if (type(0) == RtslLexer::STRUCT)
-    diagnostic.note("structs are declared outside of functions");
+    diagnostic.note("a struct cannot be declared in a function");
   else if (type(1) == RtslLexer::IF || type(1) == RtslLexer::WHILE || type(1) == RtslLexer::SWITCH)
-    diagnostic.note("conditions stand in parentheses");
+    diagnostic.note("a condition is written in parentheses");
   else if (textOf(index) == "extends" || textOf(index) == "implements")
     diagnostic.fix(rangeOf(index), ":", true);
   else if (type(0) == RtslLexer::LEFT_PAREN && followsName)
-    diagnostic.note("a variable gets its value from `=`; functions are declared outside of others");
+    diagnostic.note(
+        "a variable gets its value from `=`; a function cannot be declared in another one");
   else if (type(0) == RtslLexer::LEFT_BRACE && followsName && expected == "`;`")
     diagnostic.note(
         fmt::format("a variable gets its value from `=`, a function has parentheses: `{}()`",
                     textOf(index - 1)));
   else if (type(0) == RtslLexer::COLON && followsName && type(3) == RtslLexer::LEFT_PAREN &&
            type(4) == RtslLexer::FOR)
-    diagnostic.note("a loop counts: `for (int i = 0; i < array.length(); ++i)`");
+    diagnostic.note("write a loop with an index: `for (int i = 0; i < array.length(); ++i)`");
 }
 
 void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t index) {
@@ -129,7 +130,7 @@ void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t in
   diagnostics.report(Code::missingSemicolon, place, after).fix(place, ";", true);
 }
 
-/// What may follow an operand inside of the brackets around this word.
+/// The tokens that may follow an operand inside the brackets around this token.
 std::string SyntaxErrors::closingAround(std::size_t index) const {
   std::size_t open = index;
   while (open > 0 && word(open).depth >= word(index).depth)
@@ -139,11 +140,11 @@ std::string SyntaxErrors::closingAround(std::size_t index) const {
                                                     : "`;`";
 }
 
-/// What a declaration lacks behind its type: it has read the words from `start` on, and not the one
+/// What a declaration lacks after its type: it has read the tokens from `start` on, up to the one
 /// at `index`.
 void SyntaxErrors::reportInDeclaration(antlr4::Parser *parser, std::size_t start,
                                        std::size_t index) {
-  if (index > start) { // type and name are there
+  if (index > start) { // it has a type and a name
     if (endsBefore(index))
       reportMissingSemicolon(parser, index);
     else
@@ -161,7 +162,7 @@ void SyntaxErrors::reportInDeclaration(antlr4::Parser *parser, std::size_t start
   }
 }
 
-/// The one word that the parser needs next, as a message names it.
+/// The single token that the parser expects next, as a message names it.
 std::string SyntaxErrors::expectedToken(antlr4::Parser *parser, std::size_t index) const {
   const antlr4::atn::ATN &atn = parser->getATN();
   const antlr4::misc::IntervalSet &expected = atn.nextTokens(atn.states[parser->getState()]);
@@ -180,7 +181,7 @@ std::string SyntaxErrors::expectedToken(antlr4::Parser *parser, std::size_t inde
     return "`,` or `}`";
   if (rule == RtslParser::RuleClassDeclaration && expected.contains(std::size_t{RtslLexer::COLON}))
     return "`:` and the class that it derives from";
-  // Literal names are quoted, as in 'while'.
+  // Literal token names are quoted, as in 'while'.
   std::string name = expected.isEmpty() ? std::string()
                                         : parser->getVocabulary().getLiteralName(
                                               static_cast<std::size_t>(expected.getMinElement()));
@@ -211,7 +212,7 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
     reportInDeclaration(parser, start, index);
     return;
   case RtslParser::RuleFunctionBody: {
-    // The words in front are the name and the parameters, which balance.
+    // The tokens before it are the name and the parameters, whose brackets balance.
     std::size_t open = index - 1;
     while (open > 0 &&
            (word(open).type != RtslLexer::LEFT_PAREN || word(open).depth != word(index - 1).depth))
@@ -224,7 +225,7 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
     return;
   }
   case RtslParser::RuleSimpleStatement:
-    // The parser has looked ahead, perhaps into brackets, and not yet read anything.
+    // The parser has looked ahead, perhaps into brackets, but not consumed anything yet.
     if (index == start || !endsOperand(word(index - 1).type))
       reportUnexpected(index, "an expression");
     else if (word(index).depth > word(start).depth ||
@@ -256,12 +257,12 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
 }
 
 //===----------------------------------------------------------------------===//
-// Where to go on
+// Recovery
 //===----------------------------------------------------------------------===//
 
-/// Index of the word with which the next statement or declaration begins, after a mistake at `from`
-/// in the one that begins at `start`. Never leaves the brackets around it, and is behind `start` if
-/// it can.
+/// Index of the token at which the next statement or declaration begins, after an error at `from`
+/// in the one that begins at `start`. Never leaves the brackets around it, and is after `start` if
+/// possible.
 std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) const {
   const unsigned depth = word(start).depth;
   for (std::size_t index = from;; ++index) {
@@ -291,7 +292,7 @@ std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) co
   }
 }
 
-/// Index of the word behind an expression: a semicolon, a comma where one separates, or the bracket
+/// Index of the token after an expression: a semicolon, a separating comma, or the closing bracket
 /// around it.
 std::size_t SyntaxErrors::endOfExpression(std::size_t start, std::size_t from,
                                           bool endsAtComma) const {
@@ -311,7 +312,7 @@ std::size_t SyntaxErrors::endOfExpression(std::size_t start, std::size_t from,
   }
 }
 
-/// Index of the parenthesis that closes over the arguments that begin at `start`.
+/// Index of the closing parenthesis of the arguments that begin at `start`.
 std::size_t SyntaxErrors::endOfArguments(std::size_t start, std::size_t from) const {
   const unsigned depth = word(start).depth;
   std::size_t index = from;
@@ -321,7 +322,7 @@ std::size_t SyntaxErrors::endOfArguments(std::size_t start, std::size_t from) co
   return index;
 }
 
-/// Index of the word behind a pair of parentheses that opens at `start`.
+/// Index of the token after a pair of parentheses that opens at `start`.
 std::size_t SyntaxErrors::behindParentheses(std::size_t start, std::size_t from) const {
   if (word(start).type != RtslLexer::LEFT_PAREN)
     return from;
@@ -351,8 +352,9 @@ antlr4::Token *SyntaxErrors::recoverInline(antlr4::Parser *parser) {
   return inserted.back().get();
 }
 
-/// Called in front of each round of a loop. In the loops over statements and declarations, what can
-/// begin none is reported and skipped here, so that the loop goes on.
+/// Called before each iteration of a loop in the grammar. In the loops over statements and
+/// declarations, tokens that can begin none are reported and skipped here, so that the loop
+/// continues.
 void SyntaxErrors::sync(antlr4::Parser *parser) {
   const std::size_t rule = ruleOf(parser);
   const char *expected = nullptr;
@@ -421,7 +423,7 @@ void SyntaxErrors::recover(antlr4::Parser *parser, std::exception_ptr error) {
   case RtslParser::RuleStructDeclaration:
   case RtslParser::RuleClassDeclaration:
   case RtslParser::RuleFileItem: {
-    // What begins behind the mistake on a line of its own is not part of it.
+    // A new line after the error that begins like a statement is not part of the broken one.
     const Token &at = word(from);
     const bool isNext = from > start && at.startsLine && at.depth == word(start).depth &&
                         (isStatementKeyword(at.type) || at.type == RtslLexer::IDENTIFIER);

@@ -1,4 +1,4 @@
-//===- SyntaxErrors.h - what the parser says and does about mistakes ------===//
+//===- SyntaxErrors.h - reporting and recovering from syntax errors -------===//
 #pragma once
 
 #include "frontend/diagnostics/Diagnostics.h"
@@ -9,15 +9,15 @@
 
 namespace rtsl {
 
-/// Reports a mistake where the parser cannot go on, and finds the place where it can again: behind
-/// the expression, the statement or the declaration. A rule that cannot continue hands the mistake
-/// on to the rule that called it, until one of those is reached.
+/// Reports an error where the parser cannot continue, and finds the position from which it can:
+/// after the expression, the statement or the declaration. A rule that cannot recover rethrows the
+/// error to the rule that called it, until one of those is reached.
 class SyntaxErrors final : public antlr4::ANTLRErrorStrategy {
 public:
   SyntaxErrors(FileId file, WordStream &words, Diagnostics &diagnostics)
       : file(file), words(words), diagnostics(diagnostics) {}
 
-  /// While true, the first mistake ends the parse with antlr4::ParseCancellationException, and
+  /// While true, the first error ends the parse with antlr4::ParseCancellationException, and
   /// nothing is reported.
   bool isQuiet = false;
 
@@ -54,9 +54,8 @@ private:
   const FileId file;
   WordStream &words;
   Diagnostics &diagnostics;
-  bool isRecovering =
-      false;                // from a mistake that was reported: what follows may be its consequence
-  std::size_t resumeAt = 0; // the place of that mistake; the parser may not have come so far
+  bool isRecovering = false; // after a reported error: what follows may be its consequence
+  std::size_t resumeAt = 0;  // the position of that error; the parser may not have reached it
   std::vector<std::unique_ptr<ParserToken>> inserted;
 };
 

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// C sees a pointer to it (rtsl/rtsl.h), C++ the program in it.
+/// A C++ program, of which C only sees a pointer (rtsl/rtsl.h).
 struct RtslShaders {
   std::shared_ptr<const rtsl::runtime::Program> program;
 };

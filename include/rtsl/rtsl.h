@@ -1,10 +1,10 @@
 /*===- rtsl.h - the runtime for C -------------------------------------------===*\
  *
- * Builds a scene of compiled shaders, renders it, and writes the picture: the C++ interface
+ * Builds a scene of compiled shaders, renders it, and writes the image: the C++ interface
  * (rtsl/runtime.h) with handles in place of classes. Shaders come from `rtslc compile --emit=cpp`,
  * which exports `const RtslShaders *name_shaders(void)`.
  *
- * A function that fails returns 0 (or a null pointer), and rtslError says why. Handles may be used
+ * A function that fails returns 0 (or a null pointer), and rtslError returns the reason. Handles may be used
  * by one thread at a time.
  *
 \*===------------------------------------------------------------------------===*/
@@ -24,36 +24,36 @@ typedef struct RtslScene RtslScene;
 /* An object of the scene; 0 is none. */
 typedef uint32_t RtslObject;
 
-/* Why the last function of this thread failed; "" if none did. Valid until the next call. */
+/* The error of the last function that failed in this thread; "" if none did. Valid until the next call. */
 const char *rtslError(void);
 
 RtslScene *rtslSceneCreate(const RtslShaders *shaders);
 void rtslSceneDestroy(RtslScene *scene);
 
-/* What the next rtslSceneAddObject is given, by name: constructor arguments and public members. A
+/* Sets, by name, constructor arguments and public members for the next rtslSceneAddObject. A
  * value is `count` numbers (a vector, a color, a matrix by columns, an array), or an object. */
 int rtslArgument(RtslScene *scene, const char *parameter, const double *numbers, size_t count);
 int rtslArgumentObject(RtslScene *scene, const char *parameter, RtslObject object);
 int rtslMember(RtslScene *scene, const char *member, const double *numbers, size_t count);
 int rtslMemberObject(RtslScene *scene, const char *member, RtslObject object);
 
-/* Makes an object of the class with what was given, which is then forgotten. */
+/* Creates an object of the class with these values, which are then cleared. */
 RtslObject rtslSceneAddObject(RtslScene *scene, const char *className);
 
-/* What rays can hit. */
+/* Geometry that rays can hit. */
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material);
-/* A mesh file (OBJ, PLY, glTF), moved by `transform`: 12 numbers, four columns of three, or null. */
+/* A mesh file (OBJ, PLY, glTF), with a `transform`: 12 numbers, four columns of three, or null. */
 int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,
                          RtslObject material);
-/* Triangles: 3 floats a vertex, 3 indices a triangle. */
+/* Triangles: 3 floats per vertex, 3 indices per triangle. */
 int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t vertexCount,
                           const uint32_t *indices, size_t triangleCount, RtslObject material);
 
 int rtslSceneAddLight(RtslScene *scene, RtslObject light);
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
-/* In place of a camera: its `generate` makes the samples. */
+/* Replaces the camera: its `generate` computes the samples. */
 int rtslSceneSetRayGeneration(RtslScene *scene, RtslObject rayGeneration);
-/* What samples are that meet an exception, in shaders printed with --exceptions. */
+/* Handles samples with an exception, in shaders compiled with --exceptions. */
 int rtslSceneSetException(RtslScene *scene, RtslObject exception);
 int rtslSceneSetBackground(RtslScene *scene, RtslObject miss);
 int rtslSceneSetBackgroundColor(RtslScene *scene, const float *color, size_t count);
@@ -77,16 +77,17 @@ uint32_t rtslSceneChannels(const RtslScene *scene);
 /* Renders and writes an .exr or .png. */
 int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path);
 
-/* What the last rendering of this thread met. Samples that are infinite or not a number are left out of the means of their
+/* Statistics of the last rendering of this thread. Samples that are infinite or not a number are left out of the means of their
  * pixels, and rays deeper than maxDepth are not sent: neither stops a rendering. */
 typedef struct RtslRenderFacts {
   uint64_t samples;
-  uint64_t samplesNotFinite, pixelsWithoutSample; /* black, for none of their samples was finite */
+  uint64_t samplesNotFinite,
+      pixelsWithoutSample; /* black, because none of their samples was finite */
   uint64_t raysTooDeep, badRays;
 } RtslRenderFacts;
 RtslRenderFacts rtslLastRendering(void);
 
-/* Gives `take` each line that shaders (printed with --print) have printed since the last time, in the order of pixels. */
+/* Calls `take` with each line that shaders (compiled with --print) have printed since the last call, in the order of pixels. */
 int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context),
                     void *context);
 

@@ -1,7 +1,7 @@
-//===- runtime.h - scenes and pictures of compiled shaders ----------------===//
+//===- runtime.h - scenes and images of compiled shaders ------------------===//
 //
 // The whole C++ interface of the runtime library: rtsl::runtime::Scene, Mesh, render, writeImage
-// and what they throw. examples/cpp-api shows it at work.
+// and the exceptions that they throw. examples/cpp-api is an example.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,16 +1,16 @@
-//===- shader.h - what C++ that rtslc wrote stands on ---------------------===//
+//===- shader.h - the header of C++ code that rtslc generates -------------===//
 //
-// The one header of generated code: GLM's types, RTSL's built-in functions with their definite
-// results, the state of a ray, and how shaders are described to the runtime.
+// The one header of generated code: GLM's types, RTSL's built-in functions with their exactly
+// defined results, the state of a ray, and the description of shaders for the runtime.
 //
-// Generated code includes it before anything else, for it decides how floating point is compiled:
-// each operation rounds once, and none are fused. With that, the same bits come out as from the
+// Generated code includes it first, because it determines how floating point is compiled: each
+// operation rounds once, and none are fused. So the results are bit-identical to those of the
 // compiler's own machine code (docs/cpp-output.md).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "rtsl/shader/FloatingPoint.h" // first
+#include "rtsl/shader/FloatingPoint.h" // must be first
 
 #include "rtsl/shader/Calls.h"
 #include "rtsl/shader/Common.h"

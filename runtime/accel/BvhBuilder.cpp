@@ -33,7 +33,7 @@ float halfArea(const Bounds &bounds) {
   return x < 0 ? 0 : x * y + y * z + z * x;
 }
 
-/// Twice the centre; only compared.
+/// Twice the centre; used only for comparisons.
 float centre(const BvhItem &item, int axis) {
   return item.bounds.lower[axis] + item.bounds.upper[axis];
 }
@@ -123,7 +123,7 @@ private:
     return all;
   }
 
-  /// Makes the node of at least two items; returns its index.
+  /// Builds a node of at least two items; returns its index.
   std::int32_t inner(Iterator begin, Iterator end, const Bounds &all, unsigned depth) {
     std::int32_t index = std::int32_t(bvh.nodes.size());
     bvh.nodes.emplace_back();
@@ -133,10 +133,10 @@ private:
     return index;
   }
 
-  /// Sorts the items into left and right, both not empty.
+  /// Partitions the items into left and right, both not empty.
   Iterator divide(Iterator begin, Iterator end, const Bounds &all, unsigned depth) {
     std::size_t count = std::size_t(end - begin);
-    // Halving needs ceil(log2(count)) levels: from here on there is no room for less even splits.
+    // Halving needs ceil(log2(count)) levels: from here on the depth permits only even splits.
     bool mustHalve = depth + ceilLog2(count) + 1 >= unsigned(device::maxBvhDepth);
     if (!mustHalve) {
       Split split = bestSplit(begin, end, all);
@@ -148,7 +148,7 @@ private:
           return middle;
       }
     }
-    // All centres in one place, or the depth runs out: by the median of the widest axis.
+    // All centres coincide, or the depth is nearly used up: split at the median of the widest axis.
     int axis = 0;
     for (int i = 1; i < 3; ++i)
       if (all.upper[i] - all.lower[i] > all.upper[axis] - all.lower[axis])

@@ -1,7 +1,7 @@
 //===- BvhBuilder.h - the binary tree for the device traversal ------------===//
 //
 // Top down by the surface area heuristic over 16 bins (Wald, "On fast Construction of SAH-based
-// Bounding Volume Hierarchies", 2007). The same scene gives the same tree, whatever the machine.
+// Bounding Volume Hierarchies", 2007). The same scene gives the same tree, on every machine.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -16,15 +16,15 @@ namespace rtsl::runtime {
 struct Bvh {
   std::vector<RtslBvhNode> nodes; // the root is node 0, unless rootIsLeaf
   std::vector<RtslLeafItem> items;
-  bool rootIsLeaf = false; // so few items that there are no nodes
+  bool rootIsLeaf = false; // there are so few items that there are no nodes
 
-  /// Puts the tree into a launch, which must not outlive it.
+  /// Installs the tree in a launch, which must not outlive it.
   void install(RtslLaunch &launch) const;
   /// The longest path from the root; at most device::maxBvhDepth.
   unsigned depth() const;
 };
 
-/// A thing to put into the tree.
+/// An item for the tree.
 struct BvhItem {
   Bounds bounds; // finite
   RtslLeafItem item;

@@ -9,7 +9,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// A line of a cache; nodes are as large.
+/// The size of a cache line; nodes have the same size.
 constexpr std::uint64_t alignment = 64;
 
 class Flattener {
@@ -19,7 +19,7 @@ public:
     return std::move(flat);
   }
 
-  /// Adds a copy of an array; gives its distance from the start.
+  /// Adds a copy of an array; returns its offset from the start.
   template <typename Element>
   std::uint64_t add(const Element *elements, std::size_t count) {
     std::uint64_t start = (flat.bytes.size() + alignment - 1) / alignment * alignment;
@@ -28,7 +28,7 @@ public:
     return start;
   }
 
-  /// Adds an array and makes the pointer at `place` lead there. An absent or empty array is null.
+  /// Adds an array and sets the pointer at `place` to it. An absent or empty array is null.
   template <typename Element>
   std::uint64_t addAt(std::uint64_t place, const Element *elements, std::size_t count) {
     std::uint64_t start = 0;

@@ -1,9 +1,8 @@
 //===- FlatScene.h - a scene as one block of bytes ------------------------===//
 //
-// Everything that an RtslLaunch leads to, the launch first: records, tables, the tree, meshes,
-// buffers. Pointers hold distances from the start; the scene runs wherever it lies once its address
-// was added to them, in the memory of this process or of a GPU.
-//
+// Everything that an RtslLaunch points to, the launch first: records, tables, the tree, meshes,
+// buffers. Pointers contain offsets from the start; the scene can be used at any address, in the
+// memory of this process or of a GPU, after the address was added to them.
 //===----------------------------------------------------------------------===//
 #pragma once
 
@@ -19,8 +18,8 @@ class Scene;
 
 struct FlatScene {
   std::vector<std::uint8_t> bytes;
-  /// Where the pointers lie, in bytes from the start and ascending. Each is 64 bits wide, with an
-  /// alignment of 4; null pointers are not in here.
+  /// The positions of the pointers, in bytes from the start and ascending. Each is 64 bits wide,
+  /// with an alignment of 4; null pointers are not included.
   std::vector<std::uint64_t> pointers;
 
   RtslLaunch launch() const {
@@ -30,7 +29,7 @@ struct FlatScene {
   }
   void setLaunch(const RtslLaunch &launch) { std::memcpy(bytes.data(), &launch, sizeof launch); }
 
-  /// Makes the pointers those of a scene that lies at `address`, which is a multiple of 64.
+  /// Sets the pointers for a scene at `address`, which is a multiple of 64.
   void relocate(std::uint64_t address) {
     for (std::uint64_t place : pointers) {
       std::uint64_t pointer;
@@ -42,7 +41,7 @@ struct FlatScene {
 };
 
 /// The scene with a tree for the device traversal. Width, height, depth and seed of its launch are
-/// 0, and nothing in it depends on where anything lay: the same scene gives the same bytes.
+/// 0, and nothing depends on addresses: the same scene gives the same bytes.
 FlatScene flatten(const Scene &scene);
 
 } // namespace rtsl::runtime

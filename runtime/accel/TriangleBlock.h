@@ -1,9 +1,9 @@
 //===- TriangleBlock.h - eight triangles, tested at once ------------------===//
 //
-// What lies in a leaf of the host's tree. All eight are tested by the operations of
+// A leaf of the host's tree. All eight are tested by the operations of
 // runtime/device/traverse/Triangle.h and moveIntoBox (runtime/device/traverse/Traverse.h), in the
-// same order, and so with the same bits. Where those take another course for numbers of unusual
-// size, or near the ray's origin, the triangle is tested by their own functions.
+// same order, and so with the same bits. In the cases that those treat separately, numbers of
+// unusual size or hits near the ray's origin, the triangle is tested by their own functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,7 +19,7 @@ namespace rtsl::runtime {
 struct alignas(32) TriangleBlock {
   static constexpr unsigned lanes = 8;
 
-  float vertices[3][3][lanes];   // [vertex][axis]; an empty lane has the vertices of another one
+  float vertices[3][3][lanes];   // [vertex][axis]; an empty lane repeats another one
   std::uint32_t instance[lanes]; // RTSL_NO_HIT: the lane is empty
   std::uint32_t triangle[lanes];
 
@@ -42,7 +42,7 @@ struct alignas(32) TriangleBlock {
   }
 };
 
-/// One number of each lane.
+/// One float in each lane.
 using Lanes = __m256;
 
 inline Lanes all(float a) {
@@ -72,7 +72,7 @@ inline Lanes differenceOfProducts(Lanes a, Lanes b, Lanes c, Lanes d) {
   return _mm256_fmsub_ps(a, b, cd) + error;
 }
 
-/// Puts the right depths where hits are near the ray's origin.
+/// Corrects the depths of hits near the ray's origin.
 [[gnu::cold, gnu::noinline]] inline void correctNearDepths(const device::TriangleRay &ray,
                                                            const TriangleBlock &block,
                                                            unsigned near, Lanes &depth) {
@@ -86,10 +86,10 @@ inline Lanes differenceOfProducts(Lanes a, Lanes b, Lanes c, Lanes d) {
   depth = _mm256_load_ps(depths);
 }
 
-/// Where the lines of a ray and the planes of triangles meet, and which lanes have a hit.
+/// The intersections of a ray with the planes of triangles, and the lanes with a hit.
 struct LaneHits {
   Lanes t, u, v;
-  unsigned hit;   // t, u and v are right, before moveIntoBox
+  unsigned hit;   // t, u and v are valid, before moveIntoBox
   unsigned other; // lanes to be tested by device::testTriangle
 };
 
@@ -112,8 +112,8 @@ struct LaneHits {
   const Lanes zero = _mm256_setzero_ps();
   const Lanes isInside = _mm256_or_ps(_mm256_cmp_ps(minimum(e0, e1, e2), zero, _CMP_GE_OQ),
                                       _mm256_cmp_ps(maximum(e0, e1, e2), zero, _CMP_LE_OQ));
-  // Coordinates of meshes and of origins that come here are below 2^60; small ones are scaled
-  // there.
+  // Coordinates of meshes and origins are below 2^60 here; smaller ones are scaled in
+  // intersectTriangle.
   const Lanes size = maximum(maximum(absolute(x[0]), absolute(x[1]), absolute(x[2])),
                              maximum(absolute(y[0]), absolute(y[1]), absolute(y[2])));
   const Lanes isUsual = _mm256_and_ps(_mm256_cmp_ps(size, all(0x1p-30f), _CMP_GT_OQ),
@@ -146,7 +146,7 @@ struct LaneHits {
   return hits;
 }
 
-/// moveIntoBox for all lanes. Returns those that meet their box, of `hit`.
+/// moveIntoBox for all lanes. Returns the lanes of `hit` that meet their box.
 [[gnu::always_inline]] inline unsigned moveLanesIntoBoxes(const device::TriangleRay &ray,
                                                           const TriangleBlock &block, Lanes &t) {
   Lanes near = _mm256_setzero_ps(), far = all(device::infinity);
@@ -171,14 +171,15 @@ struct LaneHits {
   return unsigned(_mm256_movemask_ps(isMet));
 }
 
-/// device::testTriangle of one lane.
+/// device::testTriangle for one lane.
 [[gnu::cold, gnu::noinline]] inline bool testLane(RtslState &state, const device::TriangleRay &ray,
                                                   const TriangleBlock &block, unsigned i) {
   return block.instance[i] != RTSL_NO_HIT &&
          device::testTriangle(state, ray, block.lane(i), block.instance[i], block.triangle[i]);
 }
 
-/// Tests all triangles of the block and commits the one that wins. With `anyHit` the first will do.
+/// Tests all triangles of the block and commits the one that wins. With `anyHit` any hit is
+/// sufficient.
 [[gnu::always_inline]] inline bool testBlock(RtslState &state, const device::TriangleRay &ray,
                                              const TriangleBlock &block, bool anyHit) {
   LaneHits hits = intersectLanes(ray, block);

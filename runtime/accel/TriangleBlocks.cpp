@@ -10,13 +10,13 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// Triangles of one instance, and where their boxes go.
+/// Triangles of one instance, and the destination of their boxes.
 struct Piece {
   std::uint32_t instance, first, count;
   std::size_t to;
 };
 
-/// All triangles of the launch, in pieces that threads can share.
+/// All triangles of the launch, in pieces that are distributed to threads.
 std::vector<Piece> cutIntoPieces(const RtslLaunch &launch) {
   constexpr std::uint32_t largest = 1 << 15;
   std::vector<Piece> pieces;
@@ -56,17 +56,17 @@ LargeArray<RTCBuildPrimitive> triangleBoxes(const RtslLaunch &launch, unsigned t
   return boxes;
 }
 
-/// Boxes that lie together.
+/// Boxes that are close together.
 struct Run {
   std::size_t first;
   unsigned length;
 };
 
-/// Sorts the boxes into runs of up to TriangleBlock::lanes, by Embree's builder.
+/// Partitions the boxes into runs of up to TriangleBlock::lanes, with Embree's builder.
 std::vector<Run> sortIntoRuns(RTCDevice device, LargeArray<RTCBuildPrimitive> &boxes) {
   struct Lengths {
     const RTCBuildPrimitive *first;
-    std::vector<std::uint8_t> of; // a run's, at its first box
+    std::vector<std::uint8_t> of; // the length of a run, at its first box
   } lengths{boxes.data(), std::vector<std::uint8_t>(boxes.size())};
   RTCBVH tree = rtcNewBVH(device);
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
@@ -81,7 +81,7 @@ std::vector<Run> sortIntoRuns(RTCDevice device, LargeArray<RTCBuildPrimitive> &b
   arguments.primitives = boxes.data();
   arguments.primitiveCount = arguments.primitiveArrayCapacity = boxes.size();
   arguments.userPtr = &lengths;
-  // Of the tree only its leaves are wanted: nodes are nothing, but not null.
+  // Only the leaves of the tree are used: nodes are dummies, but must not be null.
   arguments.createNode = [](RTCThreadLocalAllocator, unsigned, void *user) { return user; };
   arguments.setNodeChildren = [](void *, void **, unsigned, void *) {};
   arguments.setNodeBounds = [](void *, const RTCBounds **, unsigned, void *) {};

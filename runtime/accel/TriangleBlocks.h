@@ -8,8 +8,8 @@
 
 namespace rtsl::runtime {
 
-/// All triangles of the launch in blocks of those that lie together, by Embree's builder. Errors of
-/// Embree go to the device; throws std::bad_alloc.
+/// All triangles of the launch in blocks of neighbouring ones, by Embree's builder. Errors of
+/// Embree are reported through the device; throws std::bad_alloc.
 LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const RtslLaunch &launch,
                                              unsigned threads);
 

@@ -1,8 +1,8 @@
-//===- HostMemory.cpp - memory functions for code that has no library -----===//
+//===- HostMemory.cpp - memory functions for code without a C library -----===//
 //
-// Code generation calls these of its own accord. For machine code of the host in a package, which
-// refers to nothing outside; in a process that compiles, the C library's are used. The compiler
-// knows these names and does not make a loop a call of itself.
+// Code generation inserts calls of these. They are linked into the host machine code of a package,
+// which has no external references; in a process that compiles, the C library's are used. The
+// compiler recognises these names and does not turn a loop into a call of the function itself.
 //
 //===----------------------------------------------------------------------===//
 #include <stddef.h>

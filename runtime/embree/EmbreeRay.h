@@ -1,7 +1,7 @@
 //===- EmbreeRay.h - one ray through Embree -------------------------------===//
 //
-// Inline, for it is the hottest code of the host: rtsl_traverse makes of it one function, from the
-// ray's state to Embree's and back.
+// Inline, because it is the hottest code of the host: rtsl_traverse combines it into one function,
+// from the ray's state to Embree's and back.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -24,20 +24,20 @@
 
 namespace rtsl::runtime {
 
-/// Embree's context of a ray, and behind it what our callbacks need.
+/// Embree's context of a ray, followed by the data for our callbacks.
 struct EmbreeContext {
   RTCIntersectContext embree;
   RtslState *state;
   const device::TriangleRay *ray;
   const EmbreeScene::Implementation *scene;
-  const EmbreeVisitor *visitor; // null: what is found is tested, and committed if it wins
+  const EmbreeVisitor *visitor; // null: candidates are tested, and committed if they win
   float toEmbree;               // a power of two that turns our t into Embree's
-  // of a ray for which any hit will do: the block in which one was found
+  // for a ray that needs any hit only: the block in which one was found
   mutable std::uint32_t occluder;
 
   static constexpr std::uint32_t noBlock = ~0u;
 
-  /// Where Embree need not look any further, once hits beyond t do not matter.
+  /// Where Embree's search may end, if hits beyond t do not matter.
   float end(float t) const { return t * toEmbree * device::cullSlack; }
 };
 
@@ -48,7 +48,7 @@ struct EmbreePrimitive {
   std::uint32_t instance;
 };
 
-/// A tree for rays from origins up to some distance.
+/// A tree for rays with origins up to some distance.
 struct EmbreeLevel {
   const EmbreeScene::Implementation *owner = nullptr;
   float largestOrigin = 0; // the sum of its coordinates
@@ -57,7 +57,7 @@ struct EmbreeLevel {
 };
 
 struct EmbreeScene::Implementation {
-  std::uint64_t number = 0; // no other scene of the process has it; from 1
+  std::uint64_t number = 0; // unique in the process; from 1
   RTCDevice device = nullptr;
   const RtslInstance *instances = nullptr;
   LargeArray<TriangleBlock> blocks;
@@ -72,7 +72,7 @@ struct EmbreeScene::Implementation {
   Implementation(const Implementation &) = delete;
   ~Implementation();
 
-  /// The tree for rays from there.
+  /// The tree for rays from this origin.
   RTCScene treeFor(const float *origin) const {
     float size =
         __builtin_fabsf(origin[0]) + __builtin_fabsf(origin[1]) + __builtin_fabsf(origin[2]);
@@ -80,7 +80,7 @@ struct EmbreeScene::Implementation {
   }
   RTCScene treeForFar(float origin) const;
 
-  /// Embree's ray of the state's. What a factor of 1 multiplies is copied.
+  /// Fills Embree's ray from the state. With factors of 1 the values are copied.
   static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree,
                    float end) {
     std::memcpy(&ray.org_x, state.RayOrigin, sizeof state.RayOrigin);
@@ -99,7 +99,7 @@ struct EmbreeScene::Implementation {
     ray.flags = 0;
   }
 
-  /// `toEmbree` and `fromEmbree` are powers of two and turn our t into Embree's, and back.
+  /// `toEmbree` and `fromEmbree` are powers of two that convert our t to Embree's, and back.
   [[gnu::always_inline]] std::uint32_t query(RtslState &state, bool anyHit, float toEmbree,
                                              float fromEmbree) const {
     const device::TriangleRay triangleRay =

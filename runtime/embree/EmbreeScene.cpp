@@ -18,7 +18,7 @@ namespace {
 using Implementation = EmbreeScene::Implementation;
 
 //===----------------------------------------------------------------------===//
-// What Embree calls for a ray
+// Callbacks of Embree for a ray
 //===----------------------------------------------------------------------===//
 
 template <typename Arguments>
@@ -26,7 +26,7 @@ const EmbreeContext &contextOf(const Arguments *arguments) {
   return *reinterpret_cast<const EmbreeContext *>(arguments->context);
 }
 
-/// Hands an item to the visitor of the ray. False if the search is over.
+/// Passes an item to the visitor of the ray. False if the search is over.
 bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &item) {
   const EmbreeVisitor &visitor = *context.visitor;
   const bool isOver = visitor.visit(visitor.self, item);
@@ -85,11 +85,11 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
 // Boxes
 //===----------------------------------------------------------------------===//
 
-/// Embree computes distances to the sides of boxes as products of coordinates, and for a hit a ray
-/// may pass a box by what bvhSlack allows: together less than this share of the coordinates of
+/// Embree computes distances to the sides of boxes as products of coordinates, and a ray may miss a
+/// box by bvhSlack and still hit its contents: together less than this share of the coordinates of
 /// both. See TravRay and intersectNode in kernels/bvh/node_intersector1.h of Embree 3.13.
 constexpr float boxShare = 32 * device::roundingUnit;
-/// Embree leaves out primitives whose boxes are larger.
+/// Embree ignores primitives whose boxes are larger.
 constexpr float largestSide = 1.8e18f;
 
 const EmbreeLevel &levelOf(const RTCBoundsFunctionArguments *arguments) {
@@ -175,8 +175,8 @@ void buildLevel(const Implementation &owner, EmbreeLevel &level) {
   check(owner);
 }
 
-/// Levels for origins up to 4 times what half of the things in the scene reach, then 64 times as
-/// far each. An infinite plane must not make all boxes large.
+/// Levels for origins up to 4 times the extent of half of the items in the scene, then 64 times as
+/// far each. An infinite plane must not enlarge all boxes.
 void addLevels(Implementation &self) {
   std::vector<float> reaches;
   for (const TriangleBlock &block : self.blocks)
@@ -229,8 +229,8 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
     : self(std::make_unique<Implementation>()) {
   static std::atomic<std::uint64_t> scenes = 0;
   self->number = ++scenes;
-  // With AVX-512 Embree orders the children of a node by instructions whose results a single ray
-  // waits for: its code for AVX2 takes 0.92 to 0.98 of the time (Zen 5).
+  // With AVX-512 Embree orders the children of a node by instructions with a latency that a single
+  // ray cannot hide: its code for AVX2 takes 0.92 to 0.98 of the time (Zen 5).
   std::string config = "max_isa=avx2";
   if (threads)
     config += fmt::format(",threads={}", threads);

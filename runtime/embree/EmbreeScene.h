@@ -1,18 +1,18 @@
 //===- EmbreeScene.h - a scene in Embree, and rays through it -------------===//
 //
-// Embree finds the boxes that a ray meets; what is in them is tested by the same functions as in
-// our own tree, so that both find the same hits, to the bit. Embree's own triangles would not do:
-// near edges, between coincident triangles and for needles its test decides by roundings of its
-// own. So triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower. RTSL
-// primitives are user geometry as well.
+// Embree finds the boxes that a ray meets; their contents are tested by the same functions as in
+// our own tree, so that both find the same hits, bit for bit. Embree's own triangles are not
+// suitable: near edges, between coincident triangles and for needles its test depends on its own
+// rounding. So triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower.
+// RTSL primitives are user geometry as well.
 //
-// Embree's boxes are compared with roundings that depend on how far the origin of a ray lies out.
-// They are made larger by as much as is needed for origins up to some distance; for others there is
-// another tree over the same blocks, made when the first such ray comes.
+// Embree's box test has rounding errors that depend on the distance of a ray's origin. Boxes are
+// enlarged for origins up to some distance; for others there is another tree over the same blocks,
+// built when the first such ray is traced.
 //
-// Embree is built with assertions by some distributions: a ray that is not finite, or whose
-// direction is too long, would end the process, and short directions give wrong hits. So rays are
-// checked, and directions scaled by powers of two, which changes no bit of what comes out.
+// Some distributions build Embree with assertions: a ray that is not finite, or whose direction is
+// too long, would end the process, and short directions give wrong hits. So rays are checked, and
+// directions scaled by powers of two, which does not change the result.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -26,7 +26,7 @@
 
 namespace rtsl::runtime {
 
-/// What is done with all that a ray may hit.
+/// Processes all items that a ray may hit.
 struct EmbreeVisitor {
   bool (*visit)(void *self, const RtslLeafItem &item); // true: the search is over
   float (*limit)(void *self);                          // hits beyond it do not matter
@@ -35,29 +35,30 @@ struct EmbreeVisitor {
 
 class EmbreeScene {
 public:
-  /// Builds. Throws OutOfMemory, Internal.
+  /// Builds the trees. Throws OutOfMemory, Internal.
   EmbreeScene(const Scene &scene, const Program::Slots &slots, unsigned threads);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene &) = delete;
   EmbreeScene &operator=(const EmbreeScene &) = delete;
 
-  /// Can Embree follow the ray of `state`, which must be good (device::isGoodRay)?
+  /// Can Embree trace the ray of `state`, which must be good (device::isGoodRay)?
   static bool canFollow(const RtslState &state);
 
-  /// rtsl_traverse for a ray that it can follow. It sees all instances, and they accept all hits.
+  /// rtsl_traverse for a ray that canFollow accepts. It sees all instances, and they accept all
+  /// hits.
   std::uint32_t traverse(RtslState &state, bool anyHit) const;
 
   /// The same for a ray that isEasy. In EmbreeRay.h.
   std::uint32_t traverseEasy(RtslState &state, bool anyHit) const;
 
-  /// Calls `visitor` for what the ray may hit. It must be one that it can follow.
+  /// Calls `visitor` for items that the ray may hit. canFollow must accept the ray.
   void visit(const RtslState &state, const device::TriangleRay &ray,
              const EmbreeVisitor &visitor) const;
 
   struct Implementation;
 
-  /// Is the ray of `state` good, and can Embree take it as it is? Most are; the test is made for
-  /// them.
+  /// Is the ray of `state` good, and can Embree trace it unscaled? Nearly always true, and fast
+  /// then.
   static bool isEasy(const RtslState &state) {
     if (state.isEasy)
       return true;
@@ -65,7 +66,7 @@ public:
     auto sum = [](const float *v) {
       return __builtin_fabsf(v[0]) + __builtin_fabsf(v[1]) + __builtin_fabsf(v[2]);
     };
-    // The sums of what is no number compare false, and infinite ones are too large.
+    // Sums with NaN compare false, and infinite ones are too large.
     float length = sum(d);
     return sum(o) < largestOrigin && length < longest && length > 3 * shortest &&
            state.Epsilon >= 0 && state.HitDistance == state.HitDistance;
@@ -74,9 +75,9 @@ public:
 private:
   /// Beyond this Embree's arithmetic on the origin would overflow.
   static constexpr float largestOrigin = 1e18f;
-  /// Lengths of directions for which Embree works as it should, with room on both sides.
+  /// Lengths of directions that Embree handles correctly, with a margin on both sides.
   static constexpr float shortest = 0x1p-20f, longest = 0x1p20f;
-  /// Beyond these the powers of two that scale them or their inverses would not be exact.
+  /// Beyond these the powers of two for scaling or their inverses would not be exact.
   static constexpr int largestExponent = 100;
 
   std::unique_ptr<Implementation> self;

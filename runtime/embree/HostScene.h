@@ -1,4 +1,4 @@
-//===- HostScene.h - what rtsl_traverse of the host works on --------------===//
+//===- HostScene.h - the scene for rtsl_traverse on the host --------------===//
 #pragma once
 
 #include "runtime/accel/BvhBuilder.h"
@@ -11,7 +11,7 @@
 
 namespace rtsl::runtime {
 
-/// Events of one thread's rays, all of them rare.
+/// Rare events of one thread's rays.
 struct RayCounters {
   std::uint64_t badRays = 0, retracedRays = 0, rescaledRays = 0;
 };
@@ -24,16 +24,16 @@ class HostScene : public ProgramHost {
 public:
   HostScene(const Scene &scene, bool useEmbree, unsigned threads);
 
-  /// The launch with our own tree. With Embree it is built when it is asked for, by a ray that
-  /// Embree cannot follow, say (EmbreeScene::canFollow).
+  /// The launch with our own tree. With Embree it is built on first use, such as for a ray that
+  /// Embree cannot trace (EmbreeScene::canFollow).
   const RtslLaunch &deviceLaunch() const;
 
-  /// Has somebody asked for it, or some ray needed it?
+  /// Has our own tree been built?
   bool hasOwnTree() const { return launch.host != nullptr; }
 
   /// rtsl_traverse.
   std::uint32_t traverse(RtslState &state, std::uint32_t how) const;
-  /// The same, inline in HostTraversal.cpp alone.
+  /// The same, inline for HostTraversal.cpp only.
   std::uint32_t traverseFast(RtslState &state, std::uint32_t how) const;
 
 private:

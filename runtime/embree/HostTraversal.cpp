@@ -29,7 +29,7 @@ const RtslLaunch &HostScene::deviceLaunch() const {
   return launch;
 }
 
-/// By some tree.
+/// With any tree.
 template <typename Tree>
 std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree &tree) const {
   return how & RTSL_ASK_ANY_HIT
@@ -37,7 +37,7 @@ std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree 
              : device::findHit(state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect, tree);
 }
 
-/// By our own tree, on a launch that has it: the ray's may not have any.
+/// With our own tree, on a launch that has it: the ray's launch may not have one.
 std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) const {
   const RtslLaunch *given = state.launch;
   if (given->nodeCount != 0)
@@ -51,7 +51,7 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
   return answer;
 }
 
-/// Any ray: also those whose hits may be refused, and those for which some instances are not there.
+/// Any ray, including those whose hits may be rejected, and those that do not see all instances.
 [[gnu::cold, gnu::noinline]] std::uint32_t HostScene::traverseAny(RtslState &state,
                                                                   std::uint32_t how) const {
   if (!device::isGoodRay(state)) {
@@ -83,7 +83,7 @@ std::uint32_t HostScene::traverse(RtslState &state, std::uint32_t how) const {
 
 } // namespace rtsl::runtime
 
-// Flattened, for what is called with vectors of three by value gets them through memory.
+// Flattened, because calls pass vectors of three by value through memory.
 extern "C" [[gnu::flatten]] std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
   return static_cast<const rtsl::runtime::HostScene *>(state->launch->host)
       ->traverseFast(*state, how);

@@ -1,9 +1,9 @@
-//===- LastOccluders.h - what was in the way of shadow rays before --------===//
+//===- LastOccluders.h - recent occluders of shadow rays ------------------===//
 //
-// Shadow rays of one sample and the next go to the same lights from places that lie together: what
-// was in the way of one is likely to be in the way of the other, and then one test does instead of
-// a search (Pearce and Jevans, "Exploiting shadow coherence in ray tracing", Graphics Interface
-// 1991). Whether there is a hit at all does not depend on where it was looked for first.
+// Shadow rays of one sample and the next go to the same lights from nearby points: the occluder of
+// one is likely to occlude the other, and then one test replaces a search (Pearce and Jevans,
+// "Exploiting shadow coherence in ray tracing", Graphics Interface 1991). Whether there is a hit at
+// all does not depend on the order of tests.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -14,18 +14,18 @@
 
 namespace rtsl::runtime {
 
-/// The blocks that the last occluded rays in about one direction have met, the latest one first.
+/// The blocks that the last occluded rays in roughly the same direction have hit, the latest first.
 class LastOccluders {
 public:
-  /// Of this thread, by the signs of the ray's direction: lights lie on different sides.
+  /// Those of this thread, by the signs of the ray's direction, which separates lights.
   static LastOccluders &towards(const float direction[3]) {
     static thread_local std::array<LastOccluders, 8> all;
     return all[unsigned(direction[0] < 0) | unsigned(direction[1] < 0) << 1 |
                unsigned(direction[2] < 0) << 2];
   }
 
-  /// Does a ray meet one of them? `test` says it of a block of the scene with this number, which is
-  /// not 0. What has not been worth the test of late is not tested.
+  /// Does a ray hit one of them? `test` tests a block of the scene with this number, which is not
+  /// 0. Blocks whose tests did not pay off recently are skipped.
   template <typename Test>
   bool isMet(std::uint64_t ofScene, Test test) {
     if (scene != ofScene)
@@ -41,7 +41,7 @@ public:
     return false;
   }
 
-  /// A search has found this block.
+  /// Records the block that a search has found.
   void learn(std::uint64_t ofScene, std::uint32_t found) {
     if (scene != ofScene) {
       scene = ofScene;
@@ -52,7 +52,7 @@ public:
     while (i < count && blocks[i] != found)
       ++i;
     if (i < count)
-      pay(i); // it would have been met
+      pay(i); // it would have been hit
     else if (count < length)
       ++count;
     else
@@ -62,7 +62,8 @@ public:
 
 private:
   static constexpr unsigned length = 8;
-  /// Tests that a search is worth, about; so many a place may fail for one that does not.
+  /// The approximate cost of a search, in tests; the credit limits how many tests of an entry may
+  /// fail.
   static constexpr unsigned searchCost = 8, mostCredit = 64;
 
   void pay(unsigned place) { credit[place] = std::min(credit[place] + searchCost, mostCredit); }
@@ -74,7 +75,7 @@ private:
 
   std::uint64_t scene = 0; // whose blocks they are
   std::array<std::uint32_t, length> blocks{};
-  std::array<unsigned, length> credit{}; // of a place, not of the block that is there
+  std::array<unsigned, length> credit{}; // of an entry of the list, not of its block
   unsigned count = 0;
 };
 

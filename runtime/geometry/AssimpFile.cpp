@@ -14,7 +14,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// Appends one of the file's meshes, moved by its node's transform.
+/// Appends one of the file's meshes, transformed by its node.
 void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool normals, bool uvs,
             const std::string &path) {
   Mesh mesh;
@@ -23,7 +23,7 @@ void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool no
     mesh.positions.insert(mesh.positions.end(),
                           {part.mVertices[i].x, part.mVertices[i].y, part.mVertices[i].z});
   if (normals) {
-    mesh.normals.assign(3 * vertices, 0.0f); // 0: the device runtime takes the geometric normal
+    mesh.normals.assign(3 * vertices, 0.0f); // 0: the device runtime uses the geometric normal
     if (part.HasNormals())
       for (std::size_t i = 0; i < vertices; ++i)
         std::copy_n(&part.mNormals[i].x, 3, &mesh.normals[3 * i]);
@@ -42,7 +42,7 @@ void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool no
   }
   if (mesh.indices.empty())
     return;
-  validateMesh(mesh, path); // before indices are moved and coordinates mixed
+  validateMesh(mesh, path); // before indices are offset and coordinates transformed
   mesh.apply(transform);
   std::size_t offset = whole.vertexCount();
   if (offset + vertices > 0xffffffffu)
@@ -82,7 +82,7 @@ Mesh readByAssimp(const std::string &path) {
     std::string reason = importer.GetErrorString();
     while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' '))
       reason.pop_back();
-    if (reason.find("bad_alloc") != std::string::npos) // assimp catches what the reader throws
+    if (reason.find("bad_alloc") != std::string::npos) // assimp catches the reader's exceptions
       throw Error(ErrorCode::OutOfMemory, fmt::format("not enough memory to read mesh `{}`", path),
                   Place{path});
     throw Error(ErrorCode::BadMesh,

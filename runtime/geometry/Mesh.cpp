@@ -21,7 +21,7 @@ Transform Transform::scale(double x, double y, double z) {
   return result;
 }
 
-// Rodrigues' formula. Quarter turns are exact, for they are what scenes are full of.
+// Rodrigues' formula. Quarter turns are exact, because they are frequent in scenes.
 Transform Transform::rotate(const std::array<double, 3> &axis, double degrees) {
   double length = std::hypot(axis[0], axis[1], axis[2]);
   double x = axis[0] / length, y = axis[1] / length, z = axis[2] / length;
@@ -64,8 +64,8 @@ void Mesh::apply(const Transform &transform) {
     for (int row = 0; row < 3; ++row)
       positions[i + row] = float(c[0][row] * x + c[1][row] * y + c[2][row] * z + c[3][row]);
   }
-  // The cofactors are the inverse transpose times the determinant; its sign turns normals back to
-  // the side where they were.
+  // The cofactors are the inverse transpose times the determinant; its sign keeps normals on the
+  // same side.
   double sign = transform.determinant() < 0 ? -1 : 1;
   double cofactors[3][3];
   for (int i = 0; i < 3; ++i)
@@ -88,7 +88,7 @@ void Mesh::apply(const Transform &transform) {
 
 namespace {
 
-/// Products of three coordinates, and Embree's own range, end well before the range of a float.
+/// Products of three coordinates, and Embree's arithmetic, stay well within the range of a float.
 constexpr float largestCoordinate = 1e18f;
 
 [[noreturn]] void throwBad(const std::string &name, const std::string &what) {

@@ -1,4 +1,4 @@
-//===- Mesh.h - triangle meshes and where they come from ------------------===//
+//===- Mesh.h - triangle meshes and their files ---------------------------===//
 #pragma once
 
 #include "support/Error.h"
@@ -17,8 +17,8 @@ struct Transform {
 
   static Transform translate(double x, double y, double z);
   static Transform scale(double x, double y, double z);
-  /// Turns by `degrees` round `axis` (of any length but zero), counter-clockwise when the axis
-  /// points at the eye.
+  /// Rotates by `degrees` about `axis` (of any length but zero), counter-clockwise when the axis
+  /// points at the viewer.
   static Transform rotate(const std::array<double, 3> &axis, double degrees);
 
   /// First `*this`, then `next`.
@@ -36,18 +36,18 @@ struct Mesh {
   std::size_t vertexCount() const { return positions.size() / 3; }
   std::size_t triangleCount() const { return indices.size() / 3; }
 
-  /// Moves the vertices; normals by the inverse transpose. A mirroring transform also turns the
-  /// triangles round, so that their geometric normals stay on the side where they were.
+  /// Transforms the vertices; normals by the inverse transpose. A mirroring transform also reverses
+  /// the triangles, so that their geometric normals stay on the same side.
   void apply(const Transform &transform);
 };
 
-/// Reads an OBJ, PLY or glTF file (or whatever else the installed assimp reads). All meshes of the
+/// Reads an OBJ, PLY or glTF file (or another format of the installed assimp). All meshes of the
 /// file become one; polygons are triangulated, points and lines left out. Throws Error:
 /// FileNotFound, FileUnreadable, UnsupportedFormat, BadMesh.
 Mesh loadMesh(const std::string &path);
 
 /// Throws BadMesh if the mesh is empty, has a coordinate that is not finite, an index out of range,
-/// or normals or uvs of another length than its vertices. `name` goes into the message.
+/// or a number of normals or uvs that differs from that of its vertices. `name` is for the message.
 void validateMesh(const Mesh &mesh, const std::string &name);
 
 } // namespace rtsl::runtime

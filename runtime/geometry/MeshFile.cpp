@@ -1,8 +1,8 @@
 //===- MeshFile.cpp - meshes from files -----------------------------------===//
 //
-// assimp reads all formats, but takes its time: for each OBJ or PLY file it clears 32 MiB before it
-// begins. So files of these formats that hold nothing unusual are read here, and assimp has what is
-// left: other formats, rare features, and whatever is damaged, which it describes.
+// assimp reads all formats, but is slow: for each OBJ or PLY file it clears 32 MiB first. So files
+// of these formats without unusual features are read here, and assimp reads the rest: other
+// formats, rare features, and damaged files, for which it gives the message.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/geometry/AssimpFile.h"
@@ -45,7 +45,7 @@ void checkReadable(const std::string &path) {
     throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` is empty", path), Place{path});
 }
 
-/// With the dot, in small letters.
+/// With the dot, in lower case.
 std::string extensionOf(const std::string &path) {
   const std::size_t dot = path.find_last_of("./");
   if (dot == std::string::npos || path[dot] == '/')
@@ -61,7 +61,7 @@ bool isPipe(const std::string &path) {
   return ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
 }
 
-/// Nothing if assimp has to read the file, which is not possible once a pipe has been read.
+/// Nothing if assimp must read the file, which is not possible after a pipe has been read.
 std::optional<Mesh> readPlain(const std::string &path, const std::string &extension) {
   const bool isPly = extension == ".ply";
   if (!isPly && extension != ".obj")

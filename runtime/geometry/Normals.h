@@ -7,7 +7,8 @@
 
 namespace rtsl::runtime {
 
-/// Normals of files may have any length; between vertices all are to weigh the same. Zeros stay.
+/// Normals of files may have any length; for interpolation all must have the same weight. Zeros
+/// stay.
 inline void normalize(std::vector<float> &normals) {
   for (std::size_t i = 0; i < normals.size(); i += 3) {
     const double x = normals[i], y = normals[i + 1], z = normals[i + 2];

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t none = ~std::uint32_t(0);
 
-/// What stands at a corner of a face, counted from 0.
+/// The indices of a corner of a face, counted from 0.
 struct Corner {
   std::uint32_t position = none, uv = none, normal = none;
 
@@ -25,7 +25,7 @@ struct Corner {
   }
 };
 
-/// Corners become vertices; equal ones the same.
+/// Turns corners into vertices; equal corners share one.
 class Vertices {
 public:
   std::uint32_t add(const Corner &corner) {
@@ -49,8 +49,8 @@ public:
     firstAt.reserve(count);
   }
 
-  /// `width` floats of each vertex, of those in `from` that its `index` says. Empty if no vertex
-  /// has any; zeros for those that have none.
+  /// `width` floats per vertex, those in `from` at its `index`. Empty if no vertex has any; zeros
+  /// for vertices without them.
   std::vector<float> gather(const std::vector<float> &from, std::uint32_t Corner::*index,
                             std::size_t width) const {
     auto has = [&](const Vertex &vertex) { return vertex.corner.*index != none; };
@@ -72,7 +72,7 @@ private:
   std::vector<std::uint32_t> firstAt; // by position
 };
 
-/// Reads line by line. Functions return false where the file is not plain.
+/// Reads line by line. Functions return false if the file is not plain.
 class Reader {
 public:
   explicit Reader(std::string_view text) : at(text.data()), end(text.data() + text.size()) {}
@@ -96,7 +96,7 @@ public:
   }
 
 private:
-  /// Counts the lines, so that nothing has to be moved while they are read.
+  /// Counts the lines, so that vectors are not reallocated while they are read.
   void makeRoom() {
     std::size_t positionLines = 0, normalLines = 0, uvLines = 0, faces = 0;
     for (const char *line = at; end - line > 1;) {
@@ -128,7 +128,7 @@ private:
     return {start, std::size_t(at - start)};
   }
 
-  /// Only blanks may be left.
+  /// True if only blanks remain.
   bool endLine() {
     skipBlanks();
     if (at != end && *at == '\r')
@@ -138,7 +138,7 @@ private:
     return *at++ == '\n';
   }
 
-  /// What is left means nothing. A backslash at the end would go on with the next line.
+  /// Ignores the rest of the line. A backslash at its end would continue it on the next line.
   bool skipLine() {
     const char *start = at;
     const void *newline = std::memchr(at, '\n', std::size_t(end - at));
@@ -185,7 +185,7 @@ private:
     return true;
   }
 
-  /// x y z, and perhaps a color. Four numbers would be homogeneous coordinates.
+  /// x y z, optionally with a color. Four numbers would be homogeneous coordinates.
   bool readPosition() {
     if (!readNumbers(positions, 3))
       return false;
@@ -195,7 +195,7 @@ private:
            endLine();
   }
 
-  /// u v, and perhaps w.
+  /// u v, optionally with w.
   bool readTextureCoordinates() {
     if (!readNumbers(uvs, 2))
       return false;
@@ -204,7 +204,7 @@ private:
     return (isAtEnd() || readNumber(ignored)) && endLine();
   }
 
-  /// An index counts from 1, or back from the last one before the face.
+  /// An index counts from 1, or, if negative, backwards from the last one before the face.
   bool readIndex(std::size_t count, std::uint32_t &index) {
     std::int64_t number;
     const auto [after, error] = std::from_chars(at, end, number);

@@ -1,4 +1,4 @@
-//===- ObjFile.h - Wavefront OBJ files of the usual kind ------------------===//
+//===- ObjFile.h - Wavefront OBJ files without rare features --------------===//
 #pragma once
 
 #include "runtime/geometry/Mesh.h"
@@ -8,11 +8,11 @@
 
 namespace rtsl::runtime {
 
-/// Reads what nearly all OBJ files consist of: vertices, normals, texture coordinates, and faces of
-/// three or four corners that refer to what stands before them. Groups and materials make no
-/// difference. Corners that are equal in all indices share a vertex. Nothing if the file has
-/// anything else in it or is damaged: such files are left to the general reader (MeshFile.cpp),
-/// which also says what is wrong with them. That one is ten times slower where files are small.
+/// Reads the contents of nearly all OBJ files: vertices, normals, texture coordinates, and faces of
+/// three or four corners that refer to preceding lines. Groups and materials are ignored. Corners
+/// that are equal in all indices share a vertex. Nothing if the file contains anything else or is
+/// damaged: such files are left to the general reader (MeshFile.cpp), which also reports errors,
+/// but is ten times slower for small files.
 std::optional<Mesh> readPlainObj(std::string_view text);
 
 } // namespace rtsl::runtime

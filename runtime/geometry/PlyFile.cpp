@@ -118,8 +118,7 @@ std::optional<Header> readHeader(std::string_view bytes) {
 // Values
 //===----------------------------------------------------------------------===//
 
-/// Steps over values. Functions return false when they run out, or where a value is not what it
-/// should be.
+/// Steps over values. Functions return false at the end of the data, or if a value is not valid.
 class Body {
 public:
   Body(std::string_view bytes, const Header &header)
@@ -145,14 +144,14 @@ public:
     return true;
   }
 
-  /// A whole number that is not negative.
+  /// A non-negative integer.
   bool readCount(Type type, std::uint64_t &count) {
     if (format == Format::Ascii)
       return readWord(count);
     return !isFloating(type) && readBits(sizeOf(type), count) && !isNegative(type, count);
   }
 
-  /// A finite one.
+  /// A finite number.
   bool readFloat(Type type, float &number) {
     if (format == Format::Ascii)
       return readWord(number) && std::isfinite(number);
@@ -212,7 +211,7 @@ private:
 // Meshes
 //===----------------------------------------------------------------------===//
 
-/// A property of a vertex: where its value goes.
+/// The destination of a property of a vertex.
 struct Target {
   std::vector<float> *to = nullptr; // null: the column is skipped
   std::size_t component = 0;
@@ -331,7 +330,7 @@ private:
   }
 
   bool skipElement(const Element &element) {
-    if (element.name == "tristrips") // which are faces, too
+    if (element.name == "tristrips") // which contain faces, too
       return false;
     if (element.properties.empty())
       return true;

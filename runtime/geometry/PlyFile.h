@@ -9,14 +9,14 @@
 
 namespace rtsl::runtime {
 
-/// Reads what nearly all PLY files of meshes consist of: vertices with coordinates, normals and
-/// texture coordinates as numbers of their own, and faces of three or four corners; text or binary,
-/// other elements and numbers beside. Nothing if the file is of another kind or damaged: such files
-/// are left to the general reader (MeshFile.cpp).
+/// Reads the contents of nearly all PLY files of meshes: vertices with coordinates, normals and
+/// texture coordinates as separate numbers, and faces of three or four corners; text or binary;
+/// other elements and numbers are skipped. Nothing if the file is of another kind or damaged: such
+/// files are left to the general reader (MeshFile.cpp).
 std::optional<Mesh> readPlainPly(std::string_view bytes);
 
-/// What of the elements that the header promises is not there, for a message such as "ends in
-/// element 3 of 50 of `face`"; the general reader would take zeros for it. Empty if nothing is
+/// The elements that the header declares but the file does not contain, for a message such as "ends
+/// in element 3 of 50 of `face`"; the general reader would read zeros instead. Empty if nothing is
 /// missing, or the header is not understood.
 std::string findMissingPlyElements(std::string_view bytes);
 

@@ -5,8 +5,8 @@
 
 namespace rtsl::runtime {
 
-/// Which corner of a quadrilateral the diagonal starts from that lies inside: the reflex one if
-/// there is one, or else the first. Corners are x, y, z in order around it.
+/// The corner of a quadrilateral from which an inner diagonal starts: the reflex one if there is
+/// one, otherwise the first. Corners are x, y, z in order around it.
 inline int cornerOfDiagonal(const std::array<const float *, 4> &corners) {
   using Vector = std::array<double, 3>;
   auto between = [&](int from, int to) -> Vector {

@@ -83,7 +83,7 @@ void writeImage(const std::string &path, const Image &image, PictureFormat forma
 }
 
 Image readImage(const std::string &path) {
-  if (path != "-") { // the name is looked at first: it is what is most often wrong
+  if (path != "-") { // the name is checked first: it is the most frequent error
     const PictureFormat format = formatOf(path, PictureFormat::ByName);
     const std::string bytes = readFile(path);
     return format == PictureFormat::Png ? decodePng(bytes, path) : decodeExr(bytes, path);

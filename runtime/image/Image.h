@@ -10,7 +10,7 @@
 
 namespace rtsl::runtime {
 
-/// Linear light, `channels` floats a pixel, rows from the top.
+/// Linear light, `channels` floats per pixel, rows from the top.
 struct Image {
   std::uint32_t width = 0, height = 0, channels = 3;
   std::vector<float> pixels;
@@ -31,27 +31,27 @@ struct Image {
 /// A black picture. Throws OutOfMemory.
 Image newImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 
-/// Red, green and blue of an image with N channels, by language/ColorBasis.h. 3: as they are. 1:
+/// Red, green and blue of an image with N channels, by language/ColorBasis.h. 3: unchanged. 1:
 /// grey.
 Image toRgb(const Image &image);
 
-/// How a picture is written. ByName: as the end of its file's name says; of "-", PNG.
+/// The file format of a picture. ByName: by the extension of the file name; PNG for "-".
 enum class PictureFormat : std::uint8_t { ByName, Png, Exr };
 
 /// Throws FileUnwritable or UnsupportedFormat now if `writeImage(path, ...)` could not succeed
-/// later: unknown extension, missing or read-only folder, a folder in the file's place. Call it
-/// before a long rendering.
+/// later: unknown extension, missing or read-only folder, a folder of that name. For use before a
+/// long rendering.
 void checkWritable(const std::string &path, PictureFormat format = PictureFormat::ByName);
 
 /// Writes .exr (32-bit float, R G B, Y for one channel, or C0 C1 ... for others) or .png (8 bit,
-/// sRGB, clamped to [0, 1], not a number becomes black). The file appears whole or not at all; "-"
+/// sRGB, clamped to [0, 1], NaN becomes black). The file is written completely or not at all; "-"
 /// is standard output. Throws FileUnwritable, UnsupportedFormat.
 void writeImage(const std::string &path, const Image &image,
                 PictureFormat format = PictureFormat::ByName);
 
-/// Reads what writeImage writes (any EXR of float or half channels, any PNG); PNG values are made
-/// linear. "-" is standard input, whose first bytes say what it is. Throws FileNotFound,
-/// FileUnreadable, UnsupportedFormat, BadImage.
+/// Reads the formats of writeImage (any EXR of float or half channels, any PNG); PNG values are
+/// converted to linear. "-" is standard input, whose first bytes determine the format. Throws
+/// FileNotFound, FileUnreadable, UnsupportedFormat, BadImage.
 Image readImage(const std::string &path);
 
 /// Linear to sRGB and back (IEC 61966-2-1:1999), both in [0, 1].

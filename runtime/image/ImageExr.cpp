@@ -1,7 +1,7 @@
 //===- ImageExr.cpp - OpenEXR ---------------------------------------------===//
 //
-// Through memory on both ways: OpenEXR's own files write the table of lines in a destructor, where
-// a full disk goes unnoticed.
+// Encoded and decoded in memory: OpenEXR's own files write the line table in a destructor, where a
+// full disk is not reported.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/image/ImageFormats.h"
@@ -118,7 +118,7 @@ Image decodeExr(const std::string &bytes, const std::string &path) {
     Image image(std::uint32_t(window.max.x - window.min.x + 1),
                 std::uint32_t(window.max.y - window.min.y + 1), std::uint32_t(names.size()));
     Imf::FrameBuffer frame;
-    // OpenEXR addresses pixels by their place in the data window.
+    // OpenEXR addresses pixels by their position in the data window.
     const float *base =
         image.pixels.data() - (std::ptrdiff_t(window.min.y) * image.width + window.min.x) *
                                   std::ptrdiff_t(image.channels);

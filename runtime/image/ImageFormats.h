@@ -1,4 +1,4 @@
-//===- ImageFormats.h - pictures as the bytes of a file -------------------===//
+//===- ImageFormats.h - pictures in file formats, in memory ---------------===//
 #pragma once
 
 #include "runtime/image/Image.h"

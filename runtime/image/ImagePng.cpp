@@ -12,8 +12,8 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// libpng reports errors by a jump. No object with a destructor may live between setjmp and the
-/// calls, so all of them belong to the callers.
+/// libpng reports errors by longjmp. No object with a destructor may be created between setjmp and
+/// the calls, so all of them belong to the callers.
 struct PngError {
   std::jmp_buf jump;
   char message[256] = "";
@@ -136,7 +136,7 @@ Image decodePng(const std::string &bytes, const std::string &path) {
 }
 
 float encodeSrgb(float linear) {
-  if (!(linear > 0)) // and what is not a number
+  if (!(linear > 0)) // also for NaN
     return 0;
   if (linear >= 1)
     return 1;

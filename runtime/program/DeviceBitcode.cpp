@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// Defined by the generated files that embed the bitcode.
+// Defined by the generated files that contain the bitcode.
 #define RTSL_EMBEDDED(function, symbol)                                                            \
   extern "C" const char symbol##Begin[];                                                           \
   extern "C" const char symbol##End[];                                                             \

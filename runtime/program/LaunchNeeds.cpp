@@ -1,4 +1,4 @@
-// A compiled program has a constant in its place; code of the host serves all programs.
+// A compiled program defines a constant instead; this code of the host serves all programs.
 #include "runtime/device/ray/Abi.h"
 
 extern "C" __attribute__((weak)) uint32_t rtsl_needs(const RtslLaunch *launch) {

@@ -1,4 +1,4 @@
-//===- NumberCheck.cpp - where a sample stops being finite -----------------===//
+//===- NumberCheck.cpp - where a sample becomes infinite or NaN -----------===//
 #include "runtime/program/NumberCheck.h"
 
 #include <cmath>
@@ -10,26 +10,26 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// What is known of a place in one rendering of the sample.
+/// The state of a place in one rendering of the sample.
 struct PlaceRecord {
-  std::uint64_t lastBirth = 0; // when it last made a number not finite, from finite ones; 0: never
+  std::uint64_t lastBirth = 0; // when it last made a non-finite number from finite ones; 0: never
   std::uint64_t lastSeen = 0;  // when a number there was last not finite
-  bool isMended = false;       // numbers that are not finite are exchanged for others
+  bool isMended = false;       // non-finite numbers are replaced by finite ones
 };
 
-/// The rendering that is under way on this thread.
+/// The current rendering on this thread.
 struct Search {
   std::map<std::uint32_t, PlaceRecord> places;
-  std::uint64_t time = 0;  // numbers that were looked at
-  std::uint64_t limit = 0; // then it is given up: a mended number may keep a loop from ending
+  std::uint64_t time = 0;  // numbers that were checked
+  std::uint64_t limit = 0; // when to give up: a replaced number may make a loop endless
   std::jmp_buf giveUp;
 };
 thread_local Search *search = nullptr;
 
-/// No shader needs so many for a sample that ends.
+/// No terminating sample of a shader computes more numbers.
 constexpr std::uint64_t mostNumbers = 200'000'000;
 
-/// Far outside of scenes, yet its square is finite.
+/// Far outside of scenes, but with a finite square.
 constexpr double large = 1e18;
 
 template <typename Number>
@@ -37,7 +37,7 @@ Number check(Number value, bool fromFinite, std::uint32_t place) {
   if (!search)
     return value;
   if (++search->time > search->limit)
-    std::longjmp(search->giveUp, 1); // over frames of shaders and traversal, which own nothing
+    std::longjmp(search->giveUp, 1); // over frames of shaders and traversal, which own no resources
   if (std::isfinite(value))
     return value;
   PlaceRecord &record = search->places[place];
@@ -54,14 +54,14 @@ bool runOnce(Search &current, const std::function<bool()> &isFinite) {
     record.lastBirth = record.lastSeen = 0;
   current.time = 0;
   search = &current;
-  volatile bool result = false; // also where it was given up
+  volatile bool result = false; // also the result after longjmp
   if (setjmp(current.giveUp) == 0)
     result = isFinite();
   search = nullptr;
   return result;
 }
 
-/// The latest place that made a number not finite; if there is none, where one was seen last.
+/// The latest place that made a number not finite; if there is none, the last where one was seen.
 std::map<std::uint32_t, PlaceRecord>::iterator latest(Search &current) {
   const auto rank = [](const PlaceRecord &record) {
     return std::make_pair(record.lastBirth, record.lastSeen);
@@ -81,7 +81,7 @@ std::optional<std::uint32_t> findOrigin(const std::function<bool()> &isFinite) {
   current.limit = mostNumbers;
   if (runOnce(current, isFinite))
     return std::nullopt;
-  // A mended sample may take another path, but none that is endlessly longer.
+  // A sample with replaced numbers may take another path, but not a much longer one.
   current.limit = 16 * current.time + 100'000;
   for (;;) {
     const auto place = latest(current);

@@ -1,14 +1,14 @@
-//===- NumberCheck.h - where a sample stops being finite -------------------===//
+//===- NumberCheck.h - where a sample becomes infinite or NaN -------------===//
 //
 // A program that was compiled with checks calls rtsl_check_number for every number that a shader
-// computes or stores, with the number of its place in the source and what it was computed from. A
-// sample that is infinite or not a number is rendered again by such a program, again and again:
-// each time one more of the places that made a number not finite gives some finite number instead,
-// the latest first, until the sample is finite. The last of these places is the answer: without it,
-// and what came after, the sample would be all right.
+// computes or stores, with the number of its place in the source and its operands. A sample that is
+// infinite or NaN is rendered again by such a program, repeatedly: each time one more of the places
+// that made a number not finite returns a finite number instead, the latest first, until the sample
+// is finite. The last of these places is the result: without it, and the later ones, the sample
+// would be finite.
 //
-// Many numbers are rightly infinite, an inverse direction say. They come earlier than what spoils
-// the sample, or make no difference to it.
+// Many numbers are rightly infinite, such as those of an inverse direction. They come earlier than
+// the cause of the problem, or do not affect the sample.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,16 +19,16 @@
 
 extern "C" {
 
-/// Gives `value`, which was computed from `a`, `b` and `c`; what does not matter is finite.
+/// Returns `value`, which was computed from `a`, `b` and `c`; unused operands are finite.
 float rtsl_check_number(float value, float a, float b, float c, std::uint32_t place);
-/// The same of --fp=double.
+/// The same for --fp=double.
 double rtsl_double_check_number(double value, double a, double b, double c, std::uint32_t place);
 }
 
 namespace rtsl::runtime {
 
-/// The place to which it goes back that a sample is not finite; nothing if that is not found, or if
-/// the sample is finite now. `isFinite` renders the sample on this thread by a program with checks.
+/// The place that makes a sample not finite; nothing if it is not found, or if the sample is finite
+/// now. `isFinite` renders the sample on this thread with a checked program.
 std::optional<std::uint32_t> findOrigin(const std::function<bool()> &isFinite);
 
 } // namespace rtsl::runtime

@@ -12,7 +12,7 @@ namespace rtsl::runtime {
 namespace {
 
 auto key(const PrintedLine &line) {
-  // What no sample printed comes first.
+  // Lines that no sample printed come first.
   std::uint64_t row = line.sample == PrintedLine::noSample ? 0 : std::uint64_t(line.y) + 1;
   return std::make_tuple(row, line.x, line.sample, line.order);
 }
@@ -43,7 +43,7 @@ std::string valueText(const PrintItem &item, const std::uint32_t *words) {
   return text + ")";
 }
 
-/// Each item with a space before it.
+/// Each item, preceded by a space.
 std::string itemsText(const PrintFormat &format, const std::uint32_t *words) {
   std::string text;
   for (const PrintItem &item : format) {
@@ -101,7 +101,7 @@ PrintLog takePrintLog() {
   return std::exchange(shared.log, PrintLog());
 }
 
-/// Whoever prints waits for the others; nobody prints for speed.
+/// Printing takes a lock; it need not be fast.
 static void add(const RtslState &state, PrintedLine line) {
   if (RtslEvents *events = state.events) {
     line.x = events->x;

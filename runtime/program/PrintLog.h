@@ -1,7 +1,7 @@
-//===- PrintLog.h - what shaders print ------------------------------------===//
+//===- PrintLog.h - the output of print in shaders ------------------------===//
 //
-// Samples run in any order on any number of threads; what they print is collected and shown at the
-// end in the order of the launch: by row, column, sample, and then as it was printed.
+// Samples run in any order on any number of threads; their output is collected and shown at the end
+// in the order of the launch: by row, column and sample, and then in the order of printing.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -15,26 +15,26 @@
 
 namespace rtsl::runtime {
 
-/// One `print` that has run.
+/// One executed `print`.
 struct PrintedLine {
-  std::uint32_t x, y, sample; // noSample: a constructor's, or while the scene was built
-  std::uint32_t order;        // of what the sample printed
+  std::uint32_t x, y, sample; // noSample: in a constructor, or while the scene was built
+  std::uint32_t order;        // within the output of the sample
   std::uint32_t format;       // index into Program::prints
   std::vector<std::uint32_t> words;
-  std::string text = {}; // of shaders in C++: what it prints; they have no formats
+  std::string text = {}; // for shaders in C++: the text; they have no formats
 
   static constexpr std::uint32_t noSample = ~0u;
 };
 
 class PrintLog {
 public:
-  /// More lines are counted, but not kept; those that come first in the order of the launch are.
+  /// Further lines are counted, but not kept; the first ones in the order of the launch are kept.
   static constexpr std::size_t mostLines = 100000;
 
   void add(PrintedLine line);
 
   /// The lines as text, in order, each with the pixel and the sample that printed it; at the end
-  /// how many more there were.
+  /// the number of further lines.
   std::vector<std::string> texts(const std::vector<PrintFormat> &formats);
 
 private:
@@ -44,10 +44,10 @@ private:
   FirstFew<PrintedLine, ComesFirst> lines{mostLines};
 };
 
-/// `print` of shaders in C++.
+/// `print` for shaders in C++.
 void print(RtslState *state, const PrintFormat &format, const std::vector<std::uint32_t> &words);
 
-/// Takes what was printed since the last time, by any thread of the process.
+/// Takes the output since the last call, of all threads of the process.
 PrintLog takePrintLog();
 
 } // namespace rtsl::runtime

@@ -1,7 +1,7 @@
-//===- Program.h - compiled shaders as the runtime sees them --------------===//
+//===- Program.h - compiled shaders for the runtime -----------------------===//
 //
 // A program is code plus a description of its classes. It may come from the compiler in process or
-// be linked in ahead of time; the runtime does not know which.
+// be linked in ahead of time; the runtime treats both alike.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -26,10 +26,10 @@ struct ValueType {
   std::uint8_t columns = 1;
   std::uint8_t bufferRank = 0; // 1 to 3: an unsized array of the above, an RtslBuffer in the record
   std::vector<std::uint32_t> arraySizes; // fixed-length dimensions, outermost first
-  std::string className;                 // Reference: the base or class that is asked for
-  std::string name;              // as the author spells it, for messages: "vec3", "float[4]"
-  std::uint32_t size = 4;        // bytes of the whole; of a buffer: of the RtslBuffer
-  std::uint32_t elementSize = 0; // of a buffer: bytes from element to element
+  std::string className;                 // Reference: the required base or class
+  std::string name;              // as spelled in the source, for messages: "vec3", "float[4]"
+  std::uint32_t size = 4;        // bytes in total; for a buffer: of the RtslBuffer
+  std::uint32_t elementSize = 0; // for a buffer: bytes from element to element
   std::vector<struct MemberInfo> fields; // Struct: its members, with offsets from its start
 };
 
@@ -39,12 +39,12 @@ struct MemberInfo {
   std::uint32_t offset =
       0; // bytes from the start of the record (members) or of the packed arguments (parameters)
   bool isPublic = false;   // the scene may set it
-  bool hasDefault = false; // of a reference: it may stay empty
+  bool hasDefault = false; // for a reference: it may be empty
 };
 
 struct ClassInfo {
   std::string name;
-  std::string base;                // "rt_Primitive", or another class of the user's
+  std::string base;                // "rt_Primitive", or another user class
   std::string root;                // the rt_ class at the end of the chain
   std::uint32_t id = 0;            // first word of a record; from 1
   std::uint32_t recordSize = 4;    // bytes, multiple of 4
@@ -53,8 +53,8 @@ struct ClassInfo {
   std::vector<MemberInfo> parameters; // of the constructor
   std::uint32_t parameterSize = 0;    // bytes of the packed arguments
   std::vector<std::string> methods; // defined or inherited; with a payload: `closestHit(Radiance)`
-  /// What its methods read of a hit (of a material: those that run at hits, and the lights),
-  /// without what they call on objects that they refer to.
+  /// The parts of a hit that its methods read (for a material: methods that run at hits, and the
+  /// lights), without calls on objects that they refer to.
   std::uint32_t needs = RTSL_NEEDS_ALL;
   std::uint32_t anyHit =
       0; // of a material: rtslRayTypeBit of the payloads for which it has `anyHit`
@@ -62,11 +62,11 @@ struct ClassInfo {
   void (*initialize)(RtslState *state, RtslRef object) = nullptr;
   /// Runs the constructor on the record at `object`. Null: there is none.
   void (*construct)(RtslState *state, RtslRef object, const void *arguments) = nullptr;
-  /// Of a primitive: its own `intersect`. Null: the slot is to be asked.
+  /// For a primitive: its own `intersect`. Null: the slot is called.
   void (*intersect)(RtslState *state, RtslRef object) = nullptr;
 };
 
-/// A part of what a `print` prints: a text, or a value by the name of its type.
+/// An item of a `print`: a text, or a value with the name of its type.
 struct PrintItem {
   std::string text;
   ValueType::Kind kind = ValueType::Kind::Float; // of the words of a value
@@ -74,7 +74,7 @@ struct PrintItem {
 };
 using PrintFormat = std::vector<PrintItem>;
 
-/// What the compiler may know of a scene when its objects are made.
+/// Facts about a scene that the compiler may use after its objects are created.
 struct SceneFacts {
   struct Object {
     std::string className;
@@ -82,17 +82,17 @@ struct SceneFacts {
   };
   std::vector<Object> objects;
   std::uint32_t lightCount = 0;
-  std::vector<float> ambient; // a number for each component of a color
-  /// The longest chain of references from object to object; the largest number: not known.
+  std::vector<float> ambient; // one number per component of a color
+  /// The longest chain of references from object to object; the maximum value: not known.
   std::uint32_t referenceChain = ~0u;
 };
 
-/// Where a sample begins: with the camera's ray, or with `generate`. Either: with `generate` if the
-/// scene has a ray generation.
+/// The start of a sample: the camera ray, or `generate`. Either: `generate` if the scene has a ray
+/// generation.
 enum class Engine : std::uint8_t { Classic, Programs, Either };
 
-/// Code that renders a flat scene and needs nobody else (device/Megakernel.h); null if there is
-/// none.
+/// Self-contained code that renders a flat scene (runtime/device/engines/Megakernel.h); null if
+/// there is none.
 struct MegakernelCode {
   std::uint64_t (*laneBytes)(std::uint32_t maxDepth, std::uint32_t referenceChain) = nullptr;
   void (*runLane)(const RtslJob *, std::uint32_t lane) = nullptr;
@@ -104,7 +104,7 @@ struct Program {
   std::vector<ClassInfo> classes;
   std::uint32_t colorComponents = 3;
 
-  /// Entries of Slots.def and SamplingSlots.def; a slot that no class of the scene fills may be
+  /// Entries of Slots.def and SamplingSlots.def; a slot that no class of the scene defines may be
   /// null.
   struct Slots {
 #define RTSL_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
@@ -115,34 +115,33 @@ struct Program {
 #define RTSL_SAMPLING_SLOT(base, method) void (*base##_##method)(RtslState *, RtslRef) = nullptr;
 #include "language/SamplingSlots.def"
 
-    /// Of shaders in C++ that were split at their traces: what the machine asks for
+    /// For shaders in C++ that were split at their traces: the functions of the machine
     /// (runtime/device/engines/Machine.h). Without `run` traces are calls.
     struct States {
       std::int32_t (*run)(RtslState *, std::int32_t number, RtslRef object, void *frame) = nullptr;
       std::int32_t frameSize = 0; // bytes of the largest frame of a method that the runtime starts
-      std::uint32_t calledMethods =
-          0; // that are called through references, on frames of their own,
+      std::uint32_t calledMethods = 0;   // called through references, with frames of their own
       std::uint32_t calledFrameSize = 0; // bytes of the largest of these, a multiple of 8
-      // The states in which methods begin; 0: there is none.
+      // The first states of methods; 0: there is none.
       std::int32_t shadeFirst = 0, missFirst = 0, closestHitFirst = 0, missWithPayloadFirst = 0,
                    generateFirst = 0;
     } states;
 
-    std::uint32_t features = 0; // of shaders in C++: what rtsl_features says, RTSL_FEATURE_*
+    std::uint32_t features = 0; // for shaders in C++: the result of rtsl_features, RTSL_FEATURE_*
   } slots;
 
-  /// RTSL_NEEDS_*: what the methods of the program's classes read.
+  /// RTSL_NEEDS_*: the state that the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
-  /// Keep normals and texture coordinates of meshes though `needs` has no use for them.
+  /// Keep normals and texture coordinates of meshes even if `needs` does not include them.
   bool keepsMeshes = true;
   /// The program's rtsl_sample, or rtsl_generate.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                  float *color) = nullptr;
   MegakernelCode megakernel;
   /// Bytes of stack that the frames of `sample` take at most, for a limit of depth and
-  /// RtslLaunch::referenceChain; with nothing below. Empty: not known.
+  /// RtslLaunch::referenceChain. Empty: not known.
   std::function<std::uint64_t(std::uint32_t maxDepth, std::uint32_t referenceChain)> stackBytes;
-  /// Where the author wrote what rtsl_check_number looks at, by its number (NumberCheck.h).
+  /// The source positions of the numbers that rtsl_check_number checks, by place (NumberCheck.h).
   std::vector<Place> numberPlaces;
 
   std::vector<PrintFormat> prints; // by number

@@ -1,18 +1,17 @@
-//===- ProgramHost.h - what programs find behind RtslLaunch::host ---------===//
+//===- ProgramHost.h - the host data of programs, RtslLaunch::host --------===//
 #pragma once
 
 #include "runtime/program/Program.h"
 
 namespace rtsl::runtime {
 
-/// RtslLaunch::host leads to one when the program calls its methods through its slots; the host's
-/// own things may follow.
+/// RtslLaunch::host points to one if the program calls its methods through its slots; other data of
+/// the host may follow.
 struct ProgramHost {
   Program::Slots slots;
 };
 
-/// The slots, for device code that calls methods: where no class of the scene has one, nothing
-/// happens.
+/// The slots, for device code that calls methods: an empty slot does nothing.
 struct FilledSlots {
   const Program::Slots &slots;
 #define RTSL_SLOT(base, method)                                                                    \

@@ -2,8 +2,7 @@
 //
 // Programs of the compiler have runtime/device linked into their code. A program that was printed
 // as C++ fills a table of slots instead (rtsl/shader/Describe.h); this is the device code that
-// calls through the table of the program that is being rendered, so that one process may hold
-// several.
+// calls through the table of the current program, so that one process may contain several.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/program/ProgramHost.h"
@@ -15,7 +14,7 @@
 
 namespace {
 
-/// What the slots of a program are.
+/// The slots of the launch's program.
 const rtsl::runtime::Program::Slots &slotsOf(const RtslLaunch *launch) {
   return static_cast<const rtsl::runtime::ProgramHost *>(launch->host)->slots;
 }
@@ -23,9 +22,9 @@ const rtsl::runtime::Program::Slots &slotsOf(const RtslState *state) {
   return slotsOf(state->launch);
 }
 
-/// What stands where the frame of a method begins that was called.
+/// The header of the frame of a called method.
 struct CallHeader {
-  int32_t resume; // the state in which the caller goes on
+  int32_t resume; // the state in which the caller continues
   RtslRef object; // the caller's
   uint32_t below; // bytes from the beginning of the caller's frame
 };
@@ -34,8 +33,8 @@ static_assert(offsetof(CallHeader, resume) == RTSL_CALL_RESUME &&
               offsetof(CallHeader, below) == RTSL_CALL_BELOW &&
               sizeof(CallHeader) <= RTSL_CALL_HEADER);
 
-/// Bytes of all frames of a level. Calls that lead round in a circle go down a chain of references,
-/// so each method may be there once for each object of the longest.
+/// Bytes of all frames of a level. Recursive calls follow a chain of references, so each method may
+/// have one frame for each object of the longest chain.
 uint64_t frameBytes(const RtslLaunch *launch) {
   const auto &states = slotsOf(launch).states;
   const uint64_t own = (uint64_t(states.frameSize) + 7) / 8 * 8;
@@ -77,7 +76,7 @@ void *rtsl_call(RtslState *state, const void *end, int32_t resume, RtslRef objec
   const device::CurrentRay &ray = device::currentRay(state);
   char *frame = static_cast<char *>(device::frameOf(ray));
   const uint64_t size = end ? uint64_t(static_cast<const char *>(end) - frame) : 0;
-  const auto below = uint32_t((size + 7) / 8 * 8); // it may hold addresses
+  const auto below = uint32_t((size + 7) / 8 * 8); // it may contain addresses
   new (frame + below) CallHeader{resume, ray.object, below};
   rtsl_move_frame(state, int32_t(below), object);
   return frame + below + RTSL_CALL_HEADER;
@@ -93,8 +92,7 @@ int32_t rtsl_rt_Material_shade_first(RtslState *state) {
 int32_t rtsl_rt_Miss_miss_first(RtslState *state) {
   return slotsOf(state).states.missFirst;
 }
-// A shader in C++ may send rays that others answer, and so on: one kind of ray, which sends its
-// like.
+// A shader in C++ may send any rays: there is one kind of ray, which sends its own kind.
 int32_t rtsl_ray_kinds(RtslState *) {
   return 1;
 }
@@ -104,7 +102,7 @@ int32_t rtsl_rays_sent(RtslState *, int32_t) {
 int32_t rtsl_rays_sent_last(RtslState *, int32_t) {
   return 1;
 }
-// And it may read all of its ray's state when they are back.
+// And it may read all of its ray's state after they return.
 int32_t rtsl_rays_kept(RtslState *, int32_t part) {
   return part == device::keptRayKinds ? 3 : -1;
 }
@@ -117,12 +115,12 @@ int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *state) {
 int32_t rtsl_rt_Miss_miss_payload_first(RtslState *state) {
   return slotsOf(state).states.missWithPayloadFirst;
 }
-// `generate` is asked for before its ray has a state.
+// `generate` is looked up before its ray has a state.
 int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state) {
   return slotsOf(state).states.generateFirst;
 }
 
-/// rtsl_sample of such a program, with calls or with the machine.
+/// rtsl_sample of such a program, by calls or by the machine.
 void rtsl_sample_slots(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample,
                        float *color) {
   if (!slotsOf(launch).states.run)

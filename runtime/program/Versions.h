@@ -1,4 +1,4 @@
-//===- Versions.h - what the runtime was built with -----------------------===//
+//===- Versions.h - the libraries that the runtime was built with ---------===//
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace rtsl::runtime {
 
-/// Libraries that decide on speed or on pictures, as (name, version).
+/// Libraries that affect speed or pictures, as (name, version).
 std::vector<std::pair<std::string, std::string>> libraryVersions();
 
 } // namespace rtsl::runtime

@@ -25,12 +25,12 @@ static bool anyBroken(const std::vector<ExprPtr> &args) {
                      [](const ExprPtr &arg) { return arg->type->isError(); });
 }
 
-/// Is this a member of the method's own object that the scene sets, or a part of one?
+/// Is this a public or private member of the method's own object, or a part of one?
 static bool isOfMember(const typed::Expr &expr) {
   const typed::Expr *at = &expr;
   while (true) {
     switch (at->kind) {
-    case typed::ExprKind::Member: // what `intersect` leaves may be any object
+    case typed::ExprKind::Member: // a scratch reference may be to any object
       return static_cast<const typed::MemberExpr *>(at)->member->access != ast::Access::Scratch;
     case typed::ExprKind::Field:
       at = static_cast<const typed::FieldExpr *>(at)->base.get();
@@ -51,7 +51,7 @@ ExprPtr FunctionChecker::checkCall(const ast::CallExpr &expr) {
 }
 
 //===----------------------------------------------------------------------===//
-// Which function
+// Finding the function
 //===----------------------------------------------------------------------===//
 
 ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
@@ -177,7 +177,7 @@ int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature
 
   const bool ambiguous = !resolution.ties.empty();
   if (!ambiguous && candidates.size() == 1 && candidates[0].parameters.size() == args.size()) {
-    // Only one function can be meant: say which argument is wrong.
+    // Only one function can be meant: report which argument is wrong.
     for (std::size_t i = 0; i != args.size(); ++i) {
       const Signature::Parameter &parameter = candidates[0].parameters[i];
       const Conversion conversion = implicitConversion(args[i]->type, parameter.type);
@@ -193,7 +193,7 @@ int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature
       if (parameter.direction == ast::Direction::In)
         explainConversion(diagnostic, *args[i], parameter.type);
       else
-        diagnostic.note("an `out` or `inout` argument has exactly the type of the parameter");
+        diagnostic.note("an `out` or `inout` argument must have exactly the type of the parameter");
     }
     return -1;
   }
@@ -222,7 +222,7 @@ int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature
   if (std::any_of(argTypes.begin(), argTypes.end(),
                   [](const Type *type) { return type->is(TypeKind::Color); }) &&
       places.empty())
-    diagnostic.note(fmt::format("of the built-in functions, a color has `{}`",
+    diagnostic.note(fmt::format("the built-in functions for colors are `{}`",
                                 fmt::join(colorFunctionNames(), "`, `")));
   return -1;
 }
@@ -233,7 +233,7 @@ void FunctionChecker::convertArguments(const Signature &signature, std::vector<E
 }
 
 //===----------------------------------------------------------------------===//
-// Functions of the author
+// User functions
 //===----------------------------------------------------------------------===//
 
 ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
@@ -268,8 +268,8 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   if (!isOfBase && (callee.isConstructor || callee.isStateMethod)) {
     diagnostics.report(Code::engineCalls, expr.callee.range, callee.name)
         .label(callee.range, "defined here")
-        .note(callee.isConstructor ? "the constructor runs once, when the scene makes the object"
-                                   : "put what both need into a function of its own");
+        .note(callee.isConstructor ? "the constructor runs once, when the scene creates the object"
+                                   : "move the common code into a function of its own");
     return errorExpr(expr.range);
   }
   for (std::size_t i = 0; i != args.size(); ++i)
@@ -303,7 +303,7 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
 // Base::function(...)
 //===----------------------------------------------------------------------===//
 
-/// What the engine calls may be called by what overrides it: there it may do the same.
+/// A function that overrides a method of the engine may call the base's definition of that method.
 bool FunctionChecker::requireSameMethod(const typed::Function &callee, SourceRange range) {
   if (!callee.isConstructor && !callee.isStateMethod)
     return true;
@@ -313,8 +313,8 @@ bool FunctionChecker::requireSameMethod(const typed::Function &callee, SourceRan
     diagnostics
         .report(Code::baseMethodElsewhere, range, callee.owner->name, callee.name, callee.name)
         .label(callee.range, "defined here")
-        .note(callee.isConstructor ? "the constructor runs once, when the scene makes the object"
-                                   : "put what both need into a function of its own");
+        .note(callee.isConstructor ? "the constructor runs once, when the scene creates the object"
+                                   : "move the common code into a function of its own");
   return isSame;
 }
 
@@ -436,7 +436,7 @@ ExprPtr FunctionChecker::checkTracePayload(const ast::CallExpr &expr) {
       Diagnostic &diagnostic =
           diagnostics.report(Code::badArgument, arg->range, i + 1, "trace",
                              toString(parameters[i].type), toString(arg->type));
-      diagnostic.note(std::string("this is its `") + parameters[i].name + "`");
+      diagnostic.note(std::string("this is the parameter `") + parameters[i].name + "`");
       explainConversion(diagnostic, *arg, parameters[i].type);
       broken = true;
     } else {

@@ -19,7 +19,7 @@ ExprPtr FunctionChecker::checkConstruct(const Type *type, SourceRange typeRange,
   if (type->is(TypeKind::Void) || type->is(TypeKind::Class)) {
     Diagnostic &diagnostic = diagnostics.report(Code::notConstructible, typeRange, toString(type));
     if (type->is(TypeKind::Class))
-      diagnostic.note("objects are made by the scene; a shader only refers to them");
+      diagnostic.note("objects are created by the scene; a shader only refers to them");
     return errorExpr(range);
   }
   if (type->is(TypeKind::Struct) || type->is(TypeKind::Array))
@@ -58,15 +58,15 @@ void FunctionChecker::rejectColorPiece(const Type *type, const typed::Expr &arg)
       diagnostics.report(Code::badPiece, arg.range, toString(type), toString(arg.type));
   if (!arg.type->is(TypeKind::Color))
     return;
-  diagnostic.note("a color has as many components as the target chooses");
+  diagnostic.note("the number of components of a color depends on the target");
   if (type->isScalar())
     diagnostic.fix(arg.range, "luminance(" + sourceText(arg.range) + ")");
 }
 
-/// `arg` with its scalars converted, its shape kept.
+/// Converts the scalars of `arg` and keeps its shape.
 ExprPtr FunctionChecker::convertScalars(ExprPtr arg, const Type *scalar) {
   if (arg->type->isMatrix() && !scalar->is(TypeKind::Float)) {
-    // A matrix has no other scalars than floats: take it apart first.
+    // A matrix has only float scalars: it is split into components first.
     if (arg->type->componentCount() > 4)
       return arg;
     auto vector = makeExpr<typed::ConstructExpr>(types.vector(types.floatType, 4), arg->range);
@@ -85,7 +85,7 @@ ExprPtr FunctionChecker::constructScalar(const Type *type, ExprPtr arg, SourceRa
   }
   auto node = makeExpr<typed::ConstructExpr>(type, range);
   if (!arg->type->isScalar() && arg->type->scalar() != type) {
-    // The first component, then the conversion.
+    // The first component is taken, then converted.
     const Type *scalar = arg->type->scalar();
     node->type = scalar;
     node->args.push_back(std::move(arg));
@@ -97,8 +97,7 @@ ExprPtr FunctionChecker::constructScalar(const Type *type, ExprPtr arg, SourceRa
   return node;
 }
 
-/// Do the pieces fill the type? Every piece has to contribute; `exact`: and nothing may be left
-/// over.
+/// Do the pieces fill the type? Every piece must contribute; with `exact` nothing may be left over.
 bool FunctionChecker::requirePieces(const Type *type, std::vector<ExprPtr> &args, SourceRange range,
                                     bool exact) {
   const std::uint32_t needed = type->componentCount();
@@ -125,7 +124,7 @@ ExprPtr FunctionChecker::constructVector(const Type *type, std::vector<ExprPtr> 
   auto node = makeExpr<typed::ConstructExpr>(type, range);
   for (ExprPtr &arg : args)
     node->args.push_back(convertScalars(std::move(arg), type->element));
-  // `vec3(iv)` is the conversion of a vector and nothing else.
+  // `vec3(iv)` is only the conversion of a vector.
   if (node->args.size() == 1 && node->args[0]->kind == typed::ExprKind::Convert &&
       node->args[0]->type == type) {
     ExprPtr conversion = std::move(node->args[0]);
@@ -142,7 +141,8 @@ ExprPtr FunctionChecker::constructMatrix(const Type *type, std::vector<ExprPtr> 
     for (const ExprPtr &arg : args)
       if (arg->type->isMatrix()) {
         diagnostics.report(Code::badPiece, arg->range, toString(type), toString(arg->type))
-            .note("a matrix is made of one matrix alone, or of numbers and vectors by column");
+            .note("a matrix is constructed from one matrix alone, or from numbers and vectors by "
+                  "column");
         return errorExpr(range);
       }
     if (!requirePieces(type, args, range, true))
@@ -169,7 +169,7 @@ ExprPtr FunctionChecker::constructColor(std::vector<ExprPtr> args, SourceRange r
       if (args.size() == 1 && simple && arg->type->isVector() && arg->type->count >= 3)
         diagnostic.fix(arg->range, text + ".r, " + text + ".g, " + text + ".b");
       else
-        diagnostic.note("a color is made of one number, or of three that mean red, green and blue");
+        diagnostic.note("a color is constructed from one number, or from red, green and blue");
       return errorExpr(range);
     }
     node->args.push_back(convertTo(std::move(arg), types.floatType));

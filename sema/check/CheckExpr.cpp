@@ -101,8 +101,7 @@ ExprPtr FunctionChecker::requireValue(ExprPtr expr) {
   if (expr->type->is(TypeKind::Void))
     diagnostics.report(Code::voidValue, expr->range);
   else if (expr->type->is(TypeKind::Buffer))
-    diagnostics.report(Code::bufferAsValue, expr->range)
-        .note("index it, or ask for its `.length()`");
+    diagnostics.report(Code::bufferAsValue, expr->range).note("use an element, or its `.length()`");
   else if (expr->type->is(TypeKind::String))
     diagnostics.report(Code::stringAsValue, expr->range);
   else
@@ -149,7 +148,7 @@ ExprPtr FunctionChecker::checkCondition(const ast::Expr &expr) {
 //===----------------------------------------------------------------------===//
 
 ExprPtr FunctionChecker::checkIntLiteral(const ast::IntLiteral &literalExpr, bool negated) {
-  // Hexadecimal and octal literals name bits: 0xffffffff is -1. Decimal ones name numbers.
+  // Hexadecimal and octal literals denote bits: 0xffffffff is -1. Decimal ones denote numbers.
   const bool isDecimal = literalExpr.spelling.empty() || literalExpr.spelling[0] != '0';
   const std::uint64_t largest = literalExpr.isUnsigned || !isDecimal ? 0xffffffffull
                                 : negated                            ? 0x80000000ull
@@ -171,10 +170,10 @@ ExprPtr FunctionChecker::checkIntLiteral(const ast::IntLiteral &literalExpr, boo
 ExprPtr FunctionChecker::checkFloatLiteral(const ast::FloatLiteral &literalExpr) {
   float value = 0.0f;
   const char *begin = literalExpr.spelling.data(), *end = begin + literalExpr.spelling.size();
-  // Decimal to binary32 in one step: a detour over double would round twice.
+  // Decimal to binary32 directly: going through double would round twice.
   const std::from_chars_result result = std::from_chars(begin, end, value);
   if (result.ec == std::errc::result_out_of_range) {
-    // The library does not say which end was passed; the double does.
+    // The library does not report overflow or underflow; the double shows which.
     double wide = 0.0;
     const bool wideInRange = std::from_chars(begin, end, wide).ec == std::errc();
     const std::size_t exponent = literalExpr.spelling.find_first_of("eE");
@@ -198,7 +197,7 @@ ExprPtr FunctionChecker::checkFloatLiteral(const ast::FloatLiteral &literalExpr)
 // Conversions
 //===----------------------------------------------------------------------===//
 
-/// Says how to get from one type to the other, where there is a way.
+/// Explains how to convert one type to the other, if that is possible.
 void FunctionChecker::explainConversion(Diagnostic &diagnostic, const typed::Expr &expr,
                                         const Type *to) {
   const Type *from = expr.type;
@@ -206,21 +205,22 @@ void FunctionChecker::explainConversion(Diagnostic &diagnostic, const typed::Exp
   auto wrap = [&](const std::string &function, bool sure = false) {
     diagnostic.fix(expr.range, function + "(" + text + ")", sure);
   };
-  // What C converts without being asked, and to the same value.
+  // Conversions that C makes implicitly, and that keep the value.
   const bool isNumeric = from->scalar() && from->scalar()->isNumericScalar() && to->scalar() &&
                          to->scalar()->isNumericScalar();
   if (to->is(TypeKind::Color)) {
-    diagnostic.note("a color has as many components as the target chooses, so nothing turns into "
-                    "one by itself");
+    diagnostic.note(
+        "the number of components of a color depends on the target, so there are no implicit "
+        "conversions to it");
     if (from->isNumericScalar())
       wrap("color");
     else if (from->isVector() && from->count == 3 && from->element->is(TypeKind::Float) &&
              (expr.kind == typed::ExprKind::Variable || expr.kind == typed::ExprKind::Member))
       diagnostic.fix(expr.range, "color(" + text + ".r, " + text + ".g, " + text + ".b)");
     else if (from->isVector())
-      diagnostic.note("`color(r, g, b)` makes a color of three numbers");
+      diagnostic.note("`color(r, g, b)` constructs a color from three numbers");
   } else if (from->is(TypeKind::Color)) {
-    diagnostic.note("a color has as many components as the target chooses");
+    diagnostic.note("the number of components of a color depends on the target");
     if (to->is(TypeKind::Float))
       wrap("luminance");
   } else if (from->isScalar() && to->isScalar()) {
@@ -236,8 +236,8 @@ void FunctionChecker::explainConversion(Diagnostic &diagnostic, const typed::Exp
     wrap(toString(to));
   } else if (from->is(TypeKind::Class) && to->is(TypeKind::Class) && from->classType &&
              to->classType && to->classType->derivesFrom(from->classType)) {
-    diagnostic.note("a reference to `" + toString(from) + "` need not refer to a `" + toString(to) +
-                    "`");
+    diagnostic.note("a reference to `" + toString(from) +
+                    "` may refer to an object that is not a `" + toString(to) + "`");
   }
 }
 
@@ -288,7 +288,7 @@ bool FunctionChecker::requireConstant(const typed::Expr &init, const std::string
       *value = std::make_unique<typed::Constant>(std::move(*folded));
     return true;
   }
-  // A constant without a value that is known here will do, unless the value itself is asked for.
+  // A constant whose value is not known here is sufficient, unless `value` is required.
   const typed::Expr *notConstant = nullptr;
   if (isConstantExpression(init, &notConstant) && value)
     return true;

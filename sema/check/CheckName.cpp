@@ -10,16 +10,17 @@ namespace rtsl {
 using typed::ExprPtr;
 
 //===----------------------------------------------------------------------===//
-// Uses that only some methods may make
+// Uses that only some methods allow
 //===----------------------------------------------------------------------===//
 
 bool FunctionChecker::record(Use use) {
   if (!facts) {
-    // Outside of functions nothing is running that could have a state.
+    // Outside of functions there is no method whose state could be used.
     diagnostics.report(Code::useOutsideFunction, use.range, use.what);
     return false;
   }
-  // In a method of the table the rules are known; elsewhere the calls decide, once all are known.
+  // In a method of the engine the rules are known; for other functions they follow from the call
+  // graph.
   if (rules && scope->root)
     judgeUse(diagnostics, use, *scope->root, *rules, nullptr);
   else
@@ -67,14 +68,14 @@ std::string FunctionChecker::whyNotHere(const std::string &name) const {
   if (!facts)
     return "`" + name + "` cannot be used outside of functions";
   if (!scope || !scope->root)
-    return {}; // what calls it decides
+    return {}; // depends on its callers
   const MethodModel allowed = rules ? *rules : unionOfMethods(*scope->root);
   if (isState && !allowed.reads.has(variable))
     return "`" + name + "`, which may be meant, " +
            (scope->root->sees.has(variable) ? "has no value in `" + allowed.name + "`"
                                             : "belongs to " + classesThatSee(variable));
   if (ability && !allowed.abilities.has(*ability))
-    return "`" + name + "`, which may be meant, stands in " + methodsWith(*ability);
+    return "`" + name + "`, which may be meant, is allowed only in " + methodsWith(*ability);
   return {};
 }
 
@@ -129,7 +130,7 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
   const ForeignSpelling *foreign = foreignSpelling(name);
   const bool isThis = name == "this" || name == "self";
   if (!unknownNames.insert(name).second && !isThis && !(foreign && foreign->sure))
-    return; // once in a function says enough, if there is nothing to mend at each place
+    return; // one report per function is enough, unless each use gets a fix
   Diagnostic &diagnostic = diagnostics.report(Code::unknownName, range, name);
   if (foreign) {
     suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement), range);
@@ -144,7 +145,7 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
     for (const auto &member : at->members)
       candidates.push_back(member.first);
   candidates.insert(candidates.end(), program.constantOrder.begin(), program.constantOrder.end());
-  // The maps have no order of their own; messages have.
+  // The maps are unordered; messages must not be.
   std::sort(candidates.begin(), candidates.end());
   const std::string closest = closestName(name, candidates);
   typed::StateVariable state;
@@ -180,8 +181,8 @@ ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, 
   return node;
 }
 
-/// Constants of these types keep their name: a table of a thousand numbers is not copied to every
-/// use.
+/// Constants of these types are referred to by name: a table of a thousand numbers is not copied to
+/// every use.
 static bool isAggregate(const Type *type) {
   return type->is(TypeKind::Array) || type->is(TypeKind::Struct);
 }
@@ -262,7 +263,7 @@ ExprPtr FunctionChecker::checkMember(const ast::MemberExpr &expr, Access access)
   }
   if (type->is(TypeKind::Color)) {
     diagnostics.report(Code::colorHasNoComponents, expr.member.range, expr.member.text)
-        .note("a color has as many components as the target chooses; `luminance(c)` gives one "
+        .note("the number of components of a color depends on the target; `luminance(c)` gives one "
               "number");
     return errorExpr(expr.range);
   }
@@ -279,7 +280,7 @@ ExprPtr FunctionChecker::checkMember(const ast::MemberExpr &expr, Access access)
   return errorExpr(expr.range);
 }
 
-/// Which of the sets of letters a letter belongs to, and which component it means.
+/// The component that a letter denotes, and the set of letters that it belongs to.
 static int componentOf(char letter, int &set) {
   static const char *const sets[] = {"xyzw", "rgba", "stpq"};
   for (set = 0; set != 3; ++set)
@@ -361,8 +362,8 @@ ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
   if (!type->isVector() && !type->isMatrix() && !type->is(TypeKind::Array) && !isBuffer) {
     Diagnostic &diagnostic = diagnostics.report(Code::notIndexable, base->range, toString(type));
     if (type->is(TypeKind::Color))
-      diagnostic.note(
-          "a color has as many components as the target chooses; `luminance(c)` gives one number");
+      diagnostic.note("the number of components of a color depends on the target; `luminance(c)` "
+                      "gives one number");
     return errorExpr(expr.range);
   }
   if (!index->type->is(TypeKind::Int) && !index->type->is(TypeKind::UInt)) {
@@ -379,7 +380,7 @@ ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
       if (!isBuffer)
         diagnostic.note(type->count == 1
                             ? std::string("the only index is 0")
-                            : "indices run from 0 to " + std::to_string(type->count - 1));
+                            : "valid indices are 0 to " + std::to_string(type->count - 1));
       return errorExpr(expr.range);
     }
   }
@@ -392,10 +393,11 @@ ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
 }
 
 //===----------------------------------------------------------------------===//
-// Targets
+// Lvalues
 //===----------------------------------------------------------------------===//
 
-/// Does the text name a place? What `+x` or `color(c)` turn into may be no more than a name.
+/// Is the source text an lvalue? `+x` and `color(c)` may be checked to a mere variable, but are
+/// none.
 static bool namesAPlace(const ast::Expr &expr) {
   const ast::Expr *at = &expr;
   for (;;) {

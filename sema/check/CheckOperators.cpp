@@ -44,7 +44,7 @@ static bool isNumeric(const Type *type) {
 
 ExprPtr FunctionChecker::checkUnary(const ast::UnaryExpr &expr) {
   static const char *const spellings[] = {"+", "-", "!", "~"};
-  // The smallest int is written as the negative of a number that is none.
+  // The smallest int is written as the negation of a number that does not fit into int.
   ExprPtr operand;
   if (const auto *number = dynCast<ast::IntLiteral>(expr.operand);
       number && expr.op == ast::UnaryOp::Minus)
@@ -115,7 +115,7 @@ ExprPtr FunctionChecker::checkIncDec(const ast::UnaryExpr &expr) {
 // Binary operators
 //===----------------------------------------------------------------------===//
 
-/// `a + b + c + ...` leans to the left, as deep as the chain is long: the spine is walked in a
+/// The tree of `a + b + c + ...` is as deep as the chain is long: its left spine is walked in a
 /// loop.
 ExprPtr FunctionChecker::checkBinaryChain(const ast::BinaryExpr &expr) {
   std::vector<const ast::BinaryExpr *> spine;
@@ -182,8 +182,7 @@ const Type *FunctionChecker::operandTypes(BinaryOp op, ExprPtr &left, ExprPtr &r
 
   const Type *ls = l->scalar(), *rs = r->scalar();
   if (isShift(op)) {
-    // The type is that of the left operand; a vector may be shifted by one number for all
-    // components.
+    // The type is that of the left operand; a vector may be shifted by a scalar.
     if (!isInteger(ls) || !isInteger(rs) ||
         (r->isVector() && (!l->isVector() || l->count != r->count)))
       return nullptr;
@@ -199,8 +198,7 @@ const Type *FunctionChecker::operandTypes(BinaryOp op, ExprPtr &left, ExprPtr &r
   return result && isComparison(op) ? types.boolType : result;
 }
 
-/// Componentwise with a color on both sides; a float may stand on either side of `*` and behind
-/// `/`, or before it.
+/// Componentwise with a color on both sides; a float may be on either side of `*` and `/`.
 const Type *FunctionChecker::colorTypes(BinaryOp op, ExprPtr &left, ExprPtr &right) {
   if (op != BinaryOp::Mul && op != BinaryOp::Div && op != BinaryOp::Add && op != BinaryOp::Sub)
     return nullptr;
@@ -255,14 +253,14 @@ void FunctionChecker::reportOperands(BinaryOp op, SourceRange opRange, const typ
   const typed::Expr &other = leftColor ? right : left;
   if (contains(l, TypeKind::Color) || contains(r, TypeKind::Color)) {
     if (isEquality(op) || isComparison(op))
-      diagnostic.note("colors are not compared: how many components they have is the target's "
-                      "choice; compare their "
+      diagnostic.note("colors cannot be compared: their number of components depends on the "
+                      "target; compare their "
                       "`luminance`");
     else if ((leftColor != rightColor) && other.type->isNumericScalar())
       diagnostic.fix(other.range, "color(" + sourceText(other.range) + ")");
     else if (leftColor != rightColor)
-      diagnostic.note("a color has as many components as the target chooses; `color(r, g, b)` "
-                      "makes one of three "
+      diagnostic.note("the number of components of a color depends on the target; `color(r, g, b)` "
+                      "constructs one from three "
                       "numbers");
     return;
   }
@@ -270,7 +268,7 @@ void FunctionChecker::reportOperands(BinaryOp op, SourceRange opRange, const typ
   if (op == BinaryOp::Mod && isNumeric(ls) && isNumeric(rs))
     diagnostic.note("`%` takes integers; write `mod(x, y)`");
   else if (isLogical(op) && isNumeric(ls))
-    diagnostic.note("a number is no condition by itself: compare it");
+    diagnostic.note("a number is not a condition: compare it");
   else if (isComparison(op) && l->isVector() && r->isVector()) {
     const char *const functions[] = {"lessThan", "greaterThan", "lessThanEqual",
                                      "greaterThanEqual"};
@@ -284,10 +282,10 @@ void FunctionChecker::reportOperands(BinaryOp op, SourceRange opRange, const typ
   else if (op == BinaryOp::Mul && (l->isMatrix() || r->isMatrix()))
     diagnostic.note("a matrix with n columns takes a vector or matrix with n rows on its right");
   else if ((ls && ls->is(TypeKind::Bool)) != (rs && rs->is(TypeKind::Bool)) && ls && rs)
-    diagnostic.note("a `bool` is no number; `float(b)` and `int(b)` give 0 or 1");
+    diagnostic.note("a `bool` is not a number; `float(b)` and `int(b)` give 0 or 1");
 }
 
-/// Division of integers by a constant zero and shifts by too much are defined, and never meant.
+/// Division of integers by a constant zero and shifts by too much are defined, but surely mistakes.
 void FunctionChecker::warnAboutConstants(BinaryOp op, const typed::Expr &right) {
   const bool isDivision = op == BinaryOp::Div || op == BinaryOp::Mod;
   if ((!isDivision && !isShift(op)) || !isInteger(right.type->scalar()))
@@ -322,8 +320,8 @@ ExprPtr FunctionChecker::checkAssign(const ast::AssignExpr &expr) {
   if (expr.compound) {
     const Type *result = operandTypes(expr.op, target, value, true);
     if (!result || result != target->type) {
-      // Either the operator takes no such operands at all, or its result does not fit back into the
-      // target.
+      // Either the operator does not take such operands at all, or its result cannot be converted
+      // to the type of the target.
       ExprPtr left = makeExpr<typed::LiteralExpr>(target->type, target->range);
       ExprPtr right = makeExpr<typed::LiteralExpr>(value->type, value->range);
       const Type *free = result ? result : operandTypes(expr.op, left, right, false);

@@ -66,7 +66,7 @@ StmtPtr FunctionChecker::checkStmt(const ast::Stmt &stmt) {
   return result;
 }
 
-/// A statement whose declarations are its own.
+/// A statement that is a scope of its own.
 StmtPtr FunctionChecker::checkScoped(const ast::Stmt &stmt) {
   locals.push();
   StmtPtr result = checkStmt(stmt);
@@ -116,8 +116,8 @@ StmtPtr FunctionChecker::dispatchStmt(const ast::Stmt &stmt) {
   }
   case ast::StmtKind::Switch:
     return checkSwitch(cast<ast::SwitchStmt>(stmt));
-  case ast::StmtKind::Case: // inside of a switch they are handled there; a block within it is no
-                            // place for one
+  case ast::StmtKind::Case: // direct labels are handled by the switch; in a nested
+                            // block they are not allowed
     diagnostics.report(Code::nestedCase, stmt.range);
     return makeStmt<typed::CompoundStmt>(stmt);
   case ast::StmtKind::Break:
@@ -165,7 +165,7 @@ bool FunctionChecker::isDeduced(const ast::VariableDecl &declaration) const {
          declaration.type.dimensions.empty() && !program.findSymbol(type);
 }
 
-/// The type that was left out can be seen, and written.
+/// The type can be deduced, and is suggested as a fix.
 const Type *FunctionChecker::reportDeduced(const ast::VariableDecl &declaration, ExprPtr &init) {
   init = checkValue(*declaration.init);
   const ast::Name &name = declaration.type.name;
@@ -199,7 +199,7 @@ const typed::Variable *FunctionChecker::checkVariable(const ast::VariableDecl &d
       diagnostics.report(Code::voidVariable, declaration.type.range, variable.name);
       variable.type = types.error;
     }
-    // The name is not in sight in its own initialiser.
+    // The name is not visible in its own initialiser.
     if (declaration.init)
       variable.init = checkInitializer(*declaration.init, variable.type);
   }
@@ -226,18 +226,18 @@ void FunctionChecker::checkLocalSize(const typed::Variable &variable) {
   const std::uint64_t bytes = sizeInBytes(variable.type);
   if (bytes > maxLocalBytes)
     diagnostics.report(Code::localTooLarge, variable.range, variable.name, bytes, maxLocalBytes)
-        .note("every ray has its own locals; what all rays share belongs into a buffer: `public "
+        .note("every ray has its own locals; put shared data into a buffer: `public "
               "float data[];`");
   else if (bytes > largeLocalBytes)
     diagnostics.report(Code::localLarge, variable.range, variable.name, bytes)
-        .note("every ray has its own; on a GPU many thousands run at once");
+        .note("every ray has its own copy; on a GPU many thousands run at once");
 }
 
 //===----------------------------------------------------------------------===//
 // Control flow
 //===----------------------------------------------------------------------===//
 
-/// `else if` chains may be long: they are walked in a loop.
+/// `else if` chains may be long: they are processed in a loop.
 StmtPtr FunctionChecker::checkIf(const ast::IfStmt &stmt) {
   auto first = makeStmt<typed::IfStmt>(stmt);
   typed::IfStmt *node = first.get();
@@ -292,7 +292,7 @@ StmtPtr FunctionChecker::checkSwitch(const ast::SwitchStmt &stmt) {
   }
   std::unordered_map<std::int64_t, SourceRange> seen;
   SourceRange defaultRange;
-  bool open = false; // labels were seen, but no statement behind them yet
+  bool open = false; // there is a label without a statement after it yet
   ++switches;
   locals.push();
   for (const ast::StmtPtr &inner : stmt.body) {
@@ -343,7 +343,7 @@ StmtPtr FunctionChecker::checkSwitch(const ast::SwitchStmt &stmt) {
   --switches;
   if (open)
     diagnostics.report(Code::emptyLastCase, node->arms.back().range)
-        .note("write `break;` behind the label");
+        .note("write `break;` after the label");
   return node;
 }
 

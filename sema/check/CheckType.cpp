@@ -1,4 +1,4 @@
-//===- CheckType.cpp - types as the author spells them --------------------===//
+//===- CheckType.cpp - types as spelled in the source ---------------------===//
 #include "sema/check/FunctionChecker.h"
 #include "sema/check/Suggest.h"
 #include "sema/fold/ConstantFold.h"
@@ -8,7 +8,7 @@
 
 namespace rtsl {
 
-/// Values of more bytes than this cannot be addressed within a record or a frame.
+/// Larger values cannot be addressed within a record or a frame.
 static constexpr std::uint64_t maxTypeBytes = 0x7fffffffull;
 
 static const Type *typeOfName(const ast::Name &name, Program &program) {
@@ -54,7 +54,7 @@ const Type *FunctionChecker::resolveType(const ast::TypeName &typeName, const as
     diagnostics.report(Code::typeTooDeep, typeName.range, maxTypeNesting);
     return types.error;
   }
-  // Outermost first: what stands behind the name, then what stands behind the type.
+  // Outermost first: dimensions after the name, then those after the type.
   std::vector<const ast::ArrayDimension *> dimensions;
   for (const ast::ArrayDimension &dimension : typeName.dimensions)
     dimensions.push_back(&dimension);
@@ -82,7 +82,7 @@ const Type *FunctionChecker::resolveType(const ast::TypeName &typeName, const as
   for (std::size_t i = dimensions.size(); i-- > rank;) {
     if (!dimensions[i]->size) {
       diagnostics.report(Code::unsizedArray, dimensions[i]->range)
-          .note("dimensions without a size stand in front of those with one");
+          .note("dimensions without a size must come before those with one");
       return types.error;
     }
     typed::ExprPtr size = checkValue(*dimensions[i]->size);
@@ -116,7 +116,7 @@ const Type *FunctionChecker::resolveType(const ast::TypeName &typeName, const as
   }
   if (sizeInBytes(type) > maxTypeBytes) {
     diagnostics.report(Code::typeTooLarge, typeName.range, toString(type), sizeInBytes(type))
-        .note("what is that large belongs into a buffer, whose size the scene gives: `public float "
+        .note("use a buffer, whose size is set by the scene: `public float "
               "data[];`");
     return types.error;
   }

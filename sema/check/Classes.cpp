@@ -90,10 +90,11 @@ void Program::linkBase(ClassScope &scope) {
         "rt_RayGeneration, rt_Miss, rt_Selector and rt_Exception");
 }
 
-/// Cuts every cycle of bases at one class, after saying so. Whether there were any.
+/// Reports every cycle of bases and cuts it at one class. Returns whether there were any.
 bool Program::breakCycles() {
   bool isCut = false;
-  std::unordered_map<const ClassScope *, unsigned> visitedBy; // number of the walk
+  std::unordered_map<const ClassScope *, unsigned>
+      visitedBy; // the number of the walk that visited a class
   unsigned walk = 0;
   for (const std::string &name : classOrder) {
     ++walk;
@@ -133,8 +134,8 @@ std::vector<ClassScope *> Program::classesBaseFirst() {
   return order;
 }
 
-/// Refuses the first class of a chain that has too many bases. What derives from it is as wrong,
-/// and says nothing.
+/// Rejects the first class of a chain that has too many bases; further derived classes are not
+/// reported.
 void Program::limitInheritance() {
   std::unordered_map<const ClassScope *, unsigned> basesOf;
   for (const ClassScope *scope : baseFirst) {
@@ -144,7 +145,8 @@ void Program::limitInheritance() {
       diagnostics
           .report(Code::inheritanceTooDeep, scope->declaration->name.range, scope->definition->name,
                   maxInheritanceDepth)
-          .label(scope->declaration->base.range, "this base has as many as there may be");
+          .label(scope->declaration->base.range,
+                 "this base already has the maximum number of bases");
   }
 }
 
@@ -153,7 +155,7 @@ void Program::resolveClasses() {
     linkBase(*classes[name]);
   const bool hadCycles = breakCycles();
   baseFirst = classesBaseFirst();
-  if (!hadCycles) // what is left of a circle is no chain that somebody wrote
+  if (!hadCycles) // the rest of a cut cycle is not a real chain
     limitInheritance();
   for (ClassScope *scope : baseFirst) {
     if (scope->base) {
@@ -233,7 +235,8 @@ void Program::declareMember(ClassScope &scope, const ast::VariableDecl &declarat
     Diagnostic &diagnostic = diagnostics.report(Code::redefinition, member->range, member->name);
     diagnostic.label(other->range, "first defined here");
     if (other->owner != scope.definition)
-      diagnostic.note("`" + scope.definition->name + "` has it from `" + other->owner->name + "`");
+      diagnostic.note("`" + scope.definition->name + "` inherits it from `" + other->owner->name +
+                      "`");
     return;
   }
   scope.members.emplace(member->name, member.get());
@@ -248,9 +251,9 @@ void Program::checkMemberQualifiers(const ClassScope &scope, const ast::Variable
     while (element->is(TypeKind::Array) || element->is(TypeKind::Buffer))
       element = element->element;
     const char *reason =
-        !element->is(TypeKind::Class) ? "only references are"
+        !element->is(TypeKind::Class) ? "only references can be"
         : declaration.access != ast::Access::Public
-            ? "only what the scene sets is; a `private` reference may be empty in any case"
+            ? "only public members can be; a `private` reference may always be empty"
             : nullptr;
     if (reason)
       diagnostics.report(Code::misplacedOptional, declaration.optionalRange, name, reason);
@@ -270,7 +273,7 @@ void Program::checkMemberQualifiers(const ClassScope &scope, const ast::Variable
   } else if (declaration.access == ast::Access::Scratch && scope.root && !scope.root->hasScratch) {
     diagnostics
         .report(Code::scratchWithoutHit, declaration.accessRange, withArticle(scope.root->name))
-        .note("scratch members carry what `intersect` finds out to the later methods of the same "
+        .note("scratch members pass values from `intersect` to the later methods of the same "
               "hit: an "
               "rt_Primitive writes them, an rt_Material reads them");
   }

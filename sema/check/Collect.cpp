@@ -1,7 +1,7 @@
 //===- Collect.cpp - the files of a compilation and their names -----------===//
 //
-// All files share one space of names: an import brings in a file once, and the order in which
-// things are declared does not matter.
+// All files share one namespace: an import adds a file once, and the order of declarations does not
+// matter.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/check/Program.h"
@@ -30,8 +30,8 @@ void Program::collect(const std::vector<const ast::TranslationUnit *> &roots,
     collectUnit(*unit);
 }
 
-/// Enters a name; false (reported) if it stands for something else already. Functions may share
-/// one.
+/// Declares a name; false (reported) if it is already declared as something else. Functions may
+/// share a name.
 bool Program::declareSymbol(const ast::Name &name, Symbol::Kind kind) {
   if (name.text.compare(0, 3, "rt_") == 0) {
     diagnostics.report(Code::reservedName, name.range, name.text);

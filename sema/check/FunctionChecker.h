@@ -1,11 +1,11 @@
-//===- FunctionChecker.h - checking the inside of a function --------------===//
+//===- FunctionChecker.h - checking the body of a function ----------------===//
 //
 // Turns statements and expressions of the syntax tree into typed ones. The same class checks
-// expressions outside of functions: array sizes, constants, members' defaults. Its parts stand in
-// Check*.cpp, one concept each.
+// expressions outside of functions: array sizes, constants, members' defaults. It is implemented in
+// Check*.cpp, one file per concept.
 //
-// An expression that cannot be understood is reported once and has the type `error` from then on,
-// about which nothing more is said.
+// An expression with an error is reported once and gets the type `error`, about which nothing more
+// is reported.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -20,34 +20,34 @@ namespace rtsl {
 
 class FunctionChecker {
 public:
-  /// `scope` is the class whose names are in sight, or null; `function` the one whose body is
+  /// `scope` is the class whose names are visible, or null; `function` the one whose body is
   /// checked, or null.
   FunctionChecker(Program &program, const ClassScope *scope, typed::Function *function);
 
   /// Checks the body into `function`.
   void checkBody(const ast::FunctionDecl &declaration);
 
-  /// A type as spelled. `name` is the declared name, if any: dimensions behind it come first
-  /// (`float[2] a[3]` is an array of three arrays of two). `allowUnsized` permits `[]` in front;
-  /// then the result is a buffer.
+  /// A type as spelled. `name` is the declared name, if any: dimensions after it come first
+  /// (`float[2] a[3]` is an array of three arrays of two). `allowUnsized` permits `[]` as the first
+  /// dimensions; then the result is a buffer.
   const Type *resolveType(const ast::TypeName &typeName, const ast::Name *name,
                           bool allowUnsized = false);
 
-  /// An initialiser for something of type `type`; converts, and understands `{...}`.
+  /// An initialiser for a variable of type `type`; converts it, and accepts `{...}`.
   typed::ExprPtr checkInitializer(const ast::Expr &init, const Type *type);
 
-  /// The type of `float a[] = ...`: the length comes from the initialiser, which is put into
+  /// The type of `float a[] = ...`: the length comes from the initialiser, which is returned in
   /// `init`.
   const Type *deduceUnsized(const ast::VariableDecl &declaration, typed::ExprPtr &init);
 
-  /// Reports what is not constant in `init`, and says whether it is. With `value`, a constant will
-  /// do whose value only the target knows (it may hold colors); then `value` stays null. Without,
-  /// the value itself is needed.
+  /// Reports what is not constant in `init`, and returns whether it is constant. With `value`, a
+  /// constant whose value depends on the target (it may contain colors) is accepted; then `value`
+  /// stays null. Without, its value must be known.
   bool requireConstant(const typed::Expr &init, const std::string &what,
                        std::unique_ptr<typed::Constant> *value = nullptr);
 
 private:
-  /// What the surroundings do with the thing that an expression names.
+  /// How the lvalue that an expression denotes is used.
   enum class Access : std::uint8_t { Read, Write, ReadWrite };
 
   // CheckExpr.cpp
@@ -59,7 +59,8 @@ private:
   /// An expression that may be void: a statement, or a side of a comma.
   typed::ExprPtr checkOperand(const ast::Expr &expr);
   typed::ExprPtr checkCondition(const ast::Expr &expr);
-  /// What a condition makes of a reference: whether there is an object. Others stay as they are.
+  /// Converts a reference in a condition to a bool: whether it refers to an object. Others are
+  /// unchanged.
   typed::ExprPtr testReference(typed::ExprPtr expr);
   typed::ExprPtr errorExpr(SourceRange range);
   typed::ExprPtr checkIntLiteral(const ast::IntLiteral &literal, bool negated);
@@ -67,8 +68,8 @@ private:
   typed::ExprPtr literal(const Type *type, SourceRange range, typed::Constant value,
                          std::string spelling = "");
   typed::ExprPtr checkConditional(const ast::ConditionalExpr &expr);
-  /// Converts or says why not. `label` (if its text is not empty) points to what asked for the
-  /// type.
+  /// Converts, or reports why that is impossible. `label` (if its text is not empty) points to what
+  /// requires the type.
   typed::ExprPtr coerce(typed::ExprPtr expr, const Type *to, const Label &label = {});
   void explainConversion(Diagnostic &diagnostic, const typed::Expr &expr, const Type *to);
   std::string sourceText(SourceRange range) const {
@@ -85,16 +86,16 @@ private:
   typed::ExprPtr checkSwizzle(typed::ExprPtr base, const ast::Name &letters, SourceRange range,
                               Access access);
   typed::ExprPtr checkIndex(const ast::IndexExpr &expr, Access access);
-  /// Reports if `target` cannot be stored to.
+  /// Reports if `target` cannot be assigned to.
   bool requireTarget(const ast::Expr &source, const typed::Expr &target, const char *action);
-  /// These remember a use, or judge it at once. False (reported) outside of functions, where
-  /// nothing is running.
+  /// These record a use, or check it immediately. False (reported) outside of functions, where
+  /// there is no state.
   bool recordState(Use::Kind kind, typed::StateVariable variable, SourceRange range);
   bool recordSpecial(Ability ability, const std::string &what, SourceRange range,
                      const typed::Member *member = nullptr);
   bool record(Use use);
-  /// Why a state variable or a special function cannot stand here, to say in place of suggesting
-  /// it; empty if it can, as far as is known.
+  /// Why a state variable or a special function is not allowed here, as a note instead of
+  /// suggesting it; empty if it is allowed, as far as is known.
   std::string whyNotHere(const std::string &name) const;
   std::vector<std::string> whatMayStandHere(std::vector<std::string> names) const;
 
@@ -103,8 +104,8 @@ private:
   typed::ExprPtr checkIncDec(const ast::UnaryExpr &expr);
   typed::ExprPtr checkBinaryChain(const ast::BinaryExpr &expr);
   typed::ExprPtr combine(const ast::BinaryExpr &expr, typed::ExprPtr left, typed::ExprPtr right);
-  /// Converts both operands to what the operator takes and gives the result's type; null if it
-  /// takes none such.
+  /// Converts both operands to the types that the operator takes and returns the result's type;
+  /// null if the operator does not apply.
   const Type *operandTypes(ast::BinaryOp op, typed::ExprPtr &left, typed::ExprPtr &right,
                            bool leftFixed);
   const Type *arithmeticTypes(ast::BinaryOp op, typed::ExprPtr &left, typed::ExprPtr &right,
@@ -148,16 +149,16 @@ private:
   typed::ExprPtr checkTracePayload(const ast::CallExpr &expr);
   typed::ExprPtr checkPrint(const ast::CallExpr &expr);
   void reportUnknownFunction(const ast::Name &callee, SourceRange call);
-  /// What candidates with `count` parameters do with argument `index`: written, if all of them
-  /// write it; else it is read until one has been chosen.
+  /// The access of candidates with `count` parameters to argument `index`: Write if all of them
+  /// write it; otherwise Read until one has been chosen.
   static Access accessOf(const std::vector<Signature> &candidates, std::size_t count,
                          std::size_t index);
   std::vector<typed::ExprPtr> checkArguments(const std::vector<ast::ExprPtr> &args,
                                              const std::vector<Signature> &candidates);
-  /// Checks those arguments again, as targets, that the chosen candidate writes and others read.
+  /// Checks those arguments again, as lvalues, that the chosen candidate writes and others read.
   void checkWritten(const std::vector<ast::ExprPtr> &args, const std::vector<Signature> &candidates,
                     int chosen, std::vector<typed::ExprPtr> &values);
-  /// The chosen candidate, or -1 after a report (silent if an argument is broken).
+  /// The chosen candidate, or -1 after an error (not reported again if an argument is broken).
   int choose(const ast::Name &callee, const std::vector<Signature> &candidates,
              const std::vector<typed::ExprPtr> &args, const std::vector<SourceRange> &places,
              SourceRange range);
@@ -185,14 +186,14 @@ private:
   TypeContext &types;
   const ClassScope *scope;
   typed::Function *function;
-  const MethodModel *rules = nullptr; // of a method of the table and of the constructor
+  const MethodModel *rules = nullptr; // of an engine method or the constructor
   FunctionFacts *facts = nullptr;
   LocalScopes locals;
   std::unordered_set<const typed::Variable *> mentioned;
-  std::unordered_set<std::string> unknownNames; // that were reported
+  std::unordered_set<std::string> unknownNames; // already reported
   unsigned recursion = 0, treeDepth = 0;
   unsigned loops = 0, switches = 0, illuminances = 0;
-  bool isLit = false; // some light was chosen before, by its number
+  bool isLit = false; // a light was selected before, by its number
 };
 
 /// `+`, `<<`, ...

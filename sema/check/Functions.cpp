@@ -14,7 +14,7 @@ void Program::declareFunctions() {
 }
 
 void Program::checkBodies() {
-  // A prototype that no body followed. It stays, with an empty one: calls refer to it.
+  // A prototype without a body. It is kept, with an empty body: calls refer to it.
   for (const std::unique_ptr<typed::Function> &function : module.functions)
     if (prototypes.count(function.get())) {
       diagnostics.report(Code::prototypeWithoutBody, function->range, function->name);
@@ -23,7 +23,7 @@ void Program::checkBodies() {
   for (const PendingBody &body : bodies) {
     const std::size_t before = diagnostics.errorCount();
     FunctionChecker(*this, body.scope, body.function).checkBody(*body.declaration);
-    // What is broken already would only give wrong advice.
+    // Flow warnings for a function with errors would be misleading.
     if (diagnostics.errorCount() == before)
       checkFlow(*body.function, diagnostics);
   }
@@ -122,7 +122,7 @@ void Program::declareMethods(ClassScope &scope) {
   }
 }
 
-/// Methods that the engine calls have the shape that it expects.
+/// Engine methods must have the signature that the engine expects.
 void Program::checkTableMethod(const ClassScope &scope, const ast::FunctionDecl &declaration,
                                typed::Function &function) {
   if (function.returnType->isError())
@@ -149,7 +149,7 @@ void Program::checkTableMethod(const ClassScope &scope, const ast::FunctionDecl 
     fits &= shapeFits;
     expected = joinWords(shapes, "or");
     if (scope.root->methods.size() > 1 && expected.find("inout P") != std::string::npos)
-      expected += ", where P is a struct of yours, the payload of the ray";
+      expected += ", where P is a struct, the payload of the ray";
   }
   if (fits)
     return;
@@ -159,11 +159,11 @@ void Program::checkTableMethod(const ClassScope &scope, const ast::FunctionDecl 
   diagnostic.note("expected " + expected);
   if (function.name == "anyHit" && parameters.empty())
     diagnostic.note(
-        "shadow rays of `illuminance` carry no payload, and no material answers them: "
-        "light a point by `illuminate(i, P, false)`, and trace a payload towards the light");
+        "shadow rays of `illuminance` carry no payload, and no material handles them: "
+        "call `illuminate(i, P, false)`, and trace a ray with a payload towards the light");
 }
 
-/// A function that overrides one of a base looks the same from outside.
+/// An overriding function must have the same signature as that of the base.
 void Program::checkOverride(const ClassScope &scope, const typed::Function &function) {
   if (methodNames[function.name] < 2)
     return;
@@ -201,7 +201,7 @@ void Program::declareFreeFunction(const ast::FunctionDecl &declaration) {
       return;
     }
     if (!declaration.body)
-      return; // a prototype says nothing new
+      return; // a prototype after the definition adds nothing
     if (!prototypes.count(other)) {
       diagnostics.report(Code::duplicateFunction, owned->range, owned->name)
           .label(other->range, "first defined here");

@@ -7,9 +7,8 @@
 
 namespace rtsl {
 
-/// Finds the text of an import and parses it; null if it cannot (then it has reported why at
-/// `import.range`). The same file asked for twice gives the same pointer. `importer` is the file
-/// that holds the import.
+/// Finds and parses the text of an import; null on failure (which is reported at `import.range`).
+/// The same file gives the same pointer each time. `importer` is the file that contains the import.
 using ImportResolver =
     std::function<const ast::TranslationUnit *(const ast::ImportDecl &import, FileId importer)>;
 

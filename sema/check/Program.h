@@ -1,7 +1,7 @@
-//===- Program.h - what sema knows of the whole compilation ---------------===//
+//===- Program.h - the state of sema for a whole compilation --------------===//
 //
 // The names at file level, the classes with their members, and the facts about each function that
-// are judged once all bodies were seen. Shared by the steps of `check`.
+// are checked after all bodies. Shared by the steps of `check`.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -21,14 +21,14 @@ namespace rtsl {
 /// Depth to which the checker itself recurses: brackets, unary operators, right-hand sides, nested
 /// statements.
 constexpr unsigned maxRecursion = 1000;
-/// Depth of an expression tree. Chains of binary operators lean to the left and are walked without
-/// recursion, but everything behind the checker may recurse over what it made.
+/// Depth of an expression tree. Chains of binary operators are deep on the left and are walked
+/// without recursion here, but all later stages may recurse over the tree.
 constexpr unsigned maxTreeDepth = 2000;
-/// Bases of a class, their own bases included. A class has all their functions, and each is lowered
-/// again for each class.
+/// Bases of a class, including indirect ones. A class inherits all their functions, and each
+/// function is lowered again for each class.
 constexpr unsigned maxInheritanceDepth = 256;
 
-/// A place in a function where something stands that not every method may do.
+/// A use in a function that not every method allows.
 struct Use {
   enum class Kind : std::uint8_t { ReadState, WriteState, Special };
   Kind kind = Kind::Special;
@@ -40,34 +40,34 @@ struct Use {
   SourceRange range;
 };
 
-/// A call of a function of the user's.
+/// A call of a user function.
 struct CallEdge {
   const typed::Function *callee = nullptr;
   bool dispatched = false;       // a method: definitions that override the callee may run
   bool throughReference = false; // on another object
-  bool throughMember = false;    // which a member of the caller's refers to
+  bool throughMember = false;    // through a reference in a member of the caller
   SourceRange range;             // of the callee's name
 };
 
 struct FunctionFacts {
-  // that calls decide about; those of methods of the table were judged at once
+  // those that depend on the callers; uses in engine methods are checked immediately
   std::vector<Use> uses;
   std::vector<CallEdge> calls;
-  bool traces = false; // trace or illuminance stand in it
+  bool traces = false; // contains `trace` or `illuminance`
 };
 
-/// A class with its names. `own` functions and members are those that it declares itself.
+/// A class with its names. `own` functions and members are declared in the class itself.
 struct ClassScope {
   const ast::ClassDecl *declaration = nullptr;
   std::unique_ptr<typed::Class> owned; // until the module takes it
   typed::Class *definition = nullptr;
   const ClassScope *base = nullptr;
-  const RootModel *root = nullptr; // null: its base is broken, and little is said about it
+  const RootModel *root = nullptr; // null: its base is broken, and few errors are reported
   std::unordered_map<std::string, typed::Member *> members;
   std::unordered_map<std::string, std::vector<typed::Function *>> functions;
 };
 
-/// What a name at file level stands for.
+/// What a name at file level denotes.
 struct Symbol {
   enum class Kind : std::uint8_t { Struct, Class, Constant, Function };
   Kind kind{};
@@ -106,7 +106,7 @@ public:
   std::unordered_map<std::string, GlobalConstant> constants;
   std::unordered_map<std::string, std::unique_ptr<ClassScope>> classes;
   std::unordered_map<std::string, std::vector<typed::Function *>> functions;
-  std::vector<std::string> structOrder, constantOrder, classOrder; // as in the sources
+  std::vector<std::string> structOrder, constantOrder, classOrder; // in source order
   std::unordered_map<const typed::Function *, FunctionFacts> facts;
   std::unordered_map<const typed::Class *, ClassScope *> scopeOf;
 
@@ -118,8 +118,8 @@ public:
   std::vector<const typed::Function *> findMethods(const ClassScope *scope,
                                                    const std::string &name) const;
 
-  /// Does the name mean a function of the author's, seen from a class or (null) from a file? Also
-  /// before functions are declared, which they are after constants and members.
+  /// Does the name denote a user function, seen from a class or (null) from a file? Also valid
+  /// before functions are declared, which happens after constants and members.
   bool namesFunction(const ClassScope *scope, const std::string &name) const;
 
   /// The checked constant, or null if it is broken or depends on itself (reported).
@@ -136,7 +136,7 @@ public:
   void declareFunctions();
   void checkBodies();
   void judgeCalls(); // CallGraph.cpp
-  /// Of a program without mistakes.
+  /// For a program without errors.
   void checkPerformance();
 
 private:
@@ -173,25 +173,26 @@ private:
   std::vector<const ast::TranslationUnit *> units;
   std::vector<ClassScope *> baseFirst;
   std::vector<PendingBody> bodies;
-  std::unordered_map<std::string, unsigned> memberNames, methodNames; // in how many classes
-  std::unordered_set<std::string> functionNames;                      // at file level
-  std::unordered_set<const typed::Function *> prototypes;             // that no body followed yet
+  std::unordered_map<std::string, unsigned> memberNames,
+      methodNames;                                        // number of classes that have it
+  std::unordered_set<std::string> functionNames;          // at file level
+  std::unordered_set<const typed::Function *> prototypes; // those without a body so far
   unsigned constantDepth = 0, structDepth = 0;
 };
 
 /// The same parameter types, in order.
 bool sameParameters(const typed::Function &a, const typed::Function &b);
 
-/// Says that `use` is not allowed by `method` of `root`, if so. `through` (if not null) is the
-/// method whose calls lead to the function that holds the use. Returns whether it was allowed.
+/// Reports if `method` of `root` does not allow `use`. `through` (if not null) is the method from
+/// which the function with the use is reached. Returns whether it is allowed.
 bool judgeUse(Diagnostics &diagnostics, const Use &use, const RootModel &root,
               const MethodModel &method, const typed::Function *through);
 
-/// Control flow of a checked body: missing returns, statements that are never reached, variables
-/// that are read before they were written or never read (FlowCheck.cpp).
+/// Control flow of a checked body: missing returns, unreachable statements, variables that are read
+/// before they are written or never read (FlowCheck.cpp).
 void checkFlow(const typed::Function &function, Diagnostics &diagnostics);
 
-/// What costs on a GPU and shows in the source: `-Wperf` (PerformanceCheck.cpp).
+/// What is slow on a GPU and visible in the source: `-Wperf` (PerformanceCheck.cpp).
 void checkPerformance(const typed::Function &function, Diagnostics &diagnostics);
 
 } // namespace rtsl

@@ -9,19 +9,19 @@
 
 namespace rtsl {
 
-/// Nested scopes of local variables and parameters. Finding takes constant time, however many
-/// scopes there are.
+/// Nested scopes of local variables and parameters. Lookup takes constant time, regardless of the
+/// number of scopes.
 class LocalScopes {
 public:
   void push() { marks.push_back(declared.size()); }
   void pop();
 
-  /// Makes `variable` visible in the innermost scope. Gives the variable of the same name that this
-  /// scope has already (then nothing changes), or null.
+  /// Makes `variable` visible in the innermost scope. If this scope already has a variable of that
+  /// name, returns it and changes nothing; otherwise returns null.
   const typed::Variable *declare(typed::Variable *variable);
   /// The innermost variable of that name, or null.
   typed::Variable *find(const std::string &name) const;
-  /// All names in sight, for suggestions.
+  /// All visible names, for suggestions.
   std::vector<std::string> names() const;
 
 private:

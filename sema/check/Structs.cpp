@@ -5,8 +5,8 @@
 
 namespace rtsl {
 
-/// Constants that need one another, and structs whose sizes do, are resolved on demand: so deep and
-/// no deeper.
+/// Constants that depend on one another, and structs whose sizes do, are resolved on demand, by
+/// recursion up to this depth.
 static constexpr unsigned maxDemandDepth = 200;
 
 //===----------------------------------------------------------------------===//
@@ -86,7 +86,7 @@ void Program::resolveFields(StructEntry &entry) {
     }
     if (declaration.init)
       diagnostics.report(Code::fieldInitializer, declaration.init->range, field.name)
-          .note("give the fields their values where the struct is made: `" +
+          .note("initialise the fields where the struct is constructed: `" +
                 entry.definition->name + "(...)`");
     if (auto [other, fresh] = seen.emplace(field.name, field.range); !fresh) {
       diagnostics.report(Code::redefinition, field.range, field.name)
@@ -95,7 +95,7 @@ void Program::resolveFields(StructEntry &entry) {
     }
     entry.definition->fields.push_back(std::move(field));
   }
-  // A mistake inside may have been a field.
+  // The error may be in what should have been a field.
   const auto isInside = [&](const Diagnostic &other) {
     const SourceRange whole = entry.declaration->range;
     return other.range.file == whole.file && other.range.begin >= whole.begin &&
@@ -144,7 +144,7 @@ void Program::checkConstant(GlobalConstant &entry) {
                              : checker.resolveType(declaration.type, &declaration.name);
   if (!declaration.isConst)
     diagnostics.report(Code::globalNotConst, variable.range, variable.name)
-        .note("what changes belongs into a class, where its owner is clear");
+        .note("a variable must be a member of a class, or local to a function");
   if (type->is(TypeKind::Void)) {
     diagnostics.report(Code::voidVariable, declaration.type.range, variable.name);
     return;

@@ -9,22 +9,23 @@
 
 namespace rtsl {
 
-/// How other shading languages spell something, and how RTSL does.
+/// A spelling of another shading language, and the one of RTSL.
 struct ForeignSpelling {
-  std::string replacement; // empty: there is no word for word replacement, only the advice
+  std::string replacement; // empty: no direct replacement, only the advice
   std::string advice;
-  /// It means the same, with the same arguments: `check --fix` may write it.
+  /// Same meaning and same arguments: `check --fix` may apply it.
   bool sure = false;
   std::string append = {}; // at the end of the call's arguments
-  std::string behind = {}; // behind the call
-  bool isVariable = false; // a call of it becomes a name
+  std::string behind = {}; // after the call
+  bool isVariable = false; // the call becomes a variable
 };
 /// Null if `name` is not known from HLSL, CUDA, OptiX, GLSL's rasteriser or the RenderMan language.
 const ForeignSpelling *foreignSpelling(const std::string &name);
 /// Every such name, sorted.
 std::vector<std::string> foreignNames();
-/// Adds the fix and the advice to a message about `name`, which calls something if `call` is valid.
-/// `whyNot`, if there is any, says why the replacement cannot stand there, and takes its place.
+/// Adds the fix and the advice to a message about `name`, which is called if `call` is valid.
+/// `whyNot`, if not empty, is the reason why the replacement is not allowed there; it is added
+/// instead.
 void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign,
                      const std::string &whyNot, SourceRange name, SourceRange call = {});
 

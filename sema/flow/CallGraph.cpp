@@ -1,9 +1,9 @@
-//===- CallGraph.cpp - what follows from who calls whom -------------------===//
+//===- CallGraph.cpp - recursion, and which function may do what ----------===//
 //
-// Functions must not call themselves, but on objects that members refer to: objects do not refer to
-// each other in a circle, so that ends, and the scene says how deep it goes. A function may trace
-// if something that it calls does, and a helper may use what the methods that lead to it may use.
-// All walks are loops: chains of calls may be long.
+// Functions must not call themselves, except through references in members: the objects that
+// members refer to form no cycle, so such a recursion ends, and the scene determines its depth. A
+// function may trace if one of its callees may, and a helper may use what the methods that reach it
+// may use. All traversals are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/check/Program.h"
@@ -15,14 +15,14 @@
 namespace rtsl {
 
 //===----------------------------------------------------------------------===//
-// Is a use allowed?
+// Checking a use
 //===----------------------------------------------------------------------===//
 
 static std::string inMethod(const MethodModel &method) {
   return "`" + method.name + "`";
 }
 
-/// Why a variable that the class sees has no value in this method, and what has one.
+/// Adds why a variable that the class sees has no value in this method, and which method sets it.
 static void explainNoValue(Diagnostic &diagnostic, typed::StateVariable variable,
                            const RootModel &root, const MethodModel &method) {
   using S = typed::StateVariable;
@@ -41,12 +41,12 @@ static void explainNoValue(Diagnostic &diagnostic, typed::StateVariable variable
     diagnostic.note(
         "`rt_PDF` is what `generateSample` and `samplePDF` write; no point has been sampled here");
   } else if (variable == S::SampleColor) {
-    diagnostic.note("no ray of the classic engine is under way here");
+    diagnostic.note("no ray of the classic engine exists here");
   } else {
     for (const MethodModel &other : root.methods)
       if (other.name != "generateSample" && other.writes.has(variable))
-        diagnostic.note("`" + other.name + "` writes it for the hit that won, later than `" +
-                        method.name + "`; a function that both call can compute it for both");
+        diagnostic.note("`" + other.name + "` writes it for the closest hit, after `" +
+                        method.name + "`; compute it in a function that both call");
   }
 }
 
@@ -105,23 +105,22 @@ static bool judgeSpecial(const Use &use, const RootModel &root, const MethodMode
   case Ability::WriteScratch: {
     if (root.name == "rt_Material") {
       Diagnostic &diagnostic = diagnostics.report(Code::attributeReadOnly, use.range, use.what);
-      diagnostic.note(
-          "a scratch member of a material shows what the primitive that was hit wrote to its own");
+      diagnostic.note("a scratch member of a material has the value that the hit primitive wrote");
       return finish(diagnostic);
     }
     Diagnostic &diagnostic = diagnostics.report(Code::scratchReadOnly, use.range, use.what);
-    diagnostic.note("a scratch value is what the `intersect` that found the hit left behind");
+    diagnostic.note("a scratch member has the value that `intersect` wrote when it found the hit");
     return finish(diagnostic);
   }
   case Ability::ReadScratch: {
     Diagnostic &diagnostic =
         diagnostics.report(Code::scratchWithoutValue, use.range, use.what, method.name);
-    diagnostic.note("scratch members have values from `intersect` on, for the hit that won");
+    diagnostic.note("scratch members have values from `intersect` on, for the closest hit");
     return finish(diagnostic);
   }
   case Ability::Trace: {
     Diagnostic &diagnostic = diagnostics.report(Code::misplacedTrace, use.range, inMethod(method));
-    diagnostic.note("`trace` may stand in " + methodsWith(Ability::Trace) +
+    diagnostic.note("`trace` is allowed only in " + methodsWith(Ability::Trace) +
                     ", and in functions that these call");
     return finish(diagnostic);
   }
@@ -140,7 +139,7 @@ static bool judgeSpecial(const Use &use, const RootModel &root, const MethodMode
   default: {
     Diagnostic &diagnostic =
         diagnostics.report(Code::misplacedCall, use.range, use.what, inMethod(method));
-    diagnostic.note("`" + use.what + "` may stand in " + methodsWith(use.ability));
+    diagnostic.note("`" + use.what + "` is allowed only in " + methodsWith(use.ability));
     return finish(diagnostic);
   }
   }
@@ -170,9 +169,9 @@ public:
 private:
   using Functions = std::vector<const typed::Function *>;
 
-  /// What a call may run, whatever the object.
+  /// All definitions that a call may run, for any object.
   Functions targets(const CallEdge &edge) const;
-  /// What a call runs when the object is of this class.
+  /// The definitions that a call runs for an object of this class.
   Functions targetsFor(const CallEdge &edge, const ClassScope &scope) const;
   struct Cycle {
     Functions path;
@@ -233,7 +232,7 @@ CallGraph::Functions CallGraph::targetsFor(const CallEdge &edge, const ClassScop
 }
 
 //===----------------------------------------------------------------------===//
-// Recursion, and who may trace
+// Recursion, and which functions may trace
 //===----------------------------------------------------------------------===//
 
 void CallGraph::reportCycle(const Cycle &cycle) {
@@ -249,12 +248,12 @@ void CallGraph::reportCycle(const Cycle &cycle) {
   for (std::size_t i = first + 1; i < path.size() && i - first <= 8; ++i)
     diagnostic.label(calls[i], "`" + path[i - 1]->name + "` calls `" + path[i]->name + "` here");
   diagnostic.note(chain);
-  diagnostic.note("only `trace` recurses, and functions on objects that members refer to: "
+  diagnostic.note("only `trace` and calls through members may be recursive: "
                   "`member.function()`");
 }
 
-/// Depth first over all functions and the calls that are asked for. Callees are finished before
-/// their callers, so that `mayTrace` is known, but for functions in a cycle.
+/// Depth first over all functions and the calls for which `isFollowed` holds. Callees are finished
+/// before their callers, so that `mayTrace` is known, except for functions in a cycle.
 void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
   enum class Mark : std::uint8_t { Open, Done };
   std::unordered_map<const typed::Function *, Mark> marks;
@@ -311,7 +310,7 @@ void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
       walk(function.get());
 }
 
-/// What a function of a cycle does, each of them may.
+/// If one function of a cycle may trace, all of them may.
 void CallGraph::spreadTracing() {
   std::unordered_map<const typed::Function *, std::vector<typed::Function *>> callers;
   Functions tracing;
@@ -333,7 +332,7 @@ void CallGraph::spreadTracing() {
   }
 }
 
-/// Functions that may call one another round about have the same number.
+/// Functions in the same cycle of calls have the same number.
 std::unordered_map<const typed::Function *, unsigned> CallGraph::findCycles() const {
   // Tarjan (1972), with a stack of its own.
   struct Node {
@@ -394,7 +393,7 @@ std::unordered_map<const typed::Function *, unsigned> CallGraph::findCycles() co
 }
 
 void CallGraph::refuseRecursion() {
-  // Without what members refer to, no cycle is allowed.
+  // Without calls through members, no cycle is allowed.
   std::vector<Cycle> endless, cycles;
   walkCalls([](const CallEdge &edge) { return !edge.throughMember; }, endless);
   walkCalls([](const CallEdge &) { return true; }, cycles);
@@ -405,7 +404,8 @@ void CallGraph::refuseRecursion() {
   spreadTracing();
   if (!endless.empty())
     return;
-  // Nor may another reference than a member be a part of one: it may lead back up.
+  // References other than members may not be part of a cycle either: they may lead back to the same
+  // object.
   const auto numbers = findCycles();
   const auto judge = [&](const typed::Function *function) {
     for (const CallEdge &edge : factsOf(function).calls)
@@ -413,8 +413,8 @@ void CallGraph::refuseRecursion() {
         for (const typed::Function *target : targets(edge))
           if (numbers.at(target) == numbers.at(function)) {
             program.diagnostics.report(Code::recursion, edge.range, target->name)
-                .note("through others, and the object may be one on which it is running: only a "
-                      "member leads on to others, `member.function()`");
+                .note("the reference may lead back to the same object: only calls through members "
+                      "may be recursive, `member.function()`");
             break;
           }
   };
@@ -429,8 +429,8 @@ void CallGraph::refuseRecursion() {
 // Helpers
 //===----------------------------------------------------------------------===//
 
-/// Judges what is used in the functions that a method of the table leads to, on an object of the
-/// class `scope`.
+/// Checks the uses in all functions that are reached from an engine method, for an object of class
+/// `scope`.
 void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope,
                           const MethodModel &rules) {
   std::unordered_set<const typed::Function *> seen = {&method};
@@ -447,7 +447,7 @@ void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope
     if (step.function != &method) {
       reached.insert(step.function);
       for (const Use &use : facts.uses) {
-        // The members of another object are that object's affair.
+        // Member accesses in methods of another object are checked for that object.
         const bool ofObject = use.kind == Use::Kind::Special && use.member && step.onOtherObject;
         const bool writes =
             use.ability == Ability::WriteMembers || use.ability == Ability::WriteScratch;
@@ -465,8 +465,8 @@ void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope
   }
 }
 
-/// A function that nothing calls, of the shape of a method and nearly of its name, is one that the
-/// engine was to call.
+/// Warns of a function that is never called and whose name and signature resemble those of an
+/// engine method: it was probably meant to be one.
 void CallGraph::warnOfMistypedMethod(const typed::Function &function, const RootModel &root) {
   std::vector<std::string> names = {constructorModel().name};
   for (const MethodModel &method : root.methods)
@@ -488,8 +488,7 @@ void CallGraph::judgeHelpers() {
   for (const ClassScope *scope : baseFirst) {
     if (!scope->root)
       continue;
-    // Inherited methods lead elsewhere only if this class overrides one of the functions on the
-    // way.
+    // Inherited methods reach other functions only if this class overrides one that they call.
     const bool withInherited = overridesHelper.count(scope) != 0;
     for (const ClassScope *at = scope; at; at = withInherited ? at->base : nullptr)
       for (const std::unique_ptr<typed::Function> &function : at->definition->functions) {
@@ -506,7 +505,7 @@ void CallGraph::judgeHelpers() {
     for (const CallEdge &edge : facts.calls)
       for (const typed::Function *target : targets(edge))
         called.insert(target);
-  // What no method leads to yet may at least do what some method of its class may.
+  // A function that no method reaches yet may do what any method of its class may do.
   for (const ClassScope *scope : baseFirst) {
     if (!scope->root || scope->root == &helperModel())
       continue;

@@ -1,9 +1,9 @@
 //===- FlowCheck.cpp - control flow of a checked body ---------------------===//
 //
 // One walk in the order of execution. For every variable that was declared without a value it keeps
-// whether on some way to this point it was not written yet, and whether on some way it was. Where
-// ways meet, both facts are joined; at the head of a loop everything that the loop writes may have
-// been written, for the walk does not come back.
+// whether it is unwritten on some path to this point, and whether it is written on some path. Where
+// paths merge, both facts are joined; at the head of a loop everything that the loop writes may
+// have been written, because the walk visits the body only once.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/check/Program.h"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint8_t unwritten = 1, written = 2;
 
-/// What holds at a point of the program.
+/// The facts at a point of the program.
 struct State {
   std::vector<std::uint8_t> variables;
   bool reachable = false;
@@ -45,7 +45,7 @@ public:
   void run();
 
 private:
-  /// Where `break` and `continue` lead to.
+  /// The states at `break` and `continue`.
   struct Jumps {
     State breaks, continues;
     bool isLoop = true;
@@ -92,7 +92,7 @@ bool isAlwaysTrue(const Expr *condition) {
 // Variables
 //===----------------------------------------------------------------------===//
 
-/// What a loop may write is not known to be unwritten at its head.
+/// Variables that a loop may write are not known to be unwritten at its head.
 void FlowCheck::assumeWritten(const Stmt *body, const Expr *condition, const Expr *step) {
   std::set<const Variable *> assigned = assignedVariables(*body);
   for (const Expr *expr : {condition, step})
@@ -114,7 +114,7 @@ void FlowCheck::read(const Variable &variable, SourceRange range) {
   if (found == tracked.end() || !state.reachable)
     return;
   const std::uint8_t flags = state.variables[found->second];
-  // What is filled in a loop, element by element: nothing here shows that the loop runs.
+  // An array that is filled in a loop, element by element: it is unknown whether the loop runs.
   const bool isFilled = variable.type->is(TypeKind::Array) || filledByIndex.count(&variable);
   if ((flags & written) && isFilled)
     return;
@@ -134,8 +134,8 @@ void FlowCheck::write(const Variable &variable) {
 // Expressions
 //===----------------------------------------------------------------------===//
 
-/// Writing a part of a variable counts as writing it: who fills an array in a loop is not to be
-/// warned.
+/// Writing a part of a variable counts as writing it: filling an array in a loop must not cause a
+/// warning.
 void FlowCheck::visitTarget(const Expr &target, bool reads) {
   const Expr *at = &target;
   bool isIndexed = false; // by an index that is not constant
@@ -225,8 +225,8 @@ void FlowCheck::visit(const Expr &expr) {
       visit(*arg);
     return;
   case ExprKind::Builtin: {
-    // What a payload holds before the ray is traced is the author's choice: it is not taken for a
-    // read.
+    // The author may leave a payload uninitialised before the ray is traced: passing it is not
+    // counted as a read.
     const auto &call = cast<BuiltinExpr>(expr);
     for (std::size_t i = 0; i != call.args.size(); ++i)
       visitArgument(*call.args[i],
@@ -257,9 +257,9 @@ void FlowCheck::visit(const Expr &expr) {
 //===----------------------------------------------------------------------===//
 
 void FlowCheck::visitList(const std::vector<StmtPtr> &body) {
-  bool quiet = !state.reachable; // said already, further out
+  bool quiet = !state.reachable; // already reported for an enclosing statement
   for (const StmtPtr &stmt : body) {
-    // A `break` behind a `return` is a habit that harms nobody.
+    // A `break` after a `return` is a harmless habit.
     if (!state.reachable && !quiet && stmt->kind != ast::StmtKind::Break) {
       diagnostics.report(Code::unreachable, stmt->range);
       quiet = true;
@@ -268,7 +268,7 @@ void FlowCheck::visitList(const std::vector<StmtPtr> &body) {
   }
 }
 
-/// `for`, `while` and, with the condition behind the body, `do`.
+/// `for`, `while` and, with the condition after the body, `do`.
 void FlowCheck::visitLoop(const Stmt *body, const Expr *condition, const Expr *step,
                           bool conditionFirst) {
   assumeWritten(body, condition, step);
@@ -336,7 +336,7 @@ void FlowCheck::visit(const Stmt &stmt) {
     for (const Variable *variable : cast<DeclarationStmt>(stmt).variables) {
       if (variable->init)
         visit(*variable->init);
-      else // in every turn of a loop anew
+      else // reset in each iteration of a loop
         state.variables[tracked.at(variable)] = unwritten;
     }
     return;

@@ -1,7 +1,8 @@
-//===- PerformanceCheck.cpp - what costs on a GPU: -Wperf -----------------===//
+//===- PerformanceCheck.cpp - what is slow on a GPU: -Wperf ---------------===//
 //
-// What shows in the source: arrays that cannot live in registers, and recursion that a loop would
-// replace. How much is saved over a `trace` shows only after splitting; codegen/driver says that.
+// What is visible in the source: arrays that cannot be in registers, and recursion that a loop
+// could replace. The size of the live state across a `trace` is known only after splitting;
+// codegen/driver reports it.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/check/Program.h"
@@ -22,8 +23,8 @@ namespace {
 // Arrays that are indexed dynamically
 //===----------------------------------------------------------------------===//
 
-/// A `for` with constant bounds and at most this many turns is taken to be unrolled, so that its
-/// variable is a constant in each turn.
+/// A `for` with constant bounds and at most this many iterations is assumed to be unrolled, so that
+/// its variable is a constant in each iteration.
 constexpr unsigned maxUnrolledTurns = 16;
 
 bool compare(ast::BinaryOp op, std::int64_t left, std::int64_t right) {
@@ -43,7 +44,7 @@ bool compare(ast::BinaryOp op, std::int64_t left, std::int64_t right) {
   }
 }
 
-/// By how much the step of a loop changes its variable; 0 if that is not known.
+/// The amount by which the step of a loop changes its variable; 0 if not known.
 std::int64_t stepOf(const Expr &step, const Variable &variable) {
   const auto isVariable = [&](const Expr &expr) {
     const auto *name = dynCast<VariableExpr>(&expr);
@@ -58,7 +59,7 @@ std::int64_t stepOf(const Expr &step, const Variable &variable) {
   return assign->op == ast::BinaryOp::Add ? change : assign->op == ast::BinaryOp::Sub ? -change : 0;
 }
 
-/// The variable of a loop that has constant bounds and few turns; null if it is no such loop.
+/// The variable of a loop with constant bounds and few iterations; null for other loops.
 const Variable *unrolledVariable(const ForStmt &loop) {
   const auto *declaration = dynCast<DeclarationStmt>(loop.init.get());
   const auto *condition = dynCast<BinaryExpr>(loop.condition.get());
@@ -79,8 +80,8 @@ const Variable *unrolledVariable(const ForStmt &loop) {
   return nullptr;
 }
 
-/// Warns of the first dynamic index into each array of a function's own. One that nobody writes and
-/// whose value is constant is a table in memory anyway.
+/// Warns of the first dynamic index into each local array. A constant array is a table in memory
+/// anyway.
 class ArrayCheck {
 public:
   ArrayCheck(const Function &function, Diagnostics &diagnostics)
@@ -131,7 +132,7 @@ private:
 };
 
 //===----------------------------------------------------------------------===//
-// Recursion that a loop would replace
+// Recursion that a loop could replace
 //===----------------------------------------------------------------------===//
 
 bool isTrace(const Expr &expr) {
@@ -149,8 +150,8 @@ std::size_t countTraces(const Expr &expr) {
   return count;
 }
 
-/// Finds the traces with which a method ends: nothing follows but sums and products, which a loop
-/// keeps as a sum and a product so far.
+/// Finds the tail traces of a method: only sums and products follow them, which a loop can
+/// accumulate.
 class TailTraceCheck {
 public:
   TailTraceCheck(const Function &function, Diagnostics &diagnostics)
@@ -166,11 +167,11 @@ public:
       return;
     for (const Expr *trace : tails)
       diagnostics.report(Code::tailTrace, trace->range, function.name)
-          .note("let `generate` trace in a loop, with the product so far in its payload");
+          .note("trace in a loop in `generate`, and keep the accumulated product in the payload");
   }
 
 private:
-  /// `isLast`: the method ends behind this statement.
+  /// `isLast`: the method ends after this statement.
   void visit(const Stmt &stmt, bool isLast) {
     if (const auto *block = dynCast<CompoundStmt>(&stmt)) {
       for (std::size_t i = 0; i < block->body.size(); ++i) {
@@ -190,7 +191,8 @@ private:
   }
 
   void visitLast(const Expr &expr) {
-    if (const auto *builtin = dynCast<BuiltinExpr>(&expr)) { // with the payload that came in
+    if (const auto *builtin =
+            dynCast<BuiltinExpr>(&expr)) { // with the payload parameter of the method
       const auto *payload = builtin->builtin == Builtin::TracePayload
                                 ? dynCast<VariableExpr>(builtin->args[4].get())
                                 : nullptr;
@@ -210,7 +212,7 @@ private:
         tails.push_back(trace);
   }
 
-  /// The only trace in an expression, if its value is but added to and multiplied; otherwise null.
+  /// The only trace in an expression, if its value is only added to and multiplied; otherwise null.
   const Expr *linearTrace(const Expr &expr) const {
     if (isTrace(expr))
       return expr.kind == ExprKind::Builtin ? &expr : nullptr;
@@ -242,7 +244,7 @@ private:
 void checkPerformance(const Function &function, Diagnostics &diagnostics) {
   if (diagnostics.warnings.isOn(Code::dynamicArrayIndex))
     ArrayCheck(function, diagnostics).run();
-  // `generate` is where the loop would stand.
+  // `generate` is where the loop would be.
   const bool mayRecurse = function.isStateMethod && function.name != "generate";
   if (mayRecurse && diagnostics.warnings.isOn(Code::tailTrace))
     TailTraceCheck(function, diagnostics).run();

@@ -16,8 +16,7 @@ using typed::Builtin;
 using typed::Constant;
 using Scalar = Constant::Scalar;
 
-// The same choice between operands as at run time: a NaN is passed over only where the comparison
-// says so.
+// The same choice between operands as at run time: a NaN loses only if the comparison makes it so.
 static float minimum(float x, float y) {
   return y < x ? y : x;
 }
@@ -161,7 +160,7 @@ static std::optional<Scalar> foldInteger(Builtin builtin, bool isSigned, const S
   }
 }
 
-/// By squaring, from the lowest bit of the exponent on; the reciprocal at the end.
+/// By squaring, from the lowest bit of the exponent; the reciprocal is taken at the end.
 static float foldIntegerPower(float x, std::int32_t exponent) {
   float result = 1.0f, base = x;
   for (std::uint32_t rest = exponent < 0 ? 0u - static_cast<std::uint32_t>(exponent)
@@ -182,7 +181,7 @@ static std::optional<Scalar> foldComponent(Builtin builtin, TypeKind kind, const
   case Builtin::IsInf:
     return makeBool(std::isinf(v[0].f));
   case Builtin::FloatBitsToInt:
-  case Builtin::FloatBitsToUint: // there is one NaN to see
+  case Builtin::FloatBitsToUint: // all NaNs have the same bits
     return std::isnan(v[0].f) ? makeUInt(0x7fc00000u) : v[0];
   case Builtin::IntBitsToFloat:
   case Builtin::UintBitsToFloat:
@@ -247,11 +246,11 @@ static float differenceOfProducts(float a, float b, float c, float d) {
   return std::fma(a, b, -product) + error;
 }
 
-/// Geometric functions, where no scaling against overflow is called for.
+/// Geometric functions, where no scaling against overflow is required.
 static std::optional<Constant> foldGeometric(Builtin builtin, const std::vector<Constant> &args) {
   const std::vector<Scalar> &a = args[0].scalars;
   const std::vector<Scalar> &b = args[args.size() > 1 ? 1 : 0].scalars;
-  // The sum of squares neither overflows nor loses digits that count.
+  // The sum of squares neither overflows nor loses significant digits.
   auto isGoodSquare = [](float square) {
     return square >= 0x1p-96f && square <= std::numeric_limits<float>::max();
   };
@@ -364,8 +363,8 @@ std::optional<Constant> evaluateBuiltin(const typed::BuiltinExpr &call,
       return geometric;
   if (args.empty() || args.size() > 3 || call.type->isMatrix() || !call.type->scalar())
     return std::nullopt;
-  // The arguments beside `mix`'s selector have one scalar type; scalars beside vectors count for
-  // all components.
+  // The arguments of `mix`, except its selector, have one scalar type; scalars beside vectors are
+  // broadcast.
   const TypeKind kind = call.args[0]->type->scalar()->kind;
   Constant result;
   for (std::uint32_t i = 0; i != call.type->componentCount(); ++i) {

@@ -13,7 +13,7 @@ using typed::Constant;
 using Scalar = Constant::Scalar;
 using ast::BinaryOp;
 
-/// Larger values than this are not folded: a table of a million entries belongs into a buffer.
+/// Larger values than this are not folded: a table of a million entries should be a buffer.
 static constexpr std::uint64_t maxFoldedScalars = 1u << 16;
 
 //===----------------------------------------------------------------------===//
@@ -179,8 +179,8 @@ static bool equalValues(const Type *type, const Scalar *a, const Scalar *b) {
 /// The products of linear algebra; sums run from the first term to the last.
 static Constant foldMatrixProduct(const Type *leftType, const Constant &left, const Type *rightType,
                                   const Constant &right) {
-  // A row vector on the left has one row; a column vector on the right has one column. Values lie
-  // by column.
+  // A row vector on the left has one row; a column vector on the right has one column. Values are
+  // stored by column.
   const std::uint32_t rows = leftType->isMatrix() ? leftType->rows() : 1;
   const std::uint32_t inner = leftType->isMatrix() ? leftType->columns() : leftType->count;
   const std::uint32_t columns = rightType->isMatrix() ? rightType->columns() : 1;
@@ -200,9 +200,9 @@ static bool isLinearAlgebra(BinaryOp op, const Type *left, const Type *right) {
                                  (left->isVector() && right->isMatrix()));
 }
 
-/// Colors fold only where the result does not depend on how many components the target gives them,
-/// to the last bit: grey with grey or with a number. The components of another color are rounded
-/// after the conversion.
+/// Colors are folded only if the result does not depend, to the last bit, on the number of
+/// components of the target: grey with grey or with a number. The components of other colors are
+/// rounded after the conversion.
 static std::optional<Constant> foldColor(BinaryOp op, const Constant &left, const Constant &right) {
   if (left.scalars.size() != 1 || right.scalars.size() != 1)
     return std::nullopt;
@@ -251,7 +251,7 @@ static std::optional<Constant> foldConstruct(const Type *type, const typed::Cons
     result.scalars.insert(result.scalars.end(), arg.scalars.begin(), arg.scalars.end());
   if (type->isVector() && result.scalars.size() == 1)
     result.scalars.assign(type->count, result.scalars[0]);
-  else if (type->componentCount() != 0) // the last piece may have more than is needed
+  else if (type->componentCount() != 0) // the last piece may have more components than needed
     result.scalars.resize(type->componentCount());
   return result;
 }
@@ -304,7 +304,7 @@ private:
   }
 
   const typed::Expr **obstacle;
-  const Parts *parts; // what is known already; null: nothing
+  const Parts *parts; // values that are known already; null: none
 };
 
 } // namespace
@@ -330,7 +330,7 @@ std::optional<Constant> Evaluator::evaluateIndex(const typed::IndexExpr &expr) {
   const Type *type = expr.base->type;
   if (type->count == 0 || type->is(TypeKind::Buffer))
     return notConstant(expr);
-  // An index out of range is clamped, as it is when the program runs.
+  // An index out of range is clamped, as at run time.
   std::int64_t at =
       expr.index->type->is(TypeKind::Int) ? index->scalars[0].i : std::int64_t(index->scalars[0].u);
   at = std::max<std::int64_t>(0, std::min<std::int64_t>(at, std::int64_t(type->count) - 1));
@@ -387,7 +387,7 @@ std::optional<Constant> Evaluator::evaluate(const typed::Expr &expr) {
     std::optional<Constant> operand = evaluate(*unary.operand);
     if (!operand)
       return std::nullopt;
-    if (expr.type->is(TypeKind::Color) && operand->scalars.size() != 1) // as foldColor says
+    if (expr.type->is(TypeKind::Color) && operand->scalars.size() != 1) // see foldColor
       return std::nullopt;
     return foldUnary(unary.op, expr.type, *operand);
   }
@@ -422,7 +422,7 @@ std::optional<Constant> Evaluator::evaluate(const typed::Expr &expr) {
   }
   case typed::ExprKind::Construct: {
     const auto &construct = cast<typed::ConstructExpr>(expr);
-    // A color inside of an aggregate has no fixed number of scalars.
+    // A color inside an aggregate has no fixed number of scalars.
     const bool isAggregate = expr.type->is(TypeKind::Array) || expr.type->is(TypeKind::Struct);
     if (isAggregate &&
         (contains(expr.type, TypeKind::Color) || scalarCount(expr.type) > maxFoldedScalars))

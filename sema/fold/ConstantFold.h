@@ -1,8 +1,8 @@
 //===- ConstantFold.h - the value of a constant expression ----------------===//
 //
-// Folding follows the rules of docs/language.md to the bit: single precision, integers that wrap,
+// Folding follows the rules of docs/language.md bit for bit: single precision, integers that wrap,
 // division by zero that gives zero, minima that prefer their first operand. What a target may
-// compute differently from the machine that compiles is not folded here.
+// compute differently from the host is not folded here.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -15,29 +15,29 @@
 
 namespace rtsl {
 
-/// The value of `expr` if it is a constant expression. Otherwise none, and `obstacle` (if asked
-/// for) is the innermost part that is not constant.
+/// The value of `expr` if it is a constant expression. Otherwise none, and `obstacle` (if not null)
+/// is set to the innermost part that is not constant.
 std::optional<typed::Constant> evaluate(const typed::Expr &expr,
                                         const typed::Expr **obstacle = nullptr);
 
-/// The value of `expr` if it follows from those of some of its parts.
+/// The value of `expr` if it follows from the known values of some of its parts.
 std::optional<typed::Constant>
 evaluate(const typed::Expr &expr, const std::map<const typed::Expr *, typed::Constant> &parts);
 
-/// Is `expr` constant, whether or not its value is known here? What a color is, and a few
-/// functions, only the code generator knows. If not, `obstacle` is the innermost part that is not
-/// constant.
+/// Is `expr` constant, whether or not its value is known here? The values of colors and of a few
+/// functions are known only to the code generator. If not, `obstacle` is set to the innermost part
+/// that is not constant.
 bool isConstantExpression(const typed::Expr &expr, const typed::Expr **obstacle);
 
 /// The value of a constant int or uint expression.
 std::optional<std::int64_t> evaluateInteger(const typed::Expr &expr,
                                             const typed::Expr **obstacle = nullptr);
 
-/// A built-in function of constant arguments; none if it is not folded.
+/// The value of a built-in function with constant arguments; none if it is not folded.
 std::optional<typed::Constant> evaluateBuiltin(const typed::BuiltinExpr &call,
                                                const std::vector<typed::Constant> &args);
 
-/// A scalar's change of type: float to integer truncates and saturates, NaN gives 0.
+/// Conversion of a scalar: float to integer truncates and saturates, NaN gives 0.
 typed::Constant::Scalar convertScalar(typed::Constant::Scalar value, TypeKind from, TypeKind to);
 
 inline typed::Constant::Scalar makeFloat(float value) {

@@ -11,7 +11,7 @@ namespace rtsl {
 using typed::Builtin;
 
 namespace {
-/// An operation and one of its signatures, as Builtins.def has it.
+/// A built-in function and one of its signatures, as in Builtins.def.
 struct Row {
   Builtin builtin;
   const char *signature;
@@ -38,7 +38,7 @@ bool isOutArgument(Builtin builtin, std::size_t index) {
   if (typed::info(builtin).effect != typed::BuiltinEffect::Outputs)
     return false;
   for (const Row &row : allRows())
-    if (row.builtin == builtin) { // "F F >F": the result, and a letter a parameter
+    if (row.builtin == builtin) { // "F F >F": the result, then one letter per parameter
       const std::string_view signature = row.signature;
       for (std::size_t at = signature.find(' '); at != signature.npos;
            at = signature.find(' ', at + 1))
@@ -53,7 +53,7 @@ bool isOutArgument(Builtin builtin, std::size_t index) {
 // Expansion
 //===----------------------------------------------------------------------===//
 
-/// Components (of generic letters), columns and rows for which a row is written out.
+/// Components (of generic letters), columns and rows for which a row is expanded.
 struct Shape {
   std::uint32_t components = 1, columns = 2, rows = 2;
 };
@@ -124,7 +124,7 @@ static Signature expand(const std::string &row, Shape shape, TypeContext &types)
   return signature;
 }
 
-/// The shapes for which the letters of a row stand.
+/// The shapes to which the letters of a row expand.
 static std::vector<Shape> shapesOf(const std::string &row) {
   auto hasOneOf = [&](const char *letters) {
     return row.find_first_of(letters) != std::string::npos;
@@ -163,7 +163,7 @@ const BuiltinOverloads *BuiltinTable::find(const std::string &name) {
       continue;
     for (Shape shape : shapesOf(row.signature)) {
       Signature signature = expand(row.signature, shape, types);
-      // `min(F, f)` is `min(F, F)` again when F is float.
+      // `min(F, f)` equals `min(F, F)` if F is float.
       const bool known =
           std::any_of(overloads.signatures.begin(), overloads.signatures.end(),
                       [&](const Signature &other) { return sameParameters(signature, other); });

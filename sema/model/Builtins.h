@@ -15,8 +15,8 @@ struct BuiltinOverloads {
   std::vector<typed::Builtin> builtins; // of each signature
 };
 
-/// Expands signatures by name when they are first asked for, so that a file pays only for what it
-/// uses.
+/// Expands the signatures of a name when it is first looked up, so that a file pays only for what
+/// it uses.
 class BuiltinTable {
 public:
   explicit BuiltinTable(TypeContext &types) : types(types) {}
@@ -32,7 +32,7 @@ private:
 /// All names, for suggestions.
 const std::vector<std::string> &builtinNames();
 
-/// Those that take a color.
+/// The functions that take a color.
 std::vector<std::string> colorFunctionNames();
 
 } // namespace rtsl

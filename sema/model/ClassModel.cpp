@@ -13,10 +13,10 @@ using Payload = MethodModel::Payload;
 // The table
 //===----------------------------------------------------------------------===//
 
-// What every method that runs for a ray sees, whatever its class.
+// What every method that runs for a ray sees, in any class.
 static constexpr StateSet everyRay = {S::LaunchIndex, S::LaunchSize, S::Time, S::Depth,
                                       S::TimeSeed};
-// Where the thing that is hit stands.
+// The transforms and ids of the object that is hit.
 static constexpr StateSet placement = {S::ObjectToWorld, S::WorldToObject, S::PrimitiveIndex,
                                        S::InstanceIndex};
 static constexpr StateSet ray = {S::RayOrigin, S::RayDirection, S::InverseRayDirection, S::Epsilon,
@@ -38,7 +38,7 @@ static RootModel cameraModel() {
 
 static RootModel primitiveModel() {
   const StateSet bounds = {S::BoundMin, S::BoundMax};
-  // Each method knows what the ones before it have found out.
+  // Each method sees the results of the previous ones.
   const StateSet candidate = everyRay | placement | ray | bounds;
   const StateSet withNormals = candidate | StateSet{S::HitPoint} | normals;
   const StateSet withCoordinates = withNormals | textureCoordinates;
@@ -128,7 +128,7 @@ static RootModel rayGenerationModel() {
 static RootModel missModel() {
   const StateSet rayOnly =
       everyRay | StateSet{S::RayOrigin, S::RayDirection, S::InverseRayDirection};
-  // Textures are looked up where `miss` says: no surface does.
+  // Texture coordinates are set by `miss`: there is no surface.
   const StateSet withPayload = rayOnly | textureCoordinates;
   const StateSet classic = withPayload | StateSet{S::SampleColor};
   const AbilitySet abilities = {A::Trace, A::Lookup, A::Random};
@@ -171,7 +171,7 @@ const MethodModel &constructorModel() {
 }
 
 //===----------------------------------------------------------------------===//
-// Questions to the table
+// Queries
 //===----------------------------------------------------------------------===//
 
 const RootModel *rootModel(const std::string &name) {
@@ -228,7 +228,7 @@ MethodModel unionOfMethods(const RootModel &root) {
 }
 
 std::string withArticle(const std::string &noun) {
-  // "rt_" is read letter by letter: an are-tee.
+  // "rt_" is pronounced letter by letter: "are-tee".
   const bool vowel =
       noun.compare(0, 3, "rt_") == 0 ||
       (!noun.empty() && std::string("aeiouAEIOU").find(noun[0]) != std::string::npos);

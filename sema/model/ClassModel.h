@@ -1,8 +1,8 @@
 //===- ClassModel.h - who may define, read, write and call what -----------===//
 //
-// The one table of the rt_ base classes: which methods each has, which state variables it sees,
-// what each method writes and which special functions may stand where. Everything that sema says
-// about classes comes from here.
+// The one table of the rt_ base classes: the methods of each, the state variables that it sees,
+// what each method writes and which special functions it allows. All rules of sema about classes
+// come from here.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -36,7 +36,7 @@ private:
   std::uint64_t bits = 0;
 };
 
-/// What may stand in some methods only, beside reading and writing state.
+/// Uses that only some methods allow, beside reading and writing state.
 enum class Ability : std::uint8_t {
   Trace,       // trace(...)
   Illuminance, // the illuminance statement, illuminate(...), lightCount() and ambient()
@@ -72,7 +72,7 @@ private:
   std::uint16_t bits = 0;
 };
 
-/// What a method must be able to do for a built-in function of this name to stand in it.
+/// The ability that a method must have to use the built-in function of this name.
 std::optional<Ability> abilityNeeded(const std::string &builtin);
 
 /// A method that the engine calls.
@@ -91,13 +91,13 @@ struct MethodModel {
 /// An rt_ base class.
 struct RootModel {
   std::string name; // "rt_Primitive"
-  StateSet sees;    // by some method
+  StateSet sees;    // of all its methods
   std::vector<MethodModel> methods;
   bool hasScratch = false;
 
   const MethodModel *method(const std::string &methodName) const;
-  /// The method whose rules hold for a function of that shape: `miss()` and `miss(inout P)` differ
-  /// in what they write.
+  /// The method whose rules apply to a function with that signature: `miss()` and `miss(inout P)`
+  /// differ in what they write.
   const MethodModel *method(const std::string &methodName, bool withPayload) const;
 };
 
@@ -105,13 +105,13 @@ const std::vector<RootModel> &rootModels();
 /// Null if there is no such base class.
 const RootModel *rootModel(const std::string &name);
 
-/// Of a class that derives from no rt_ class: its functions do what those that call them may.
+/// For a class that derives from no rt_ class: its functions may do what their callers may.
 const RootModel &helperModel();
 
 /// The rules of `constructor`, the same for every class.
 const MethodModel &constructorModel();
 
-/// What a function that no method calls may use at most: all that some method of its class may.
+/// The most that a function that no method calls may do: what any method of its class may.
 MethodModel unionOfMethods(const RootModel &root);
 
 /// "rt_Light", "rt_Camera and rt_Primitive": the classes that see a variable.

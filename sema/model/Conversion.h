@@ -6,12 +6,12 @@
 
 namespace rtsl {
 
-/// How a value of one type becomes one of another without being asked: int -> uint -> float for
-/// scalars and vectors, and a reference to one of a base class.
+/// Implicit conversions: int -> uint -> float for scalars and vectors, and a reference to one of a
+/// base class.
 enum class Conversion : std::uint8_t { None, Exact, Implicit };
 Conversion implicitConversion(const Type *from, const Type *to);
 
-/// A new node with type and place.
+/// A new node with its type and range.
 template <typename T>
 std::unique_ptr<T> makeExpr(const Type *type, SourceRange range) {
   auto expr = std::make_unique<T>();
@@ -26,7 +26,7 @@ typed::ExprPtr convertTo(typed::ExprPtr expr, const Type *to, bool isImplicit = 
 /// The type with the shape of `shape` (scalar, vector or matrix) and the scalar type of `scalar`.
 const Type *withScalar(const Type *shape, const Type *scalar, TypeContext &types);
 
-/// The scalar type to which two numeric scalar types are brought: float before uint before int.
+/// The common type of two numeric scalar types: float before uint before int.
 const Type *widerScalar(const Type *a, const Type *b);
 
 } // namespace rtsl

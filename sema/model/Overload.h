@@ -8,7 +8,7 @@
 
 namespace rtsl {
 
-/// What overload resolution needs to know of a function.
+/// The properties of a function that overload resolution uses.
 struct Signature {
   struct Parameter {
     const Type *type = nullptr;

@@ -1,4 +1,4 @@
-//===- Analysis.cpp - facts about typed trees -----------------------------===//
+//===- Analysis.cpp - queries on typed trees ------------------------------===//
 #include "sema/typed/Analysis.h"
 
 #include "sema/typed/Casting.h"
@@ -11,7 +11,7 @@ namespace rtsl::typed {
 using ast::StmtKind;
 
 //===----------------------------------------------------------------------===//
-// Questions
+// Queries
 //===----------------------------------------------------------------------===//
 
 std::pair<std::size_t, std::size_t> outputsOf(Builtin builtin) {
@@ -184,7 +184,7 @@ bool isHitAnswer(const Expr &expr) {
                      builtin->builtin == Builtin::TerminateRay);
 }
 
-/// Does some expression of a function of the module fulfil it? It takes both.
+/// Does any expression of a function of the module satisfy `condition`?
 template <typename Condition>
 static bool someExpression(const Module &module, const Condition &condition) {
   bool found = false;
@@ -243,7 +243,7 @@ bool HitAnswers::mayAnswer(const Function &function, const Class *concrete) {
   known[key] = found;
   if (!found && !open.empty())
     uncertain.push_back(key);
-  if (open.empty()) { // within a cycle, nothing was known yet of what closes it
+  if (open.empty()) { // within a cycle, negative results were preliminary
     if (comesRound)
       for (const Key &other : uncertain)
         known.erase(other);
@@ -261,7 +261,7 @@ bool HitAnswers::mayAnswerOf(const Function &function) {
          });
 }
 
-// Brackets have no place in a symbol: `float[4]` becomes `float_4`.
+// Brackets are not allowed in a symbol: `float[4]` becomes `float_4`.
 std::string parameterWords(const Function &function) {
   std::string words;
   for (const auto &parameter : function.parameters) {
@@ -276,7 +276,7 @@ std::string parameterWords(const Function &function) {
 }
 
 std::string slotName(const Module &module, const Function &method) {
-  if (takesPayload(method)) // beside others for other payloads, in this class or the next
+  if (takesPayload(method)) // there may be others for other payloads, in this class or another
     return method.name + parameterWords(method);
   for (const auto &definition : module.classes)
     for (const auto &other : definition->functions)

@@ -1,4 +1,4 @@
-//===- Analysis.h - facts about typed trees -------------------------------===//
+//===- Analysis.h - queries on typed trees --------------------------------===//
 #pragma once
 
 #include "sema/typed/Walk.h"
@@ -10,46 +10,46 @@
 
 namespace rtsl::typed {
 
-/// The arguments that a built-in function writes: the first of them, and how many; none: 0, 0.
+/// The arguments that a built-in function writes: the index of the first, and their number; none:
+/// 0, 0.
 std::pair<std::size_t, std::size_t> outputsOf(Builtin builtin);
 
 /// Is it a variable or a parameter of the function?
 bool isLocal(const Expr &expr);
 
-/// The place that a field or an element is part of.
+/// The lvalue that a field or an element is part of.
 const Expr &rootOf(const Expr &expr);
 
-/// What a place is part of: as above, and through components too.
+/// The lvalue that `place` is part of: as above, and also through components.
 const Expr &wholeOf(const Expr &place);
 
-/// May evaluation change something, or end in another way than with a value?
+/// May evaluation have a side effect, or end without a value?
 bool hasSideEffects(const Expr &expr);
 
-/// Nothing changes, and it costs less than a branch: then `&&`, `||` and `?:` evaluate it in any
-/// case.
+/// No side effects, and cheaper than a branch: then `&&`, `||` and `?:` evaluate it
+/// unconditionally.
 bool isCheap(const Expr &expr);
 
-/// Does `function`, or what it calls, report hits or use scratch members? `concrete` is the class
-/// of the object; null for a free function.
+/// Does `function`, or one of its callees, report hits or use scratch members? `concrete` is the
+/// class of the object; null for a free function.
 bool takesPartInIntersection(const Function &function, const Class *concrete);
 
-/// A method of the engine's that answers rays with a payload, its one parameter: it comes with the
-/// ray.
+/// An engine method that takes the payload of a ray as its one parameter.
 bool takesPayload(const Function &function);
 
 /// ignoreIntersection() or terminateRay()?
 bool isHitAnswer(const Expr &expr);
 
-/// Which functions end `anyHit`, because they, or what they call, use ignoreIntersection or
-/// terminateRay. The checker lets nothing but `anyHit` lead to these.
+/// Which functions end `anyHit`, because they, or their callees, use ignoreIntersection or
+/// terminateRay. Sema ensures that only `anyHit` reaches them.
 class HitAnswers {
 public:
   explicit HitAnswers(const Module &module);
 
-  /// For an object of class `concrete`, whose definitions calls on the object itself run; null for
-  /// a free function.
+  /// For an object of class `concrete`, whose definitions are run by calls on the object itself;
+  /// null for a free function.
   bool mayAnswer(const Function &function, const Class *concrete);
-  /// For a call through a reference: whichever class below the function's has the object.
+  /// For a call through a reference: for any class that derives from the function's.
   bool mayAnswerOf(const Function &function);
 
 private:
@@ -59,9 +59,9 @@ private:
   const bool hasAnswers; // in some function of the module
   using Key = std::pair<const Function *, const Class *>;
   std::map<Key, bool> known;
-  std::set<Key> open;         // that are being looked at
+  std::set<Key> open;         // being visited
   std::vector<Key> uncertain; // found while others were open
-  bool comesRound = false;    // to one of these
+  bool comesRound = false;    // a visit reached an open one
 };
 
 /// The definition that a call on the object itself runs: that of the most derived class with the
@@ -76,19 +76,18 @@ bool sameParameters(const Function &a, const Function &b);
 /// The types of a function's parameters as a part of a symbol: `.vec3.float_4`.
 std::string parameterWords(const Function &function);
 
-/// What the IR calls a method, whatever class has it: its name, with its parameters' types where
-/// others have that name.
+/// The name of a method in the IR, for all classes: its name, followed by its parameters' types if
+/// there are others of that name.
 std::string slotName(const Module &module, const Function &method);
 
-/// May a reference of the module refer to no object? The scene sets all public members, so that it
-/// takes a variable, a private or an optional member that nobody has written, or a buffer without
-/// elements.
+/// May a reference of the module refer to no object? The scene sets all public members, so this
+/// requires a local variable, a private or optional member, or a buffer without elements.
 bool mayReferToNothing(const Module &module);
 
-/// Does some texture look up another?
+/// Does any texture look up another one?
 bool lookupsNest(const Module &module);
 
-/// Does the expression stand for a place in memory (and not for a value)?
+/// Is the expression an lvalue, or a part of a member or buffer, and not a temporary value?
 bool isPlace(const Expr &expr);
 
 } // namespace rtsl::typed

@@ -1,7 +1,7 @@
-//===- Casting.h - looking at a node as what it is ------------------------===//
+//===- Casting.h - casting nodes to their class ---------------------------===//
 //
-// `cast<T>` for a node whose kind is known, `dynCast<T>` for one whose kind is asked for. They work
-// on both trees: every node class has a static `Kind`.
+// `cast<T>` for a node whose kind is known, `dynCast<T>` for one whose kind is tested. They work on
+// both trees: every node class has a static `Kind`.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -135,7 +135,7 @@ static std::string scalarName(TypeKind kind) {
 }
 
 std::string toString(const Type *type) {
-  // Dimensions are written outermost first, the element in front of them.
+  // Dimensions are written outermost first, after the element.
   std::string dimensions;
   while (type->is(TypeKind::Array) || type->is(TypeKind::Buffer)) {
     if (type->is(TypeKind::Array)) {

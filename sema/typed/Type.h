@@ -1,7 +1,7 @@
 //===- Type.h - the types of RTSL -----------------------------------------===//
 //
-// Types are unique: two equal types have one address, so comparison is of pointers. A `TypeContext`
-// owns them.
+// Types are unique: equal types have the same address, so comparing pointers is sufficient. A
+// `TypeContext` owns them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -21,7 +21,7 @@ struct Class;
 } // namespace typed
 
 enum class TypeKind : std::uint8_t {
-  Error, // of an expression that was reported already: converts to everything, silently
+  Error, // of an expression with a reported error: converts to everything, silently
   Void,
   Bool,
   Int,
@@ -29,7 +29,7 @@ enum class TypeKind : std::uint8_t {
   Float,
   Vector, // of Bool, Int, UInt or Float; 2 to 4
   Matrix, // of Float; 2 to 4 columns of 2 to 4 rows
-  Color,  // opaque: as many components as the target chooses
+  Color,  // opaque: the number of components depends on the target
   Struct,
   Class,  // a reference to an object, possibly of a class derived from this one
   Array,  // of fixed length

@@ -1,4 +1,4 @@
-//===- TypeProperties.cpp - questions about types -------------------------===//
+//===- TypeProperties.cpp - queries on types ------------------------------===//
 //
 // All of these recurse over the nesting of a type, which `maxTypeNesting` bounds.
 //
@@ -18,8 +18,7 @@ static std::uint64_t saturatingMultiply(std::uint64_t a, std::uint64_t b) {
   return __builtin_mul_overflow(a, b, &product) ? saturated : std::min(product, saturated);
 }
 
-/// The sum over the parts of a type of what `leaf` says about a part that is no struct and no
-/// array.
+/// The sum of `leaf` over all parts of a type that are not structs or arrays.
 template <typename Leaf>
 static std::uint64_t sumOverParts(const Type *type, const Leaf &leaf) {
   if (type->is(TypeKind::Array))

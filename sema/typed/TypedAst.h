@@ -1,8 +1,8 @@
 //===- TypedAst.h - the program after checking ----------------------------===//
 //
-// Every name is resolved, every expression has a type, every implicit conversion is a node, every
-// constant expression is folded where a constant is required. Lowering needs no further look at the
-// source; printers keep the author's names.
+// Every name is resolved, every expression has a type, every implicit conversion is a node, and
+// required constant expressions are folded. Lowering does not need the source; printers keep the
+// author's names.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -29,23 +29,23 @@ enum class Builtin : std::uint8_t {
 };
 const char *name(Builtin builtin);
 
-/// What a call of a built-in function does beside yielding a value (Builtins.def).
+/// The effect of calling a built-in function, beside its value (Builtins.def).
 enum class BuiltinEffect : std::uint8_t { Pure, Reads, Outputs, Effects };
 
-/// What Builtins.def says of a built-in function, but for its signatures (Builtins.h).
+/// The properties of a built-in function in Builtins.def, except its signatures (Builtins.h).
 struct BuiltinInfo {
   const char *name;
   BuiltinEffect effect;
-  unsigned cost; // about how many instructions a component takes
+  unsigned cost; // approximate number of instructions per component
 };
 const BuiltinInfo &info(Builtin builtin);
 
-/// Changes nothing, and yields the same for the same arguments during a ray.
+/// No side effects, and the same value for the same arguments during a ray.
 inline bool isPure(Builtin builtin) {
   const BuiltinEffect effect = info(builtin).effect;
   return effect == BuiltinEffect::Pure || effect == BuiltinEffect::Reads;
 }
-/// Whether it takes the next random number of the ray.
+/// Does it draw the next random number of the ray?
 inline bool drawsRandom(Builtin builtin) {
   return builtin == Builtin::Rand || builtin == Builtin::RandOpen;
 }
@@ -70,7 +70,7 @@ struct Constant {
 };
 
 //===----------------------------------------------------------------------===//
-// Things that have a name
+// Named entities
 //===----------------------------------------------------------------------===//
 
 /// A local variable, a parameter or a constant at file level.
@@ -82,8 +82,8 @@ struct Variable {
   bool isConst = false;
   ast::Direction direction = ast::Direction::In; // parameters
   std::unique_ptr<Constant>
-      constant;      // const whose value is known: uses are literals, but of arrays and structs
-  ExprPtr init;      // globals: always a constant expression
+      constant; // const with a known value: uses become literals, except for arrays and structs
+  ExprPtr init; // globals: always a constant expression
   SourceRange range; // of the name
   std::string comment;
 };
@@ -123,9 +123,9 @@ struct Function {
   StmtPtr body;                                  // a CompoundStmt
   const Class *owner = nullptr;                  // methods
   bool isConstructor = false;
-  bool isStateMethod = false;  // one of its base class's table: intersect, shade, ...
-  bool mayTrace = false;       // itself or through what it calls
-  bool mayRunInLookup = false; // a texture's `lookup` leads to it
+  bool isStateMethod = false; // overrides an engine method of its base class: intersect, shade, ...
+  bool mayTrace = false;      // itself or its callees
+  bool mayRunInLookup = false; // reachable from a texture's `lookup`
   SourceRange range;           // of the name
   std::string comment;
 };
@@ -135,17 +135,17 @@ inline constexpr const char *helperRoot = "helper class";
 
 struct Class {
   std::string name;
-  const Class *base = nullptr; // another class of the user's; null: derives from `root` directly
+  const Class *base = nullptr; // another user class; null: derives from `root` directly
   std::string root;            // "rt_Primitive", or helperRoot
   std::vector<std::unique_ptr<Member>> members;     // its own
   std::vector<std::unique_ptr<Function>> functions; // its own: methods, constructor, helpers
   SourceRange range;
   std::string comment;
 
-  /// The definition that an object of this class uses, looking along the bases; null if there is
+  /// The definition that an object of this class uses, searched along the bases; null if there is
   /// none.
   const Function *findMethod(const std::string &name) const;
-  bool derivesFrom(const Class *other) const; // or is it
+  bool derivesFrom(const Class *other) const; // or is the same class
 };
 
 //===----------------------------------------------------------------------===//
@@ -190,11 +190,12 @@ struct ExprOf : Expr {
   ExprOf() : Expr(K) {}
 };
 
-/// A constant of any type but references. For numbers that the author wrote, `spelling` keeps how.
+/// A constant of any type but references. For numbers that the author wrote, `spelling` preserves
+/// the text.
 struct LiteralExpr : ExprOf<ExprKind::Literal> {
   Constant value;
   std::string spelling;
-  // The constant that the author names here, if it is one.
+  // The constant that the author refers to here, if any.
   const Variable *variable = nullptr;
   const Member *member = nullptr;
 };
@@ -222,7 +223,7 @@ struct SwizzleExpr : ExprOf<ExprKind::Swizzle> {
 struct IndexExpr : ExprOf<ExprKind::Index> {
   ExprPtr base, index; // index: int or uint
 };
-/// `.length()` of a buffer; of an array it is folded.
+/// `.length()` of a buffer; that of an array is folded.
 struct LengthExpr : ExprOf<ExprKind::Length> {
   ExprPtr base;
 };
@@ -243,8 +244,8 @@ struct BinaryExpr : ExprOf<ExprKind::Binary> {
   ast::BinaryOp op{};
   ExprPtr left, right;
 };
-/// Value of the target after the store. Compound: target = target op value, the target's address
-/// evaluated once, and `value` as the right operand of a BinaryExpr would be.
+/// The value is that of the target after the store. Compound: target = target op value, with the
+/// target's address evaluated once, and `value` converted as the right operand of a BinaryExpr.
 struct AssignExpr : ExprOf<ExprKind::Assign> {
   bool compound = false;
   ast::BinaryOp op{};
@@ -256,8 +257,8 @@ struct ConditionalExpr : ExprOf<ExprKind::Conditional> {
 struct CommaExpr : ExprOf<ExprKind::Comma> {
   ExprPtr left, right;
 };
-/// Change of scalar type, shape kept: int to float, bvec3 to vec3, ... ; or a reference to one of a
-/// base class, or to a bool: whether there is an object.
+/// Conversion of the scalar type, shape kept: int to float, bvec3 to vec3, ... ; or of a reference
+/// to one of a base class, or to a bool: whether it refers to an object.
 struct ConvertExpr : ExprOf<ExprKind::Convert> {
   bool isImplicit = true;
   ExprPtr operand;
@@ -278,21 +279,21 @@ struct BuiltinExpr : ExprOf<ExprKind::Builtin> {
   std::vector<ExprPtr> args;
 };
 /// A free function, or a method of the object itself (`onSelf`): the most derived definition runs,
-/// or, of a call of a base class's (`Base::shade()`), `function` itself, which may be a method of
-/// the table or a constructor.
+/// or, in a call of a base class's definition (`Base::shade()`), `function` itself, which may be an
+/// engine method or a constructor.
 struct CallExpr : ExprOf<ExprKind::Call> {
   const Function *function = nullptr;
   bool onSelf = false;
   bool isOfBase = false;
-  std::vector<ExprPtr> args; // of out and inout parameters: lvalues of exactly the parameter's type
+  std::vector<ExprPtr>
+      args; // for out and inout parameters: lvalues of exactly the parameter's type
 };
 /// `reference.method(args)`, dispatched on the object's class. `lookup()` gives TextureColor (a
 /// color) and `lookupFloat()` FloatTextureValue (a float): both call the texture's `lookup`.
 struct MethodCallExpr : ExprOf<ExprKind::MethodCall> {
   ExprPtr receiver;
-  std::string method; // "lookup", "lookupFloat", or a function of the user's
-  const Function *function =
-      nullptr; // a user function as the static type sees it; null for the methods of the table
+  std::string method;                 // "lookup", "lookupFloat", or a user function
+  const Function *function = nullptr; // a user function in the static type; null for engine methods
   std::vector<ExprPtr> args;
 };
 /// Only as an argument of print.
@@ -346,10 +347,10 @@ struct DoWhileStmt : StmtOf<ast::StmtKind::DoWhile> {
   StmtPtr body;
   ExprPtr condition;
 };
-/// The arms in source order; control falls from one into the next unless it breaks.
+/// The arms in source order; control falls through into the next arm unless it breaks.
 struct SwitchStmt : StmtOf<ast::StmtKind::Switch> {
   struct Arm {
-    std::vector<std::int64_t> values; // labels in front of this arm
+    std::vector<std::int64_t> values; // labels before this arm
     bool isDefault = false;           // `default` is among them
     std::vector<StmtPtr> body;
     SourceRange range;
@@ -370,16 +371,16 @@ struct IlluminanceStmt : StmtOf<ast::StmtKind::Illuminance> {
 };
 
 //===----------------------------------------------------------------------===//
-// The whole
+// The module
 //===----------------------------------------------------------------------===//
 
 /// All files of a compilation, checked together.
 struct Module {
   TypeContext types;
-  std::vector<std::unique_ptr<Struct>> structs; // a struct stands behind those that it contains
+  std::vector<std::unique_ptr<Struct>> structs; // a struct comes after those that it contains
   std::vector<std::unique_ptr<Variable>> constants;
   std::vector<std::unique_ptr<Function>> functions; // free functions
-  std::vector<std::unique_ptr<Class>> classes;      // a class stands behind its base
+  std::vector<std::unique_ptr<Class>> classes;      // a class comes after its base
 
   const Class *findClass(const std::string &name) const;
 };

@@ -1,4 +1,4 @@
-//===- Walk.cpp - over the parts of a typed tree --------------------------===//
+//===- Walk.cpp - traversing a typed tree ---------------------------------===//
 #include "sema/typed/Walk.h"
 
 #include "sema/typed/Casting.h"
@@ -151,7 +151,7 @@ const Variable *rootVariable(const Expr &place) {
   }
 }
 
-/// Adds what this expression itself assigns.
+/// Adds the variables that this expression itself assigns.
 static void addAssigned(const Expr &expr, std::set<const Variable *> &assigned) {
   const auto add = [&](const Expr &place) {
     if (const Variable *variable = rootVariable(place))

@@ -1,4 +1,4 @@
-//===- Walk.h - over the parts of a typed tree ----------------------------===//
+//===- Walk.h - traversing a typed tree -----------------------------------===//
 #pragma once
 
 #include "sema/typed/TypedAst.h"
@@ -11,18 +11,18 @@ namespace rtsl {
 using ExprVisitor = std::function<void(const typed::Expr &)>;
 using StmtVisitor = std::function<void(const typed::Stmt &)>;
 
-/// Calls the visitors for the direct parts of an expression or statement, in the order of the text.
+/// Calls the visitors for the direct children of an expression or statement, in source order.
 void forEachChild(const typed::Expr &expr, const ExprVisitor &visit);
 void forEachChild(const typed::Stmt &stmt, const StmtVisitor &visitStmt,
                   const ExprVisitor &visitExpr);
 
-/// Calls `visit` for each expression of a statement or below an expression, outer ones first.
+/// Calls `visit` for each expression of a statement or below an expression, in preorder.
 void forEachExpr(const typed::Stmt &stmt, const ExprVisitor &visit);
 void forEachExpr(const typed::Expr &expr, const ExprVisitor &visit);
-/// Calls `visit` for a statement and each one in it, outer ones first.
+/// Calls `visit` for a statement and each nested one, in preorder.
 void forEachStmt(const typed::Stmt &stmt, const StmtVisitor &visit);
 
-/// The variable that a place is, or is part of; null if it is no part of one.
+/// The variable that an lvalue is, or is part of; null if it is not part of a variable.
 const typed::Variable *rootVariable(const typed::Expr &place);
 
 /// Is this argument of a built-in function written to?

@@ -105,7 +105,7 @@ class BoundedSources(Case):
         self.write("bad.rtsl", text)
         messages = self.diagnose("check", "bad.rtsl", prepare=bounded)
         self.assertEqual([m["code"] for m in messages], ["E0512"], messages)
-        self.assertIn("only `trace` recurses", messages[0]["notes"][1])
+        self.assertIn("only `trace` and calls through members may be recursive", messages[0]["notes"][1])
 
     def test_a_circle_of_classes(self):
         text = "".join(f"class C{i} : C{(i + 1) % 5000} {{ }};\n" for i in range(5000))

@@ -84,10 +84,10 @@ class Objects(Case):
     def test_helpers_have_a_section(self):
         self.scene(helpers={"fine": {"class": "Noise", "constructor": [0.25], "finer": "coarse"}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
-        self.assertIn("refers to itself through others", error)
+        self.assertIn("refers to itself indirectly", error)
         self.scene(textures={"fine": {"class": "Layered", "noise": "fine"}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
-        self.assertIn("`fine` is the name of a helper already", error)
+        self.assertIn("`fine` is already the name of a helper", error)
         self.scene(materials={"plain": {"class": "Painted", "bump": "fein"}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
         self.assertIn("no helper, texture or material is named `fein`", error)

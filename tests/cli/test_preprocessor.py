@@ -46,9 +46,9 @@ class Preprocessor(Case):
     def test_a_file_that_is_not_there(self):
         diagnostics = self.diagnose("check", "-D", "FINE", "grey.rtsl")
         self.assert_message(diagnostics, "E0144", "`fine.rtsl`", 3, 10, "grey.rtsl")
-        self.assertEqual(diagnostics[0]["notes"], ["no folder was given with `-I`, and `<...>` looks nowhere else"])
+        self.assertEqual(diagnostics[0]["notes"], ["`<...>` is searched only in the folders of `-I`, and none was given"])
         diagnostics = self.diagnose("check", "-D", "FINE", "-I", "lib", "-I", "nowhere", "grey.rtsl")
-        self.assertEqual(diagnostics[0]["notes"], ["looked in `lib`, `nowhere`"])
+        self.assertEqual(diagnostics[0]["notes"], ["searched in `lib`, `nowhere`"])
         self.write("near.rtsl", "#include \"lib/gray.rtsl\"\nimport \"lib/gray.rtsl\";\n")
         diagnostics = self.diagnose("check", "near.rtsl")
         self.assert_message(diagnostics, "E0144", "`lib/gray.rtsl`", 1, 10)

@@ -33,12 +33,11 @@ std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options) {
   const double pixels = double(options.width) * options.height;
   const char *const signal = interruption();
-  return fmt::format(
-      "stopped by {} after {:.1f} % of the samples: {} of {:.0f} pixels are done, and "
-      "black is where nothing is",
-      signal ? signal : "the caller",
-      100 * double(statistics.samples) / (pixels * options.samplesPerPixel), statistics.pixels,
-      pixels);
+  return fmt::format("stopped by {} after {:.1f} % of the samples: {} of {:.0f} pixels are done, "
+                     "and pixels without samples are black",
+                     signal ? signal : "the caller",
+                     100 * double(statistics.samples) / (pixels * options.samplesPerPixel),
+                     statistics.pixels, pixels);
 }
 
 } // namespace rtsl::tool

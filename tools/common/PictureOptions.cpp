@@ -38,7 +38,7 @@ void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFo
   addChoice(command, "--format", format,
             Choices<runtime::PictureFormat>{{"png", runtime::PictureFormat::Png},
                                             {"exr", runtime::PictureFormat::Exr}},
-            "how the picture is written; as its name says if not given, and - as png");
+            "the format of the picture; default: by its name, png for -");
 }
 
 void checkPictureName(const std::string &output, runtime::PictureFormat format) {

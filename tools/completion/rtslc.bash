@@ -1,4 +1,4 @@
-# Completion of rtslc for bash: asks the program itself, so that it knows every option.
+# Completion of rtslc for bash: runs the program's --help, so that no option is missing.
 _rtslc() {
   local current="${COMP_WORDS[COMP_CWORD]}" previous="${COMP_WORDS[COMP_CWORD-1]}"
   [[ $previous == "=" ]] && previous="${COMP_WORDS[COMP_CWORD-2]}"
@@ -14,7 +14,7 @@ _rtslc() {
   local help
   help=$("$program" "$command" --help 2>/dev/null)
   if [[ $previous == --* ]]; then
-    # The choices of an option stand behind it, with bars between them.
+    # The values of an option follow it, separated by bars.
     local choices
     choices=$(sed -n "s/^ *\(-[a-zA-Z],\)\{0,1\}$previous \([^ :]*|[^ :]*\).*/\2/p" <<< "$help" | tr '|' ' ')
     if [[ -n $choices ]]; then

@@ -8,6 +8,7 @@
 #include "codegen/explain/ReportJson.h"
 #include "codegen/explain/ReportText.h"
 #include "codegen/passes/continuation/Split.h"
+#include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/states/Steps.h"
 #include "codegen/passes/continuation/suspend/CutJoins.h"

@@ -101,7 +101,7 @@ void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics 
     fmt::print(stderr, "{}\n", tool::notFiniteText(statistics));
     for (const runtime::SampleId &one : statistics.notFinite)
       fmt::print(stderr, "  {}\n", tool::sampleText(one));
-    fmt::print(stderr, "`rtslc render` of the scene says which line makes them so\n");
+    fmt::print(stderr, "`rtslc render` of the scene reports the source lines that cause them\n");
   }
   if (statistics.raysTooDeep)
     fmt::print(stderr, "{}\n", tool::tooDeepText(statistics, render));
@@ -121,13 +121,12 @@ void report(const Options &options, const runtime::Package &package,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (gpu)
     fmt::print(stderr,
-               "{}: {} registers and {} local bytes a thread, {} blocks of {} threads, {} bytes "
-               "for the rays of "
-               "each; code loaded in {:.0f} ms, scene in {:.0f} ms\n",
+               "{}: {} registers and {} local bytes per thread, {} blocks of {} threads, {} bytes "
+               "for the rays of each; code loaded in {:.0f} ms, scene in {:.0f} ms\n",
                gpu->device, gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock,
                gpu->laneBytes, gpu->loadSeconds * 1e3, gpu->uploadSeconds * 1e3);
   if (statistics.badRays)
-    fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n",
+    fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
                statistics.badRays);
 }
 
@@ -156,7 +155,7 @@ bool compare(const runtime::Image &image, const runtime::Image &reference, const
     different += std::memcmp(&image.pixels[i * channels], &reference.pixels[i * channels],
                              4 * channels) != 0;
   if (different == 0)
-    fmt::print(stderr, "the bits of `{}`, all {} pixels\n", options.reference, count);
+    fmt::print(stderr, "the same bits as `{}` in all {} pixels\n", options.reference, count);
   else
     fmt::print(stderr, "{} of {} pixels differ from `{}`\n", different, count, options.reference);
   return different == 0;
@@ -188,31 +187,33 @@ int render(const Options &options) {
 
 void addOptions(CLI::App &app, Options &options) {
   app.set_version_flag("-V,--version", "rtsl-run " RTSL_VERSION);
-  app.add_option("PACKAGE", options.package, "what `rtslc pack` wrote; - is standard input")
+  app.add_option("PACKAGE", options.package,
+                 "a package written by `rtslc pack`; - is standard input")
       ->required();
   tool::addPictureOption(app, options.output, options.format);
   tool::addChoice(app, "--target", options.target,
                   tool::Choices<Target>{{"gpu", Target::Gpu}, {"host", Target::Host}},
                   "where to render: gpu, the first CUDA device; host, all cores");
-  tool::addWhole(app, "--spp", options.samples, 1, runtime::mostSamplesPerPixel, "samples a pixel");
+  tool::addWhole(app, "--spp", options.samples, 1, runtime::mostSamplesPerPixel,
+                 "samples per pixel");
   tool::addSizeOption(app, options.size);
   tool::addWhole(app, "--depth", options.depth, 0, runtime::maxRayDepth,
-                 "how often a ray may lead to another; 0: camera rays only");
+                 "limit of nested `trace` calls; 0: camera rays only");
   tool::addWhole(app, "--seed", options.seed, 0, 0xffffffff, "seed of the random numbers");
   tool::addWhole(app, "--threads", options.threads, 1, runtime::mostThreads,
-                 "threads of the host; all cores if not given");
+                 "threads of the host; default: all cores");
   tool::addWhole(app, "--registers", options.registers, 16, 255,
-                 "let the GPU's driver use no more registers a thread than this");
+                 "maximum number of registers per thread on the GPU");
   app.add_option("--compare", options.reference,
-                 "a picture that must have the same bits; exit status 1: it has not")
+                 "a picture that must have the same bits; exit status 1 if it differs")
       ->type_name("IMAGE");
   app.add_flag("--json", options.json, "write times and counts to standard output as JSON");
   app.add_flag("-q,--quiet", options.quiet, "no summary");
   app.footer("example:\n  rtsl-run glass.rtslpkg -o glass.png --target=host --spp 64\n"
-             "Exit status: 0 fine, 1 the package, the device or a file is not as it must be, or no "
-             "memory or disk,\n"
-             "2 wrong arguments, 3 a fault of the program; 130 and 143: SIGINT (Ctrl-C) or SIGTERM "
-             "stopped it.");
+             "Exit status: 0 success, 1 an unusable package, device or file, or too little memory "
+             "or disk space,\n"
+             "2 wrong arguments, 3 an internal error; 130 after SIGINT (Ctrl-C), 143 after "
+             "SIGTERM.");
   app.callback([&options] {
     tool::checkPictureName(options.output, options.format);
     if (options.json && options.output == "-")

@@ -37,7 +37,8 @@ void writeFixes(const Messages &messages) {
     const FixedText fixed = applyFixes(messages.diagnostics, file);
     writeFileAtomically(path(file) == "<stdin>" ? "-" : path(file), fixed.text);
     fmt::print(stderr, "{}: {} fixed", path(file), count(fixed.applied, "mistake"));
-    fmt::print(stderr, fixed.skipped ? ", {} left that overlap with these: run again\n" : "\n",
+    fmt::print(stderr,
+               fixed.skipped ? ", {} skipped because they overlap with these: run again\n" : "\n",
                fixed.skipped);
   }
 }
@@ -113,14 +114,13 @@ int check(const CheckOptions &options, SceneBuilder buildScene) {
 
 void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App *command = app.add_subcommand("check", "look for mistakes in RTSL files and scenes");
+  CLI::App *command = app.add_subcommand("check", "check RTSL files and scenes for mistakes");
   command
       ->add_option("FILE", options->files,
-                   "RTSL files, which are checked together; - is standard input; and scenes "
-                   "(.json), each with its shaders")
+                   "RTSL files, which are checked together; scenes (.json), each with its "
+                   "shaders; - is standard input")
       ->required();
-  command->add_flag("--fix", options->fix,
-                    "apply the fixes that are sure, and write the files back");
+  command->add_flag("--fix", options->fix, "apply unambiguous fixes to the files");
   addSetOption(*command, options->overrides);
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);

@@ -82,11 +82,10 @@ bool hasCommand(const CLI::App &app, const std::string &name) {
 
 void addMessageOptions(CLI::App &command, CommonOptions &options) {
   addChoice(command, "--diagnostics", options.jsonDiagnostics,
-            Choices<bool>{{"text", false}, {"json", true}},
-            "how messages are written to standard error");
+            Choices<bool>{{"text", false}, {"json", true}}, "format of messages on standard error");
   addChoice(command, "--ansi", options.ansi, {"auto", "always", "never"}, "colour in messages");
   addWhole(command, "--error-limit", options.errorLimit, 0, 1000000,
-           "stop showing errors after this many; 0 shows all");
+           "maximum number of errors to show; 0 shows all");
   command
       .add_option_function<std::vector<std::string>>(
           "-W",
@@ -94,9 +93,9 @@ void addMessageOptions(CLI::App &command, CommonOptions &options) {
             for (const std::string &text : texts)
               applyWarning(withoutLimit(text, options.compile.largeLiveState), options.warnings);
           },
-          "turn a warning on, or off with no-NAME; NAME can be all or perf; error[=NAME] makes "
-          "them errors; "
-          "live-state=BYTES says how much is much; -Whelp lists them")
+          "turn a warning on, or off with no-NAME; NAME can be all or perf; error[=NAME] treats "
+          "warnings as errors; live-state=BYTES turns that warning on with this limit; -Whelp "
+          "lists the warnings")
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -117,7 +116,7 @@ void addKeepOption(CLI::App &command, CommonOptions &options) {
               options.keep.add(item ? ItemSet::only(*item) : ItemSet::all());
             }
           },
-          "leave this in the program although the scene does not need it; the picture is the same")
+          "keep this in the program even if the scene does not need it; the picture is the same")
       ->type_name(names)
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -132,38 +131,36 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             if (const std::string complaint = parseColor(text, options.compile); !complaint.empty())
               throw CLI::ValidationError("--color", complaint);
           },
-          "what a color is made of")
+          "the components of a color")
       ->type_name("rgb|mono|spectral:N|N");
   addChoice(command, "--fp", options.compile.floatingPoint,
             Choices<FloatingPoint>{{"strict", FloatingPoint::Strict},
                                    {"fast", FloatingPoint::Fast},
                                    {"double", FloatingPoint::Double}},
-            "numbers: strict, IEEE single with the same bits everywhere; fast, approximations and "
-            "reassociation; double, "
-            "shaders compute in double on this machine");
+            "floating point: strict, IEEE single with the same bits everywhere; fast, "
+            "approximations and reassociation; double, shaders compute in double on this machine");
   command.add_flag_callback(
       "--unchecked", [&options] { options.compile.checkIndices = false; },
-      "trust array and buffer indices: one out of range is then undefined");
+      "do not check array and buffer indices: an index out of range is undefined behaviour");
   addChoice(command, "--trace", options.compile.trace,
             Choices<TraceMode>{{"recurse", TraceMode::Recurse}, {"split", TraceMode::Split}},
-            "what becomes of `trace`: recurse, a call; split, the end of a state, as on a GPU. If "
-            "not given: recurse; of "
-            "C++ split, if it can be printed so");
+            "how `trace` is compiled: recurse, a call; split, the end of a state, as on a GPU. "
+            "Default: recurse; for C++ split, if it can be printed as states");
   addChoice(command, "--save", options.compile.savesAllThatIsLive,
             Choices<bool>{{"needed", false}, {"live", true}},
-            "what states save across a `trace`: needed, and rematerialise cheap values; live, all "
-            "live values, to compare with");
+            "what states save across a `trace`: needed, rematerialise cheap values; live, spill "
+            "everything, for comparison");
   addChoice(command, "--gpu-arch", options.compile.gpu,
             {"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"},
-            "the oldest NVIDIA GPU that PTX is for; sm_75 if not given");
-  addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation of machine code")
+            "the oldest NVIDIA GPU that the PTX supports; default sm_75");
+  addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--undefined", options.compile.undefined,
             Choices<std::uint32_t>{{"leave", 0},
                                    {"bytes", RTSL_FEATURE_UNDEFINED_BYTES},
                                    {"nan", RTSL_FEATURE_UNDEFINED_NAN}},
-            "state that nobody has written: leave it, or fill it with a pattern, on which no "
-            "picture depends. For tests");
+            "uninitialised state: leave it, or fill it with a pattern; no picture depends on it. "
+            "For tests");
 }
 
 namespace {
@@ -227,7 +224,7 @@ int run(CLI::App &app, Action &action, int argc, char **argv, const std::functio
     }
     fmt::print(stderr, "rtslc: internal error: {}\n", error.what());
   }
-  fmt::print(stderr, "This is a fault of rtslc; please report it with the files that show it.\n");
+  fmt::print(stderr, "This is a bug in rtslc; please report it with files that reproduce it.\n");
   return InternalError;
 }
 

@@ -121,11 +121,11 @@ void printText(const Comparison &comparison) {
                   comparison.flipHdr, comparison.exposures.count, comparison.exposures.first,
                   comparison.exposures.last, error.pixelsThatDiffer);
   if (error.nanPixels || error.infinitePixels)
-    text += fmt::format("of the second picture, {} pixels are not a number and {} infinite\n",
+    text += fmt::format("in the second picture, {} pixels are NaN and {} infinite\n",
                         error.nanPixels, error.infinitePixels);
   if (error.incomparable)
-    text += fmt::format("{} pixels are not finite in one picture or both, and differ: no figure "
-                        "above counts them\n",
+    text += fmt::format("{} pixels are not finite in one picture or both, and differ: the figures "
+                        "above do not include them\n",
                         error.incomparable);
   printOut(text);
 }
@@ -155,11 +155,11 @@ void addCompareCommand(CLI::App &app, Action &action) {
   command
       ->add_option("REFERENCE", options->reference, "a picture, .png or .exr; - is standard input")
       ->required();
-  command->add_option("TEST", options->test, "another of the same size")->required();
+  command->add_option("TEST", options->test, "a picture of the same size")->required();
   addNotNegative(*command, "--threshold", options->threshold,
-                 "largest error that passes; 0: the same bits");
+                 "largest error allowed; 0: the same bits");
   addChoice(*command, "--metric", options->metric, metrics,
-            "the error that the threshold limits; rmse if not given");
+            "the error metric of the threshold; default rmse");
   command->add_flag("--json", options->json, "write the figures as JSON");
   addMessageOptions(*command, options->common);
   command->footer("example:\n  rtslc compare embree.exr device.exr --threshold 1e-4");

@@ -126,9 +126,8 @@ void checkInputs(const CompileCommandOptions &options) {
     throw CLI::ValidationError("--emit",
                                "reflection describes RTSL files; give those of the scene");
   if (options.stage == Stage::Cpp && scenes > 0)
-    throw CLI::ValidationError(
-        "--emit", "C++ is made of RTSL files, without a scene; the program that it is linked to "
-                  "builds one");
+    throw CLI::ValidationError("--emit", "C++ is generated from RTSL files, without a scene; the "
+                                         "program that it is linked to builds one");
   if (scenes == 0 && options.stage != Stage::Cpp &&
       features(options.prints, options.exceptions) != 0)
     throw CLI::ValidationError(options.prints ? "--print" : "--exceptions",
@@ -167,24 +166,24 @@ int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
 
 void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   auto options = std::make_shared<CompileCommandOptions>();
-  CLI::App *command =
-      app.add_subcommand("compile", "translate RTSL files, and show any stage on the way");
+  CLI::App *command = app.add_subcommand("compile", "compile RTSL files, and print any stage");
   command
       ->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")
       ->required();
-  addChoice(*command, "--emit", options->stage, stages, "what to write");
+  addChoice(*command, "--emit", options->stage, stages, "the stage to write");
   command->add_flag_callback(
       "-E", [options] { options->stage = Stage::Preprocessed; }, "the same as --emit=preprocessed");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")
       ->type_name("OUT");
   addSetOption(*command, options->overrides);
-  command->add_flag("--line-directives", options->lineDirectives,
-                    "with --emit=cpp: #line, so that messages and debuggers show the RTSL files");
+  command->add_flag(
+      "--line-directives", options->lineDirectives,
+      "with --emit=cpp: add #line, so that messages and debuggers refer to the RTSL files");
   command->add_flag("--print", options->prints,
-                    "of C++ or a scene: `print` prints; without, it is left out");
+                    "for C++ or a scene: keep calls of `print`, which are otherwise left out");
   command->add_flag("--exceptions", options->exceptions,
-                    "of C++ or a scene: samples end that send a bad ray, one too deep, or use an "
-                    "index out of range");
+                    "for C++ or a scene: end samples that send an invalid ray, exceed the depth "
+                    "limit, or use an index out of range");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
   addCompileOptions(*command, options->common);

@@ -168,30 +168,30 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
                        ItemMeasurer measure) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App *command =
-      app.add_subcommand("explain", "say what the compiler made of a shader, and why");
+      app.add_subcommand("explain", "explain what the compiler kept, left out and saved, and why");
   command
       ->add_option("FILE", options->files,
-                   "a scene (.json): what its program holds and does without; with --states RTSL "
-                   "files, too; - is standard input")
+                   "a scene (.json): what its program contains and leaves out; with --states also "
+                   "RTSL files; - is standard input")
       ->required();
-  command->add_flag(
-      "--states", options->states,
-      "where shaders that trace are cut: their states, and what each trace saves and recomputes");
+  command->add_flag("--states", options->states,
+                    "show where shaders that trace are cut into states, and what each trace saves "
+                    "and rematerialises");
   command->add_flag("--measure", options->measure,
-                    "render with each thing left out and kept, in turn: time, instructions, and "
+                    "render alternately with each item left out and kept: time, instructions, and "
                     "whether the picture is the same");
   addWhole(*command, "--pairs", options->pairs, 10, 10000,
-           "with --measure: pairs of renderings an item; 11 if not given");
+           "with --measure: pairs of renderings per item; default 11");
   addSizeOption(*command, options->size);
   addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel,
-           "with --measure: samples per pixel; 1 if not given");
+           "with --measure: samples per pixel; default 1");
   const Choices<ReportFormat> formats = {{"text", ReportFormat::Text},
                                          {"json", ReportFormat::Json},
                                          {"dot", ReportFormat::Dot},
                                          {"svg", ReportFormat::Svg}};
   addChoice(
       *command, "--format", options->format, formats,
-      "text; json; of --states also dot, for Graphviz, and svg, a picture that Graphviz lays out");
+      "text or json; with --states also dot, for Graphviz, or svg, a picture laid out by Graphviz");
   command->add_flag_callback(
       "--json", [options] { options->format = ReportFormat::Json; }, "the same as --format=json");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")
@@ -212,12 +212,12 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
     if (scenes == 0 && !options->overrides.empty())
       throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
     if (scenes == 0 && !options->states)
-      throw CLI::ValidationError("FILE",
-                                 "what is needed is a matter of a scene; give one, or --states");
+      throw CLI::ValidationError(
+          "FILE", "what a program needs depends on the scene; give a scene, or --states");
     if (scenes == 0 && !options->common.keep.isEmpty())
       throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
     if (options->states && options->measure)
-      throw CLI::ValidationError("--measure", "renders scenes, and says nothing of --states");
+      throw CLI::ValidationError("--measure", "cannot be combined with --states");
     if (!options->states &&
         (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
       throw CLI::ValidationError("--format", "only --states has pictures");

@@ -44,8 +44,7 @@ Explanation::Explanation(std::string scene, const SceneExplanation &program,
          fmt::format("{} of {}", attribute.name, attribute.mesh),
          attribute.isNeeded,
          fmt::format("{} bytes, {}", grouped(static_cast<std::int64_t>(attribute.bytes)),
-                     attribute.isNeeded ? "read by its material"
-                                        : "which its materials do not read"),
+                     attribute.isNeeded ? "read by its material" : "not read by its materials"),
          {}});
     if (!attribute.isNeeded)
       meshBytes += static_cast<std::int64_t>(attribute.bytes);
@@ -112,11 +111,11 @@ std::string Explanation::entriesText(const Entries &entries) const {
 std::string Explanation::measurementsText() const {
   if (measurements.empty())
     return {};
-  std::string text = fmt::format("\nMeasured in {} pairs of renderings in turn, on one thread, in "
-                                 "processor time: how much longer one takes that keeps "
-                                 "the item\n(median, and an interval that holds it with 95 %), and "
-                                 "how many more instructions it runs.\n\n",
-                                 measurements.front().pairs);
+  std::string text =
+      fmt::format("\nMeasured in {} pairs of alternate renderings, on one thread, in processor "
+                  "time: how much longer rendering takes with the item kept\n(median with a 95 % "
+                  "confidence interval), and how many more instructions it runs.\n\n",
+                  measurements.front().pairs);
   text += fmt::format("  {:<12}{:>10}{:>12}{:>24}{:>16}   {}\n", "", "seconds", "longer", "95 %",
                       "instructions", "picture");
   for (const ItemMeasurement &one : measurements) {
@@ -140,7 +139,7 @@ std::string Explanation::text() const {
       "{}: {} instructions, {} bytes of constants, {} states with frames of up to {} bytes\n\n",
       scene, grouped(static_cast<std::int64_t>(size.instructions)),
       grouped(static_cast<std::int64_t>(size.constantBytes)), size.states, size.frameBytes);
-  text += "What its program needs, and what it saves to leave the rest out (bytes, but for "
+  text += "What its program needs, and the savings of leaving out the rest (in bytes, except "
           "instructions and states):\n\n";
   text += table();
   text += measurementsText();

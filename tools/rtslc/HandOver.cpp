@@ -50,7 +50,7 @@ void handOver(char **argv) {
     execv(program.c_str(), argv);
     if (errno == ENOMEM)
       throw std::bad_alloc();
-    throw std::runtime_error(fmt::format("cannot start `{}`, which knows `rtslc {}`: {}",
+    throw std::runtime_error(fmt::format("cannot start `{}`, which implements `rtslc {}`: {}",
                                          program.string(), command, std::strerror(errno)));
   }
 }

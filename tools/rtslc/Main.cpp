@@ -32,10 +32,10 @@ int main(int argc, char **argv) {
              "  rtslc render examples/glass/scene.json -o glass.png\n"
              "  rtslc check Glass.rtsl\n"
              "  rtslc compile Glass.rtsl --emit=ir\n"
-             "`rtslc help COMMAND` tells more. Exit status: 0 fine, 1 errors in the files, or no "
-             "memory or disk for them,\n"
-             "2 wrong arguments, 3 a fault of rtslc itself; 130 and 143: SIGINT (Ctrl-C) or "
-             "SIGTERM stopped it.");
+             "`rtslc help COMMAND` shows its options. Exit status: 0 success, 1 errors in the "
+             "files, or too little memory or disk space,\n"
+             "2 wrong arguments, 3 an internal error of rtslc; 130 after SIGINT (Ctrl-C), 143 "
+             "after SIGTERM.");
   Action action;
   addCheckCommand(app, action, nullptr);
   addCompileCommand(app, action, nullptr);

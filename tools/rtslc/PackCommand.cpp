@@ -88,7 +88,7 @@ void addPackCommand(CLI::App &app, Action &action) {
       ->required();
   command
       ->add_option("-o,--output", options->output,
-                   "the package, by custom .rtslpkg; - is standard output")
+                   "the package, usually named .rtslpkg; - is standard output")
       ->required()
       ->type_name("PACKAGE");
   addSetOption(*command, options->overrides);
@@ -103,7 +103,7 @@ void addPackCommand(CLI::App &app, Action &action) {
   command->callback([options, &action] {
     if (options->common.compile.floatingPoint == FloatingPoint::Double)
       throw CLI::ValidationError(
-          "--fp", "a package is for GPUs, too, and has no double; give strict or fast");
+          "--fp", "packages also run on GPUs and do not support double; give strict or fast");
     action = [options] { return pack(*options); };
   });
 }

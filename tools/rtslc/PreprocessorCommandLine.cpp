@@ -61,7 +61,7 @@ std::string escaped(const std::string &path) {
 void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options) {
   command
       .add_option("-I", options.includeFolders,
-                  "look for included and imported files in this folder too")
+                  "also search this folder for included and imported files")
       ->type_name("FOLDER")
       ->allow_extra_args(false);
   const auto add = [&](const char *option, const char *help, const char *type, bool isUndefined) {
@@ -77,14 +77,14 @@ void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options) {
         ->allow_extra_args(false)
         ->trigger_on_parse(); // so that -D and -U keep their order
   };
-  add("-D", "define a macro, as 1 if no value is given", "NAME[=VALUE]", false);
-  add("-U", "take back an earlier -D", "NAME", true);
+  add("-D", "define a macro; default value 1", "NAME[=VALUE]", false);
+  add("-U", "remove the definition of an earlier -D", "NAME", true);
 }
 
 void addDependencyOptions(CLI::App &command, DependencyOptions &options) {
   command.add_flag("--MD", options.isAsked,
                    "(or -MD) write a rule for make that lists the files that were read");
-  command.add_option("--MF", options.file, "(or -MF) where to write that rule")->type_name("FILE");
+  command.add_option("--MF", options.file, "(or -MF) the file for that rule")->type_name("FILE");
   command.add_option("--MT", options.target, "(or -MT) the target of that rule")
       ->type_name("TARGET");
 }

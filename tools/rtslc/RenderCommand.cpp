@@ -168,7 +168,7 @@ void printSummary(const RenderCommandOptions &options, const Summary &summary) {
       double(statistics.samples) / statistics.renderSeconds * 1e-6);
   printExceptions(render, statistics);
   if (statistics.badRays)
-    fmt::print(stderr, "{} rays had no direction or were not finite, and saw black\n",
+    fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
                statistics.badRays);
 }
 
@@ -194,7 +194,7 @@ void warn(const Summary &summary, Messages &messages) {
                                    : "infinite";
       const std::string place = one.place ? fmt::format("since {}:{}:{}", one.place->file,
                                                         one.place->line, one.place->column)
-                                          : "and no line was found to be the reason";
+                                          : "and the source line was not found";
       diagnostic.note(fmt::format("{} is {}, {}", sampleText(one.sample), what, place));
     }
     if (statistics.samplesNotFinite > summary.notFinite.size())
@@ -269,7 +269,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
     throw Error(
         ErrorCode::OutOfMemory,
         fmt::format(
-            "no memory for rays in flight: a thread needs {} bytes; ask for a smaller `--depth`",
+            "no memory for rays in flight: a thread needs {} bytes; give a smaller `--depth`",
             stackBytes));
 
   start = Clock::now();
@@ -310,28 +310,28 @@ void addRenderCommand(CLI::App &app, Action &action) {
   command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")
       ->required();
   addPictureOption(*command, options->output, options->format);
-  addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel, "samples a pixel");
+  addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel,
+           "samples per pixel");
   addSizeOption(*command, options->size);
   addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
-           "threads; all cores if not given");
+           "threads; default: all cores");
   addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
-           "how often a ray may lead to another; 0: camera rays only");
+           "limit of nested `trace` calls; 0: camera rays only");
   addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");
   addSetOption(*command, options->overrides);
   addChoice(*command, "--traversal", options->traversal,
             Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree},
                                         {"device", runtime::Traversal::Device}},
-            "embree: fast; device: the one that GPUs run");
-  addChoice(*command, "--target", options->common.compile.target,
-            Choices<Target>{{"host", Target::Host}, {"host-megakernel", Target::HostMegakernel}},
-            "host: the fastest way on this machine; host-megakernel: the program that GPUs run, on "
-            "the CPU");
+            "embree: fast; device: the traversal that GPUs use");
+  addChoice(
+      *command, "--target", options->common.compile.target,
+      Choices<Target>{{"host", Target::Host}, {"host-megakernel", Target::HostMegakernel}},
+      "host: the fastest code for this machine; host-megakernel: the GPU's program, on the CPU");
   command->add_flag("--print", options->prints,
-                    "show what shaders print, in the order of pixels, on standard output");
+                    "write the output of `print` to standard output, in the order of pixels");
   command->add_flag("--exceptions", options->exceptions,
-                    "end samples that send a bad ray, one too deep, or use an index out of range, "
-                    "and say how many; list all "
-                    "samples that are not finite");
+                    "end samples that send an invalid ray, exceed the depth limit, or use an index "
+                    "out of range, and count them; list all samples that are not finite");
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);

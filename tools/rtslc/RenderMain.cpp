@@ -11,7 +11,8 @@ using namespace rtsl;
 using namespace rtsl::tool;
 
 int main(int argc, char **argv) {
-  CLI::App app("renders with RTSL, compares pictures and reports what they cost", "rtslc");
+  CLI::App app("renders RTSL scenes, compares pictures and measures error against run time",
+               "rtslc");
   app.require_subcommand(1);
   Action action;
   addCheckCommand(app, action, &scene::buildScene);

@@ -109,8 +109,7 @@ report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions o
   report::Picture picture;
   picture.image = runtime::render(scene, options, &picture.statistics);
   if (runtime::failedMachineStacks(nullptr))
-    throw Error(ErrorCode::OutOfMemory,
-                "no memory for rays in flight; ask for a smaller `--depth`");
+    throw Error(ErrorCode::OutOfMemory, "no memory for rays in flight; give a smaller `--depth`");
   return picture;
 }
 
@@ -207,9 +206,8 @@ std::vector<Configuration> configurationsFor(const ReportOptions &options) {
           configurations.push_back(one);
       }
   if (configurations.empty())
-    throw Error(ErrorCode::UnknownName,
-                "no configuration is left by `--only`; their names are made of strict or fast, "
-                "embree or device, and recurse or split");
+    throw Error(ErrorCode::UnknownName, "no configuration matches `--only`; their names consist of "
+                                        "strict or fast, embree or device, and recurse or split");
   return configurations;
 }
 
@@ -295,7 +293,7 @@ void checkFolder(const ReportOptions &options, const std::string &fingerprint,
   if (earlier.is_discarded() || earlier.value("fingerprint", "") != fingerprint)
     throw Error(ErrorCode::FileUnwritable,
                 fmt::format("`{}` holds a report of another scene, shader, size or version; choose "
-                            "another `--out`, or pass `--fresh` to begin it anew",
+                            "another `--out`, or pass `--fresh` to replace it",
                             options.folder),
                 Place{options.folder});
 }
@@ -499,32 +497,35 @@ void addReportCommand(CLI::App &app, Action &action) {
   command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")
       ->required();
   command
-      ->add_option("--out", options->folder, "the folder of the report; an interrupted one goes on")
+      ->add_option("--out", options->folder,
+                   "the folder of the report; an interrupted report is continued")
       ->required()
       ->type_name("DIR");
   command
-      ->add_option("--reference", options->reference, "what to compare with; rendered if not given")
+      ->add_option("--reference", options->reference,
+                   "the reference picture; rendered if not given")
       ->type_name("IMAGE");
   command
       ->add_option_function<std::string>(
           "--budget", [options](const std::string &text) { options->budget = parseSeconds(text); },
-          "time of rendering for each configuration; the reference gets four times as much; 10s if "
-          "not given")
+          "rendering time for each configuration; the reference gets four times as much; default "
+          "10s")
       ->type_name("TIME");
   addWhole(*command, "--runs", options->runs, 2, 1000,
-           "independent runs with each number of samples; 8 if not given");
+           "independent runs with each number of samples; default 8");
   addSizeOption(*command, options->size);
   addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
-           "threads; all cores if not given");
+           "threads; default: all cores");
   addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
-           "how often a ray may lead to another");
+           "limit of nested `trace` calls");
   addSetOption(*command, options->overrides);
   command
-      ->add_option("--only", options->only,
-                   "only configurations with this in their names, such as embree; may be repeated")
+      ->add_option(
+          "--only", options->only,
+          "only configurations whose names contain this text, such as embree; may be repeated")
       ->type_name("TEXT")
       ->allow_extra_args(false);
-  command->add_flag("--fresh", options->fresh, "throw away what is in the folder");
+  command->add_flag("--fresh", options->fresh, "delete the contents of the folder first");
   command->add_flag("--json", options->json, "write the report's JSON to standard output as well");
   command->add_flag("-q,--quiet", options->quiet, "no progress");
   addPreprocessorOptions(*command, options->common.preprocessor);

@@ -31,7 +31,7 @@ bool hasEnding(const std::string &file, const std::string &ending) {
                          "\"camera\": {{\"class\": ...}}, "
                          "\"objects\": [{{\"mesh\": ..., \"material\": {{\"class\": ...}}}}]}}",
                          std::filesystem::path(file).filename().string()));
-  error.note(fmt::format("`rtslc check {}` looks for mistakes in the shaders alone", file));
+  error.note(fmt::format("`rtslc check {}` checks the shaders alone", file));
   throw error;
 }
 
@@ -62,7 +62,7 @@ void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {
   };
   command
       .add_option("--set", overrides,
-                  "change a value of the scene file, such as objects.3.mesh=bunny.obj")
+                  "override a value of the scene file, such as objects.3.mesh=bunny.obj")
       ->check(CLI::Validator(check, ""))
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);

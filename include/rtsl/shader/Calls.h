@@ -1,9 +1,9 @@
-//===- Calls.h - methods that trace and are called through references ------===//
+//===- Calls.h - methods that trace, called through references ------------===//
 //
-// Such a method was split at its traces like any other, and its caller at the call. Its frame lies
-// above that of the caller, for it is the same ray's: RTSL_CALL_HEADER bytes that say where the
-// caller goes on, then what it was given and returns, then what it needs when its own rays come
-// back.
+// Such a method was split at its traces like any other, and its caller at the call. Its frame is
+// above that of the caller, because it belongs to the same ray: RTSL_CALL_HEADER bytes for
+// returning to the caller, then its arguments and result, then the values that it needs after its
+// own traces.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,10 +13,10 @@
 #include <new>
 
 extern "C" {
-/// The ray goes on with `object`, on a frame above what ends at `end` (null: the caller has none);
-/// `resume` is the state in which the caller goes on. Gives where arguments lie.
+/// The ray continues with `object`, on a frame above `end` (null: the caller has none); `resume` is
+/// the state in which the caller continues. Returns the address of the arguments.
 void *rtsl_call(RtslState *state, const void *end, std::int32_t resume, RtslRef object);
-/// The caller's frame and object again. Gives the state that follows.
+/// Restores the caller's frame and object. Returns the next state.
 std::int32_t rtsl_return(RtslState *state);
 }
 
@@ -24,7 +24,7 @@ namespace rtsl {
 inline namespace RTSL_ARITHMETIC {
 
 namespace detail {
-/// A frame begins at a multiple of eight bytes, for it may hold addresses.
+/// A frame begins at a multiple of eight bytes, because it may contain addresses.
 inline char *frameBehind(void *end) {
   const auto at = reinterpret_cast<std::uintptr_t>(end);
   return static_cast<char *>(end) + (8 - at % 8) % 8;
@@ -32,7 +32,7 @@ inline char *frameBehind(void *end) {
 } // namespace detail
 
 /// Runs a method of `object` on a frame of its own, then the state `after` of the caller, whose
-/// frame is `frame`. `call` says which method it is, and what it is given.
+/// frame is `frame`. `call` has the method and its arguments.
 template <int N, typename Frame, typename Step, typename Call>
 inline Next callThen(State<N> &rt, const Frame &frame, Step after, Reference object,
                      const Call &call) {
@@ -46,19 +46,19 @@ inline Next callThen(State<N> &rt, Step after, Reference object, const Call &cal
   return -static_cast<Next>(Call::begin);
 }
 
-/// A method that was called is over.
+/// Returns from a called method.
 template <int N>
 inline Next returnToCaller(State<N> &rt) {
   return rtsl_return(rawState(rt));
 }
 
-/// The frame of a method that was called.
+/// The frame of a called method.
 template <typename Frame>
 inline Frame &calledFrameAt(void *memory) {
   return frameAt<Frame>(static_cast<char *>(memory) + RTSL_CALL_HEADER);
 }
 
-/// What the method that this frame's has called was given and returned.
+/// The arguments and result of the method that this frame's method has called.
 template <typename Call, typename Frame>
 inline const Call &callAbove(Frame &frame) {
   return calledFrameAt<Call>(detail::frameBehind(&frame + 1));

@@ -1,4 +1,4 @@
-//===- Common.h - min, mix, floor and the like ----------------------------===//
+//===- Common.h - min, mix, floor and similar functions -------------------===//
 //
 // The rules are those of docs/language.md, chapters 3 and 4.
 //
@@ -28,7 +28,7 @@ inline To bitsAs(From from) {
   return to;
 }
 
-/// For a choice whose other side is rare.
+/// For a condition that is nearly always true.
 constexpr bool isLikely(bool choice) {
 #if defined(__GNUC__)
   return __builtin_expect(choice, true);
@@ -37,8 +37,8 @@ constexpr bool isLikely(bool choice) {
 #endif
 }
 
-/// For what every round of a loop passes to a call, which spoils registers: g++ would have it in
-/// some all the same, and save and fetch it around each call.
+/// Keeps a value that each iteration of a loop passes to a call in memory: g++ would put it into a
+/// register, and save and restore it around each call.
 template <typename T>
 inline void keepInMemory([[maybe_unused]] T &value) {
 #if defined(__GNUC__)
@@ -46,8 +46,8 @@ inline void keepInMemory([[maybe_unused]] T &value) {
 #endif
 }
 
-/// The IEEE square root: one instruction. std::sqrt also asks each time whether errno is to be set,
-/// and with the intrinsic g++ clears the register's other lanes first.
+/// The IEEE square root: one instruction. std::sqrt also checks each time whether errno is to be
+/// set, and with the intrinsic g++ clears the register's other lanes first.
 inline float squareRoot(float x) {
 #if defined(__AVX__) && defined(__GNUC__) && !defined(__clang__)
   if (!__builtin_constant_p(x)) {
@@ -87,10 +87,10 @@ inline auto toUint(const T &value) {
 }
 
 //===----------------------------------------------------------------------===//
-// Choosing
+// Minima, maxima and selection
 //===----------------------------------------------------------------------===//
 
-/// y < x ? y : x: a NaN in x stays, in y it is passed over.
+/// y < x ? y : x: a NaN in x is returned, a NaN in y is ignored.
 template <typename X, typename Y>
 constexpr auto min(const X &a, const Y &b) {
   return each([](auto x, auto y) { return y < x ? y : x; }, a, b);
@@ -129,7 +129,7 @@ constexpr auto smoothstep(const Edge &low, const Edge &high, const X &x) {
       low, high, x);
 }
 
-/// Of zero and NaN it is the number itself.
+/// For zero and NaN the number itself.
 template <typename T>
 constexpr auto sign(const T &value) {
   return each(
@@ -141,7 +141,7 @@ constexpr auto sign(const T &value) {
 }
 
 namespace detail {
-/// choose(choose(first, second), third)...
+/// choose(choose(first, second), third), and so on
 template <typename T, typename Choose, int... I>
 constexpr auto chooseComponent(const T &v, Choose choose, std::integer_sequence<int, I...>) {
   auto result = part<0>(v);
@@ -245,7 +245,8 @@ template <typename T>
 inline auto trunc(const T &value) {
   return each([](float x) { return std::trunc(x); }, value);
 }
-/// To the nearest, halves to even: adding and taking away 2^23 leaves no room for a fraction.
+/// To the nearest, halves to even: adding 2^23 rounds off the fraction, subtracting it restores the
+/// number.
 template <typename T>
 inline auto roundEven(const T &value) {
   return each(
@@ -268,8 +269,8 @@ template <typename X, typename Y>
 inline auto mod(const X &value, const Y &divisor) {
   return each([](float x, float y) { return x - y * std::floor(x / y); }, value, divisor);
 }
-/// Both parts have the sign of x; the fraction of an infinity is 0. `whole` may be where the value
-/// comes from.
+/// Both parts have the sign of x; the fraction of an infinity is 0. `whole` may be the variable
+/// that is the argument.
 template <typename T>
 inline T modf(T value, T &whole) {
   whole = rtsl::trunc(value);
@@ -289,7 +290,7 @@ inline auto fma(const A &a, const B &b, const C &c) {
   return each([](float x, float y, float z) { return std::fma(x, y, z); }, a, b, c);
 }
 
-/// There is one NaN to see.
+/// All NaNs have the same bits.
 template <typename T>
 inline auto floatBitsToInt(const T &value) {
   return each([](float x) { return x != x ? 0x7fc00000 : bitsAs<int>(x); }, value);
@@ -327,8 +328,8 @@ inline glm::vec<L, float> frexp(const glm::vec<L, float> &x, glm::vec<L, int> &e
   return significand;
 }
 
-/// x * 2^exponent, rounded once: factors above 1 are exact, and where a step below 2^-126 rounds,
-/// what follows makes the result zero.
+/// x * 2^exponent, rounded once: factors above 1 are exact, and if a step below 2^-126 rounds, the
+/// following ones make the result zero.
 template <typename T, typename E>
 inline auto ldexp(const T &value, const E &exponents) {
   return each(

@@ -1,8 +1,8 @@
-//===- Describe.h - generated classes as the runtime sees them ------------===//
+//===- Describe.h - describes generated classes to the runtime ------------===//
 //
-// The runtime asks a program for its classes, their members and constructors, and for a function a
-// method slot (runtime/program/Program.h). Generated code answers with this: it names classes and
-// members, and offsets and sizes are the C++ compiler's own.
+// The runtime needs a program's classes, their members and constructors, and a function per method
+// slot (runtime/program/Program.h). Generated code describes them with this header: it names
+// classes and members, and offsets and sizes are those of the C++ compiler.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -31,8 +31,8 @@ inline namespace RTSL_VARIANT {
 // Types
 //===----------------------------------------------------------------------===//
 
-/// The name of a struct of the shader's and its fields; generated code overloads `describeFields`
-/// for each struct that a scene can set.
+/// The name of a user struct and its fields; generated code overloads `describeFields` for each
+/// struct that a scene can set.
 template <typename T>
 struct StructDescription {
   std::string name;
@@ -44,7 +44,7 @@ struct StructDescription {
 
 namespace detail {
 
-/// What the runtime has to know of a hit that rays leave.
+/// What the runtime computes for a hit from which rays may be sent.
 inline constexpr std::uint32_t ofRaysFromHits = RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS;
 
 /// Bytes from the start of an object to a member.
@@ -97,7 +97,7 @@ inline void describe(runtime::ValueType &type, const array<T, N> *);
 template <typename T, int Rank>
 inline void describe(runtime::ValueType &type, const Buffer<T, Rank> *);
 
-/// A reference, or a struct of the shader's.
+/// A reference, or a user struct.
 template <typename T>
 inline auto describe(runtime::ValueType &type, const T *)
     -> std::enable_if_t<std::is_class_v<T> && std::is_base_of_v<Reference, T>> {
@@ -151,12 +151,12 @@ void StructDescription<T>::add(const char *fieldName, F T::*field) {
 }
 
 //===----------------------------------------------------------------------===//
-// Constructors: the runtime passes arguments packed, as they lie in memory
+// Constructors: the runtime passes arguments packed, as they are in memory
 //===----------------------------------------------------------------------===//
 
 namespace detail {
 
-/// How a parameter lies in memory.
+/// The representation of a parameter in memory.
 template <typename T>
 struct Stored {
   using type = T;
@@ -205,7 +205,7 @@ struct Constructor<void (Owner::*)(Argument...)> {
   }
 };
 
-/// One that asks for the state, to call methods of other objects.
+/// One that takes the state, to call methods of other objects.
 template <typename Owner, int N, typename... Argument>
 struct Constructor<void (Owner::*)(State<N> &, Argument...)> {
   static std::vector<runtime::ValueType> parameters() {
@@ -285,9 +285,9 @@ public:
     info.methods.assign(names.begin(), names.end());
     return *this;
   }
-  /// RTSL_NEEDS_*: what of a hit the class's methods read.
+  /// RTSL_NEEDS_*: the parts of a hit that the class's methods read.
   ClassDescription &needs(std::uint32_t what) {
-    info.needs = what | detail::ofRaysFromHits; // who sends rays from where was not asked
+    info.needs = what | detail::ofRaysFromHits; // it is not known which classes send rays
     return *this;
   }
   /// Has `anyHit` for rays with these payloads.
@@ -301,7 +301,7 @@ private:
   runtime::ClassInfo &info;
 };
 
-/// Do the program's state and the runtime's agree, and does the compiler round each operation?
+/// Does the layout of the state match the runtime's, and does the compiler round each operation?
 template <int N>
 inline void selfTest() {
   static RtslState raw;
@@ -323,7 +323,7 @@ inline void selfTest() {
 #endif
 }
 
-/// Builds what a generated file exports.
+/// Builds the description that a generated file exports.
 template <int N>
 class Program {
 public:
@@ -334,7 +334,7 @@ public:
     result->needs = detail::ofRaysFromHits;
   }
 
-  /// A class of shaders; numbers count from 1. The description holds until the next class.
+  /// Adds a class; numbers count from 1. The description is valid until the next class.
   template <typename Class>
   ClassDescription<Class> add(std::uint32_t id, const char *name, const char *base,
                               const char *root) {
@@ -348,7 +348,7 @@ public:
   }
 
   runtime::Program::Slots &slots() { return result->slots; }
-  /// Methods were split at their traces: what runs a state, on the frames of all.
+  /// For methods that were split at their traces: the function that runs a state, and all frames.
   template <typename... Frames>
   void states(decltype(runtime::Program::Slots::States::run) run) {
     std::size_t size = 4;
@@ -356,7 +356,7 @@ public:
     result->slots.states.run = run;
     result->slots.states.frameSize = static_cast<std::int32_t>((size + 3) / 4 * 4);
   }
-  /// So many methods are called through references, on these frames.
+  /// The number of methods that are called through references, and their frames.
   template <typename... Frames>
   void calls(std::uint32_t methods) {
     std::size_t size = 0;
@@ -366,7 +366,7 @@ public:
         static_cast<std::uint32_t>(RTSL_CALL_HEADER + (size + 7) / 8 * 8);
   }
   void needs(std::uint32_t what) { result->needs = what | detail::ofRaysFromHits; }
-  /// RTSL_FEATURE_*: what samples do beside colors.
+  /// RTSL_FEATURE_*: side effects of samples.
   void features(std::uint32_t what) { result->slots.features = what; }
   void engine(runtime::Engine engine) { result->engine = engine; }
   RtslShaders finish() { return {std::move(result)}; }

@@ -1,7 +1,7 @@
-//===- Elementary.h - sin, pow, sqrt and the like -------------------------===//
+//===- Elementary.h - sin, pow, sqrt and similar functions ----------------===//
 //
-// Correctly rounded: the runtime library holds them, compiled from the source that the compiler's
-// own machine code uses (math). With RTSL_FAST they are those of the C library.
+// Correctly rounded: the functions of the runtime library, compiled from the source that the
+// compiler's own machine code uses (math). With RTSL_FAST they are those of the C library.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -9,7 +9,7 @@
 #include "rtsl/shader/Common.h"
 
 // clang-format off
-/// X(name) for each function of one number that C has, too.
+/// X(name) for each function of one number that C has as well.
 #define RTSL_ELEMENTARY_FUNCTIONS(X)                                                               \
   X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(sinh) X(cosh) X(tanh) X(asinh)                    \
   X(acosh) X(atanh) X(exp) X(exp2) X(expm1) X(log) X(log2) X(log1p)
@@ -25,7 +25,7 @@ float rtsl_inversesqrt(float x);
 float rtsl_atan2(float y, float x);
 float rtsl_pow(float x, float y);
 #if defined(__SSE2__)
-__m128 rtsl_pow4(__m128 x, __m128 y); // of each lane; the same bits in less time
+__m128 rtsl_pow4(__m128 x, __m128 y); // in each lane; the same bits, faster
 #endif
 }
 
@@ -46,7 +46,7 @@ RTSL_ELEMENTARY_FUNCTIONS(RTSL_DEFINE)
 #undef RTSL_DEFINE
 #undef RTSL_ELEMENTARY_FUNCTIONS
 
-// sin(pi x) and cos(pi x), which the C library has not got yet.
+// sin(pi x) and cos(pi x), which the C library does not have yet.
 template <typename T>
 inline auto sinpi(const T &value) {
   return each([](float x) { return rtsl_sinpi(x); }, value);
@@ -71,7 +71,7 @@ inline auto atan(const Y &a, const X &b) {
 
 namespace detail {
 #if defined(__SSE2__)
-/// Components 4 * Block and on; 1 where there are none.
+/// Components from 4 * Block on; 1 beyond the last one.
 template <int Block, int Count, typename T>
 inline __m128 lanesOf(const T &v) {
   const auto at = [&](auto lane) {
@@ -119,8 +119,8 @@ inline auto pow(const X &base, const Y &exponent) {
 }
 #undef RTSL_ELEMENTARY
 
-/// By squaring, from the lowest bit of |exponent| on; a negative exponent takes the reciprocal at
-/// the end. Each step rounds, so the error is below |exponent| ulp.
+/// By squaring, from the lowest bit of |exponent|; for a negative exponent the reciprocal is taken
+/// at the end. Each step rounds, so the error is below |exponent| ulp.
 template <typename T>
 constexpr auto powi(const T &value, int exponent) {
   return each(

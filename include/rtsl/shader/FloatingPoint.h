@@ -1,13 +1,13 @@
 //===- FloatingPoint.h - strict: each operation rounds once ---------------===//
 //
-// Both compilers fuse a*b + c by themselves where the target can, which changes results. They are
-// told not to before any other code is seen, GLM's included. `#pragma STDC FP_CONTRACT` would say
-// the same, but g++ does not know it. g++ also learns that nobody asks for floating-point
-// exceptions: then it may choose between two results instead of jumping, which changes none.
+// By default both compilers fuse a*b + c if the target can, which changes results. This is switched
+// off before any other code, including GLM's. `#pragma STDC FP_CONTRACT` would have the same
+// effect, but g++ does not support it. g++ is also told that floating-point exceptions are not
+// tested: then it may use a select instead of a branch, which does not change results.
 //
-// A file that defines RTSL_FAST (--fp=fast, docs/fast.md) lets them. One that defines
-// RTSL_UNCHECKED (--unchecked) trusts its indices (Types.h). RTSL_VARIANT is a namespace that keeps
-// the inline functions of these kinds of file apart where one program has several.
+// A file that defines RTSL_FAST (--fp=fast, docs/fast.md) permits fusing. One that defines
+// RTSL_UNCHECKED (--unchecked) does not clamp indices (Types.h). RTSL_VARIANT is a namespace that
+// separates the inline functions of these kinds of files within one program.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,7 +1,7 @@
 //===- Geometry.h - dot, length, normalize, refract, ... ------------------===//
 //
-// Sums run from the first term to the last. Where a difference could cancel, products are taken as
-// Kahan does it; where squares would leave the range of a float, vectors are scaled first. With
+// Sums are evaluated from the first term to the last. If a difference could cancel, products use
+// Kahan's method; if squares would leave the range of a float, vectors are scaled first. With
 // RTSL_FAST compilers may fuse, a division is a multiplication by the reciprocal, and lengths above
 // 2^64 are infinite.
 //
@@ -55,18 +55,18 @@ inline glm::vec3 cross(const glm::vec3 &a, const glm::vec3 &b) {
 }
 
 namespace detail {
-/// May the root of a sum of squares be taken as it is? Below, squares that are subnormal could
-/// reach the last digits of the sum; above, it has overflowed.
+/// May the square root of a sum of squares be taken directly? If it is smaller, subnormal squares
+/// could affect the last digits of the sum; if it is larger, it has overflowed.
 inline bool isGoodSquare(float square) {
 #if defined(RTSL_FAST)
   return isLikely(0x1p-96f <= square);
 #else
-  // The bits of what is not negative are in order as the numbers are, with a NaN above all.
+  // The bits of non-negative numbers are ordered like the numbers, with NaN above all.
   constexpr uint least = 0x0f800000u, infinite = 0x7f800000u; // 2^-96
   return isLikely(bitsAs<uint>(square) - least < infinite - least);
 #endif
 }
-/// The same, where nothing is divided by the root: quicker with g++ (bench/run shaders).
+/// The same, if nothing is divided by the root: faster with g++ (bench/run shaders).
 inline bool isGoodSquareOfLength(float square) {
 #if defined(__GNUC__) && !defined(__clang__) && !defined(RTSL_FAST)
   return isLikely(0x1p-96f <= square && !(infinity <= square));
@@ -74,7 +74,7 @@ inline bool isGoodSquareOfLength(float square) {
   return detail::isGoodSquare(square);
 #endif
 }
-/// What a vector is multiplied with, exactly, so that its squares stay in the range of a float.
+/// An exact factor for a vector, so that its squares stay in the range of a float.
 inline float scaleOfBadSquare([[maybe_unused]] float square) {
 #if defined(RTSL_FAST)
   return 0x1p100f;
@@ -108,7 +108,7 @@ inline float length(const T &v) {
   }
 }
 
-/// v / length(v), each component within 2.5 ulp; of the zero vector the zero vector.
+/// v / length(v), each component within 2.5 ulp; the zero vector gives the zero vector.
 template <typename T>
 inline T normalize(const T &v) {
   if constexpr (width<T> == 0) {
@@ -150,7 +150,7 @@ inline T refract(const T &i, const T &n, float eta) {
   return refracted;
 }
 
-/// Of the component of largest magnitude; the lowest on a tie.
+/// The index of the component of largest magnitude; the lowest on a tie.
 template <typename T>
 inline int dominantAxis(const T &v) {
   const T magnitude = rtsl::abs(v);
@@ -161,9 +161,9 @@ inline int dominantAxis(const T &v) {
   return axis;
 }
 
-/// Some unit vector at right angles to v, in the plane of its middle axis and the larger of the
-/// others (Hughes and Moeller, "Building an Orthonormal Basis from a Unit Vector", 1999). The zero
-/// vector gives the x axis.
+/// A unit vector perpendicular to v, in the plane of its middle axis and the larger of the others
+/// (Hughes and Moeller, "Building an Orthonormal Basis from a Unit Vector", 1999). The zero vector
+/// gives the x axis.
 inline glm::vec3 perpendicularTo(const glm::vec3 &v) {
   const bool inXY = std::fabs(v.z) < std::fabs(v.x);
   const glm::vec3 across =

@@ -1,7 +1,7 @@
 //===- Integers.h - arithmetic that is always defined ---------------------===//
 //
-// An int wraps as a uint does. x / 0 and x % 0 are 0, INT_MIN / -1 is INT_MIN. Of a shift only the
-// lowest five bits count.
+// An int wraps like a uint. x / 0 and x % 0 are 0, INT_MIN / -1 is INT_MIN. Only the lowest five
+// bits of a shift count are used.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -35,7 +35,7 @@ constexpr auto multiply(const A &a, const B &b) {
   return each([](int x, int y) { return detail::wrap(detail::unwrap(x) * detail::unwrap(y)); }, a,
               b);
 }
-/// From the first to the last.
+/// From left to right.
 template <typename A, typename B, typename... C>
 constexpr auto add(const A &a, const B &b, const C &...more) {
   return rtsl::add(rtsl::add(a, b), more...);
@@ -55,7 +55,7 @@ constexpr auto negate(const T &a) {
       },
       a);
 }
-/// By component: GLM subtracts a vec4 from 0, and a zero keeps its sign then.
+/// By component: GLM subtracts from 0, which does not negate zeros.
 template <int C, int R>
 inline glm::mat<C, R, float> negate(const glm::mat<C, R, float> &a) {
   glm::mat<C, R, float> result;
@@ -199,7 +199,7 @@ constexpr auto bitfieldReverse(const T &value) {
       },
       value);
 }
-/// The place of the lowest bit that is set; of 0 it is -1.
+/// The position of the lowest set bit; -1 for 0.
 template <typename T>
 constexpr auto findLSB(const T &value) {
   return each(
@@ -209,8 +209,8 @@ constexpr auto findLSB(const T &value) {
       },
       value);
 }
-/// The place of the highest bit that is set, of a negative int of the highest that is not; of 0 and
-/// -1 it is -1.
+/// The position of the highest set bit, or, for a negative int, of the highest clear bit; -1 for 0
+/// and -1.
 template <typename T>
 constexpr auto findMSB(const T &value) {
   return each(
@@ -224,7 +224,7 @@ constexpr auto findMSB(const T &value) {
       },
       value);
 }
-/// Counts are taken modulo 32, where GLSL leaves them open (`bits` of 32 is 32).
+/// Counts are taken modulo 32, where GLSL leaves the result undefined (`bits` of 32 is 32).
 template <typename T>
 constexpr auto bitfieldExtract(const T &value, int offset, int bits) {
   return each(

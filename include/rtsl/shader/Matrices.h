@@ -1,6 +1,6 @@
 //===- Matrices.h - products, determinant, inverse ------------------------===//
 //
-// GLM adds in another order and inverts without care, so only its types serve here.
+// GLM sums in another order and inverts less accurately, so only its types are used.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,7 +13,7 @@ inline namespace RTSL_VARIANT {
 template <int C, int R>
 using Matrix = glm::mat<C, R, float, glm::defaultp>;
 
-/// Matrix times vector; sums from the first column on.
+/// Matrix times vector; sums begin with the first column.
 template <int C, int R>
 inline glm::vec<R, float> mul(const Matrix<C, R> &m, const glm::vec<C, float> &v) {
   glm::vec<R, float> sum = m[0] * v[0];
@@ -108,7 +108,7 @@ inline void scalarsOf(Add add, const Matrix<C, R> &value) {
 }
 } // namespace detail
 
-/// A vector from the scalars of its pieces in order; what is too much is left out.
+/// A vector from the scalars of its pieces in order; excess scalars are ignored.
 template <typename Vector, typename... Piece>
 inline Vector vectorOf(const Piece &...pieces) {
   Vector result(0);
@@ -192,8 +192,8 @@ inline glm::mat3 inverseOfScaled(const glm::mat3 &m) {
                                    rtsl::cross(m[0], m[1]) / determinant));
 }
 
-/// Works on the transpose, whose rows are the columns at hand: the rows of its inverse are the
-/// columns of the result.
+/// Works on the transpose, whose rows are the columns of the argument: the rows of its inverse are
+/// the columns of the result.
 inline glm::mat4 inverseOfScaled(glm::mat4 rows) {
   glm::mat4 result(1.0f);
   for (int pivot = 0; pivot < 4; ++pivot) {

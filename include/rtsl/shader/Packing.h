@@ -1,7 +1,7 @@
 //===- Packing.h - several small numbers in one word ----------------------===//
 //
-// Component 0 lies in the lowest bits. Halves are converted in integers, so that every target gives
-// the same bits, NaN included.
+// Component 0 is in the lowest bits. Halves are converted with integer operations, so that every
+// target gives the same bits, NaN included.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -41,20 +41,21 @@ inline int halfFromFloat(float x) {
   const uint bits = bitsAs<uint>(x);
   const uint sign = bits >> 16 & 0x8000u;
   const uint magnitude = bits & 0x7fffffffu;
-  if (magnitude > 0x7f800000u) // of a NaN no sign is seen
+  if (magnitude > 0x7f800000u) // the sign of a NaN is not kept
     return 0x7e00;
   if (magnitude > 0x477fffffu) // 65536 and more
     return wrap(sign | 0x7c00u);
   if (magnitude < 0x38800000u) // multiples of 2^-24, the distance of floats just above 0.5
     return wrap(sign | (bitsAs<uint>(bitsAs<float>(magnitude) + 0.5f) - 0x3f000000u));
-  // 13 bits go, the exponent's bias falls by 112. A carry may reach the exponent, up to infinity.
+  // 13 bits are dropped, the exponent's bias is reduced by 112. A carry may reach the exponent, up
+  // to infinity.
   return wrap(sign | (magnitude - 0x38000000u + 0xfffu + (magnitude >> 13 & 1u)) >> 13);
 }
 inline float floatFromHalf(int half) {
   const uint bits = unwrap(half);
   const uint magnitude = bits & 0x7fffu;
   uint value = (magnitude << 13) + 0x38000000u;
-  if (magnitude < 0x400u) // read behind an exponent of 2^-14, then the leading one goes: exact
+  if (magnitude < 0x400u) // read with the exponent 2^-14, then the leading one is subtracted: exact
     value = bitsAs<uint>(bitsAs<float>((magnitude << 13) + 0x38800000u) - 0x1p-14f);
   else if (magnitude > 0x7bffu) // infinity and NaN
     value += 0x38000000u;

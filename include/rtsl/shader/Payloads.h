@@ -1,6 +1,6 @@
-//===- Payloads.h - rays that carry a struct, and the answers of anyHit ----===//
+//===- Payloads.h - rays that carry a struct, and results of anyHit -------===//
 //
-// The type of a payload is the type of its ray. A struct that rays carry says so:
+// The type of a payload is the type of its ray. A struct that rays carry has a member:
 //
 //     static constexpr rtsl::RayType rayType{1, rtsl::firstHit};
 //
@@ -12,10 +12,10 @@
 namespace rtsl {
 inline namespace RTSL_VARIANT {
 
-// How hits are searched for; 0: the nearest counts, and nobody is asked.
-inline constexpr std::uint32_t firstHit = RTSL_FIRST_HIT;    // no `closestHit` wants to know which
-inline constexpr std::uint32_t askAnyHit = RTSL_ASK_ANY_HIT; // materials may refuse hits
-inline constexpr std::uint32_t inOrder = RTSL_IN_ORDER;      // and are asked from near to far
+// How hits are searched for; 0: the nearest hit, without calling anyHit.
+inline constexpr std::uint32_t firstHit = RTSL_FIRST_HIT;    // no `closestHit` depends on which
+inline constexpr std::uint32_t askAnyHit = RTSL_ASK_ANY_HIT; // anyHit may reject hits
+inline constexpr std::uint32_t inOrder = RTSL_IN_ORDER;      // anyHit is called from near to far
 
 struct RayType {
   std::uint32_t number; // from 1
@@ -23,7 +23,7 @@ struct RayType {
 };
 
 namespace detail {
-/// What a ray has of its parent unless it is given.
+/// Properties that a ray inherits from its parent unless they are given.
 struct RayOptions {
   int root;
   std::uint32_t mask;
@@ -40,7 +40,7 @@ struct RayOptions {
   explicit RayOptions(State<N> &rt) : RayOptions(rt, rawState(rt)->rayRoot) {}
 };
 
-/// Hands a ray over to `send`, one of the three functions of the ABI that take one with a payload.
+/// Passes a ray to `send`, one of the three functions of the ABI that take one with a payload.
 template <int N, typename Payload, typename... More>
 inline void hand(decltype(rtsl_trace_payload) send, State<N> &rt, const glm::vec3 &origin,
                  const glm::vec3 &direction, float tmin, float tmax, Payload &payload,
@@ -52,7 +52,7 @@ inline void hand(decltype(rtsl_trace_payload) send, State<N> &rt, const glm::vec
 }
 } // namespace detail
 
-/// Sends a ray with a payload and waits for it. Behind the payload may stand its root, mask and
+/// Sends a ray with a payload and waits for it. The payload may be followed by its root, mask and
 /// time.
 template <int N, typename Payload, typename... More>
 inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
@@ -60,14 +60,14 @@ inline void trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direct
   detail::hand(rtsl_trace_payload, rt, origin, direction, tmin, tmax, payload, more...);
 }
 
-/// Prepares such a ray, which is traced when the state ends. Its payload lies in the frame.
+/// Prepares such a ray, which is traced when the state ends. Its payload is in the frame.
 template <int N, typename Step, typename Payload, typename... More>
 inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin, const glm::vec3 &direction,
                       float tmin, float tmax, Payload &payload, More... more) {
   detail::hand(rtsl_spawn_payload, rt, origin, direction, tmin, tmax, payload, more...);
   return static_cast<Next>(step);
 }
-/// One that takes the place of the ray that sends it, with the payload that this was given.
+/// A tail trace: the ray replaces the one that sends it, and keeps the payload of that ray.
 template <int N, typename Payload, typename... More>
 inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction, float tmin,
                       float tmax, Payload &payload, More... more) {
@@ -80,14 +80,14 @@ template <typename Payload>
 inline bool carries(const RtslState *ray) {
   return ray->rayType == Payload::rayType.number;
 }
-/// What it carries.
+/// The payload of the ray.
 template <typename Payload>
 inline Payload &payloadOf(const RtslState *ray) {
   return *static_cast<Payload *>(ray->payload);
 }
 
 //===----------------------------------------------------------------------===//
-// Answers of anyHit. They end it: whoever called them returns, and so does who called that.
+// Results of anyHit. They end it: the function that called them returns, and so do its callers.
 //===----------------------------------------------------------------------===//
 
 /// The hit does not count.
@@ -95,18 +95,18 @@ template <int N>
 inline void ignoreIntersection(State<N> &rt) {
   rawState(rt)->hitAnswer = RTSL_IGNORE;
 }
-/// The hit counts, and no other is looked for.
+/// The hit counts, and the search ends.
 template <int N>
 inline void terminateRay(State<N> &rt) {
   rawState(rt)->hitAnswer = RTSL_TERMINATE;
 }
-/// Has a function that was called answered?
+/// Has a called function ended anyHit?
 template <int N>
 inline bool isAnswered(State<N> &rt) {
   return rawState(rt)->hitAnswer != RTSL_ACCEPT;
 }
 
-/// What ends `anyHit` from the middle of an expression.
+/// Ends `anyHit` from within an expression.
 struct EndOfAnyHit {};
 template <int N>
 inline void endIfAnswered(State<N> &rt) {

@@ -31,7 +31,7 @@ inline void appendItem(runtime::PrintFormat &format, std::vector<std::uint32_t> 
 
 } // namespace detail
 
-/// A line of texts and values, shown after the picture (runtime::takePrintLog).
+/// A line of texts and values, shown after the image (runtime::takePrintLog).
 template <int N, typename... Item>
 inline void print(State<N> &rt, const Item &...items) {
   runtime::PrintFormat format;

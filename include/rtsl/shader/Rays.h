@@ -7,7 +7,7 @@
 namespace rtsl {
 inline namespace RTSL_VARIANT {
 
-/// What arrives at `origin` from `direction`.
+/// The color that arrives at `origin` from `direction`.
 template <int N>
 inline Color<N> trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction) {
   float arrived[RTSL_MAX_COLOR];
@@ -22,8 +22,8 @@ inline Color<N> trace(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &di
 // Methods that were split at their traces (docs/continuations.md)
 //===----------------------------------------------------------------------===//
 
-/// What comes after a state: `done`, or the number of the state that runs when the ray is back, or
-/// that none does.
+/// The next step after a state: `done`, or the number of the state to run after the ray, or that
+/// there is none.
 using Next = std::int32_t;
 inline constexpr Next done = 0;
 
@@ -35,14 +35,13 @@ inline Next traceThen(State<N> &rt, Step step, const glm::vec3 &origin,
   return static_cast<Next>(step);
 }
 
-/// Another state goes on at once, and no ray is sent.
+/// Continues with another state, without a ray.
 template <typename Step>
 constexpr Next goOn(Step step) {
   return -static_cast<Next>(step);
 }
 
-/// Prepares a ray that takes the place of the one that sends it: what it brings back is
-/// SampleColor.
+/// Prepares a tail trace: the ray replaces the one that sends it, and its result is SampleColor.
 template <int N>
 inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &direction) {
   rtsl_spawn_last(rawState(rt), origin.x, origin.y, origin.z, direction.x, direction.y,
@@ -50,7 +49,7 @@ inline Next traceLast(State<N> &rt, const glm::vec3 &origin, const glm::vec3 &di
   return RTSL_NEXT_LAST;
 }
 
-/// The color that the ray has brought back.
+/// The color that the ray has returned.
 template <int N>
 inline Color<N> traced(State<N> &rt) {
   Color<N> color;
@@ -58,7 +57,7 @@ inline Color<N> traced(State<N> &rt) {
   return color;
 }
 
-/// The frame of a method, in which its values survive its rays.
+/// The frame of a method, which holds its values while its rays are traced.
 template <typename Frame>
 inline Frame &frameAt(void *memory) {
   static_assert(alignof(Frame) <= 8 && std::is_trivially_copyable_v<Frame>);
@@ -75,7 +74,7 @@ template <int N>
 inline bool hit(State<N> &rt, float t, float error) {
   return rtsl_hit_within(rawState(rt), t, error) != 0;
 }
-/// Both in a primitive with scratch members.
+/// Both for a primitive with scratch members.
 template <int N, typename... Error>
 inline bool hit(State<N> &rt, Scratch &scratch, float t, Error... error) {
   const bool isNearest = rtsl::hit(rt, t, error...);
@@ -107,7 +106,8 @@ inline int lightCount(const State<N> &rt) {
   return static_cast<int>(rt.launch->lightCount);
 }
 
-/// The cosine of an angle of `illuminance`, which is in [0, pi]: beyond, every light counts.
+/// The cosine of an angle of `illuminance`, which is in [0, pi]; for larger angles every light
+/// counts.
 inline float cosOfAngle(float angle) {
   return rtsl::cos(rtsl::clamp(angle, 0.0f, static_cast<float>(3.14159265358979323846)));
 }
@@ -121,7 +121,7 @@ inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point,
                           point.z, normal.x, normal.y, normal.z, cosAngle) != 0;
 }
 
-/// The same, or without asking whether anything is in between.
+/// The same, with or without a test for shadows.
 template <int N>
 inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point, bool shadows) {
   return illuminate(rt, index, point, point, shadows ? -2.0f : static_cast<float>(RTSL_NO_SHADOWS));
@@ -137,7 +137,7 @@ public:
   /// Those within `angle` (radians) of the normal.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float angle)
       : Lights(rt, point, normal, angle, cosOfAngle(angle)) {}
-  /// For an angle whose cosine was known when the code was made.
+  /// For an angle whose cosine was known when the code was generated.
   Lights(State<N> &rt, const glm::vec3 &point, const glm::vec3 &normal, float /*angle*/,
          float cosine)
       : rt(rt), point(point), normal(normal), cosAngle(cosine), count(lightCount(rt)) {

@@ -9,7 +9,7 @@
 namespace rtsl {
 inline namespace RTSL_VARIANT {
 
-/// A color of the state: room for the largest, of which N components count.
+/// A color of the state: space for the most components, of which N are used.
 template <int N>
 struct StateColor : Color<N> {
   using Color<N>::Color;
@@ -34,7 +34,7 @@ template <int N>
 inline constexpr bool isColor<StateColor<N>> = true;
 
 /// RtslState (runtime/device/ray/Abi.h), with vectors in place of arrays; `rt_RayOrigin` is
-/// `rt.RayOrigin`. The two are the same memory, which compilers are told.
+/// `rt.RayOrigin`. The two share memory, which is declared to compilers.
 template <int N>
 struct [[gnu::may_alias]] State {
   const RtslLaunch *launch;
@@ -65,14 +65,14 @@ inline RtslState *rawState(State<N> &rt) {
   return reinterpret_cast<RtslState *>(&rt);
 }
 
-/// Before a texture is looked up: what it sets nothing of is zero.
+/// Before a texture lookup: results that the texture does not set are zero.
 template <int N>
 inline void clearTexture(State<N> &rt) {
   rt.TextureColor = Color<N>(0.0f);
   rt.FloatTextureValue = 0.0f;
 }
 
-/// The same where one texture looks up another, which leaves alone what the first has found.
+/// The same for a nested lookup, which preserves the results of the outer one.
 template <int N>
 class NestedLookup {
 public:
@@ -92,7 +92,7 @@ private:
   const float value;
 };
 
-/// An index, clamped; one that is out of range ends the sample (`rtslc compile --exceptions`).
+/// An index, clamped; an index out of range ends the sample (`rtslc compile --exceptions`).
 template <int N, typename Index, typename Count>
 inline uint checked(State<N> &rt, Index index, Count count) {
   if (static_cast<uint>(index) >= static_cast<uint>(count))
@@ -134,7 +134,7 @@ struct Scratch {
   void visit(Visit) {}
 };
 
-// What a class of shaders is.
+// Base classes of shader classes.
 struct Camera {};
 struct Primitive {};
 struct Texture {};
@@ -144,7 +144,7 @@ struct RayGeneration {};
 struct Miss {};
 struct Selector {};
 struct Exception {};
-struct Helper {}; // of no rt_ class
+struct Helper {}; // derived from no rt_ class
 
 template <typename T, int N>
 inline void loadAttribute(const State<N> &rt, int word, T &value) {
@@ -157,7 +157,7 @@ inline void storeAttribute(State<N> &rt, int word, const T &value) {
   std::memcpy(rt.attributes + word, &value, sizeof(T));
 }
 
-/// The attributes of the hit that won.
+/// The attributes of the winning hit.
 template <typename Attributes, int N>
 inline Attributes loadScratch(const State<N> &rt) {
   Attributes scratch;
@@ -171,7 +171,7 @@ inline void intersect(State<N> &rt, const Primitive &primitive) {
   typename Primitive::Scratch scratch;
   primitive.intersect(rt, scratch);
   if (static_cast<const Scratch &>(scratch)
-          .accepted) // a member of the author's may be called so, too
+          .accepted) // qualified, because a user member may have the same name
     scratch.visit([&](int word, const auto &value) { storeAttribute(rt, word, value); });
 }
 

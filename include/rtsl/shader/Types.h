@@ -1,7 +1,6 @@
-//===- Types.h - what GLM has no type for ---------------------------------===//
+//===- Types.h - types that GLM does not have -----------------------------===//
 //
-// Everything that a scene can set is aligned to 4 bytes and packed, as runtime/device/ray/Abi.h
-// says.
+// Everything that a scene can set is aligned to 4 bytes and packed, as in runtime/device/ray/Abi.h.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -20,8 +19,8 @@ inline namespace RTSL_VARIANT {
 
 using uint = std::uint32_t;
 
-/// A bool in memory: 32 bits. `{}` is false; without it there is no value, as GLM's vectors ask of
-/// what they hold.
+/// A bool in memory: 32 bits. `{}` is false; the default constructor leaves it uninitialised, as
+/// GLM's vectors require of their elements.
 struct Bool {
   std::uint32_t value;
 
@@ -42,8 +41,7 @@ constexpr uint clampIndex(uint index, uint count) {
   return count == 0 ? 0u : std::min(index, count - 1);
 }
 
-// With RTSL_UNCHECKED the elements of arrays, vectors, matrices and buffers are taken as they are
-// asked for.
+// With RTSL_UNCHECKED indices into arrays, vectors, matrices and buffers are not clamped.
 #ifdef RTSL_UNCHECKED
 template <typename Index>
 constexpr Index elementIndex(Index index, uint) {
@@ -84,12 +82,12 @@ struct Color {
   float components[N] = {};
 
   constexpr Color() = default;
-  /// The same in every component.
+  /// The same value in every component.
   constexpr explicit Color(float value) {
     for (float &component : components)
       component = value;
   }
-  /// Red, green and blue, where the color has these.
+  /// Red, green and blue, if the color has these.
   constexpr Color(float red, float green, float blue) : components{red, green, blue} {
     static_assert(N == 3, "use rgb<N>");
   }
@@ -112,7 +110,7 @@ inline constexpr bool isColor = false;
 template <int N>
 inline constexpr bool isColor<Color<N>> = true;
 
-/// float of vec3; a scalar is its own.
+/// float for vec3; a scalar type for itself.
 template <typename T>
 struct ScalarOf {
   using type = T;
@@ -128,11 +126,11 @@ struct ScalarOf<Color<N>> {
 template <typename T>
 using Scalar = typename ScalarOf<T>::type;
 
-/// What a scalar is where it does not lie in memory.
+/// The type of a scalar that is not in memory.
 template <typename T>
 using Value = std::conditional_t<std::is_same_v<T, Bool>, bool, T>;
 
-/// Component I; a scalar has itself in every component.
+/// Component I; a scalar is its own component for every I.
 template <int I, typename T>
 constexpr auto part(const T &value) {
   if constexpr (isColor<T>)
@@ -162,7 +160,7 @@ constexpr auto eachOf(Function function, std::integer_sequence<int, I...>, const
   }
 }
 
-/// `function` of the operands, component by component; scalars count for every component.
+/// `function` of the operands, by component; scalars are broadcast.
 template <typename Function, typename... T>
 constexpr auto each(Function function, const T &...operands) {
   constexpr int count = std::max({width<T>...});
@@ -288,14 +286,14 @@ constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, Value<T> value) {
   vector[I] = value;
   return vector;
 }
-/// The same for component `index`, clamped into what there is.
+/// The same for component `index`, clamped to the valid range.
 template <int L, typename T, glm::qualifier Q, typename Index>
 constexpr glm::vec<L, T, Q> with(glm::vec<L, T, Q> vector, Index index, Value<T> value) {
   vector[static_cast<int>(elementIndex(index, uint(L)))] = value;
   return vector;
 }
 
-/// Component or column `index`, clamped into what there is.
+/// Component or column `index`, clamped to the valid range.
 template <int L, typename T, glm::qualifier Q, typename Index>
 constexpr T &at(glm::vec<L, T, Q> &vector, Index index) {
   return vector[static_cast<int>(elementIndex(index, uint(L)))];
@@ -317,8 +315,8 @@ constexpr glm::vec<R, T, Q> at(const glm::mat<C, R, T, Q> &matrix, Index index) 
 // References and buffers
 //===----------------------------------------------------------------------===//
 
-/// An object of the scene; 0 is none. Generated code derives a type for each class that is asked
-/// for, with the methods that are called through it.
+/// An object of the scene; 0 is none. Generated code derives a type for each class whose methods
+/// are called through references.
 struct Reference {
   RtslRef object = 0;
 
@@ -328,7 +326,7 @@ struct Reference {
   friend constexpr bool operator!=(Reference a, Reference b) { return a.object != b.object; }
 };
 
-/// `T name[]`, `[][]` or `[][][]`: what a scene gives. An index is clamped; an element of an empty
+/// `T name[]`, `[][]` or `[][][]`: set by the scene. An index is clamped; an element of an empty
 /// buffer is zero.
 template <typename T, int Rank = 1>
 class Buffer {

@@ -1,7 +1,7 @@
 //===- Classic.h - the classic engine: camera, trace, shade, light --------===//
 //
 // A ray's color is what `shade` of the material that it hits writes to SampleColor, or the
-// background's. A shader asks for other rays with `trace` and for lights with `illuminance`. Each
+// background's. A shader traces other rays with `trace` and gathers lights with `illuminance`. Each
 // ray has an RtslState of its own on the stack, of which only what can be read is written: clearing
 // it would cost more than many a shader.
 //
@@ -19,7 +19,7 @@
 
 namespace rtsl::device {
 
-/// Makes state's ray start: nothing hit yet, seen up to `distance` in units of the direction.
+/// Initialises state's ray: nothing hit yet, visible up to `distance` in units of the direction.
 inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart &start,
                    float distance) {
   store(state.RayOrigin, origin);
@@ -38,13 +38,13 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart
   state.primitive = RTSL_NO_HIT;
 }
 
-/// What a ray has from the one that spawned it.
+/// What a ray inherits from the ray that sent it.
 inline void inherit(RtslState &state, const RtslState &parent) {
   state.launch = parent.launch;
   uint32_t needs = rtsl_needs(parent.launch);
   if (needs & RTSL_NEEDS_TIME)
     state.TimeSeed = parent.TimeSeed;
-  state.Time = parent.Time; // rays with a payload hand it on, whether anybody reads it or not
+  state.Time = parent.Time; // rays with a payload pass it on, whether it is read or not
   if (needs & RTSL_NEEDS_LAUNCH) {
     state.LaunchIndex[0] = parent.LaunchIndex[0];
     state.LaunchIndex[1] = parent.LaunchIndex[1];
@@ -57,7 +57,7 @@ inline void inherit(RtslState &state, const RtslState &parent) {
     state.events = parent.events;
 }
 
-/// State that a method may read although nobody wrote it in this ray.
+/// State that a method may read although it was not written for this ray.
 inline void setDefaults(RtslState &state, uint32_t components) {
   setColor(state.SampleColor, components, 0);
   setColor(state.LightColor, components, 0);
@@ -72,24 +72,20 @@ inline void setDefaults(RtslState &state, uint32_t components) {
   }
 }
 
-/// What a ray met, and the object whose method says what color that is.
+/// What a ray met, and the object whose method computes the color.
 struct Arrival {
-  enum Kind : uint32_t {
-    Nothing,
-    Surface,
-    Background
-  } kind; // Nothing: SampleColor is right already
+  enum Kind : uint32_t { Nothing, Surface, Background } kind; // Nothing: SampleColor is already set
   RtslRef object;
 };
 
-/// What is behind everything: there is no surface, so that textures have no coordinates but those
-/// that `miss` writes.
+/// The background: there is no surface, so the only texture coordinates are those that `miss`
+/// writes.
 inline Arrival arriveAtBackground(RtslState &state) {
   clearCoordinates(state, rtsl_needs(state.launch));
   return {Arrival::Background, state.launch->background};
 }
 
-/// Describes what the traversal of state's ray has found.
+/// Describes the result of traversing state's ray.
 inline Arrival arriveAt(RtslState &state, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
   if (found == RTSL_HIT) {
@@ -106,13 +102,13 @@ inline Arrival arriveAt(RtslState &state, uint32_t found) {
   return {Arrival::Nothing, 0};
 }
 
-/// Finds what state's ray meets and describes it.
+/// Traverses state's ray and describes the result.
 inline Arrival arrive(RtslState &state) {
   setDefaults(state, rtsl_color_components(state.launch));
   return arriveAt(state, rtsl_traverse(&state, 0));
 }
 
-/// Follows state's ray and puts the color that arrives into SampleColor.
+/// Follows state's ray and writes the color that arrives to SampleColor.
 inline void follow(RtslState &state) {
   Arrival arrival = arrive(state);
   if (arrival.kind == Arrival::Surface)
@@ -121,11 +117,11 @@ inline void follow(RtslState &state) {
     rtsl_rt_Miss_miss(&state, arrival.object);
 }
 
-/// Counts a ray that a shader sends. False if it is deeper than the launch allows: nothing is seen
-/// along it.
+/// Counts a ray that a shader sends. False if it is deeper than the launch allows: it is not
+/// traced.
 inline bool maySpawn(RtslState &parent, uint32_t *dimension) {
-  *dimension = parent.dimension++; // even if nothing is traced, so that depth does not change what
-                                   // is drawn later
+  *dimension = parent.dimension++; // even if nothing is traced, so that depth does not affect
+                                   // later random numbers
   bool isShallow = parent.Depth < int32_t(parent.launch->maxDepth); // `generate` is at -1
   if (!isShallow) {
     raise(parent, RTSL_EXCEPTION_STACK_OVERFLOW);
@@ -135,7 +131,7 @@ inline bool maySpawn(RtslState &parent, uint32_t *dimension) {
   return isShallow && !isAbandoned(parent);
 }
 
-/// Makes `child` a ray that `parent` sends, but for the ray itself.
+/// Initialises `child` as a ray that `parent` sends, except for the ray itself.
 inline void descend(RtslState &child, const RtslState &parent, uint32_t dimension) {
   inherit(child, parent);
   child.Depth = parent.Depth + 1;
@@ -181,8 +177,8 @@ struct ShadowRay {
   uint32_t randomKey[2];
 };
 
-/// What the traversal of a shadow ray returns. It takes values, so that the state of the ray that
-/// sends it stays in registers. On a GPU it is a function of its own.
+/// The traversal of a shadow ray. It is passed values, so that the state of the ray that sends it
+/// stays in registers. On a GPU it is a separate function.
 #ifdef __NVPTX__
 __attribute__((noinline))
 #endif
@@ -205,7 +201,7 @@ inline uint32_t traverseShadow(ShadowRay ray) {
   return rtsl_traverse(&state, RTSL_FIRST_HIT);
 }
 
-/// Is anything between `point` and the light that `shading` has just asked?
+/// Is there anything between `point` and the light that wrote LightDistance to `shading`?
 inline bool inShadow(const RtslState &shading, Vec3 point) {
   ShadowRay ray;
   ray.launch = shading.launch;
@@ -213,8 +209,7 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   ray.origin = point;
   ray.direction = load(shading.LightDirection);
   ray.start = startOf(shading, point, ray.direction);
-  // The light's own surface, if it has one, lies at the end: keep as clear of it as of where the
-  // ray starts.
+  // The light's own surface, if it has one, is at the end: keep as clear of it as of the start.
   ray.distance = shading.LightDistance;
   if (ray.distance < infinity)
     ray.distance -= minimum(ray.start.epsilon, ray.distance * 0x1p-10f);
@@ -229,13 +224,13 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   ray.mask = shading.rayMask;
   ray.root = shading.rayRoot;
   ray.depth = shading.Depth + 1;
-  // Draws are hashed; a key that no other ray has is enough.
+  // Draws are hashed; a key that no other ray has is sufficient.
   ray.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
   ray.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
   uint32_t found = traverseShadow(ray);
   if (found == RTSL_BAD_RAY)
     raise(shading, RTSL_EXCEPTION_BAD_RAY);
-  return found != RTSL_MISS; // along a bad ray no light comes
+  return found != RTSL_MISS; // no light arrives along a bad ray
 }
 
 /// isInCone for vectors whose squares would leave the range of a float.
@@ -243,8 +238,8 @@ __attribute__((cold)) inline bool isInConeOfExtremes(Vec3 direction, Vec3 axis, 
   return dot(normalized(direction), normalized(axis)) >= cosAngle;
 }
 
-/// Is the angle between two vectors of any length at most the one whose cosine is given? With
-/// squares, so without a root.
+/// Is the angle between two vectors of any length at most the one with the given cosine? Compares
+/// squares, without a square root.
 inline bool isInCone(Vec3 direction, Vec3 axis, float cosAngle) {
   float squares = dot(direction, direction) * dot(axis, axis);
   if (!(squares > 0x1p-60f && squares < 0x1p60f))
@@ -259,19 +254,19 @@ inline bool isInCone(Vec3 direction, Vec3 axis, float cosAngle) {
 /// whether light arrives.
 inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, float cosAngle) {
   const RtslLaunch &launch = *state.launch;
-  if (index >= launch.lightCount) // that a shader has chosen
+  if (index >= launch.lightCount) // an index that a shader has chosen
     return false;
   uint32_t components = rtsl_color_components(&launch);
   setVector(state.LightDirection, 0, 0, 0);
   state.LightDistance = infinity;
   setColor(state.LightColor, components, 0);
-  // The light sees the point that was asked for, the shader keeps the one that was hit.
+  // The light sees the given point, the shader keeps its hit point.
   Vec3 hitPoint = load(state.HitPoint);
   store(state.HitPoint, point);
   rtsl_rt_Light_illumination(&state, launch.lights[index]);
   store(state.HitPoint, hitPoint);
 
-  ++state.dimension; // one for the shadow ray, traced or not
+  ++state.dimension; // one draw for the shadow ray, traced or not
   if (isBlack(state.LightColor, components) || !(state.LightDistance > 0))
     return false;
   Vec3 direction = load(state.LightDirection);
@@ -280,8 +275,7 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   return cosAngle == RTSL_NO_SHADOWS || !inShadow(state, point);
 }
 
-/// What a sample of a pixel starts from. Row 0 is the top of the picture, where ScreenCoord.y is
-/// near 1.
+/// The start of a sample of a pixel. Row 0 is the top of the image, where ScreenCoord.y is near 1.
 inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                         uint32_t index, RtslEvents &events) {
   beginState(state, &launch);
@@ -321,15 +315,15 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
                         uint32_t index, RtslEvents &events) {
   placeSample(state, launch, x, y, index, events);
   state.du = state.dv = 0;
-  setVector(state.RayOrigin, 0, 0, 0); // what the camera leaves out
+  setVector(state.RayOrigin, 0, 0, 0); // defaults if the camera does not write them
   setVector(state.RayDirection, 0, 0, 0);
-  state.Epsilon = 0; // its ray sees everything in front of it
+  state.Epsilon = 0; // its ray sees everything in front of the origin
   state.HitDistance = infinity;
   rtsl_rt_Camera_generateRay(&state, launch.camera);
   setRay(state, load(state.RayOrigin), load(state.RayDirection), {0, 0, RTSL_NO_HIT}, infinity);
 }
 
-/// One sample of one pixel: the color that comes along its ray.
+/// One sample of one pixel: the color that arrives along its ray.
 inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index, float *color) {
   RtslState state;
   RtslEvents events;

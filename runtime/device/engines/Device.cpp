@@ -1,8 +1,8 @@
-//===- Device.cpp - the runtime that lies beside shader code --------------===//
+//===- Device.cpp - the runtime that is linked into shader code -----------===//
 //
 // Freestanding, without exceptions. Compiled to bitcode and linked into compiled programs, where it
-// inlines; also compiled by the host's compiler for programs whose shaders are C++. The slots and
-// rtsl_traverse are defined elsewhere.
+// is inlined; also compiled by the host's compiler for programs whose shaders are C++. The slots
+// and rtsl_traverse are defined elsewhere.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Classic.h"
@@ -38,8 +38,8 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
   return device::illuminate(*state, index, {px, py, pz}, {nx, ny, nz}, cosAngle);
 }
 
-#ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp asks the program
-/// What programs say otherwise that have more.
+#ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp calls the program
+/// Defaults that programs override if they define these functions.
 __attribute__((weak)) void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
 __attribute__((weak)) uint32_t rtsl_features(RtslState *) {
   return 0;

@@ -1,10 +1,10 @@
-//===- KeptState.h - what of a waiting ray's state is kept ----------------===//
+//===- KeptState.h - the state that is saved while a ray waits ------------===//
 //
-// The machine (Machine.h) has one state, that of the ray whose turn it is. While a ray waits for
-// one that it has sent, the state is the other's. What the waiting ray reads later is kept on its
-// level; the compiled program defines which fields these are
+// The machine (Machine.h) has one state, that of the current ray. While a ray waits for one that it
+// has sent, the state belongs to the other. What the waiting ray reads later is saved on its level;
+// the compiled program defines which fields these are
 // (codegen/passes/continuation/states/KeptState.h). The rest is never stored. State that is the
-// same for all rays of a sample is not kept either.
+// same for all rays of a sample is not saved either.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace rtsl::device {
 
-/// Numbers of what can be kept: the state variables, and what shaders do not see by name.
+/// Numbers of what can be kept: the state variables, and fields that shaders cannot name.
 enum KeptField : uint32_t {
 #define RTSL_STATE_VARIABLE(name, type) kept##name,
 #include "language/StateVariables.def"
@@ -36,15 +36,15 @@ constexpr int32_t keptAttributes = 2; // words of RtslState::attributes
 constexpr int32_t keptRayKinds = 3;   // 1: some rays have no payload, 2: some have one; 3: both
 
 extern "C" {
-/// Defined by the compiled program, constants: what is kept of the state of rays that wait.
+/// Defined by the compiled program, constants: the state of waiting rays that is kept.
 int32_t rtsl_rays_kept(RtslState *state, int32_t part);
-/// Defined by the compiled program, a constant: whether no ray waits but the first one of a sample,
+/// Defined by the compiled program, a constant: whether only the first ray of a sample ever waits,
 /// and only the first one has a frame. Then there is one level.
 int32_t rtsl_rays_wait_once(RtslState *state);
 }
 
-/// Does a ray of this type have a payload? Where all rays of the program have one, or none has,
-/// that is a constant.
+/// Does a ray of this type have a payload? If all rays of the program have one, or none has, this
+/// is a constant.
 inline bool hasPayload(const RtslState &state, uint32_t rayType) {
   const auto kinds = rtsl_rays_kept(const_cast<RtslState *>(&state), keptRayKinds);
   return kinds == 3 ? rayType != 0 : kinds == 2;
@@ -62,7 +62,7 @@ inline void forEachWord(void *begin, uint32_t count, Visit visit) {
       visit(static_cast<uint32_t *>(begin) + i);
 }
 
-/// Words of a field, with colors of so many components.
+/// Words of a field, for colors with this number of components.
 inline uint32_t wordsOf(KeptField field, uint32_t components) {
 #define RTSL_WORDS_float 1
 #define RTSL_WORDS_int 1
@@ -84,7 +84,7 @@ inline uint32_t wordsOf(KeptField field, uint32_t components) {
 }
 
 /// Calls visit(word) for each word of the state that is kept, always in the same order. A payload
-/// goes as its distance from `base`; without a base the words are only counted.
+/// is stored as its offset from `base`; without a base the words are only counted.
 template <typename Visit>
 inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
   const auto low = uint32_t(rtsl_rays_kept(&state, keptFieldsLow));
@@ -127,7 +127,7 @@ inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
                                         });
 }
 
-/// How many words that is.
+/// The number of those words.
 inline uint32_t keptWords(RtslState *state) {
   uint32_t count = 0;
   forEachKeptWord(*state, nullptr, [&](uint32_t *) { ++count; });

@@ -1,6 +1,6 @@
 //===- Machine.cpp - the machine's functions for programs that were split -===//
 //
-// Apart from Device.cpp, for they want what only such programs define.
+// Separate from Device.cpp, because they refer to functions that only such programs define.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Machine.h"
@@ -22,7 +22,7 @@ void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float d
 }
 
 void rtsl_spawn_last(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz) {
-  // Where it may not be sent, no color comes.
+  // If it may not be sent, the color is black.
   device::send(device::currentRay(ray), {ox, oy, oz}, {dx, dy, dz}, ray->SampleColor);
 }
 

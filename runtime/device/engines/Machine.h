@@ -1,25 +1,25 @@
 //===- Machine.h - the classic engine without recursion -------------------===//
 //
-// Shaders that were split at their traces do not call: a state returns what comes next. The machine
-// runs states and traces rays. There is one ray whose turn it is; its state is a local variable of
-// whoever runs the machine, so that a compiler that sees the whole program may keep it in
-// registers. The rays that wait for it lie on a stack of the machine's own, one level a ray:
+// Shaders that were split at their traces do not call: a state returns the next step. The machine
+// runs states and traces rays. There is one current ray; its state is a local variable of the
+// function that runs the machine, so that a compiler that sees the whole program may keep it in
+// registers. The rays that wait for it are on a stack of the machine's own, one level per ray:
 //
 //   level 0: the camera ray      resume, object | frame | what it reads later of its state
 //   level 1: a ray it sent       resume, object | ...
 //   ...
 //   the ray whose turn it is                    | frame
 //
-// What a ray's method calls with a frame of its own has it above that of the caller, on the same
-// level: it is the same ray.
+// A method that is called with a frame of its own has it above that of the caller, on the same
+// level: it belongs to the same ray.
 //
-// A ray behind whose last trace nothing happens gives its turn, and its level, to the ray that it
-// sends: such recursion is a loop. Other rays stay until theirs are back, so a ray of depth d lies
-// at level d at most, one higher above `generate`; how many levels a program needs for a limit of
-// depth is exactly what StackBound.h says. A payload lies in the frame of who sent the ray.
+// A ray with a tail trace gives its level to the ray that it sends: such recursion is a loop. Other
+// rays stay until theirs are back, so a ray of depth d is at level d at most, one higher above
+// `generate`; StackBound.h computes the exact number of levels that a program needs for a limit of
+// depth. A payload is in the frame of the ray that sent it.
 //
 // Rays start, meet surfaces and end by the functions of Classic.h and Programs.h, in the order of
-// the recursive engines. Therefore the colors are the same, bit for bit.
+// the recursive engines. Therefore the colors are bit-identical.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -32,18 +32,18 @@
 
 namespace rtsl::device {
 
-/// A ray that waits. Its frame follows, then the words of its state that are kept.
+/// A waiting ray. Its frame follows, then the kept words of its state.
 struct alignas(16) Level {
-  int32_t resume; // the state that runs when the ray that it sent is back
+  int32_t resume; // the state to run when the ray that it sent is back
   RtslRef object; // whose method runs
-  uint32_t frame; // of programs with calls: where the frame of what runs begins
+  uint32_t frame; // of programs with calls: where the current frame begins
 };
 
 inline uint64_t inGroups(uint64_t bytes) {
   return (bytes + 15) / 16 * 16;
 }
 
-/// Bytes of a level with such a frame and so many kept words. Groups of four words stay together.
+/// Bytes of a level with this frame and number of kept words. Groups of four words stay together.
 inline uint64_t levelSize(uint64_t frame, uint64_t keptWords) {
   return sizeof(Level) + inGroups(frame > 4 ? frame : 4) + inGroups(4 * keptWords);
 }
@@ -57,9 +57,9 @@ inline uint64_t levelSize(RtslState *state) {
   return levelSize(state, state->launch->referenceChain);
 }
 
-/// Bytes for the rays of a sample, and for `generate` below them.
+/// Bytes for the rays of a sample, including `generate` at the bottom.
 inline uint64_t stackSize(const RtslLaunch *launch, uint32_t maxDepth, uint32_t referenceChain) {
-  RtslState none; // each function of a program takes one
+  RtslState none; // each function of a program takes a state
   none.launch = launch;
   if (rtsl_rays_wait_once(&none))
     return levelSize(&none, referenceChain);
@@ -72,19 +72,19 @@ inline uint64_t stackSize(const RtslLaunch *launch, uint32_t maxDepth, uint32_t 
          levelSize(&none, referenceChain);
 }
 
-/// The ray whose turn it is.
+/// The ray that is being processed.
 struct CurrentRay {
-  RtslState state;             // first: shaders know their ray by its state
+  RtslState state;             // first: shaders are passed this pointer
   float color[RTSL_MAX_COLOR]; // what the last trace brought back
   RtslRef object;              // whose method runs
-  uint32_t how;                // rtsl_traverse searches for a ray with a payload
-  uint32_t frame;              // of programs with calls: where the frame of what runs begins
-  char *level;                 // where its frame lies, and what is kept when it waits
+  uint32_t how;                // how rtsl_traverse searches for a ray with a payload
+  uint32_t frame;              // of programs with calls: where the current frame begins
+  char *level;                 // its frame, and the words that are kept when it waits
 
-  // The ray that the state which runs sends. It is traced when the state is over.
-  PayloadRay sent; // rayType 0: without a payload, and only its origin and direction count
+  // The ray that the current state sends. It is traced when the state returns.
+  PayloadRay sent; // rayType 0: no payload, and only origin and direction are used
   uint32_t sentHow;
-  uint32_t sentDimension; // what its random numbers come from
+  uint32_t sentDimension; // the key of its random numbers
   bool isSent;            // false: it is deeper than the launch allows
 };
 
@@ -103,13 +103,13 @@ struct Rays {
   char *bottom;     // the stack, aligned to 16 bytes
   uint32_t waiting; // rays on it
   RtslEvents events;
-  int32_t next; // n > 0: its state n is to be run; or one of these:
+  int32_t next; // n > 0: run its state n; or one of these:
 
   static constexpr int32_t none = 0;   // the sample is over
-  static constexpr int32_t trace = -1; // what it meets is to be found
+  static constexpr int32_t trace = -1; // traverse the ray
 };
 
-/// The method of this object begins, on the ray's first frame.
+/// Begins the method of this object, on the ray's first frame.
 inline void beginOn(Rays &rays, RtslRef object) {
   CurrentRay &ray = rays.ray;
   if (undefinedWord(ray.state)) {
@@ -126,7 +126,7 @@ inline void beginOn(Rays &rays, RtslRef object) {
 // Sending
 //===----------------------------------------------------------------------===//
 
-/// The state that runs sends a ray, which brings back a color.
+/// The current state sends a ray, which returns a color.
 inline void send(CurrentRay &ray, Vec3 origin, Vec3 direction, float *color) {
   ray.isSent = maySpawn(ray.state, &ray.sentDimension);
   ray.sent.origin = origin;
@@ -136,14 +136,14 @@ inline void send(CurrentRay &ray, Vec3 origin, Vec3 direction, float *color) {
     setColor(color, rtsl_color_components(ray.state.launch), 0);
 }
 
-/// The same for a ray with a payload, which stays as it is if the ray may not be sent.
+/// The same for a ray with a payload, which is unchanged if the ray may not be sent.
 inline void send(CurrentRay &ray, const PayloadRay &sent, uint32_t how) {
   ray.isSent = maySpawn(ray.state, &ray.sentDimension);
   ray.sent = sent;
   ray.sentHow = how;
 }
 
-/// It is the turn of the ray that was sent.
+/// Makes the ray that was sent the current one.
 inline void takeTurn(CurrentRay &ray) {
   RtslState &state = ray.state;
   if (hasPayload(state, ray.sent.rayType)) {
@@ -154,7 +154,7 @@ inline void takeTurn(CurrentRay &ray) {
   }
 }
 
-/// Where the kept words of the ray's state lie.
+/// Address of the kept words of the ray's state.
 inline char *keptPart(const CurrentRay &ray) {
   auto *state = const_cast<RtslState *>(&ray.state);
   const auto frame =
@@ -162,7 +162,7 @@ inline char *keptPart(const CurrentRay &ray) {
   return ray.level + sizeof(Level) + inGroups(frame > 4 ? frame : 4);
 }
 
-/// The ray waits on the stack until the one that it has sent is back; then state `resume` runs.
+/// Pushes the ray onto the stack until the one that it has sent is back; then state `resume` runs.
 inline void wait(Rays &rays, int32_t resume) {
   CurrentRay &ray = rays.ray;
   auto &level = *static_cast<Level *>(__builtin_assume_aligned(ray.level, 16));
@@ -180,14 +180,15 @@ inline void wait(Rays &rays, int32_t resume) {
     ray.level += levelSize(&ray.state);
 }
 
-/// The last ray that waits goes on.
+/// Resumes the last waiting ray.
 inline void goOn(Rays &rays) {
   CurrentRay &ray = rays.ray;
   if (undefinedWord(ray.state)) { // what is not kept must not be read
     const RtslState before = ray.state;
     beginState(ray.state, before.launch);
     takeFromSample(ray.state, before);
-    if (rtsl_rays_kept(&ray.state, keptRayKinds) == 1) { // without payloads all rays have the same
+    if (rtsl_rays_kept(&ray.state, keptRayKinds) ==
+        1) { // without payloads, constant for the sample
       ray.state.Time = before.Time;
       ray.state.rayMask = before.rayMask;
       ray.state.rayRoot = before.rayRoot;
@@ -212,7 +213,7 @@ inline void goOn(Rays &rays) {
 // Steps
 //===----------------------------------------------------------------------===//
 
-/// The state in which the method begins that answers what the ray meets; 0 if the ray is over.
+/// The first state of the method for what the ray has met; 0 if the ray is over.
 inline int32_t firstState(RtslState *state, bool carries, Arrival::Kind kind) {
   if (kind == Arrival::Surface)
     return carries ? rtsl_rt_Material_closestHit_payload_first(state)
@@ -222,8 +223,7 @@ inline int32_t firstState(RtslState *state, bool carries, Arrival::Kind kind) {
   return 0;
 }
 
-/// Finds what the ray meets, and what comes next. Traversal is there once, whatever the ray
-/// carries.
+/// Finds what the ray meets, and the next step. One copy of the traversal serves all kinds of rays.
 inline int32_t begin(Rays &rays) {
   CurrentRay &ray = rays.ray;
   RtslState &state = ray.state;
@@ -237,7 +237,7 @@ inline int32_t begin(Rays &rays) {
 }
 
 /// Starts a sample, on a stack of stackSize(...) bytes: with `generate` if the program has it,
-/// or else with the camera's ray.
+/// otherwise with the camera ray.
 inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
                       uint32_t index) {
   CurrentRay &ray = rays.ray;
@@ -253,13 +253,13 @@ inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t
   rays.next = Rays::trace;
 }
 
-/// The ray is over: its color goes to the one that sent it.
+/// The ray is over: its color is returned to the ray that sent it.
 inline void endRay(Rays &rays) {
   rays.next = Rays::none;
   if (rays.waiting == 0)
     return;
   CurrentRay &ray = rays.ray;
-  if (!hasPayload(ray.state, ray.state.rayType)) // a payload is where it was all the time
+  if (!hasPayload(ray.state, ray.state.rayType)) // a payload is already in place
     copyColor(ray.color, ray.state.SampleColor, rtsl_color_components(ray.state.launch));
   goOn(rays);
 }
@@ -292,10 +292,10 @@ inline void runState(Rays &rays, int32_t number) {
   rays.next = Rays::trace;
 }
 
-/// What follows the last state of a sample.
+/// The end of a sample, after its last state.
 inline void endSample(Rays &rays) {
   RtslState &state = rays.ray.state;
-  state.Depth = state.launch->rayGeneration ? -1 : 0; // if a ray has taken its place
+  state.Depth = state.launch->rayGeneration ? -1 : 0; // in case a tail trace has replaced it
   endEvents(state);
 }
 

@@ -1,7 +1,7 @@
-//===- Megakernel.cpp - what makes a program need nobody else -------------===//
+//===- Megakernel.cpp - makes a program self-contained --------------------===//
 //
-// Linked into programs for the GPU and for `--target=host-megakernel`: traversal by our own tree,
-// memory functions, and the entries that run lanes.
+// Linked into programs for the GPU and for `--target=host-megakernel`: traversal of our own tree,
+// memory functions, and the entry points that run lanes.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Megakernel.h"
@@ -32,7 +32,7 @@ void rtsl_run_lane(const RtslJob *job, uint32_t lane) {
 }
 
 #ifdef __NVPTX__
-/// The kernel: a thread a lane, in whole warps.
+/// The kernel: one thread per lane, in whole warps.
 __attribute__((nvptx_kernel)) void rtsl_render(const RtslJob *job) {
   device::runLane(*job, __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
                             __nvvm_read_ptx_sreg_tid_x());

@@ -1,9 +1,9 @@
 //===- Megakernel.h - a whole scene as one program ------------------------===//
 //
-// The machine of Machine.h with its traversal, for as many lanes as there are. A lane renders a
-// pixel after the other; the lanes of a warp vote for what to run next: the ray's traversal, one of
-// the states, or the beginning of another sample. Those who want something else wait. How they
-// vote changes nothing but time: a lane's rays are its own.
+// The machine of Machine.h with its traversal, for any number of lanes. A lane renders one pixel
+// after another; the lanes of a warp vote for the next step: the ray's traversal, one of the
+// states, or the beginning of another sample. Lanes with another step wait. The vote affects only
+// the time: a lane's rays are its own.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -14,25 +14,25 @@
 
 namespace rtsl::device {
 
-/// The pixel that a lane renders. A local variable of the lane, as its rays are; what lies in
-/// memory is the stack of rays that wait.
+/// The pixel that a lane renders. A local variable of the lane, like its current ray; only the
+/// stack of waiting rays is in memory.
 struct Lane {
   double sum[RTSL_MAX_COLOR]; // of the pixel's samples, in their order
   uint64_t pixel;
-  uint32_t sample;    // the next one of the pixel
-  uint32_t notFinite; // samples of the pixel that are left out
+  uint32_t sample;    // the next one in the pixel
+  uint32_t notFinite; // samples of the pixel that were left out
 };
 
-/// What a lane wants that has found no pixel. Beside the values of Rays::next.
+/// The step of a lane without a pixel, in addition to the values of Rays::next.
 constexpr int32_t nothingLeft = -2;
 
-/// Stacks of so many bytes are local variables of the lane, where nothing else decides how large
-/// they are.
+/// Stacks up to this size are local variables of the lane, unless their size is fixed by the
+/// program.
 constexpr uint64_t localStackBytes = 2048;
 
-/// Whether the lane's stack is a local variable. Of one level that is a fact of the program, so
-/// that its words may stay in registers. On a GPU the words of a local variable lie beside those of
-/// the neighbouring lanes.
+/// Whether the lane's stack is a local variable. On CPUs only if the program needs just one level,
+/// so that its words may stay in registers. On a GPU the words of a local variable are interleaved
+/// with those of the neighbouring lanes.
 inline bool hasLocalStack(const RtslLaunch *launch, uint32_t maxDepth, uint32_t referenceChain) {
 #ifdef __NVPTX__
   return stackSize(launch, maxDepth, referenceChain) <= localStackBytes;
@@ -47,10 +47,10 @@ inline uint64_t laneBytes(uint32_t maxDepth, uint32_t referenceChain) {
   return stackSize(nullptr, maxDepth, referenceChain);
 }
 
-/// Puts a sample among the first that are not finite, whoever else does the same: each place keeps
-/// the earlier of two samples and hands the other one on to the next place.
+/// Adds a sample to the list of the first that are not finite; safe for concurrent calls: each
+/// entry keeps the earlier of two samples and passes the other one on to the next entry.
 inline void noteNotFinite(RtslStatus &status, uint64_t sample) {
-  uint64_t rank = ~sample; // the earlier the larger, and never 0
+  uint64_t rank = ~sample; // larger for earlier samples, and never 0
   for (uint64_t &place : status.firstNotFinite) {
     uint64_t held = __atomic_load_n(&place, __ATOMIC_RELAXED);
     while (held < rank && !__atomic_compare_exchange_n(&place, &held, rank, false, __ATOMIC_RELAXED,
@@ -63,8 +63,8 @@ inline void noteNotFinite(RtslStatus &status, uint64_t sample) {
   }
 }
 
-/// Adds the color of a sample that is over to its pixel. One that is not finite is left out of the
-/// pixel's mean, for it would take the whole pixel with it.
+/// Adds the color of a finished sample to its pixel. One that is not finite is left out of the
+/// pixel's mean, which would not be finite either.
 inline void addSample(const RtslJob &job, Lane &lane, const float *color) {
   bool isNotFinite = false;
   forEachComponent(rtsl_color_components(job.launch),
@@ -95,7 +95,7 @@ inline bool isToStop(const RtslJob &job) {
   return __atomic_load_n(&job.status->stop, __ATOMIC_RELAXED);
 }
 
-/// A pixel is left as far as it is.
+/// Stops rendering a pixel before it is complete.
 inline void leavePixel(const RtslJob &job, Lane &lane) {
   countUp(&job.status->unfinishedPixels);
   __atomic_fetch_add(&job.status->unfinishedSamples, uint64_t(lane.sample), __ATOMIC_RELAXED);
@@ -103,7 +103,7 @@ inline void leavePixel(const RtslJob &job, Lane &lane) {
   lane.sample = job.samplesPerPixel;
 }
 
-/// Takes a pixel that nobody has. False if there is none, or the job is to stop.
+/// Takes the next free pixel. False if there is none, or the job is to stop.
 inline bool takePixel(const RtslJob &job, Lane &lane) {
   if (isToStop(job))
     return false;
@@ -113,9 +113,9 @@ inline bool takePixel(const RtslJob &job, Lane &lane) {
   return lane.pixel < uint64_t(job.launch->width) * job.launch->height;
 }
 
-/// Starts the next sample, of this pixel or of another one.
+/// Starts the next sample, in this pixel or another one.
 inline void nextSample(const RtslJob &job, Lane &lane, Rays &rays) {
-#ifndef __NVPTX__ // where each sample would wait for the memory that all lanes share
+#ifndef __NVPTX__ // on a GPU each sample would wait for memory that all lanes share
   if (lane.sample != job.samplesPerPixel && isToStop(job))
     leavePixel(job, lane);
 #endif
@@ -147,7 +147,7 @@ inline void runLane(const RtslJob &job, uint32_t number) {
                     ? local
                     : reinterpret_cast<char *>(job.lanes + number * job.laneBytes);
   Lane lane;
-  lane.sample = job.samplesPerPixel; // of no pixel
+  lane.sample = job.samplesPerPixel; // no pixel yet
   bool hasPixel = false;
   rays.next = Rays::none;
   for (;;) {

@@ -1,6 +1,6 @@
 //===- Programs.cpp - the programs engine, for compiled programs ----------===//
 //
-// Apart from Device.cpp, for it wants the slots of methods with payloads.
+// Separate from Device.cpp, because it refers to the slots of methods with payloads.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Programs.h"

@@ -1,10 +1,10 @@
 //===- Programs.h - the programs engine: rays with a payload --------------===//
 //
-// A sample is what `generate` of the scene's ray generation leaves in SampleColor. The rays that it
-// sends carry a struct of the author's, the payload, whose type says which programs answer: the
-// `closestHit` of the material that is hit, the `miss` of the background, and on the way `anyHit`
-// of every material that could be hit (AnyHit.h). A ray without a payload is one of the classic
-// engine, at any depth, and the other way round.
+// A sample is what `generate` of the scene's ray generation writes to SampleColor. The rays that it
+// sends carry a struct of the author's, the payload, whose type selects the programs that handle
+// them: the `closestHit` of the material that is hit, the `miss` of the background, and during
+// traversal `anyHit` of every material that could be hit (AnyHit.h). A ray without a payload is
+// handled by the classic engine, at any depth, and vice versa.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -25,8 +25,8 @@ struct PayloadRay {
   uint32_t rayType;
 };
 
-/// Makes `child` the ray that `parent` sends; they may be the same. Nearer than the rounding error
-/// of its origin it sees nothing, whatever tmin is.
+/// Makes `child` the ray that `parent` sends; they may be the same. Below the rounding error of its
+/// origin it sees nothing, whatever tmin is.
 inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
                   const PayloadRay &ray) {
   beginChild(child, parent, [&](const RtslState &from) {
@@ -37,7 +37,7 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
     child.rayMask = ray.mask;
     child.rayRoot = ray.root;
     RayStart start = startOf(from, ray.origin, ray.direction);
-    if (!(ray.tmin == ray.tmin && ray.tmax == ray.tmax)) // one of them is no number
+    if (!(ray.tmin == ray.tmin && ray.tmax == ray.tmax)) // one of them is NaN
       start.isEasy = 0;
     if (!(ray.tmin < start.epsilon))
       start.epsilon = ray.tmin;
@@ -45,12 +45,12 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
   });
 }
 
-/// Describes what the traversal of state's ray has found, for its payload's programs.
+/// Describes the result of traversing state's ray, for its payload's programs.
 inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
   if (found == RTSL_HIT) {
     RtslRef material = launch.instances[state.instance].material;
-    if (!(how & RTSL_FIRST_HIT)) // otherwise no program reads of it
+    if (!(how & RTSL_FIRST_HIT)) // otherwise no program reads it
       describeHit(state);
     return {Arrival::Surface, material};
   }
@@ -61,13 +61,13 @@ inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t foun
   return {Arrival::Nothing, 0};
 }
 
-/// Finds what state's ray meets and describes it, for its payload's programs.
+/// Traverses state's ray and describes the result, for its payload's programs.
 inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
   setDefaults(state, rtsl_color_components(state.launch));
   return arriveWithPayloadAt(state, how, rtsl_traverse(&state, how));
 }
 
-/// `trace` with a payload. Deeper than the launch allows the payload stays as it is.
+/// `trace` with a payload. Deeper than the launch allows, the payload is unchanged.
 inline void trace(RtslState &parent, const PayloadRay &ray, uint32_t how) {
   uint32_t dimension;
   if (!maySpawn(parent, &dimension))
@@ -81,7 +81,7 @@ inline void trace(RtslState &parent, const PayloadRay &ray, uint32_t how) {
     rtsl_rt_Miss_miss_payload(&state, arrival.object);
 }
 
-/// Makes `state` that of `generate`, which is above all rays: the rays that it sends have depth 0.
+/// Makes `state` that of `generate`, which precedes all rays: the rays that it sends have depth 0.
 inline void startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                           uint32_t index, RtslEvents &events) {
   placeSample(state, launch, x, y, index, events);
@@ -90,7 +90,7 @@ inline void startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x
   setColor(state.SampleColor, rtsl_color_components(&launch), 0);
 }
 
-/// One sample of one pixel: what `generate` makes of it.
+/// One sample of one pixel: the result of `generate`.
 inline void generate(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index,
                      float *color) {
   RtslState state;

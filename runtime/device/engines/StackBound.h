@@ -1,10 +1,9 @@
-//===- StackBound.h - how many rays lie on the stack at once --------------===//
+//===- StackBound.h - the largest number of rays on the stack -------------===//
 //
-// A ray keeps its level while those that it has sent are under way, unless it gave the level to the
-// last of them. Which kinds of rays a kind may send is known when a program is complete, so the
-// most levels that any sample can take up is the longest way through that graph within the limit of
-// depth. It is exact: where shaders can send these rays at all, so many levels are in use.
-//
+// A ray keeps its level while the rays that it has sent are active, unless it gave the level to a
+// tail trace. Which kinds of rays a kind may send is known when a program is complete, so the most
+// levels that any sample can use is the longest path through that graph within the limit of depth.
+// It is exact: if shaders can send these rays at all, that many levels are in use.
 //===----------------------------------------------------------------------===//
 #pragma once
 
@@ -12,11 +11,11 @@
 
 namespace rtsl::device {
 
-/// Levels for one sample. `sent(kind)` and `sentLast(kind)` are bits, a kind each (rtsl_rays_sent).
+/// Levels for one sample. `sent(kind)` and `sentLast(kind)` are bit sets of kinds (rtsl_rays_sent).
 template <typename Sent, typename SentLast>
 inline uint32_t mostLevels(uint32_t kinds, bool hasGenerate, uint32_t maxDepth, Sent sent,
                            SentLast sentLast) {
-  // Levels from a ray of a kind on, itself included, if others may be sent `further` deep from it.
+  // Levels from a ray of a kind on, including itself, if rays may be sent `further` deep from it.
   uint32_t levels[RTSL_MAX_RAY_KINDS], deeper[RTSL_MAX_RAY_KINDS];
   for (uint32_t kind = 0; kind < kinds; ++kind)
     levels[kind] = 1;

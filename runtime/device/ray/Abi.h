@@ -1,9 +1,9 @@
-//===- Abi.h - what compiled shaders and the runtime agree on -------------===//
+//===- Abi.h - the interface between compiled shaders and runtime ---------===//
 //
-// Plain C layouts, the same for the host and the GPU, included by the runtime, by the code that
-// runs beside shaders and by the compiler, which takes every offset from here with offsetof. A vecN
+// Plain C layouts, the same for the host and the GPU, included by the runtime, by the code that is
+// linked into shaders and by the compiler, which takes every offset from here with offsetof. A vecN
 // is N floats with alignment 4, a matrix its columns one after the other, a color up to
-// RTSL_MAX_COLOR floats of which the first N count, a bool a 32-bit 0 or 1.
+// RTSL_MAX_COLOR floats of which the first N are used, a bool a 32-bit 0 or 1.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,14 +18,14 @@
 /// "none".
 typedef uint32_t RtslRef;
 
-/// A buffer member (`public vec3 vertices[];`) as it lies in a record. Elements are packed with
-/// alignment 4. Rank 1 uses size[0] alone; the first index of the source is the slowest.
+/// A buffer member (`public vec3 vertices[];`) as stored in a record. Elements are packed with
+/// alignment 4. Rank 1 uses size[0] alone; the first index of the source varies slowest.
 typedef struct RtslBuffer {
   uint32_t addressLow, addressHigh; // of element 0
   uint32_t size[3];
 } RtslBuffer;
 
-/// One thing to be hit: a geometry with a material. `primitive` is an RTSL object, or 0 for a
+/// Something that can be hit: a geometry with a material. `primitive` is an RTSL object, or 0 for a
 /// triangle mesh.
 typedef struct RtslInstance {
   RtslRef primitive;
@@ -33,10 +33,10 @@ typedef struct RtslInstance {
   uint32_t mesh;           // index into RtslLaunch::meshes when primitive is 0
   uint32_t firstPrimitive; // global id of its first primitive, for stable ordering
   uint32_t needs;          // RTSL_NEEDS_* of its material
-  uint32_t mask;           // seen by rays that have a bit of it in theirs
+  uint32_t mask;           // visible to rays whose mask has a common bit
   uint32_t anyHit;         // rtslRayTypeBit of the payloads for which its material has `anyHit`
-  float boundMin[3], boundMax[3]; // of an RTSL primitive, as `computeBounds` gave them
-  float lower[3], upper[3];       // the box in which it is looked for, a little larger
+  float boundMin[3], boundMax[3]; // of an RTSL primitive, from `computeBounds`
+  float lower[3], upper[3];       // the box for traversal, slightly larger
 } RtslInstance;
 
 /// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
@@ -56,12 +56,12 @@ typedef struct RtslBvhNode {
   uint32_t count[2];
 } RtslBvhNode;
 
-/// What a leaf holds: primitive `primitive` of instance `instance`.
+/// A leaf entry: primitive `primitive` of instance `instance`.
 typedef struct RtslLeafItem {
   uint32_t instance, primitive;
 } RtslLeafItem;
 
-/// What is the same for all rays of a launch.
+/// What all rays of a launch share.
 typedef struct RtslLaunch {
   uint8_t *records; // object records; the first 4 bytes of each are its class id
   const RtslInstance *instances;
@@ -70,77 +70,77 @@ typedef struct RtslLaunch {
   RtslRef camera;        // of the classic engine
   RtslRef rayGeneration; // of the programs engine
   RtslRef background;    // an rt_Miss object; 0: backgroundColor
-  RtslRef exception;     // an rt_Exception object; 0: what exceptionColor (Events.h) says
+  RtslRef exception;     // an rt_Exception object; 0: exceptionColor (Events.h) is used
   float backgroundColor[RTSL_MAX_COLOR];
   float ambient[RTSL_MAX_COLOR];
   uint32_t instanceCount, meshCount, lightCount;
   uint32_t colorComponents;
   uint32_t maxDepth; // 0: camera rays only
-  // how many references lead on from one object at most, one object to the next
+  // the maximum number of references from one object to the next, in a chain
   uint32_t referenceChain;
   uint32_t width, height;
   uint32_t seed;
   const RtslBvhNode *nodes; // device traversal; null if the host's own is used
   const RtslLeafItem *leafItems;
   uint32_t rootIsLeaf,
-      nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items to be tested one by one
-  uint32_t needs;   // RTSL_NEEDS_*: what the classes of the scene read
+      nodeCount;  // rootIsLeaf: there are no nodes, and nodeCount leaf items are tested one by one
+  uint32_t needs; // RTSL_NEEDS_*: what the classes of the scene read
   const void *host; // the host's own (for example its Embree scene); never read by device code
   struct RtslStatus
       *status; // of the job or the rendering that runs the launch; null while a scene is built
 } RtslLaunch;
 
-// What may go wrong in a sample. The first that does ends it (docs/language.md, "Exceptions").
+// What may go wrong in a sample. The first exception ends it (docs/language.md, "Exceptions").
 #define RTSL_EXCEPTION_NONE 0u
 #define RTSL_EXCEPTION_STACK_OVERFLOW 1u // a ray deeper than the launch allows
 #define RTSL_EXCEPTION_BAD_RAY 2u        // not finite, or without a direction
 #define RTSL_EXCEPTION_INDEX 3u          // an index out of range
 #define RTSL_EXCEPTIONS 4u
 
-/// How many of the samples that are not finite a status names: the first in the order of the
-/// picture.
+/// How many of the samples that are not finite a status records: the first in the order of the
+/// image.
 #define RTSL_FIRST_NOT_FINITE 8
 
-/// What all lanes of a job write, one after the other. The host clears it before.
+/// What all lanes of a job write, atomically. The host clears it before.
 typedef struct RtslStatus {
-  uint64_t nextPixel;           // the first that nobody has taken; row by row from the top left
-  uint64_t badRays;             // not finite, or without a direction: they saw color 0
+  uint64_t nextPixel;           // the first that no lane has taken; row by row from the top left
+  uint64_t badRays;             // not finite, or without a direction: their color is 0
   uint64_t raysTooDeep;         // deeper than the launch allows: they were not sent
   uint64_t samplesNotFinite;    // left out of the means of their pixels
-  uint64_t pixelsWithoutSample; // black, for none of their samples was finite
+  uint64_t pixelsWithoutSample; // black, because none of their samples was finite
   uint64_t firstNotFinite
       [RTSL_FIRST_NOT_FINITE]; // ~(pixel * samplesPerPixel + sample), descending; 0: none
   uint64_t unfinishedPixels,
-      unfinishedSamples;                // pixels that `stop` has cut off, and what they have
-  uint64_t exceptions[RTSL_EXCEPTIONS]; // samples that ended so
-  uint32_t stop;    // set by anybody: no lane begins another pixel, and on CPUs no other sample
+      unfinishedSamples;                // pixels that `stop` has cut off, and their samples
+  uint64_t exceptions[RTSL_EXCEPTIONS]; // samples that ended with each exception
+  uint32_t stop;    // set by anyone: no lane begins another pixel, or, on CPUs, another sample
   uint32_t problem; // RTSL_PROBLEM_*
 } RtslStatus;
 
 #define RTSL_PROBLEM_NONE 0u
-#define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane has begun
+#define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane was started
 
-/// A picture for the megakernel (runtime/device/engines/Megakernel.h) to render.
+/// An image for the megakernel (runtime/device/engines/Megakernel.h) to render.
 typedef struct RtslJob {
   const RtslLaunch *launch;
   RtslStatus *status;
   uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
   uint64_t laneBytes; // a multiple of 16
-  float *pixels;      // colorComponents a pixel, row by row from the top
+  float *pixels;      // colorComponents per pixel, row by row from the top
   uint32_t samplesPerPixel;
 } RtslJob;
 
-/// What happens in a sample beside its color.
+/// What happens in a sample, apart from its color.
 typedef struct RtslEvents {
-  uint32_t x, y, sample; // whose
-  uint32_t exception;    // RTSL_EXCEPTION_*: the first
-  uint32_t printed;      // how often `print` has run
+  uint32_t x, y, sample; // which sample
+  uint32_t exception;    // RTSL_EXCEPTION_*: the first one
+  uint32_t printed;      // how many times `print` has run
 } RtslEvents;
 
 /// The state of one ray. Parent and child ray have one each.
 typedef struct RtslState {
   const RtslLaunch *launch;
-  // of its sample; only programs with rtsl_features have them. Null while a scene is built
+  // of its sample; only programs with rtsl_features have events. Null while a scene is built
   RtslEvents *events;
 
   // The hit so far (committed), and what is being tested (candidate).
@@ -148,20 +148,20 @@ typedef struct RtslState {
   uint32_t candidateInstance, candidatePrimitive;
   float u, v;          // barycentrics of vertices 1 and 2 of a triangle hit
   float hitPointError; // bound of the distance of HitPoint from the surface that was hit
-  float hitError;      // bound of the error of HitDistance on a primitive; below 0: none is known
+  float hitError;      // bound of the error of HitDistance on a primitive; below 0: not known
   uint32_t leaves;     // the instance whose surface the ray starts on; RTSL_NO_HIT: none
-  uint32_t isEasy;     // 1: who made the ray knows that every traversal can take it (Spawn.h)
+  uint32_t isEasy;     // 1: every traversal is known to handle the ray (isEasySpawn in Spawn.h)
 
   // What the ray carries (docs/language.md, "Tracing and light").
-  void *payload; // the struct of the ray's type; means nothing where rayType is 0
+  void *payload; // the struct of the ray's type; undefined if rayType is 0
   // 0: the built-in payload of `shade`; others are numbered when a program is linked
   uint32_t rayType;
-  uint32_t rayMask; // instances that have no bit of it are not there
-  int32_t rayRoot;  // where it enters the scene; so far there is one root, number 0
-  // RTSL_ACCEPT...: what `anyHit` makes of the candidate; outside of it RTSL_ACCEPT
+  uint32_t rayMask; // instances that have no common bit with it are invisible
+  int32_t rayRoot;  // the root of the scene where it enters; so far there is only root 0
+  // RTSL_ACCEPT...: the answer of `anyHit` for the candidate; outside of it RTSL_ACCEPT
   uint32_t hitAnswer;
 
-  // Counter-based random numbers: (pixel, sample) make the key, `dimension` counts what was drawn.
+  // Counter-based random numbers: (pixel, sample) form the key, `dimension` counts the draws.
   uint32_t randomKey[2];
   uint32_t dimension;
 
@@ -178,17 +178,18 @@ typedef struct RtslState {
   // What `intersect` wrote to scratch members for the hit so far.
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
 
-  // What a traversal keeps meanwhile (Hit.h).
+  // Temporary values of a traversal (Hit.h).
   float foundDistance; // t of the hit so far
-  float nearest;       // t by which it is compared; without a hit, where the ray ends
+  float nearest;       // t that candidates are compared with; without a hit, the end of the ray
   float candidateNear,
-      candidateFar; // where the ray is in the box of the RTSL primitive that is being tested
-  uint32_t areAttributesLost; // 1: a hit that did not win has written over those of the hit so far
+      candidateFar; // range of the ray in the box of the RTSL primitive that is being tested
+  uint32_t areAttributesLost; // 1: a hit that lost has overwritten those of the hit so far
 } RtslState;
 
 #define RTSL_NO_HIT 0xffffffffu
 
-/// The bit of a ray type in RtslInstance::anyHit. Some share one; then `anyHit` is asked in vain.
+/// The bit of a ray type in RtslInstance::anyHit. If two types share a bit, `anyHit` may be called
+/// without effect.
 static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
   return 1u << (rayType & 31u);
 }
@@ -198,14 +199,13 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_IGNORE 1u    // ignoreIntersection()
 #define RTSL_TERMINATE 2u // terminateRay()
 
-// How rtsl_traverse searches. Without any: the nearest hit, and `anyHit` programs are not asked.
-#define RTSL_FIRST_HIT 1u // whether there is a hit at all; what is committed means nothing
-#define RTSL_ASK_ANY_HIT                                                                           \
-  2u // `anyHit` of the material may refuse a hit, in whatever order hits are found
-#define RTSL_IN_ORDER 4u // ... asked in the order of (t, instance, primitive), until one accepts
+// How rtsl_traverse searches. Without any: the nearest hit, without calling `anyHit`.
+#define RTSL_FIRST_HIT 1u   // only whether there is a hit at all; the committed hit is meaningless
+#define RTSL_ASK_ANY_HIT 2u // `anyHit` of the material may reject a hit, in any order of hits
+#define RTSL_IN_ORDER 4u // ... called in the order of (t, instance, primitive), until one accepts
 
 // RtslLaunch::needs: state that some method of the scene reads. RtslInstance::needs: what its
-// material's `shade` reads, itself or through what it calls. The rest is not computed.
+// material's `shade` or its callees read. The rest is not computed.
 #define RTSL_NEEDS_TEXTURE_COORDINATES 1u // TextureUV TextureUVW
 #define RTSL_NEEDS_DERIVATIVES 2u         // dPdu dPdv dsdu dsdv dtdu dtdv
 #define RTSL_NEEDS_TRANSFORMS 4u          // ObjectToWorld WorldToObject
@@ -214,27 +214,26 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_TIME 32u               // Time TimeSeed
 #define RTSL_NEEDS_LAUNCH 64u             // LaunchIndex LaunchSize
 #define RTSL_NEEDS_LENS 128u              // LensCoord
-#define RTSL_NEEDS_NORMALS                                                                         \
-  256u // GeometricNormal ShadingNormal; whoever sends rays from hits needs them too
-#define RTSL_NEEDS_ANY_HIT 512u // not read, but asked: some ray's hits may be refused
+#define RTSL_NEEDS_NORMALS 256u // GeometricNormal ShadingNormal; also used to send rays from hits
+#define RTSL_NEEDS_ANY_HIT 512u // no state: some ray's hits may be rejected
 #define RTSL_NEEDS_CANDIDATE                                                                       \
   1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
-#define RTSL_NEEDS_HIT_ERRORS 2048u // not read, but used: rays leave hits, so how exact t is counts
+#define RTSL_NEEDS_HIT_ERRORS 2048u // no state: rays leave hits, so the error of t matters
 #define RTSL_NEEDS_ALL 4095u
 
-// What rtsl_traverse answers.
+// Results of rtsl_traverse.
 #define RTSL_MISS 0u
 #define RTSL_HIT 1u
-#define RTSL_BAD_RAY 2u // not finite, or no direction: nothing is seen along it
+#define RTSL_BAD_RAY 2u // not finite, or no direction: it is not traced
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 //===----------------------------------------------------------------------===//
-// Defined by the compiled program: one entry a method slot, a switch over the classes that the
-// scene uses (one class: a direct call). `object` must be of a class derived from the slot's base.
-// A class that does not define the method does nothing there.
+// Defined by the compiled program: one entry point per method slot, a switch over the classes that
+// the scene uses (one class: a direct call). `object` must be of a class derived from the slot's
+// base. For a class that does not define the method it does nothing.
 //===----------------------------------------------------------------------===//
 #define RTSL_SLOT(base, method) void rtsl_##base##_##method(RtslState *state, RtslRef object);
 #include "language/Slots.def"
@@ -243,21 +242,21 @@ extern "C" {
   void rtsl_##base##_##method##_payload(RtslState *state, RtslRef object);
 #include "language/PayloadSlots.def"
 
-// What programs can do if they were compiled so. The rest costs nothing.
+// Features of programs that were compiled with them. Others cost nothing.
 #define RTSL_FEATURE_EXCEPTIONS 1u
 #define RTSL_FEATURE_PRINT 2u
-#define RTSL_FEATURE_UNHEEDED 4u // exceptions are noted, and no sample ends by them
+#define RTSL_FEATURE_UNHEEDED 4u // exceptions are recorded, but do not end samples
 #define RTSL_FEATURE_EVENTS 7u   // any of these: states have RtslState::events
-// For tests: what nobody has written is filled with a pattern (Undefined.h).
+// For tests: uninitialised state is filled with a pattern (Undefined.h).
 #define RTSL_FEATURE_UNDEFINED_BYTES 8u
 #define RTSL_FEATURE_UNDEFINED_NAN 16u
 
 /// A set of RTSL_FEATURE_*; a constant.
 uint32_t rtsl_features(RtslState *state);
 
-/// What the launches of a program have in common: RtslLaunch::needs and
-/// RtslLaunch::colorComponents. runtime/device defines both weakly, from the launch. A compiled
-/// program defines them as constants, so that what it does not need folds away.
+/// What all launches of a program share: RtslLaunch::needs and RtslLaunch::colorComponents.
+/// runtime/device defines both weakly, from the launch. A compiled program defines them as
+/// constants, so that what it does not need is folded away.
 uint32_t rtsl_needs(const RtslLaunch *launch);
 uint32_t rtsl_color_components(const RtslLaunch *launch);
 
@@ -282,8 +281,8 @@ uint32_t rtsl_hit_within(RtslState *state, float t, float error);
 void rtsl_trace(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz,
                 float *color);
 
-/// `trace(origin, direction, tmin, tmax, payload, root, mask, time)`. `how` is what rtsl_traverse
-/// takes.
+/// `trace(origin, direction, tmin, tmax, payload, root, mask, time)`. `how` is that of
+/// rtsl_traverse.
 void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy,
                         float dz, float tmin, float tmax, void *payload, int32_t root,
                         uint32_t mask, float time, uint32_t rayType, uint32_t how);
@@ -292,8 +291,8 @@ void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float d
 
 /// One step of `illuminance (P [, N, angle])`: light number `index`. Writes LightDirection,
 /// LightDistance and LightColor of `state`; returns 1 if light arrives (in the cone, not black, not
-/// in shadow) so that the body is to run. Without a cone pass cosAngle = -2; RTSL_NO_SHADOWS:
-/// without a cone, and whatever is in between. False of a light that there is not.
+/// in shadow) and the body is to run. Without a cone pass cosAngle = -2; RTSL_NO_SHADOWS: without a
+/// cone and without shadows. 0 if there is no such light.
 uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx,
                           float ny, float nz, float cosAngle);
 
@@ -302,7 +301,7 @@ float rtsl_rand(RtslState *state);
 /// `randOpen()`: uniform in (0, 1).
 float rtsl_rand_open(RtslState *state);
 
-/// Notes that the sample has met an exception.
+/// Records that the sample has met an exception.
 void rtsl_raise(RtslState *state, uint32_t exception);
 
 /// Defined by the host: `print` number `format` of the program, with the words of its values.
@@ -312,7 +311,7 @@ void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32
 /// floats.
 void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
-/// The same of the programs engine: runs `generate` of the launch's rayGeneration.
+/// The same for the programs engine: runs `generate` of the launch's rayGeneration.
 void rtsl_generate(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 //===----------------------------------------------------------------------===//
@@ -320,28 +319,27 @@ void rtsl_generate(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sa
 // a piece of a method between two traces; numbers start at 1.
 //===----------------------------------------------------------------------===//
 
-/// Defined by the compiled program: runs a state on the frame of its ray. Returns what comes next:
-/// 0, the method is over; n > 0, trace the ray that was spawned, then run state n; -n < 0, run
-/// state n at once; RTSL_NEXT_LAST, trace the ray that was spawned in the place of this one, which
-/// is over.
+/// Defined by the compiled program: runs a state on the frame of its ray. Returns the next step: 0,
+/// the method is over; n > 0, trace the ray that was spawned, then run state n; -n < 0, run state n
+/// at once; RTSL_NEXT_LAST, trace the ray that was spawned in place of this one, which is over.
 #define RTSL_NEXT_LAST (-2147483647 - 1)
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame);
 
-/// Defined by the compiled program: bytes of its largest frame, a multiple of 4, with the frames of
-/// what is called on top of it. `chain` is RtslLaunch::referenceChain.
+/// Defined by the compiled program: bytes of its largest frame, a multiple of 4, including the
+/// frames of calls above it. `chain` is RtslLaunch::referenceChain.
 int32_t rtsl_frame_size(RtslState *state, int32_t chain);
 
 // Some calls have a frame of their own, above that of the caller. It begins with these words.
-#define RTSL_CALL_RESUME 0u  // the state in which the caller goes on
+#define RTSL_CALL_RESUME 0u  // the state in which the caller continues
 #define RTSL_CALL_OBJECT 4u  // the caller's
-#define RTSL_CALL_BELOW 8u   // bytes from the beginning of the caller's frame
+#define RTSL_CALL_BELOW 8u   // bytes from the beginning of the caller's frame to this one
 #define RTSL_CALL_HEADER 16u // arguments and results follow
 /// Defined by the compiled program, a constant: whether there are such calls.
 int32_t rtsl_calls(RtslState *state);
-/// The ray goes on with `object`, on a frame so many bytes further up.
+/// The ray continues with `object`, on a frame this many bytes further up.
 void rtsl_move_frame(RtslState *state, int32_t bytes, RtslRef object);
 
-/// Defined by the compiled program: the states in which methods begin that the runtime starts and
+/// Defined by the compiled program: the first states of the methods that the runtime starts and
 /// that may trace. 0: there is no such method.
 int32_t rtsl_rt_Material_shade_first(RtslState *state);
 int32_t rtsl_rt_Miss_miss_first(RtslState *state);
@@ -353,23 +351,22 @@ int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state);
 /// returns.
 void rtsl_spawn(RtslState *parent, float ox, float oy, float oz, float dx, float dy, float dz);
 
-/// The same for a ray with a payload, which stays where it is until the ray is back.
+/// The same for a ray with a payload, which is not moved until the ray is back.
 void rtsl_spawn_payload(RtslState *parent, float ox, float oy, float oz, float dx, float dy,
                         float dz, float tmin, float tmax, void *payload, int32_t root,
                         uint32_t mask, float time, uint32_t rayType, uint32_t how);
 
-/// The same for a trace behind which nothing happens: the ray takes the place of the one that sends
-/// it.
+/// The same for a tail trace: the ray replaces the one that sends it.
 void rtsl_spawn_last(RtslState *ray, float ox, float oy, float oz, float dx, float dy, float dz);
 void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float dx, float dy,
                              float dz, float tmin, float tmax, void *payload, int32_t root,
                              uint32_t mask, float time, uint32_t rayType, uint32_t how);
 
 /// Defined by the compiled program, for the bound of the stack
-/// (runtime/device/engines/StackBound.h): how many kinds of rays there are, at most
-/// RTSL_MAX_RAY_KINDS. Kind 0 are those without a payload, kind n those of payload type n;
-/// `generate`, if the program has it, is the last. And, as bits, the kinds that the programs of one
-/// may send and come back from, or send last.
+/// (runtime/device/engines/StackBound.h): the number of kinds of rays, at most RTSL_MAX_RAY_KINDS.
+/// Kind 0 are those without a payload, kind n those of payload type n; `generate`, if the program
+/// has it, is the last. And, as bits, the kinds that the programs of one kind may send and wait
+/// for, or send by a tail trace.
 #define RTSL_MAX_RAY_KINDS 32
 int32_t rtsl_ray_kinds(RtslState *state);
 int32_t rtsl_rays_sent(RtslState *state, int32_t kind);
@@ -378,8 +375,8 @@ int32_t rtsl_rays_sent_last(RtslState *state, int32_t kind);
 /// Second half: the color that came back, colorComponents floats.
 const float *rtsl_trace_result(RtslState *parent);
 
-/// Defined by the host: memory for the rays of one sample, aligned to 16 bytes, the calling
-/// thread's own until it asks again. Null if there is not so much.
+/// Defined by the host: memory for the rays of one sample, aligned to 16 bytes, owned by the
+/// calling thread until its next call. Null if there is not enough memory.
 void *rtsl_machine_stack(uint64_t bytes);
 
 /// rtsl_sample, or rtsl_generate, by the machine: the same color, bit for bit. Black if there is no
@@ -388,15 +385,15 @@ void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_
                        float *color);
 
 //===----------------------------------------------------------------------===//
-// The megakernel: programs that bring their own traversal and need nobody else.
+// The megakernel: programs with their own traversal and no external references.
 //===----------------------------------------------------------------------===//
 
-/// Bytes that a lane needs for rays up to this depth, a multiple of 16, in scenes whose chains of
-/// references are so long. Exact: no shader can ask for more.
+/// Bytes that a lane needs for rays up to this depth, a multiple of 16, in scenes with reference
+/// chains of this length. Exact: no shader can need more.
 uint64_t rtsl_lane_bytes(uint32_t maxDepth, uint32_t referenceChain);
 
-/// Renders pixels of the job until none is left, in the lane's own memory. Lanes of different
-/// numbers may run at once.
+/// Renders pixels of the job until none is left, in the lane's own memory. Lanes with different
+/// numbers may run at the same time.
 void rtsl_run_lane(const RtslJob *job, uint32_t lane);
 
 #ifdef __cplusplus

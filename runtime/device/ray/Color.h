@@ -1,4 +1,4 @@
-//===- Color.h - a few components -----------------------------------------===//
+//===- Color.h - operations on the components of a color ------------------===//
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
@@ -6,7 +6,7 @@
 namespace rtsl::device {
 
 /// Calls visit(i) for each component of a color. Unrolled, so that each has a constant address:
-/// then a color can lie in registers.
+/// then a color can be in registers.
 template <typename Visit>
 inline void forEachComponent(uint32_t components, Visit visit) {
 #ifdef __clang__
@@ -17,7 +17,7 @@ inline void forEachComponent(uint32_t components, Visit visit) {
       visit(i);
 }
 
-// Loops over a few components become calls of memset and memcpy, which cost more than they do; so
+// Loops over a few components become calls of memset and memcpy, which cost more than the loop; so
 // the usual number of components is written out.
 inline void setColor(float *color, uint32_t components, float value) {
   if (components == 3) {

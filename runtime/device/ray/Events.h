@@ -1,9 +1,9 @@
-//===- Events.h - what happens in a sample beside its color ---------------===//
+//===- Events.h - what happens in a sample, apart from its color ----------===//
 //
 // Exceptions. The first that a sample meets ends it: its rays send no more rays, and when the
-// shaders that are under way are over, their color is thrown away and the `exception` of the scene
-// says what the sample is. Programs that were compiled without exceptions have none of this code,
-// for rtsl_features is a constant.
+// active shaders have returned, their color is discarded and the `exception` of the scene sets that
+// of the sample. Programs that were compiled without exceptions contain none of this code, because
+// rtsl_features is a constant.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -41,8 +41,8 @@ inline bool isAbandoned(const RtslState &state) {
   return hasExceptions(state) && heeds && state.events->exception != RTSL_EXCEPTION_NONE;
 }
 
-/// The color of a sample that met an exception which no program answers: red, yellow or magenta;
-/// white where colors are not RGB.
+/// The color of a sample with an exception that no program handles: red, yellow or magenta; white
+/// if colors are not RGB.
 inline void exceptionColor(uint32_t exception, float *color, uint32_t components) {
   forEachComponent(components, [&](uint32_t i) { color[i] = 1; });
   if (components != 3)

@@ -1,14 +1,13 @@
 //===- Hit.h - which of two hits wins -------------------------------------===//
 //
-// The order in which traversal finds hits must not show, and each traversal has another one. So the
-// nearest hit wins, the lower (instance, primitive) of two at the same distance; and `intersect` of
-// a primitive runs as if the primitive were alone: HitDistance is where the ray ends, or where the
-// primitive's own hit is, and the nearest hit of all is kept apart.
+// The result must not depend on the order in which a traversal finds hits. So the nearest hit wins,
+// and of two at the same distance the one with the lower (instance, primitive); and `intersect` of
+// a primitive runs as if the primitive were alone: HitDistance is the end of the ray, or the
+// primitive's own hit, and the nearest hit of all is stored separately.
 //
-// A traversal leaves out boxes that begin behind the nearest hit. By rounding, or by a mistake of
-// its author, a primitive may report a hit that lies outside of its box. Such a hit is compared as
-// if it were where the ray enters or leaves the box: then it wins or loses whichever traversal
-// finds it.
+// A traversal skips boxes that begin beyond the nearest hit. By rounding, or by a mistake of its
+// author, a primitive may report a hit that is outside of its box. Such a hit is compared as if it
+// were where the ray enters or leaves the box: then it wins or loses in every traversal.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -25,7 +24,7 @@ inline bool wins(const RtslState &state, float t, uint32_t instance, uint32_t pr
          (instance < state.instance || (instance == state.instance && primitive < state.primitive));
 }
 
-/// `t` is where the hit is, `compared` where it is for `wins`.
+/// `t` is the distance of the hit, `compared` the distance for `wins`.
 inline void commit(RtslState &state, float t, float compared, uint32_t instance,
                    uint32_t primitive) {
   state.foundDistance = t;
@@ -53,7 +52,7 @@ inline void beginSearch(RtslState &state) {
   state.areAttributesLost = 0;
 }
 
-/// After it: HitDistance is where the hit is, if there is one. Returns RTSL_HIT or RTSL_MISS.
+/// After it: HitDistance is that of the hit, if there is one. Returns RTSL_HIT or RTSL_MISS.
 inline uint32_t endSearch(RtslState &state) {
   if (state.instance == RTSL_NO_HIT)
     return RTSL_MISS;

@@ -1,10 +1,10 @@
-//===- HitError.h - how exact a hit is, and rays that leave a primitive ---===//
+//===- HitError.h - errors of hits, and rays that leave a primitive -------===//
 //
-// A ray that starts on a primitive of the author's must not meet the surface there again. What an
-// `intersect` computes for t is off by rounding twice: when the surface was hit, which put the new
-// ray's origin off it (Spawn.h), and when the new ray is tested against the same primitive. The
-// author states a bound of the error with `hit(t, error)`, or the compiler derives one from the
-// arithmetic of `intersect` (codegen/passes/errors/BoundHitError.h). The second error is dealt with here.
+// A ray that starts on a user primitive must not hit the surface there again. The t that an
+// `intersect` computes has two rounding errors: when the surface was hit, which moved the new ray's
+// origin off it (Spawn.h), and when the new ray is tested against the same primitive. The author
+// states a bound of the error with `hit(t, error)`, or the compiler derives one from the arithmetic
+// of `intersect` (codegen/passes/errors/BoundHitError.h). The second error is handled here.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -17,18 +17,17 @@ namespace rtsl::device {
 /// RtslState::hitError where the author states none.
 constexpr float errorNotStated = -1;
 
-/// The same where the derived function finds no hit at that distance. Where arithmetic is not
-/// strict it may round otherwise than `intersect`, which decides whether a ray that grazes has a
-/// hit at all.
+/// The same if the derived function finds no hit at that distance. With non-strict arithmetic it
+/// may round differently from `intersect`, which decides whether a grazing ray has a hit at all.
 constexpr float hitNotFound = -2;
 
-/// Is it a bound that means something?
+/// Is it a valid bound?
 inline bool isBound(float error) {
   return error >= 0 && error < infinity;
 }
 
-/// The error of t at a hit of `primitive`, by its derived function, which `derive` is; below 0: it
-/// is not known.
+/// The error of t at a hit of `primitive`, computed by its derived function `derive`; below 0: not
+/// known.
 template <typename Derive>
 float derivedHitError(RtslState &state, RtslRef primitive, float t, Derive derive) {
   const float distance = state.HitDistance, error = state.hitError;
@@ -41,15 +40,15 @@ float derivedHitError(RtslState &state, RtslRef primitive, float t, Derive deriv
   return bound;
 }
 
-/// The same of the candidate.
+/// The same for the candidate.
 __attribute__((cold, noinline)) inline float derivedErrorOfCandidate(RtslState &state, float t) {
   const RtslRef primitive = state.launch->instances[state.candidateInstance].primitive;
   return derivedHitError(state, primitive, t, rtsl_rt_Primitive_rt_boundHitError);
 }
 
-/// Does the ray leave the candidate, and is t so near that it may be where the ray starts? Then the
-/// hit is not ahead for certain (Pharr, Jakob and Humphreys, "Physically Based Rendering", 3rd
-/// edition, 2016, 3.9.6).
+/// Does the ray leave the candidate, and is t so small that the hit may be its own start? Then it
+/// is not certain that the hit is ahead (Pharr, Jakob and Humphreys, "Physically Based Rendering",
+/// 3rd edition, 2016, 3.9.6).
 inline bool mayBeWhereItStarts(RtslState &state, float t, float error) {
   if (!(rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS) ||
       state.candidateInstance != state.leaves)
@@ -59,8 +58,8 @@ inline bool mayBeWhereItStarts(RtslState &state, float t, float error) {
   return error == hitNotFound || (isBound(error) && t - error <= state.Epsilon);
 }
 
-/// `hit(t, error)`: the rule of Hit.h, but for what may be where the ray starts. `error` may be
-/// errorNotStated.
+/// `hit(t, error)`: the rule of Hit.h, except for hits that may be the start of the ray. `error`
+/// may be errorNotStated.
 inline bool reportHitWithin(RtslState &state, float t, float error) {
   if (t > state.Epsilon && t < state.HitDistance && mayBeWhereItStarts(state, t, error))
     return false;

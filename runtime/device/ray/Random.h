@@ -1,8 +1,8 @@
 //===- Random.h - counter-based random numbers ----------------------------===//
 //
-// A random number is a hash of where it is drawn: (pixel, sample, seed) make the key of the camera
-// ray, a ray that is spawned has the hash of its parent's key and dimension, and a ray counts its
-// draws in `dimension`. So numbers do not depend on threads or on the order of rays. The hashes are
+// A random number is a hash of its position: (pixel, sample, seed) form the key of the camera ray,
+// a spawned ray has the hash of its parent's key and dimension, and a ray counts its draws in
+// `dimension`. So numbers do not depend on threads or on the order of rays. The hashes are
 // PCG3D and PCG4D of Jarzynski and Olano, "Hash Functions for GPU Rendering", Journal of Computer
 // Graphics Techniques 9(3), 2020.
 //
@@ -57,21 +57,21 @@ inline Words4 hash4(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
   return {x, y, z, w};
 }
 
-/// Uniform in [0, 1): the upper 24 bits, so that every value is exact and 1 cannot come out by
-/// rounding. For positions, which are not the better for digits near 0.
+/// Uniform in [0, 1): the upper 24 bits, so that every value is exact and cannot be rounded to 1.
+/// For positions, which need no extra digits near 0.
 inline float unitFloat(uint32_t bits) {
   return float(bits >> 8) * 0x1p-24f;
 }
 
-/// The float below the binary fraction 0.words[0] words[1] ... of 149 bits. Each float in [0, 1)
-/// comes out as often as a real number from there to the next float does.
+/// The largest float that is not above the binary fraction 0.words[0] words[1] ... of 149 bits.
+/// Each float in [0, 1) is as likely as a real number between it and the next float.
 inline float floatOfFraction(const uint32_t words[5]) {
   uint32_t first = 0;
   while (first < 3 && words[first] == 0)
     ++first;
   uint32_t next = words[first + 1];
   if (first == 3)
-    next &= ~0x7ffu; // what lies below the smallest float
+    next &= ~0x7ffu; // bits below the smallest float
   const uint64_t window = (uint64_t(words[first]) << 32) | next;
   if (window == 0)
     return 0;
@@ -84,7 +84,7 @@ inline float floatOfFraction(const uint32_t words[5]) {
   return float(double(leading) * scale);
 }
 
-/// randomNumber() where the first word does not hold 24 significant bits, as happens once in 512
+/// randomNumber() if the first word does not have 24 significant bits, as happens once in 512
 /// draws.
 __attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, uint32_t keyY,
                                                                uint32_t dimension, uint32_t first) {
@@ -93,35 +93,35 @@ __attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, ui
   return floatOfFraction(words);
 }
 
-/// The draw number `dimension` of the ray with this key: uniform in [0, 1), with 24 significant
-/// bits however near to 0 it is. (Of the leading bits of one word alone, as in unitFloat(), nothing
-/// lies between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point Values", 2007.)
+/// Draw number `dimension` of the ray with this key: uniform in [0, 1), with 24 significant bits
+/// even near 0. (With the leading bits of one word only, as in unitFloat(), there is nothing
+/// between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point Values", 2007.)
 inline float randomNumber(const uint32_t key[2], uint32_t dimension) {
   const uint32_t first = hash3(key[0], key[1], dimension).x;
   if (first < 1u << 23)
     return smallRandomNumber(key[0], key[1], dimension, first);
   return float(first & ~(0xffu >> __builtin_clz(first))) *
-         0x1p-32f; // exact, so that it does not become 1
+         0x1p-32f; // exact, so that it is not rounded to 1
 }
 
-/// The same draw, but for 0, which becomes the smallest float: uniform in (0, 1).
+/// The same draw, with 0 replaced by the smallest float: uniform in (0, 1).
 inline float openRandomNumber(const uint32_t key[2], uint32_t dimension) {
   const float drawn = randomNumber(key, dimension);
   return drawn == 0 ? 0x1p-149f : drawn;
 }
 
-/// The key of a ray that is spawned when its parent's counter stands at `dimension`. It takes the
-/// words of the hash that randomNumber leaves.
+/// The key of a ray that is spawned when its parent's counter is `dimension`. It uses the words of
+/// the hash that randomNumber does not.
 inline void childKey(const uint32_t parent[2], uint32_t dimension, uint32_t child[2]) {
   Words3 hash = hash3(parent[0], parent[1], dimension);
   child[0] = hash.y;
   child[1] = hash.z;
 }
 
-/// Point `index` of the R2 sequence, as fractions of 2^32, moved by a shift of the pixel's own: an
-/// additive recurrence with the plastic number's powers, which fills the unit square evenly for any
-/// number of samples (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018; the
-/// shift: Cranley and Patterson 1976).
+/// Point `index` of the R2 sequence, as fractions of 2^32, shifted by an offset per pixel: an
+/// additive recurrence with powers of the plastic number, which fills the unit square evenly for
+/// any number of samples (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018;
+/// the shift: Cranley and Patterson 1976).
 inline void pixelSample(uint32_t index, uint32_t shiftX, uint32_t shiftY, float *x, float *y) {
   *x = unitFloat(shiftX + index * 3242174889u); // 2^32 / 1.32471795724
   *y = unitFloat(shiftY + index * 2447445414u); // 2^32 / 1.32471795724^2

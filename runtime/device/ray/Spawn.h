@@ -1,8 +1,8 @@
-//===- Spawn.h - how far from a surface a spawned ray begins to see -------===//
+//===- Spawn.h - the start of a ray that leaves a surface -----------------===//
 //
-// A computed hit point lies off its surface by rounding. A ray that starts there must not see that
-// surface again, and must miss as little else as possible; so rt_Epsilon comes from a bound of that
-// distance, not from a constant.
+// A computed hit point is off its surface by rounding. A ray that starts there must not hit that
+// surface again, and must miss as little else as possible; so rt_Epsilon is computed from a bound
+// of that distance, not a constant.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -12,31 +12,32 @@
 
 namespace rtsl::device {
 
-// Bounds are in rounding units of what is named.
+// Bounds are in rounding units of the quantity that they refer to.
 //
 // A point of a triangle is interpolated in double and rounded once a coordinate: within sqrt(3)
 // units of the largest coordinate from the plane, whatever the weights.
 constexpr float trianglePointUnits = 2;
-// The next test of the triangle adds nothing to speak of: so near it computes in double
+// The next test of the triangle adds no significant error: it computes near hits in double
 // (depthNearOrigin in runtime/device/traverse/Triangle.h).
-// A point that an author made by arithmetic of his own, near coordinates of this size.
+// A point from an author's own arithmetic, near coordinates of this size.
 constexpr float foreignPointUnits = 20;
 // A point of an RTSL primitive is o + t d: 2 units for itself, and the error of the author's t.
-// Where nothing is known of that, this is assumed: a quadric solved without cancellation
-// (differences from its centre, r^2 - |f - (f.d) d|^2) is right to about 8 units of the distances
-// in it; the same again for the next test.
+// If that is not known, this is assumed: a quadric solved without cancellation (differences from
+// its centre, r^2 - |f - (f.d) d|^2) is exact to about 8 units of the distances in it; the same
+// again for the next test.
 constexpr float primitiveErrorUnits = 24;
-// Where the ray only grazes the surface, t is off by more than the point is from the surface, but
-// not by any factor: the surface curves.
+// If the ray grazes the surface, the error of t exceeds the distance of the point from the surface,
+// but not without bound, because the surface curves.
 constexpr float smallestHitCosine = 0x1p-4f;
 
-/// Bound of |p - surface| for p = o + t d on an RTSL primitive of whose t nothing is known.
+/// Bound of |p - surface| for p = o + t d on an RTSL primitive with an unknown error of t.
 inline float primitivePointError(Vec3 origin, Vec3 direction, float t) {
   return primitiveErrorUnits * roundingUnit * (largest(origin) + absolute(t) * largest(direction));
 }
 
-/// The same where t is off by at most `error`, which moves the point along the ray: by that times
-/// the cosine to the normal off the surface. Twice that, for the next test is off as well.
+/// The same for an error of t of at most `error`, which moves the point along the ray, and off the
+/// surface by that times the cosine to the normal. Doubled, because the next test has the same
+/// error.
 inline float primitivePointError(Vec3 point, Vec3 direction, float error, Vec3 normal) {
   const float rounding = trianglePointUnits * roundingUnit * largest(point);
   const float squares = dot(direction, direction), across = dot(normal, normal);
@@ -53,7 +54,8 @@ inline float trianglePointError(Vec3 v0, Vec3 v1, Vec3 v2) {
   return trianglePointUnits * roundingUnit * coordinate;
 }
 
-/// Nearly along the surface epsilon would grow without bound: the cosine counts as this much.
+/// Nearly parallel to the surface epsilon would grow without bound: this is the smallest cosine
+/// used.
 constexpr float smallestCosine = 0x1p-12f;
 
 /// spawnEpsilon for vectors whose squares would leave the range of a float.
@@ -72,9 +74,9 @@ inline bool startsAtHit(const RtslState &parent, Vec3 origin) {
          origin.y == parent.HitPoint[1] && origin.z == parent.HitPoint[2];
 }
 
-/// Can every traversal take a ray as it is: finite, and of a size whose squares and reciprocals
-/// stay in range? Said only of rays that start at the hit point, whose error bounds its size: it is
-/// at least 2^-23 of the largest coordinate. What is not easy is looked at when it is traced.
+/// Can every traversal handle a ray as it is: finite, and of a size whose squares and reciprocals
+/// stay in range? True only for rays that start at the hit point, whose error bounds its size: it
+/// is at least 2^-23 of the largest coordinate. Other rays are checked when they are traced.
 inline bool isEasySpawn(const RtslState &parent, Vec3 origin, Vec3 direction) {
   float square = dot(direction, direction);
   return startsAtHit(parent, origin) && parent.hitPointError < 0x1p36f && square > 0x1p-38f &&
@@ -88,21 +90,21 @@ inline float epsilonAtSurface(float error, Vec3 normal, Vec3 direction) {
   float square = dot(direction, direction), squares = square * dot(normal, normal);
   if (!(square > 0x1p-60f && squares > 0x1p-60f && squares < 0x1p60f))
     return spawnEpsilonOfExtremes(error, normal, direction);
-  // The sum is at least the length, at most 1.74 times as much, and takes no root: a bound may be
-  // generous.
+  // The sum is at least the length, at most 1.74 times as much, and needs no square root: the bound
+  // may be larger than necessary.
   if (along * along > smallestCosine * smallestCosine * squares)
     return error * (absolute(normal.x) + absolute(normal.y) + absolute(normal.z)) / along;
   return error / (smallestCosine * squareRoot(square));
 }
 
-/// Where a ray that a shader sends begins to see.
+/// The start of a ray that a shader sends.
 struct RayStart {
   float epsilon;   // in units of its direction
-  uint32_t isEasy; // what isEasySpawn says
+  uint32_t isEasy; // result of isEasySpawn
   uint32_t leaves; // RtslState::leaves
 };
 
-/// What decides how rays start that leave a hit.
+/// The hit that determines how rays start that leave it.
 struct LeftHit {
   uint32_t instance; // RTSL_NO_HIT: there is none
   Vec3 point, normal;
@@ -114,8 +116,8 @@ inline LeftHit leftHit(const RtslState &parent) {
           parent.hitPointError};
 }
 
-/// startOf for origins that are not the hit point. It takes values, so that a state in registers
-/// stays there.
+/// startOf for origins that are not the hit point. It is passed values, so that a state in
+/// registers stays there.
 __attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3 origin,
                                                                Vec3 direction) {
   RayStart start = {0, 0, RTSL_NO_HIT};
@@ -126,7 +128,7 @@ __attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3
   start.epsilon = foreign / length;
   if (hit.instance == RTSL_NO_HIT)
     return start;
-  // Only near the hit point are the surface and the angle to it known.
+  // Only near the hit point are the surface and its normal known.
   float error = hit.error, away = largest(origin - hit.point);
   if (!(away <= 64 * maximum(foreign, error))) {
     start.epsilon = maximum(foreign, error) / length;
@@ -139,9 +141,9 @@ __attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3
   return start;
 }
 
-/// How a ray begins that a shader sends from `origin`. Leaving a surface at an angle with cosine c
-/// to the normal, a ray that starts d below it comes through at d / c; what is skipped meanwhile
-/// lies within d of the tangent plane. So epsilon is d |n| / |direction . n|.
+/// The start of a ray that a shader sends from `origin`. Leaving a surface at an angle with cosine
+/// c to the normal, a ray that starts d below it crosses it at distance d / c; what is skipped
+/// until then is within d of the tangent plane. So epsilon is d |n| / |direction . n|.
 __attribute__((always_inline)) inline RayStart startOf(const RtslState &parent, Vec3 origin,
                                                        Vec3 direction) {
   if (isEasySpawn(parent, origin, direction))

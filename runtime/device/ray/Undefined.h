@@ -1,8 +1,9 @@
-//===- Undefined.h - state that nobody has written, made visible ----------===//
+//===- Undefined.h - making uninitialised state visible -------------------===//
 //
-// Of a ray's state only what can be read is written. Whether that is so, tests find out: a program
-// with RTSL_FEATURE_UNDEFINED_BYTES or _NAN fills all the rest with a pattern, and its pictures
-// must not depend on which. Other programs have none of this code, for rtsl_features is a constant.
+// Of a ray's state only what can be read is written. Tests check this: a program with
+// RTSL_FEATURE_UNDEFINED_BYTES or _NAN fills all the rest with a pattern, and its images must not
+// depend on the pattern. Other programs contain none of this code, because rtsl_features is a
+// constant.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -11,7 +12,7 @@
 
 namespace rtsl::device {
 
-/// The word that undefined memory is made of; 0: it stays as it is.
+/// The word that undefined memory is filled with; 0: it is not filled.
 inline uint32_t undefinedWord(const RtslState &state) {
   const uint32_t features = rtsl_features(const_cast<RtslState *>(&state));
   if (features & RTSL_FEATURE_UNDEFINED_BYTES)
@@ -19,22 +20,21 @@ inline uint32_t undefinedWord(const RtslState &state) {
   return features & RTSL_FEATURE_UNDEFINED_NAN ? 0x7fe00001u : 0u;
 }
 
-/// Fills memory from `begin` to `end`, of whole words, if the program of `state` shows what is
-/// undefined.
+/// Fills memory from `begin` to `end`, of whole words, if the program of `state` has that feature.
 inline void makeUndefined(const RtslState &state, void *begin, void *end) {
   if (const uint32_t word = undefinedWord(state))
     for (auto *at = static_cast<char *>(begin); at != end; at += sizeof word)
       __builtin_memcpy(at, &word, sizeof word);
 }
 
-/// A state of the launch, with nothing else in it.
+/// Begins a state of the launch, with all other fields undefined.
 inline void beginState(RtslState &state, const RtslLaunch *launch) {
   state.launch = launch;
   makeUndefined(state, &state, &state + 1);
   state.launch = launch;
 }
 
-/// Takes over what is the same for all rays of a sample, from one of them.
+/// Copies what is the same for all rays of a sample from one of them.
 inline void takeFromSample(RtslState &state, const RtslState &other) {
   state.events = other.events;
   state.TimeSeed = other.TimeSeed;
@@ -46,8 +46,8 @@ inline void takeFromSample(RtslState &state, const RtslState &other) {
   }
 }
 
-/// Makes `child` a new state and calls make(parent), where `parent` is what it was even if the two
-/// are the same.
+/// Makes `child` a new state and calls make(parent), where `parent` has its old value even if the
+/// two are the same.
 template <typename Make>
 inline void beginChild(RtslState &child, const RtslState &parent, Make make) {
   if (undefinedWord(parent) == 0) {
@@ -56,7 +56,7 @@ inline void beginChild(RtslState &child, const RtslState &parent, Make make) {
   }
   const RtslState before = parent;
   beginState(child, before.launch);
-  if (&child == &parent) // the machine's only state, which the parent still needs
+  if (&child == &parent) // the only state of the machine, which is still read as the parent
     takeFromSample(child, before);
   make(before);
 }

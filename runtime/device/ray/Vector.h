@@ -1,7 +1,7 @@
 //===- Vector.h - three floats --------------------------------------------===//
 //
-// Only what traversal and the engines need. Nothing here is contracted: a fused operation is
-// written out.
+// Only what traversal and the engines need. Nothing here is contracted: fused operations are
+// explicit.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -42,7 +42,7 @@ inline float squareRoot(float a) {
 inline float fused(float a, float b, float c) {
   return __builtin_fmaf(a, b, c);
 }
-/// If one is not a number: b.
+/// If either is NaN: b.
 inline float maximum(float a, float b) {
   return a > b ? a : b;
 }
@@ -78,7 +78,7 @@ constexpr float infinity = __builtin_inff();
 /// Half a unit in the last place of 1: the largest relative error of one rounding.
 constexpr float roundingUnit = 0x1p-24f;
 
-/// False for infinite and for what is not a number.
+/// False for infinities and NaN.
 inline bool isFinite(Vec3 a) {
   return (a.x * 0.0f + a.y * 0.0f) + a.z * 0.0f == 0.0f;
 }
@@ -98,14 +98,14 @@ inline int exponentOf(float a) {
   return int((bits >> 23) & 255) - 127;
 }
 
-/// A vector of length 1, whatever the length of `a` (but 0, which stays 0).
+/// A vector of length 1, for any length of `a` (except 0, which stays 0).
 inline Vec3 normalized(Vec3 a) {
   float size = largest(a);
   if (!(size > 0x1p-40f && size < 0x1p40f)) {
     if (!(size > 0 && size < infinity))
       return a;
     int exponent = exponentOf(size);
-    // In two steps, for 2^-exponent alone may not be representable.
+    // In two steps, because 2^-exponent alone may not be representable.
     a = a * powerOfTwo(exponent < -100 ? 100 : exponent > 100 ? -100 : -exponent);
     size = largest(a);
     a = a * powerOfTwo(-exponentOf(size));

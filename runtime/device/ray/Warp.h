@@ -1,7 +1,7 @@
 //===- Warp.h - lanes that run in step ------------------------------------===//
 //
-// On a GPU 32 lanes make a warp: they run the same code at the same time, or wait for each other.
-// On a CPU a lane is alone, and every question here has the obvious answer.
+// On a GPU 32 lanes form a warp: they run the same code at the same time, or wait for each other.
+// On a CPU each lane is a warp of its own.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -23,8 +23,8 @@ inline int32_t valueOf(int32_t value, int lane) {
 }
 } // namespace warp
 
-/// What most lanes of the warp want; the first such wish if there are several. All lanes ask
-/// together. `nothing`, if no lane wants anything else.
+/// The step that most lanes of the warp have; the first such one on a tie. All lanes call together.
+/// `nothing`, if no lane has any other step.
 inline int32_t vote(int32_t wish, int32_t nothing) {
   uint32_t voters = warp::lanesWhere(wish != nothing);
   int32_t winner = nothing;
@@ -50,7 +50,7 @@ inline int32_t vote(int32_t wish, int32_t) {
 
 #endif
 
-/// Adds to a counter that other lanes and threads count in as well, and gives what it was before.
+/// Adds 1 to a counter that is shared with other lanes and threads, and returns its old value.
 inline uint64_t countUp(uint64_t *counter) {
   return __atomic_fetch_add(counter, uint64_t(1), __ATOMIC_RELAXED);
 }

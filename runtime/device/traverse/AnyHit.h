@@ -1,15 +1,15 @@
-//===- AnyHit.h - traversal that asks materials ---------------------------===//
+//===- AnyHit.h - traversal with any-hit programs -------------------------===//
 //
-// A material may refuse a hit: where it has `anyHit` for the ray's payload, that runs for a hit
-// before it counts. A primitive takes part in a ray with one hit, the nearest, so it is asked at
-// most once; an instance whose material has no `anyHit` for the payload accepts.
+// A material may reject a hit: if it has `anyHit` for the ray's payload, that runs for a hit before
+// it counts. A primitive contributes one hit to a ray, the nearest, so `anyHit` runs at most once
+// per primitive; an instance whose material has no `anyHit` for the payload accepts.
 //
-// Where the order in which materials are asked can show (they write to the payload, say), it is
-// that of (t, instance, primitive), and the first that accepts ends the search: nothing behind a
-// hit that counts is ever asked. The tree does not give hits in order, so the nearest few are
-// collected in one descent and asked in turn; when all of them refuse, the next few are collected,
-// behind the last. What an `intersect` leaves in the state is not kept meanwhile: it runs again for
-// the one that is asked, and finds the same, for what it sees of the ray is the same.
+// If the order of these calls can be observed (they write to the payload, say), it is that of (t,
+// instance, primitive), and the first that accepts ends the search: `anyHit` never runs beyond a
+// hit that counts. The tree does not give hits in order, so the nearest few are collected in one
+// traversal and tested in turn; when all of them are rejected, the next few are collected, beyond
+// the last. What an `intersect` writes to the state is not kept meanwhile: it runs again for the
+// hit that is tested, with the same result, because it sees the same ray.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -30,7 +30,7 @@ struct LinkedPayloadSlots : LinkedSlots {
 #include "language/PayloadSlots.def"
 };
 
-/// A hit that may come to count.
+/// A hit that may count.
 struct Candidate {
   float t;
   uint32_t instance, primitive;
@@ -42,14 +42,14 @@ inline bool isBefore(const Candidate &a, const Candidate &b) {
   return a.instance != b.instance ? a.instance < b.instance : a.primitive < b.primitive;
 }
 
-/// The nearest hits behind some other, in order, as many as there is room for.
+/// The nearest hits beyond a given one, in order, up to a fixed number.
 struct NearestCandidates {
   static constexpr uint32_t room = 8;
   Candidate found[room];
   uint32_t count = 0;
-  bool isClosed = false; // the last one surely counts: nothing behind it matters
+  bool isClosed = false; // the last one counts for certain: nothing beyond it matters
 
-  /// Is there no other hit that matters? Behind a full list nobody has looked.
+  /// Are there no other hits that matter? Beyond a full list there may be more.
   bool isComplete() const { return isClosed || count < room; }
 
   float limit(float tMax) const { return isClosed || count == room ? found[count - 1].t : tMax; }
@@ -68,7 +68,7 @@ struct NearestCandidates {
       isClosed = true;
       return;
     }
-    if (count == room) { // the last one has to go
+    if (count == room) { // the last one is dropped
       isClosed = false;
       --count;
     }
@@ -79,7 +79,7 @@ struct NearestCandidates {
   }
 };
 
-/// One ray's way through a tree (LaunchTree in Traverse.h says what that is).
+/// The traversal of one ray through a tree (see LaunchTree in Traverse.h).
 template <typename Slots, typename Tree>
 class Search {
 public:
@@ -93,7 +93,7 @@ public:
     return state.launch->instances[item.instance];
   }
 
-  /// Tests one thing and commits it if it wins. It must not be the hit so far.
+  /// Tests one leaf item and commits it if it wins. It must not be the hit so far.
   bool test(const RtslLeafItem &item) const {
     const RtslInstance &instance = instanceOf(item);
     if (instance.primitive == 0)
@@ -102,7 +102,7 @@ public:
     return testPrimitive(state, triangleRay, instance, item, intersect());
   }
 
-  /// Calls visit(item) for what may be hit before limit() until it returns true.
+  /// Calls visit(item) for items that may be hit before limit() until it returns true.
   template <typename Limit, typename Visit>
   void forEach(Limit limit, Visit visit) const {
     tree.forEach(state, triangleRay, limit, [&](const RtslLeafItem &item) {
@@ -121,7 +121,7 @@ public:
     slots.rt_Material_anyHit_payload(&state, instance.material);
     state.HitDistance = end;
     const uint32_t answer = state.hitAnswer;
-    state.hitAnswer = RTSL_ACCEPT; // what runs for the hit that counts has not answered anything
+    state.hitAnswer = RTSL_ACCEPT; // `anyHit` of the hit that counts runs with a fresh answer
     return answer;
   }
 
@@ -129,7 +129,7 @@ public:
     return instanceOf(item).anyHit & rtslRayTypeBit(state.rayType);
   }
 
-  /// As if nothing had been hit: a primitive's nearest hit is always the same.
+  /// Resets the hit: a primitive's nearest hit must not depend on other hits.
   void forgetHit() const {
     beginSearch(state);
     state.instance = state.primitive = RTSL_NO_HIT;
@@ -151,7 +151,7 @@ private:
   TriangleRay triangleRay;
 };
 
-/// Materials are asked in the order of hits.
+/// Calls `anyHit` in the order of hits.
 template <typename Slots, typename Tree>
 uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
   const Search<Slots, Tree> search(state, slots, tree);
@@ -184,7 +184,7 @@ uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
   }
 }
 
-/// The hit that state has, to come back to.
+/// A saved hit, to return to.
 struct CommittedHit {
   float found, nearest, error, u, v;
   uint32_t instance, primitive;
@@ -209,7 +209,7 @@ struct CommittedHit {
   }
 };
 
-/// Materials are asked as hits are found. With `first` the first that accepts ends the search.
+/// Calls `anyHit` as hits are found. With `first` the first that accepts ends the search.
 template <typename Slots, typename Tree>
 uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const Tree &tree) {
   const Search<Slots, Tree> search(state, slots, tree);
@@ -230,7 +230,7 @@ uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const T
   return search.end();
 }
 
-/// rtsl_traverse for a good ray whose hits may be refused, by some tree. `slots` has the methods
+/// rtsl_traverse for a good ray whose hits may be rejected, with any tree. `slots` has the methods
 /// that it needs as members with the names of Slots.def and PayloadSlots.def.
 template <typename Slots, typename Tree>
 uint32_t findHitAsking(RtslState &state, uint32_t how, const Slots &slots, const Tree &tree) {
@@ -238,7 +238,7 @@ uint32_t findHitAsking(RtslState &state, uint32_t how, const Slots &slots, const
                              : searchAsFound(state, how & RTSL_FIRST_HIT, slots, tree);
 }
 
-/// The same for any ray, by the tree of the launch.
+/// The same for any ray, with the tree of the launch.
 template <typename Slots>
 uint32_t traverseAsking(RtslState &state, uint32_t how, const Slots &slots) {
   return isGoodRay(state) ? findHitAsking(state, how, slots, LaunchTree()) : RTSL_BAD_RAY;

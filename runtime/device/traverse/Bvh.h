@@ -6,8 +6,8 @@
 
 namespace rtsl::device {
 
-/// No path from the root is longer; the builder sees to it (runtime/accel/BvhBuilder.h). A step
-/// down pushes one child at most.
+/// No path from the root is longer, as the builder guarantees (runtime/accel/BvhBuilder.h). Each
+/// step down pushes one child at most.
 constexpr int maxBvhDepth = 64;
 
 /// A ray meets a box if it leaves it no earlier than it enters it, within this factor. That covers
@@ -15,12 +15,12 @@ constexpr int maxBvhDepth = 64;
 /// gamma(3)), and as much again for those of intersectTriangle.
 constexpr float bvhSlack = 1.0f + 16 * roundingUnit;
 
-/// What is in a box is hit where the ray is in the box, within this share of the distance: hits of
-/// triangles are moved there (Traverse.h), those of RTSL primitives compared as if they were there
-/// (Hit.h). So a box that begins behind the nearest hit by more than two such shares has nothing
-/// that could win, and which boxes a traversal enters, of whatever tree and in whatever order,
-/// cannot show. That holds for outer boxes too, for rounding is monotonic: of two boxes, one in the
-/// other, the outer one begins no later and ends no earlier, to the bit.
+/// The contents of a box are hit within the ray's range in the box, up to this share of the
+/// distance: hits of triangles are moved into it (Traverse.h), those of RTSL primitives are
+/// compared as if they were in it (Hit.h). So a box that begins beyond the nearest hit by more than
+/// two such shares contains nothing that could win, and the result does not depend on which boxes a
+/// traversal enters, in any tree and any order. That holds for outer boxes too, because rounding is
+/// monotonic: of two nested boxes, the outer one begins no later and ends no earlier, to the bit.
 constexpr float rangeShare = 0x1p-12f;
 constexpr float cullSlack = 1.0f + 2 * rangeShare;
 
@@ -31,9 +31,9 @@ struct Range {
   bool isEmpty() const { return !(near <= far * bvhSlack); }
 };
 
-/// Where the ray is in the box and between tMin and tMax. Where a component of the direction is 0,
-/// `inverse` is infinite, and 0 * inf is no number for an origin in the plane of a side:
-/// comparisons are written so that this leaves the range as it is.
+/// The range of the ray in the box and between tMin and tMax. If a component of the direction is 0,
+/// `inverse` is infinite, and 0 * inf is NaN for an origin in the plane of a side: comparisons are
+/// written so that this leaves the range as it is.
 inline Range rangeInBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
                         float tMin, float tMax) {
   float near = tMin, far = tMax;

@@ -1,4 +1,4 @@
-//===- Candidate.h - what is known of a primitive before it was hit -------===//
+//===- Candidate.h - state of a primitive before it is hit ----------------===//
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
@@ -11,13 +11,13 @@ inline void setIdentity(float m[16]) {
     m[i] = i % 5 == 0 ? 1.0f : 0.0f;
 }
 
-/// The bounds of an RTSL primitive's instance, as `computeBounds` gave them.
+/// The bounds of an RTSL primitive's instance, from `computeBounds`.
 inline void describeBounds(RtslState &state, const RtslInstance &instance) {
   store(state.BoundMin, load(instance.boundMin));
   store(state.BoundMax, load(instance.boundMax));
 }
 
-/// State that `intersect` may read of the primitive that it tests, and where that stands.
+/// State of the tested primitive and its transforms that `intersect` may read.
 inline void describeCandidate(RtslState &state) {
   describeBounds(state, state.launch->instances[state.candidateInstance]);
   state.PrimitiveIndex = int32_t(state.candidatePrimitive);
@@ -26,7 +26,7 @@ inline void describeCandidate(RtslState &state) {
   setIdentity(state.WorldToObject);
 }
 
-/// Names the primitive whose `intersect` is to run.
+/// Sets the primitive whose `intersect` is to run.
 inline void beginCandidate(RtslState &state, uint32_t instance, uint32_t primitive) {
   state.candidateInstance = instance;
   state.candidatePrimitive = primitive;

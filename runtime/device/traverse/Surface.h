@@ -1,4 +1,4 @@
-//===- Surface.h - what is known of a surface where it was hit ------------===//
+//===- Surface.h - state of the surface that was hit ----------------------===//
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
@@ -36,13 +36,13 @@ inline void triangleDerivatives(RtslState &state, const TriangleVertices &p, con
   store(state.dPdv, (e2 * u1 - e1 * u2) * reciprocal);
 }
 
-/// One coordinate of a triangle's point. In double, for rounding here moves rays off their surface;
-/// the three weights sum to 1 exactly, or nearly so.
+/// One coordinate of a triangle's point. In double, because rounding here moves rays off their
+/// surface; the three weights sum to 1 exactly, or nearly so.
 inline float interpolated(float a, float b, float c, double u, double v) {
   return float(__builtin_fma(double(c), v, __builtin_fma(double(b), u, double(a) * ((1 - u) - v))));
 }
 
-/// The geometric normal of a triangle, and the one that its mesh gives for shading.
+/// The geometric normal of a triangle, and the shading normal from its mesh.
 inline void triangleNormals(RtslState &state, const RtslMesh &mesh, const TriangleVertices &p,
                             const uint32_t *index) {
   float u = state.u, v = state.v, w = (1.0f - u) - v;
@@ -52,9 +52,9 @@ inline void triangleNormals(RtslState &state, const RtslMesh &mesh, const Triang
     Vec3 sum = load(mesh.normals + 3 * size_t(index[0])) * w +
                load(mesh.normals + 3 * size_t(index[1])) * u +
                load(mesh.normals + 3 * size_t(index[2])) * v;
-    if (!isZero(sum)) { // normals that cancel, or that the file has as 0
+    if (!isZero(sum)) { // normals may cancel, or be 0 in the file
       shading = normalized(sum);
-      // Of the two sides the file's normals say which is outside; its winding is less often right.
+      // The file's normals tell which side is outside; its winding is less often right.
       if (dot(geometric, shading) < 0)
         geometric = geometric * -1.0f;
     }
@@ -92,7 +92,7 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t ne
   }
 }
 
-/// The same for an RTSL primitive, by its methods.
+/// The same for an RTSL primitive, using its methods.
 template <typename Slots>
 void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t needs,
                        const Slots &slots) {
@@ -108,7 +108,7 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
     setVector(state.GeometricNormal, 0, 0, 0);
     setVector(state.ShadingNormal, 0, 0, 0);
     slots.rt_Primitive_computeNormal(&state, primitive);
-    // A normal that the author leaves out equals the other one.
+    // A normal that the author does not write equals the other one.
     if (isZero(load(state.ShadingNormal)))
       store(state.ShadingNormal, load(state.GeometricNormal));
     else if (isZero(load(state.GeometricNormal)))
@@ -122,8 +122,7 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
     if (isBound(state.hitError)) {
       state.hitPointError = bound(state.hitError);
     } else if (state.hitError == errorNotStated) {
-      // What is derived is the error of this one test. The next one may be no better than is
-      // assumed.
+      // The derived error is that of this test. The next one may be no better than assumed.
       const float error = derivedHitError(state, primitive, t, [&](RtslState *ray, RtslRef object) {
         slots.rt_Primitive_rt_boundHitError(ray, object);
       });
@@ -137,7 +136,7 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
     slots.rt_Primitive_computeDerivatives(&state, primitive);
 }
 
-/// Texture coordinates and derivatives that nobody computes.
+/// Texture coordinates and derivatives that nothing computes.
 inline void clearCoordinates(RtslState &state, uint32_t needs) {
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES) {
     state.TextureUV[0] = state.TextureUV[1] = 0;
@@ -150,8 +149,8 @@ inline void clearCoordinates(RtslState &state, uint32_t needs) {
   }
 }
 
-/// Everything that a material may read of the hit, once traversal has found it. `needs` says
-/// what is read, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
+/// Everything that a material may read of the hit, after traversal. `needs` is the set of what is
+/// read, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
 template <typename Slots>
 void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   const RtslLaunch &launch = *state.launch;

@@ -10,7 +10,7 @@
 
 namespace rtsl::device {
 
-/// A ray that can be followed: all finite, and a direction.
+/// A ray that can be traced: all components finite, and a direction.
 inline bool isGoodRay(const RtslState &state) {
   if (state.isEasy)
     return true;
@@ -19,7 +19,7 @@ inline bool isGoodRay(const RtslState &state) {
          state.Epsilon == state.Epsilon && state.HitDistance == state.HitDistance;
 }
 
-/// Is the instance there for the ray at all?
+/// Is the instance visible to the ray?
 inline bool isSeen(const RtslState &state, const RtslInstance &instance) {
   return state.rayRoot == 0 && (instance.mask & state.rayMask);
 }
@@ -34,8 +34,8 @@ inline TriangleVertices triangleVertices(const RtslMesh &mesh, uint32_t triangle
           load(mesh.positions + 3 * size_t(index[2]))};
 }
 
-/// Moves t, where intersectTriangle has found a hit, to where the ray is in the triangle's box,
-/// within rangeShare. False if the ray misses the box: then so does every traversal.
+/// Moves t, where intersectTriangle has found a hit, into the range of the ray in the triangle's
+/// box, within rangeShare. False if the ray misses the box: then it does in every traversal.
 inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float &t) {
   float lower[3], upper[3];
   for (int i = 0; i < 3; ++i) {
@@ -70,15 +70,15 @@ inline bool testTriangle(RtslState &state, const TriangleRay &ray, const RtslMes
   return testTriangle(state, ray, triangleVertices(mesh, triangle), instance, triangle);
 }
 
-/// The count of random numbers that `intersect` of a primitive begins with. Beyond that of any
-/// method that runs once a ray, and not the same for each primitive.
+/// The first dimension of the random numbers in `intersect` of a primitive. Beyond those of any
+/// method that runs once per ray, and different for each primitive.
 inline uint32_t dimensionOf(uint32_t instance, uint32_t primitive) {
   uint32_t mixed = (instance + 1) * 0x9e3779b9u ^ (primitive + 1) * 0x85ebca6bu;
   return 0x80000000u | mixed >> 4;
 }
 
-/// Runs `intersect` of an RTSL primitive, intersect(state, object), as if the ray had met nothing
-/// else. True if it commits a hit that wins. It must not be the hit so far.
+/// Runs `intersect` of an RTSL primitive, intersect(state, object), as if nothing else had been
+/// hit. True if it commits a hit that wins. It must not be the hit so far.
 template <typename Intersect>
 bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance &instance,
                    const RtslLeafItem &item, Intersect intersect) {
@@ -103,7 +103,7 @@ bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance 
 }
 
 /// After a search: `intersect` stores the attributes of its hit, whether it wins or not. If they
-/// are not those of the hit that won, that one's `intersect` runs again.
+/// are not those of the winning hit, its `intersect` runs again.
 template <typename Intersect>
 void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect intersect) {
   if (!state.areAttributesLost || state.instance == RTSL_NO_HIT)
@@ -126,7 +126,7 @@ struct LaunchTree {
   }
 };
 
-/// rtsl_traverse for a good ray, by some tree. intersect(state, object) is the slot of
+/// rtsl_traverse for a good ray, with any tree. intersect(state, object) is the slot of
 /// rt_Primitive.
 template <typename Intersect, typename Tree>
 uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree &tree) {
@@ -150,7 +150,7 @@ uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree 
   return endSearch(state);
 }
 
-/// rtsl_traverse by the tree of the launch.
+/// rtsl_traverse with the tree of the launch.
 template <typename Intersect>
 uint32_t traverseDevice(RtslState &state, bool anyHit, Intersect intersect) {
   return isGoodRay(state) ? findHit(state, anyHit, intersect, LaunchTree()) : RTSL_BAD_RAY;

@@ -1,11 +1,11 @@
 //===- Triangle.h - the one ray-triangle intersector ----------------------===//
 //
-// Whatever found a hit, its t, u and v come from here. Watertight after Woop, Benthin and Wald,
-// "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: the vertices are moved to the ray's
-// origin and sheared so that the ray is the z axis; both triangles at an edge then see the same
+// All traversals take t, u and v from here. Watertight after Woop, Benthin and Wald, "Watertight
+// Ray/Triangle Intersection", JCGT 2(1), 2013: the vertices are moved to the ray's origin and
+// sheared so that the ray is the z axis; both triangles at an edge then see the same
 // two-dimensional vertices, and the sign of the edge function decides. That paper falls back to
-// double where an edge function is zero; here Kahan's difference of products gives the sign exactly
-// in single.
+// double if an edge function is zero; here Kahan's difference of products gives the sign exactly in
+// single precision.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace rtsl::device {
 
-/// What the test needs of a ray; made once a ray.
+/// Precomputed values of a ray for the test.
 struct TriangleRay {
   Vec3 origin;
   Vec3 inverse;     // 1 / direction by component, for boxes
@@ -44,7 +44,7 @@ inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
   float length = largest(direction);
   if (!(length > 0x1p-30f && length < 0x1p30f)) {
     int exponent = exponentOf(length);
-    if (exponent < -126) { // denormal: first out of the cellar
+    if (exponent < -126) { // denormal: scaled to a normal number first
       direction = direction * 0x1p100f;
       ray.directionExponent = -100;
       exponent = exponentOf(largest(direction));
@@ -54,7 +54,7 @@ inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
     direction = direction * powerOfTwo(-down);
     ray.directionExponent += down;
   }
-  // Three selects, for an index into a register is a trip through memory.
+  // Three selects, because indexing registers would go through memory.
   float dx = direction[ray.kx], dy = direction[ray.ky], dz = direction[ray.kz];
   ray.sz = 1.0f / dz;
   ray.sx = dx * ray.sz;
@@ -75,10 +75,9 @@ inline float scaledBy(float a, int exponent) {
   return a * powerOfTwo(exponent);
 }
 
-/// The depth of a hit so near that the roundings of the differences would show in it: what a ray
-/// meets right where it starts, the triangle that it leaves above all. In double, from the plane,
-/// times `scale`; right to some units of itself over the cosine. `depth` is the answer for a plane
-/// through which the ray does not go.
+/// The depth of a hit so near that the rounding of the differences would matter, such as at the
+/// triangle that a ray leaves. Computed in double, from the plane, times `scale`; exact to some
+/// units of itself over the cosine. `depth` is the result if the ray is parallel to the plane.
 __attribute__((cold, noinline)) inline float
 depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale, float depth) {
   int kx = ray.kx, ky = ray.ky, kz = ray.kz;
@@ -94,13 +93,13 @@ depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale, 
 }
 
 /// Hits nearer than this share of the triangle's distances are taken from depthNearOrigin: the
-/// error of the others is a smaller share of them, unless the ray goes within 2^-11 of the
-/// triangle's plane.
+/// error of the others is a smaller share of them, unless the ray is within 2^-11 of the triangle's
+/// plane.
 constexpr float nearShare = 0x1p-9f;
 
-/// Where the line of `ray` meets the triangle; from both sides, edges and vertices belong to it.
-/// The caller compares t. t is in units of the direction given to makeTriangleRay and may have any
-/// sign.
+/// Intersects the line of `ray` with the triangle; from both sides, edges and vertices included.
+/// The caller compares t, which is in units of the direction given to makeTriangleRay and may have
+/// any sign.
 inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, TriangleHit &hit) {
   Vec3 a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
   float az = a[ray.kz], bz = b[ray.kz], cz = c[ray.kz];
@@ -108,7 +107,7 @@ inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2,
   float bx = b[ray.kx] - ray.sx * bz, by = b[ray.ky] - ray.sy * bz;
   float cx = c[ray.kx] - ray.sx * cz, cy = c[ray.ky] - ray.sy * cz;
 
-  // Far from 1 the products would leave the range of a float. Powers of two change no sign.
+  // Far from 1 the products would leave the range of a float. Powers of two do not change signs.
   float size =
       maximum(maximum(maximum(absolute(ax), absolute(ay)), maximum(absolute(bx), absolute(by))),
               maximum(absolute(cx), absolute(cy)));

@@ -206,7 +206,7 @@ TEST(Preprocessor, ShowsBothEndsOfAConflict) {
             "  |         - defined here first\n"
             "2 | #define A 2\n"
             "  |         ^\n"
-            "  = note: `#undef A` in front of it makes way\n"
+            "  = note: write `#undef A` before it\n"
             "\n"
             "main.rtsl:3:2: error[E0151]: `#if` without `#endif`\n"
             "  |\n"

@@ -145,7 +145,7 @@ TEST(Brackets, AnUnclosedBraceIsFoundByIndentation) {
             "  |          ^\n"
             "4 |     b = 1;\n"
             "5 | }\n"
-            "  | - this one is indented like that of an outer bracket\n"
+            "  | - indented like the end of an outer block\n"
             "\n");
   EXPECT_EQ(messages("void f() {\n  a;\n"), "E0113 1:10-1:11 `{` is never closed\n");
   EXPECT_EQ(messages("void f() { a; "), "E0113 1:10-1:11 `{` is never closed\n");
@@ -339,11 +339,11 @@ TEST(DeclarationErrors, Classes) {
   EXPECT_EQ(messages("class A;\n"),
             "E0171 1:1-1:8 class `A` has neither a base nor members of its own\n");
   EXPECT_EQ(messages("class : rt_Light { };\n"), "E0111 1:7-1:8 expected a name, found `:`\n");
-  EXPECT_EQ(messages("class A : public rt_Light { };\n"),
-            "E0119 1:11-1:17 `public` is not allowed here: a class derives in one way only\n");
   EXPECT_EQ(
-      messages("class A : rt_Light {\npublic:\n  public float a;\n};\n"),
-      "E0119 2:1-2:8 `public:` is not allowed here: write `public` in front of each member\n");
+      messages("class A : public rt_Light { };\n"),
+      "E0119 1:11-1:17 `public` is not allowed here: RTSL has only one kind of inheritance\n");
+  EXPECT_EQ(messages("class A : rt_Light {\npublic:\n  public float a;\n};\n"),
+            "E0119 2:1-2:8 `public:` is not allowed here: write `public` before each member\n");
   EXPECT_EQ(messages("class A : rt_Light {\n  return 1;\n  void f() { }\n};\n"),
             "E0111 2:3-2:9 expected a member, found `return`\n");
 }

@@ -24,6 +24,7 @@
 #include <unistd.h>
 
 namespace report = rtsl::report;
+using namespace rtsl;
 using namespace rtsl::runtime;
 namespace fs = std::filesystem;
 

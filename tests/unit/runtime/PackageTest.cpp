@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+using namespace rtsl;
 using namespace rtsl::runtime;
 
 namespace {

@@ -14,6 +14,7 @@
 #include <thread>
 
 namespace report = rtsl::report;
+using namespace rtsl;
 using namespace rtsl::runtime;
 using namespace rtsl::runtime::test;
 

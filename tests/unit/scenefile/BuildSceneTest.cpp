@@ -199,7 +199,7 @@ TEST(BuildScene, ClassesInTheWrongPlace) {
 TEST(BuildScene, CyclesAreFound) {
   EXPECT_EQ(buildError("\"materials\": {\"a\": {\"class\": \"Everything\", \"other\": "
                        "\"b\"},\n\"b\": {\"class\": \"Everything\", \"other\": \"a\"}}"),
-            "s.json:3:40+1: referenceCycle: `a` refers to itself through others");
+            "s.json:3:40+1: referenceCycle: `a` refers to itself indirectly");
 }
 
 TEST(BuildScene, ObjectsMayBeWrittenInPlace) {

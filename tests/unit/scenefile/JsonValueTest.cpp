@@ -52,7 +52,7 @@ TEST(JsonValue, AByteOrderMarkIsNoColumn) {
 TEST(JsonValue, SyntaxErrorsPointAtTheToken) {
   EXPECT_EQ(parseError("{\n  \"a\": 1,\n}"),
             "s.json:3:1+1: jsonSyntax: this is not JSON: unexpected '}'; expected string literal "
-            "(note JSON has no comma behind the last element)");
+            "(note JSON allows no comma after the last element)");
   EXPECT_EQ(parseError("{\"a\" 1}"),
             "s.json:1:6+1: jsonSyntax: this is not JSON: unexpected number literal; expected ':'");
   EXPECT_EQ(parseError("[1, 2"),
@@ -114,7 +114,7 @@ TEST(Override, SaysWhatIsWrong) {
       error("objects.7.mesh=x"),
       "--set objects.7.mesh=x: badOverride: `objects` has 1 element: index 7 is out of range");
   EXPECT_EQ(error("objects.first=x"),
-            "--set objects.first=x: badOverride: `objects` is a list: `first` is no index into it");
+            "--set objects.first=x: badOverride: `objects` is a list: `first` is not an index");
   EXPECT_EQ(error("textures.checks.scale.x=1"),
             "--set textures.checks.scale.x=1: badOverride: `textures.checks.scale` is a number: it "
             "has no `x` in it");

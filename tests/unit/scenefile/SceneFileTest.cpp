@@ -95,9 +95,9 @@ TEST(SceneFile, WrongTypesAndRanges) {
   EXPECT_EQ(parseError(withCamera("\"objects\": {}")),
             "dir/s.json:2:12+1: wrongType: `objects` is a list, not an object");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"spp\": 0}")),
-            "dir/s.json:2:19+1: outOfRange: `spp` lies between 1 and 2147483647, it cannot be 0");
+            "dir/s.json:2:19+1: outOfRange: `spp` must be between 1 and 2147483647, not 0");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"spp\": 1.5}")),
-            "dir/s.json:2:19+3: wrongType: `spp` is a whole number, not 1.5");
+            "dir/s.json:2:19+3: wrongType: `spp` must be an integer, not 1.5");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"size\": [4]}")),
             "dir/s.json:2:20+1: wrongType: `size` takes 2 numbers, not 1");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"engine\": \"path\"}")),
@@ -113,8 +113,8 @@ TEST(SceneFile, WrongTypesAndRanges) {
 
 TEST(SceneFile, WhatComesLaterIsRefusedClearly) {
   EXPECT_EQ(parseError(withCamera("\"nodes\": []")),
-            "dir/s.json:2:2+5: notSupported: `nodes` is not supported yet: list what there is to "
-            "see in `objects`");
+            "dir/s.json:2:2+5: notSupported: `nodes` is not supported yet: list the geometry in "
+            "`objects`");
   EXPECT_EQ(parseError(withCamera("\"objects\": [{\"primitive\": {\"class\": \"S\"}, \"material\": "
                                   "\"m\", \"transform\": {}}]")),
             "dir/s.json:2:73+1: notSupported: the transform of a primitive is not supported yet: "
@@ -125,7 +125,7 @@ TEST(SceneFile, NamesAreUniqueAcrossTexturesAndMaterials) {
   EXPECT_EQ(
       parseError(withCamera("\"textures\": {\"a\": {\"class\": \"T\"}},\n\"materials\": {\"a\": "
                             "{\"class\": \"M\"}}")),
-      "dir/s.json:3:16+1: duplicateKey: `a` is the name of a texture already (2:19 the texture)");
+      "dir/s.json:3:16+1: duplicateKey: `a` is already the name of a texture (2:19 the texture)");
 }
 
 TEST(SceneFile, TransformsComposeInOrder) {
@@ -167,7 +167,7 @@ TEST(SceneFile, OverridesReachTheDescription) {
   EXPECT_EQ(scene.objects[0].meshPath, "b.ply"); // as the shell's working directory sees it
   EXPECT_EQ(scene.render.samplesPerPixel, 9u);
   EXPECT_EQ(parseError(withCamera("\"ambient\": 1"), {"render.spp=0"}),
-            "--set render.spp=0: outOfRange: `spp` lies between 1 and 2147483647, it cannot be 0");
+            "--set render.spp=0: outOfRange: `spp` must be between 1 and 2147483647, not 0");
   EXPECT_EQ(parseError(withCamera("\"ambient\": 1"), {"rendr.spp=1"}),
             "--set rendr.spp=1: unknownKey: a scene has no key `rendr` (fix `render`)");
 }
@@ -190,13 +190,13 @@ TEST(SceneFile, TellsAllThatIsWrongInOneRun) {
       "dir/s.json:1:14+5: unknownKey: a scene has no key `camra` (fix `camera`)\n"
       "dir/s.json:2:11+1: missingKey: `camera` needs a `class`\n"
       "dir/s.json:3:29+1: wrongType: `class` is a string, not a number\n"
-      "dir/s.json:4:16+1: duplicateKey: `b` is the name of a texture already (3:38 the texture)\n"
+      "dir/s.json:4:16+1: duplicateKey: `b` is already the name of a texture (3:38 the texture)\n"
       "dir/s.json:4:41+1: wrongType: `c` is an object, not a number\n"
       "dir/s.json:5:32+6: unknownKey: an object has no key `colour`\n"
       "dir/s.json:5:13+1: missingKey: an object needs a `material`\n"
       "dir/s.json:6:1+1: missingKey: an object needs a `primitive` or a `mesh`\n"
-      "dir/s.json:6:27+2: outOfRange: `mask` lies between 0 and 4294967295, it cannot be -1\n"
-      "dir/s.json:7:19+1: outOfRange: `spp` lies between 1 and 2147483647, it cannot be 0");
+      "dir/s.json:6:27+2: outOfRange: `mask` must be between 0 and 4294967295, not -1\n"
+      "dir/s.json:7:19+1: outOfRange: `spp` must be between 1 and 2147483647, not 0");
 }
 
 TEST(SceneFile, StopsReadingBehindAHundredErrors) {

@@ -98,7 +98,8 @@ TEST(Hints, OtherLanguagesAreTranslated) {
 TEST(Hints, WhatCannotStandThereIsNotSuggested) {
   EXPECT_EQ(
       hints("class A : rt_Material { void shade() { discard; rt_SampleColor = color(1.0); } };"),
-      "`ignoreIntersection()`, which may be meant, stands in `anyHit` of an rt_Material\n");
+      "`ignoreIntersection()`, which may be meant, is allowed only in `anyHit` of an "
+      "rt_Material\n");
   expectFix(
       "struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { discard; } };",
       "struct P { float x; };\nclass A : rt_Material { void anyHit(inout P p) { "
@@ -194,15 +195,15 @@ TEST(Hints, CallersOfHelpersAreNamed) {
       hints("class A : rt_Primitive {\n  color look() { return trace(vec3(0.0), vec3(1.0)); }\n"
             "  void intersect() { hit(luminance(look())); }\n};"),
       "intersect: reached from `intersect` of an rt_Primitive\n"
-      "`trace` may stand in `shade` and `closestHit` of an rt_Material, `generate` of an "
+      "`trace` is allowed only in `shade` and `closestHit` of an rt_Material, `generate` of an "
       "rt_RayGeneration and "
       "`miss` of an rt_Miss, and in functions that these call\n");
 }
 
 TEST(Hints, CyclesAreShown) {
   EXPECT_EQ(hints("float a(float x) { return b(x); }\nfloat b(float x) { return a(x); }"),
-            "b: `a` calls `b` here\n`a` calls `b`, which calls `a`\nonly `trace` recurses, and "
-            "functions on objects that members refer to: `member.function()`\n");
+            "b: `a` calls `b` here\n`a` calls `b`, which calls `a`\nonly `trace` and calls "
+            "through members may be recursive: `member.function()`\n");
 }
 
 TEST(Hints, ExpectedMethodsAreShown) {

@@ -14,6 +14,7 @@
 #include "codegen/passes/continuation/states/Dispatch.h"
 
 #include "codegen/ir/Separate.h"
+#include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/KeptState.h"
 #include "codegen/passes/continuation/states/RayGraph.h"
 #include "codegen/passes/continuation/states/Steps.h"
