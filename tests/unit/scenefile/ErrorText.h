@@ -18,7 +18,7 @@ inline std::string textOf(const Error &error) {
               "+" + std::to_string(error.place->length);
     text += ": ";
   }
-  text += std::string(runtime::name(error.code)) + ": " + error.what();
+  text += std::string(name(error.code)) + ": " + error.what();
   if (error.replacement)
     text += " (fix `" + *error.replacement + "`)";
   for (const RelatedPlace &related : error.relatedPlaces)
