@@ -9,6 +9,7 @@
 // through arguments of blocks.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/IncomingEdges.h"
 #include "codegen/passes/continuation/states/Steps.h"
 
@@ -25,7 +26,7 @@ public:
   explicit SlotContents(ir::FrameStoreOp store) : store(store) {}
 
   bool isHeldAlready() {
-    return !store->hasAttr("rtsl.shared") && holdsBefore(store, store.getValue());
+    return !ir::attr::shared.isOn(store) && holdsBefore(store, store.getValue());
   }
 
 private:
