@@ -7,7 +7,6 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/continuation/states/Dispatch.h"
 #include "codegen/passes/restructure/Restructure.h"
 #include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"

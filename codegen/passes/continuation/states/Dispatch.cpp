@@ -11,8 +11,6 @@
 //   func @rtsl_rays_kept(%part: i32) -> i32                     what of their state waiting rays read (KeptState.h)
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/states/Dispatch.h"
-
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Separate.h"
 #include "codegen/passes/continuation/calls/Steps.h"
