@@ -21,21 +21,6 @@
 
 namespace rtsl {
 
-/// What can be looked at on the way, in order.
-enum class Stage : std::uint8_t {
-  Preprocessed,
-  Ast,
-  TypedAst,
-  Ir,
-  Ssa,
-  Split,
-  Structured,
-  Llvm,
-  Ptx,
-  Cpp,
-  Reflection
-};
-
 /// How `trace` runs: as a call, or as the end of one state and the beginning of another, without
 /// recursion (docs/continuations.md). The picture is the same, bit for bit.
 enum class TraceMode : std::uint8_t { Recurse, Split };
@@ -79,19 +64,15 @@ using MakeObjects = std::function<runtime::SceneFacts(std::shared_ptr<const runt
 /// noted and end no sample.
 void keep(ItemSet items, LinkRequest &request, CompileOptions &options);
 
-/// The text of `stage` (Ir and what follows) for a module without a scene: what is called through
-/// references stays a declared slot. Nothing if there were errors.
-std::optional<std::string> emit(const typed::Module &module, Stage stage,
-                                const CompileOptions &options, Diagnostics &diagnostics);
-
-/// The same for the linked program of a scene. From Split on it is what GPUs run: without
-/// recursion, with the traversal of runtime/device. Its PTX has one kernel, `rtsl_render`, that
-/// takes an RtslJob (runtime/device/ray/Abi.h); its LLVM IR is that of Target::HostMegakernel. With
-/// `makeObjects` it is bound to the scene that this makes, as a package is.
-std::optional<std::string> emitScene(const typed::Module &module, const LinkRequest &request,
-                                     Stage stage, const CompileOptions &options,
-                                     Diagnostics &diagnostics,
-                                     const MakeObjects &makeObjects = nullptr);
+/// How C++ is printed.
+struct CppRequest {
+  std::string name; // becomes its namespace, and `<name>_shaders` what it exports
+  bool lineDirectives = false;
+  /// What becomes of a method that traces: its states, or a call where it traces. Without it
+  /// states, or calls if something in such a method cannot be printed as states.
+  std::optional<TraceMode> trace = std::nullopt;
+  std::uint32_t features = 0; // RTSL_FEATURE_* of the program
+};
 
 /// The module as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md). `name` becomes
 /// its namespace, and `<name>_shaders` what it exports. Nothing if there were errors.

@@ -1,7 +1,7 @@
 //===- HostCode.cpp - linked IR as a program in this process --------------===//
 #include "codegen/driver/HostCode.h"
 
-#include "codegen/driver/Stages.h"
+#include "codegen/driver/Compilation.h"
 #include "codegen/emit/DoublePrecision.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/Parts.h"
@@ -20,7 +20,9 @@
 #include <mutex>
 #include <optional>
 
-namespace rtsl::driver {
+namespace rtsl {
+
+namespace driver {
 
 namespace {
 
@@ -32,7 +34,7 @@ namespace {
 std::vector<std::string> sampleSymbols(const runtime::Program &program,
                                        const CompileOptions &options) {
   if (options.target == Target::HostMegakernel)
-    return {"rtsl_lane_bytes", "rtsl_run_lane"};
+    return hostEntries();
   if (options.trace == TraceMode::Split)
     return {"rtsl_sample_split"};
   return {program.engine == runtime::Engine::Classic ? "rtsl_sample" : "rtsl_generate"};
@@ -202,26 +204,6 @@ std::vector<codegen::ObjectCode> PartCompiler::run() {
 
 } // namespace
 
-void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program) {
-  const bool isMegakernel = options.target == Target::HostMegakernel;
-  runToSsa(ir, options, isMegakernel ? TraceMode::Split : options.trace);
-  if (options.restructure) {
-    expectSuccess(
-        ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
-    run(ir, codegen::buildSsaPipeline);
-  }
-
-  std::vector<codegen::HostSymbol> symbols;
-  if (!isMegakernel) {
-    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
-    symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
-  }
-  const std::vector<std::string_view> whole = {runtime::deviceBitcode()};
-  PartCompiler compiler(ir, options, isMegakernel ? megakernelCode(/*forGpu=*/false) : whole,
-                        entries(program, options), program);
-  load(compiler.run(), std::move(symbols), options, program);
-}
-
 /// Constructors run once: those of so many classes take longer to optimise than to run.
 constexpr std::size_t manyClasses = 100;
 
@@ -247,4 +229,51 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
   load(std::move(objects), {}, options, program);
 }
 
-} // namespace rtsl::driver
+/// Level 2 to level 1 and down again.
+static void restructureAndBack(mlir::ModuleOp ir) {
+  expectSuccess(
+      ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
+  run(ir, codegen::buildSsaPipeline);
+}
+
+/// The linked IR of a scene as machine code, with the entries of its program.
+static void compileLinked(Compilation &compilation) {
+  const CompileOptions &options = compilation.options;
+  runtime::Program &program = *compilation.program;
+  const bool isMegakernel = options.target == Target::HostMegakernel;
+  std::vector<codegen::HostSymbol> symbols;
+  if (!isMegakernel) {
+    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
+    symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
+  }
+  const std::vector<std::string_view> whole = {runtime::deviceBitcode()};
+  PartCompiler compiler(*compilation.ir, options,
+                        isMegakernel ? megakernelCode(/*forGpu=*/false) : whole,
+                        entries(program, options), program);
+  load(compiler.run(), std::move(symbols), options, program);
+}
+
+} // namespace driver
+
+std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &module,
+                                                       const LinkRequest &request,
+                                                       const CompileOptions &options,
+                                                       Diagnostics &diagnostics,
+                                                       const MakeObjects &makeObjects) {
+  CompileInput input;
+  input.module = &module;
+  input.scene = &request;
+  input.makeObjects = makeObjects;
+  driver::Compilation compilation(input, options, diagnostics);
+  compilation.usesThreads = true;
+  const bool isSplit =
+      options.target == Target::HostMegakernel || options.trace == TraceMode::Split;
+  if (!(isSplit ? driver::reachMachine(compilation) : driver::reachSsa(compilation)))
+    return nullptr;
+  if (options.restructure)
+    driver::restructureAndBack(*compilation.ir);
+  driver::compileLinked(compilation);
+  return compilation.program;
+}
+
+} // namespace rtsl

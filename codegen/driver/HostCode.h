@@ -7,11 +7,8 @@
 
 namespace rtsl::driver {
 
-/// Fills in the entries of `program`, whose classes are known. `ir` is used up.
-void compileLinked(mlir::ModuleOp ir, const CompileOptions &options, runtime::Program &program);
-
-/// The same with what makes the objects of a scene and nothing else. It runs once, so it is
-/// compiled lightly.
+/// Fills in those entries of `program`, whose classes are known, that make the objects of a scene.
+/// They run once, so they are compiled lightly. `ir` is used up.
 void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
                          runtime::Program &program);
 

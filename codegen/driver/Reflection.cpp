@@ -3,7 +3,7 @@
 
 #include "codegen/cpp/Effects.h"
 #include "codegen/cpp/Names.h"
-#include "codegen/driver/Stages.h"
+#include "codegen/driver/Compilation.h"
 #include "codegen/explain/ReportJson.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/link/Members.h"
@@ -213,12 +213,12 @@ private:
 std::optional<std::string> emitReflection(const typed::Module &module,
                                           const CompileOptions &options, Diagnostics &diagnostics) {
   // How traces cut functions into states, and the frames of those.
-  const std::unique_ptr<mlir::MLIRContext> splitContext = driver::makeContext();
-  const mlir::OwningOpRef<mlir::ModuleOp> split =
-      driver::lowerModule(module, options, {}, diagnostics, *splitContext);
-  if (!split)
+  CompileInput input;
+  input.module = &module;
+  driver::Compilation split(input, options, diagnostics);
+  split.explains = true;
+  if (!driver::reachStates(split))
     return std::nullopt;
-  const SplitReport states = driver::runToExplainedStates(*split, options);
 
   mlir::MLIRContext context(mlir::MLIRContext::Threading::DISABLED);
   LowerOptions lowering;
@@ -230,7 +230,7 @@ std::optional<std::string> emitReflection(const typed::Module &module,
     return std::nullopt;
   Json json = Reflection(module, lowering, *ir).describe();
   json["colorComponents"] = options.colorComponents;
-  json["tracing"] = rtsl::describe(states);
+  json["tracing"] = rtsl::describe(split.report);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

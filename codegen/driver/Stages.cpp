@@ -1,196 +1,215 @@
-//===- Stages.cpp - the steps that all ways through the compiler share ----===//
+//===- Stages.cpp - the pipeline, stage by stage --------------------------===//
 #include "codegen/driver/Stages.h"
 
-#include "codegen/emit/CheckNumbers.h"
-#include "codegen/emit/ConvertToLlvm.h"
-#include "codegen/emit/DoublePrecision.h"
-#include "codegen/emit/FastMath.h"
-#include "codegen/emit/Ptx.h"
+#include "codegen/driver/Compilation.h"
+#include "codegen/driver/Reflection.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
-#include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
-#include "runtime/program/DeviceBitcode.h"
+#include "codegen/passes/restructure/Restructure.h"
+#include "frontend/syntax/Parser.h"
+#include "sema/Sema.h"
 
-#include "llvm/Support/raw_ostream.h"
+#include "mlir/Dialect/LLVMIR/LLVMDialect.h"
+#include "llvm/IR/Module.h"
 
-#include <cerrno>
-#include <cstring>
-#include <new>
+#include <stdexcept>
 
-namespace rtsl::driver {
+namespace rtsl {
 
-void fail(const std::string &message) {
-  if (message.find(std::strerror(ENOMEM)) != std::string::npos)
-    throw std::bad_alloc();
-  throw std::logic_error(message);
+namespace driver {
+
+static std::string showText(Compilation &compilation) {
+  return std::move(compilation.text);
 }
 
-std::unique_ptr<mlir::MLIRContext> makeContext() {
-  mlir::DialectRegistry registry;
-  registry.insert<ir::RtslDialect>();
-  codegen::registerPassDependencies(registry);
-  codegen::registerLlvmTranslation(registry);
-  auto context =
-      std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
-  context->loadAllAvailableDialects();
-  return context;
+static std::string showIr(Compilation &compilation) {
+  return print(*compilation.ir);
 }
 
-/// With fewer functions threads take longer to start than they save.
-constexpr std::ptrdiff_t fewestFunctionsForThreads = 100;
+static std::string showLlvm(Compilation &compilation) {
+  return codegen::printLlvm(*compilation.llvm->module);
+}
 
-void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
-  const auto functions = ir.getOps<mlir::func::FuncOp>();
-  if (options.threads == 1 ||
-      std::distance(functions.begin(), functions.end()) < fewestFunctionsForThreads)
-    return;
-  mlir::MLIRContext &context = *ir.getContext();
-  // Pipelines load their dialects when they run, and several that run at once must not.
-  for (const auto build : {codegen::buildSsaPipeline, codegen::buildLlvmPipeline}) {
-    mlir::PassManager passes(&context);
-    build(passes);
-    mlir::DialectRegistry dialects;
-    passes.getDependentDialects(dialects);
-    context.appendDialectRegistry(dialects);
+//===----------------------------------------------------------------------===//
+// What the author wrote
+//===----------------------------------------------------------------------===//
+
+static bool reachPreprocessed(Compilation &compilation) {
+  for (const PreprocessedFile &file : compilation.input.texts)
+    compilation.text += printPreprocessed(file.text, compilation.diagnostics.sources());
+  return true;
+}
+
+static bool reachAst(Compilation &compilation) {
+  for (const ast::TranslationUnit *unit : compilation.input.units)
+    compilation.text += dump(*unit);
+  return true;
+}
+
+static bool reachTypedAst(Compilation &compilation) {
+  compilation.text = typed::dump(*compilation.input.module);
+  return true;
+}
+
+//===----------------------------------------------------------------------===//
+// MLIR. reachIr() is in Compilation.cpp
+//===----------------------------------------------------------------------===//
+
+bool reachSsa(Compilation &compilation) {
+  if (!reachIr(compilation))
+    return false;
+  run(*compilation.ir, codegen::buildSsaPipeline);
+  return true;
+}
+
+static bool split(Compilation &compilation, bool dispatch) {
+  if (!reachIr(compilation))
+    return false;
+  SplitOptions how = splitOptions(compilation.options);
+  how.dispatch = dispatch;
+  how.explain = compilation.explains;
+  compilation.report = runToStates(*compilation.ir, how);
+  return true;
+}
+
+bool reachStates(Compilation &compilation) {
+  return split(compilation, /*dispatch=*/false);
+}
+
+static bool reachStructured(Compilation &compilation) {
+  if (!reachStates(compilation))
+    return false;
+  expectSuccess(*compilation.ir, [&] { return mlir::succeeded(restructure(*compilation.ir)); });
+  return true;
+}
+
+bool reachMachine(Compilation &compilation) {
+  return split(compilation, /*dispatch=*/true);
+}
+
+//===----------------------------------------------------------------------===//
+// LLVM IR and PTX
+//===----------------------------------------------------------------------===//
+
+bool reachLlvm(Compilation &compilation) {
+  const CompileOptions &options = compilation.options;
+  if (compilation.input.scene) {
+    if (!reachMachine(compilation))
+      return false;
+    compilation.llvm.emplace(
+        megakernel(*compilation.ir, options, *compilation.program, /*forGpu=*/false));
+  } else {
+    if (!reachSsa(compilation))
+      return false;
+    declareSlots(*compilation.ir);
+    compilation.llvm.emplace(
+        translate(*compilation.ir, machineOptions(options, /*hostCpu=*/false)));
   }
-  context.loadAllAvailableDialects();
-  context.enableMultithreading();
+  optimize(*compilation.llvm);
+  return true;
 }
 
-mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
-                                              const CompileOptions &options,
-                                              const LinkRequest &request, Diagnostics &diagnostics,
-                                              mlir::MLIRContext &context) {
-  LowerOptions lowering;
-  lowering.diagnostics = &diagnostics;
-  lowering.colorComponents = options.colorComponents;
-  lowering.checkIndices = options.checkIndices;
-  lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
-  lowering.prints = request.features & RTSL_FEATURE_PRINT;
-  lowering.isWidenedLater = options.floatingPoint == FloatingPoint::Double;
-  if (!request.keep.has(Item::Classes))
-    lowering.classes = {request.classes.begin(), request.classes.end()};
-  return lower(module, lowering, context);
+/// The PTX of a module without a scene: a function a method, or a state where it traces. What
+/// others supply is declared: slots, and the functions of runtime/device.
+static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
+  declareSlots(ir);
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (ir::attr::factOfScene.isOn(function))
+      function->setAttr("llvm.linkage", mlir::LLVM::LinkageAttr::get(
+                                            ir.getContext(), mlir::LLVM::Linkage::Internal));
+  LlvmCode code = translate(ir, gpuOptions(options));
+  for (llvm::Function &function : *code.module)
+    if (!function.hasLocalLinkage())
+      function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them
+  return toPtx(std::move(code));
 }
 
-void expectSuccess(mlir::ModuleOp ir, llvm::function_ref<bool()> work) {
-  std::string messages;
-  mlir::ScopedDiagnosticHandler collect(ir.getContext(), [&](mlir::Diagnostic &diagnostic) {
-    messages += diagnostic.str() + "\n";
-    return mlir::success();
-  });
-  if (!work())
-    throw std::logic_error(messages);
+/// Of a scene: one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h).
+static bool reachPtx(Compilation &compilation) {
+  if (!reachIr(compilation) || !requireNoRecursion(compilation) || !reachMachine(compilation))
+    return false;
+  const CompileOptions &options = compilation.options;
+  compilation.text =
+      compilation.input.scene
+          ? toPtx(megakernel(*compilation.ir, options, *compilation.program, /*forGpu=*/true))
+          : modulePtx(*compilation.ir, options);
+  return true;
 }
 
-void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &)) {
-  mlir::PassManager passes(ir.getContext());
-#ifdef NDEBUG
-  passes.enableVerifier(false);
-#endif
-  build(passes);
-  expectSuccess(ir, [&] { return mlir::succeeded(passes.run(ir)); });
+//===----------------------------------------------------------------------===//
+// What is said of a checked module by other means
+//===----------------------------------------------------------------------===//
+
+static bool give(std::optional<std::string> text, Compilation &compilation) {
+  if (text)
+    compilation.text = std::move(*text);
+  return text.has_value();
 }
 
-SplitOptions splitOptions(const CompileOptions &options) {
-  SplitOptions split;
-  split.rematerialise = split.trim = split.cleanUp = !options.savesAllThatIsLive;
-  return split;
+static bool reachCpp(Compilation &compilation) {
+  const CppRequest &request = compilation.input.cpp;
+  return give(emitCpp(*compilation.input.module, request.name, request.lineDirectives,
+                      request.trace, request.features, compilation.options,
+                      compilation.diagnostics),
+              compilation);
 }
 
-SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options) {
-  SplitReport report;
-  keepTracingMethods(ir);
-  run(ir, codegen::buildSsaPipeline);
-  expectSuccess(ir, [&] { return splitAtTrace(ir, options, report); });
-  return report;
+static bool reachReflection(Compilation &compilation) {
+  return give(
+      emitReflection(*compilation.input.module, compilation.options, compilation.diagnostics),
+      compilation);
 }
 
-SplitReport runToExplainedStates(mlir::ModuleOp ir, const CompileOptions &options) {
-  SplitOptions split = splitOptions(options);
-  split.explain = true;
-  return runToStates(ir, split);
+} // namespace driver
+
+//===----------------------------------------------------------------------===//
+// The table
+//===----------------------------------------------------------------------===//
+
+static constexpr const char *noText =
+    "a scene has no text and no syntax tree; give one of its RTSL files";
+static constexpr const char *noCpp = "C++ is generated from RTSL files, without a scene; the "
+                                     "program that it is linked to builds one";
+static constexpr const char *noReflection =
+    "reflection describes RTSL files; give those of the scene";
+
+const std::vector<Stage> &stages() {
+  using namespace driver;
+  using Needs = Stage::Needs;
+  // clang-format off
+  static const std::vector<Stage> table = {
+      // name          needs              why no scene  events double  function           text
+      {"preprocessed", Needs::Text,       noText,       false, true,   reachPreprocessed, showText},
+      {"ast",          Needs::SyntaxTree, noText,       false, true,   reachAst,          showText},
+      {"typed-ast",    Needs::Module,     noText,       false, true,   reachTypedAst,     showText},
+      {"ir",           Needs::Module,     nullptr,      false, true,   reachIr,           showIr},
+      {"ssa",          Needs::Module,     nullptr,      false, true,   reachSsa,          showIr},
+      {"split",        Needs::Module,     nullptr,      false, true,   reachStates,       showIr},
+      {"structured",   Needs::Module,     nullptr,      false, true,   reachStructured,   showIr},
+      {"llvm",         Needs::Module,     nullptr,      false, true,   reachLlvm,         showLlvm},
+      {"ptx",          Needs::Module,     nullptr,      false, false,  reachPtx,          showText},
+      {"cpp",          Needs::Module,     noCpp,        true,  false,  reachCpp,          showText},
+      {"reflection",   Needs::Module,     noReflection, false, true,   reachReflection,   showText},
+  };
+  // clang-format on
+  return table;
 }
 
-void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace, bool dispatch) {
-  if (trace == TraceMode::Recurse)
-    return run(ir, codegen::buildSsaPipeline);
-  SplitOptions split = splitOptions(options);
-  split.dispatch = dispatch;
-  runToStates(ir, split);
+const Stage &stage(std::string_view name) {
+  for (const Stage &one : stages())
+    if (one.name == name)
+      return one;
+  throw std::logic_error("no stage has the name " + std::string(name));
 }
 
-std::string print(mlir::ModuleOp ir) {
-  std::string text;
-  llvm::raw_string_ostream stream(text);
-  ir.print(stream);
-  stream << "\n";
-  return text;
+std::optional<std::string> emit(const Stage &stage, const CompileInput &input,
+                                const CompileOptions &options, Diagnostics &diagnostics) {
+  driver::Compilation compilation(input, options, diagnostics);
+  if (!stage.reach(compilation))
+    return std::nullopt;
+  return stage.show(compilation);
 }
 
-LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
-                   std::vector<Place> *numberPlaces) {
-  LlvmCode code;
-  code.kept = keptFunctions(ir);
-  run(ir, codegen::buildLlvmPipeline);
-  if (numberPlaces)
-    codegen::checkNumbers(ir, *numberPlaces);
-  code.options = options;
-  code.machine = take(codegen::createTargetMachine(options));
-  code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
-  if (options.floatingPoint == FloatingPoint::Fast)
-    codegen::relaxArithmetic(*code.module);
-  else if (options.floatingPoint == FloatingPoint::Double)
-    codegen::widenArithmetic(*code.module);
-  return code;
-}
-
-void defineFacts(LlvmCode &code, const runtime::Program &program) {
-  codegen::defineConstant(*code.module, "rtsl_needs", program.needs);
-  codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
-}
-
-const std::vector<std::string_view> &megakernelCode(bool forGpu) {
-  static const std::vector<std::string_view> host = {runtime::deviceBitcode(),
-                                                     runtime::megakernelBitcode()};
-  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(),
-                                                    runtime::gpuMegakernelBitcode()};
-  return forGpu ? gpu : host;
-}
-
-void linkMegakernel(LlvmCode &code, bool forGpu, std::vector<std::string> exports) {
-  linkDeviceCode(code, megakernelCode(forGpu), std::move(exports));
-  code.options.isMegakernel = true;
-}
-
-void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
-                    std::vector<std::string> exports) {
-  exports.insert(exports.end(), code.kept.begin(), code.kept.end());
-  if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
-    throw std::logic_error(llvm::toString(std::move(error)));
-}
-
-codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu) {
-  codegen::MachineOptions machine;
-  machine.optimization = options.optimization;
-  machine.hostCpu = hostCpu;
-  machine.floatingPoint = options.floatingPoint;
-  return machine;
-}
-
-codegen::MachineOptions gpuOptions(const CompileOptions &options) {
-  codegen::MachineOptions machine;
-  machine.optimization = options.optimization;
-  machine.gpu = options.gpu;
-  machine.floatingPoint = options.floatingPoint;
-  return machine;
-}
-
-std::string toPtx(LlvmCode code) {
-  codegen::nameForPtx(*code.module);
-  codegen::optimize(*code.module, *code.machine, code.options);
-  return take(codegen::printPtx(*code.module, *code.machine));
-}
-
-} // namespace rtsl::driver
+} // namespace rtsl

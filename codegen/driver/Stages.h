@@ -1,103 +1,62 @@
-//===- Stages.h - the steps that all ways through the compiler share ------===//
+//===- Stages.h - what can be looked at on the way ------------------------===//
 //
-// From a checked module to IR, states, LLVM IR and PTX. A step that fails is a mistake of ours, for
-// the program was checked before: it throws std::logic_error, which ends `rtslc` with a status of
-// its own.
+// `rtslc compile --emit=NAME`, and what the other commands are made of. The table is in Stages.cpp:
+// a new stage is a function and a row there.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "codegen/driver/Compiler.h"
-#include "codegen/emit/LlvmModule.h"
-#include "codegen/passes/continuation/Split.h"
+#include "frontend/preprocessor/Preprocessor.h"
+#include "frontend/syntax/Ast.h"
 
-#include "mlir/IR/BuiltinOps.h"
-#include "mlir/IR/MLIRContext.h"
-#include "mlir/IR/OwningOpRef.h"
-#include "mlir/Pass/PassManager.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
-#include "llvm/Support/Error.h"
-#include "llvm/Target/TargetMachine.h"
-
-#include <memory>
-#include <stdexcept>
-#include <string>
 #include <string_view>
-#include <vector>
 
-namespace rtsl::driver {
+namespace rtsl {
 
-/// Throws std::logic_error, or std::bad_alloc if the message is that of a system without memory.
-[[noreturn]] void fail(const std::string &message);
-
-template <typename T>
-T take(llvm::Expected<T> expected) {
-  if (!expected)
-    fail(llvm::toString(expected.takeError()));
-  return std::move(*expected);
+namespace driver {
+struct Compilation;
 }
 
-std::unique_ptr<mlir::MLIRContext> makeContext();
+/// What a compilation begins with.
+struct CompileInput {
+  // One of these, as Stage::needs says:
+  std::vector<PreprocessedFile> texts;
+  std::vector<const ast::TranslationUnit *> units;
+  const typed::Module *module = nullptr; // without errors
 
-/// Passes and what else works on functions alone may use several threads from now on, if the module
-/// is large.
-void allowThreads(mlir::ModuleOp ir, const CompileOptions &options);
-
-/// Null if something is not supported, which is reported.
-mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
-                                              const CompileOptions &options,
-                                              const LinkRequest &request, Diagnostics &diagnostics,
-                                              mlir::MLIRContext &context);
-
-/// Runs `work` on the module.
-void expectSuccess(mlir::ModuleOp ir, llvm::function_ref<bool()> work);
-
-void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &));
-
-SplitOptions splitOptions(const CompileOptions &options);
-
-/// Level 1 to level 2, to states.
-SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options);
-SplitReport runToExplainedStates(mlir::ModuleOp ir, const CompileOptions &options);
-
-/// With `trace` left a call, or as states.
-void runToSsa(mlir::ModuleOp ir, const CompileOptions &options, TraceMode trace,
-              bool dispatch = true);
-
-std::string print(mlir::ModuleOp ir);
-
-/// LLVM IR on its way to code.
-struct LlvmCode {
-  LlvmCode() = default;
-  LlvmCode(LlvmCode &&) = default;
-  std::unique_ptr<llvm::LLVMContext> context = std::make_unique<llvm::LLVMContext>();
-  std::unique_ptr<llvm::TargetMachine> machine;
-  std::unique_ptr<llvm::Module> module;
-  codegen::MachineOptions options;
-  std::vector<std::string> kept; // functions that nothing calls and that stay
+  /// Link the module for a scene. Null: a file alone, in which what is called through references
+  /// stays a declared slot.
+  const LinkRequest *scene = nullptr;
+  /// Of a scene: bind the program to these objects, as a package is. Null: to none.
+  MakeObjects makeObjects = nullptr;
+  CppRequest cpp = {};
 };
 
-/// Level 2 as LLVM IR that is not linked with device code yet.
-/// With `numberPlaces`, numbers are checked, and their places are added there (CheckNumbers.h).
-LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
-                   std::vector<Place> *numberPlaces = nullptr);
+/// One of the texts that rtslc can write.
+struct Stage {
+  enum class Needs : std::uint8_t { Text, SyntaxTree, Module };
 
-/// Tells the device code what it may leave out.
-void defineFacts(LlvmCode &code, const runtime::Program &program);
+  std::string_view name; // of --emit
+  Needs needs;
+  /// Null: there is one of a scene's linked program too. From `split` on it is what GPUs run:
+  /// without recursion, with the traversal of runtime/device.
+  const char *whyNoScene;
+  bool keepsEvents; // prints and raises exceptions without a scene, too
+  bool hasDouble;   // arithmetic may be in double
+  /// Takes the compilation to this stage. False: something is wrong, which was reported.
+  bool (*reach)(driver::Compilation &);
+  std::string (*show)(driver::Compilation &);
+};
 
-/// What a GPU's program needs of runtime/device, for one or for the CPU.
-const std::vector<std::string_view> &megakernelCode(bool forGpu);
+/// All of them, in order.
+const std::vector<Stage> &stages();
 
-/// Makes a program that refers to nothing outside (runtime/device/engines/Megakernel.h).
-void linkMegakernel(LlvmCode &code, bool forGpu, std::vector<std::string> exports);
+/// The stage of that name. Throws std::logic_error if there is none.
+const Stage &stage(std::string_view name);
 
-void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
-                    std::vector<std::string> exports);
+/// The text of a stage; nothing if there were errors.
+std::optional<std::string> emit(const Stage &stage, const CompileInput &input,
+                                const CompileOptions &options, Diagnostics &diagnostics);
 
-codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu);
-codegen::MachineOptions gpuOptions(const CompileOptions &options);
-
-std::string toPtx(LlvmCode code);
-
-} // namespace rtsl::driver
+} // namespace rtsl

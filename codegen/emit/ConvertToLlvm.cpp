@@ -3,6 +3,7 @@
 
 #include "codegen/emit/Patterns.h"
 #include "codegen/emit/RuntimeFunctions.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslDialect.h"
@@ -66,23 +67,17 @@ LogicalResult checkLinked(mlir::ModuleOp module) {
 // 2. What only the whole program says
 //===----------------------------------------------------------------------===//
 
-/// On a module of which all this is noted.
-constexpr llvm::StringLiteral wholeProgramNoted = "rtsl.noted";
-/// On a module: a ray that was sent points to its payload, which lies in the frame of the state
-/// that sent it.
-constexpr llvm::StringLiteral holdsPayloads = "rtsl.holds_payloads";
-
 /// Marks constructors and everything that they call, directly or not.
 void markWriters(mlir::ModuleOp module) {
   llvm::SmallVector<FuncOp> worklist;
   auto mark = [&](FuncOp function) {
-    if (!function || function->hasAttr(writesMembers))
+    if (!function || ir::attr::writesMembers.isOn(function))
       return;
-    function->setAttr(writesMembers, mlir::UnitAttr::get(module.getContext()));
+    ir::attr::writesMembers.set(function);
     worklist.push_back(function);
   };
   for (FuncOp function : module.getOps<FuncOp>())
-    if (function->hasAttr("rtsl.constructor"))
+    if (ir::attr::constructor.isOn(function))
       mark(function);
   const mlir::SymbolTable symbols(module);
   while (!worklist.empty())
@@ -93,7 +88,7 @@ void markWriters(mlir::ModuleOp module) {
 void notePayloads(mlir::ModuleOp module) {
   if (module.walk([](ir::SpawnPayloadOp) { return mlir::WalkResult::interrupt(); })
           .wasInterrupted())
-    module->setAttr(holdsPayloads, mlir::UnitAttr::get(module.getContext()));
+    ir::attr::holdsPayloads.set(module);
 }
 
 /// While the classes can be found.
@@ -103,7 +98,7 @@ void noteMemberOffsets(mlir::ModuleOp module) {
   module.walk([&](ir::MemberOp op) {
     llvm::StringRef className = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
     const uint32_t offset = *classes.find(className, op.getMember())->offset;
-    op->setAttr(ir::offsetInRecord, builder.getI32IntegerAttr(static_cast<int32_t>(offset)));
+    ir::attr::offset.set(op, builder.getI32IntegerAttr(static_cast<int32_t>(offset)));
   });
 }
 
@@ -116,7 +111,7 @@ void renameFunctions(mlir::ModuleOp module) {
   llvm::StringMap<std::string> renamed;
   for (FuncOp function : module.getOps<FuncOp>()) {
     llvm::StringRef name = function.getName();
-    if (!function->hasAttr("rtsl.export") && !name.contains('.'))
+    if (!ir::attr::exported.isOn(function) && !name.contains('.'))
       renamed[name] = "function." + name.str();
   }
   for (FuncOp function : module.getOps<FuncOp>())
@@ -157,9 +152,9 @@ void describePointer(FuncOp function, unsigned index, uint64_t size, unsigned al
 
 void addStateParameter(mlir::ModuleOp module) {
   mlir::Type pointer = LLVM::LLVMPointerType::get(module.getContext());
-  const bool pointsToFrames = module->hasAttr(holdsPayloads);
+  const bool pointsToFrames = ir::attr::holdsPayloads.isOn(module);
   for (FuncOp function : module.getOps<FuncOp>()) {
-    bool isState = function->hasAttr("rtsl.state") || function.getSymName() == "rtsl_run_state";
+    bool isState = ir::attr::state.isOn(function) || function.getSymName() == "rtsl_run_state";
     for (auto [index, type] : llvm::enumerate(function.getArgumentTypes()))
       if (auto address = llvm::dyn_cast<ir::PtrType>(type))
         // Arguments in memory are copies of the caller's (in) or temporaries (out, inout, results),
@@ -251,7 +246,7 @@ void declareTables(mlir::ModuleOp module) {
       global.setUnnamedAddr(LLVM::UnnamedAddr::Global);
       taken.insert(global);
     }
-    table->setAttr(tableSymbol, symbol);
+    ir::attr::symbol.set(table, symbol);
   });
 }
 
@@ -296,7 +291,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     mlir::ModuleOp module = getOperation();
     if (mlir::failed(checkLinked(module)))
       return signalPassFailure();
-    if (!module->hasAttr(wholeProgramNoted))
+    if (!ir::attr::noted.isOn(module))
       noteWholeProgram(module);
     renameFunctions(module);
     addStateParameter(module);
@@ -311,14 +306,14 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
       classOp.erase();
     for (auto function : module.getOps<LLVM::LLVMFuncOp>())
       finish(function);
-    module->removeAttr(wholeProgramNoted);
-    module->removeAttr(holdsPayloads);
+    ir::attr::noted.removeFrom(module);
+    ir::attr::holdsPayloads.removeFrom(module);
   }
 
   /// What holds for every function: it throws nothing. Our own attributes have done their work.
   static void finish(LLVM::LLVMFuncOp function) {
     function.setNoUnwind(true);
-    if (function->hasAttr(ir::separateFunction))
+    if (ir::attr::separate.isOn(function))
       function.setNoInline(true);
     llvm::SmallVector<mlir::StringAttr> ours;
     for (mlir::NamedAttribute attribute : function->getDiscardableAttrs())
@@ -335,7 +330,7 @@ void noteWholeProgram(mlir::ModuleOp module) {
   markWriters(module);
   notePayloads(module);
   noteMemberOffsets(module);
-  module->setAttr(wholeProgramNoted, mlir::UnitAttr::get(module.getContext()));
+  ir::attr::noted.set(module);
 }
 
 std::unique_ptr<mlir::Pass> createConvertToLlvmPass() {

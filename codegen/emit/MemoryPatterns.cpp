@@ -1,5 +1,6 @@
 //===- MemoryPatterns.cpp - memory and references to LLVM -----------------===//
 #include "codegen/emit/Patterns.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslOps.h"
@@ -40,7 +41,7 @@ bool isInvariant(Value address) {
       return true;
     if (llvm::isa<ir::MemberOp>(op)) {
       auto function = op->getParentOfType<mlir::FunctionOpInterface>();
-      return function && !function->hasAttr(writesMembers);
+      return function && !ir::attr::writesMembers.isOn(function);
     }
     if (!llvm::isa<ir::FieldOp, ir::ElementOp, ir::BufferElementOp>(op))
       return false;
@@ -167,7 +168,7 @@ struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::MemberOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    const int64_t offset = op->getAttrOfType<mlir::IntegerAttr>(ir::offsetInRecord).getInt();
+    const int64_t offset = ir::attr::offset.of(op).getInt();
     Location location = op.getLoc();
     Value field = launchAddress(rewriter, location, offsetof(RtslLaunch, records));
     Value records = LLVM::LoadOp::create(rewriter, location, field.getType(), field,
@@ -195,7 +196,7 @@ struct ConvertTable : ConvertOpToLLVMPattern<ir::TableOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::TableOp op, OpAdaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    auto symbol = op->getAttrOfType<mlir::StringAttr>(tableSymbol);
+    auto symbol = ir::attr::symbol.of(op);
     rewriter.replaceOpWithNewOp<LLVM::AddressOfOp>(op, LLVM::LLVMPointerType::get(op.getContext()),
                                                    symbol.getValue());
     return mlir::success();

@@ -1,6 +1,7 @@
 //===- NumberPatterns.cpp - arithmetic of our own, to LLVM ----------------===//
 #include "codegen/emit/Patterns.h"
 #include "codegen/emit/RuntimeFunctions.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/RtslOps.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"
@@ -54,7 +55,7 @@ struct ConvertRefract : ConvertOpToLLVMPattern<ir::RefractOp> {
   LogicalResult matchAndRewrite(ir::RefractOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
     const Location location = op.getLoc();
-    const bool isDouble = op->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
+    const bool isDouble = ir::attr::inDouble.isOn(op->getParentOfType<mlir::ModuleOp>());
     const mlir::Type number =
         isDouble ? mlir::Type(rewriter.getF64Type()) : mlir::Type(rewriter.getF32Type());
     auto vector = llvm::dyn_cast<mlir::VectorType>(op.getType());

@@ -2,6 +2,7 @@
 #include "codegen/emit/Parts.h"
 
 #include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/RtslDialect.h"
 #include "codegen/ir/Separate.h"
 
@@ -55,7 +56,7 @@ std::vector<mlir::OwningOpRef<mlir::ModuleOp>> takeParts(mlir::ModuleOp program)
   std::vector<std::pair<FuncOp, std::size_t>> separate;
   std::size_t operations = 0;
   for (FuncOp function : program.getOps<FuncOp>())
-    if (function->hasAttr(ir::separateFunction) && !function.isExternal()) {
+    if (ir::attr::separate.isOn(function) && !function.isExternal()) {
       separate.push_back({function, operationCount(function)});
       operations += separate.back().second;
     }

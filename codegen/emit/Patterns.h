@@ -15,15 +15,8 @@ void addMemoryPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternS
 void addRayPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns);
 void addNumberPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns);
 
-/// Marks a function in which members are not constants: a constructor, or one that a constructor
-/// may call.
-constexpr llvm::StringLiteral writesMembers = "rtsl.writes_members";
-
 /// A constant record whose class id is 0, for the class of the null reference.
 constexpr llvm::StringLiteral nullRecord = "rtsl.null_record";
-
-/// The name of the global that a table has become.
-constexpr llvm::StringLiteral tableSymbol = "rtsl.symbol";
 
 //===----------------------------------------------------------------------===//
 // What the patterns share

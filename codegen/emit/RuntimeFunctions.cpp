@@ -1,6 +1,7 @@
 //===- RuntimeFunctions.cpp - what compiled code calls --------------------===//
 #include "codegen/emit/RuntimeFunctions.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/RtslOps.h"
 
 #include "llvm/ADT/TypeSwitch.h"
@@ -16,8 +17,7 @@ std::string runtimeFunction(mlir::Operation *op) {
       })
       .Case([](ir::RefractOp refract) {
         const auto vector = llvm::dyn_cast<mlir::VectorType>(refract.getType());
-        const bool isDouble =
-            refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
+        const bool isDouble = ir::attr::inDouble.isOn(refract->getParentOfType<mlir::ModuleOp>());
         return (isDouble ? "rtsl_double_refract" : "rtsl_refract") +
                std::to_string(vector ? vector.getNumElements() : 1);
       })
@@ -52,8 +52,7 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
         return function(f32, llvm::SmallVector<mlir::Type>(elementary.getOperands().size(), f32));
       })
       .Case([&](ir::RefractOp refract) {
-        const bool isDouble =
-            refract->getParentOfType<mlir::ModuleOp>()->hasAttr(ir::computesInDouble);
+        const bool isDouble = ir::attr::inDouble.isOn(refract->getParentOfType<mlir::ModuleOp>());
         return function(nothing,
                         {pointer, pointer,
                          isDouble ? mlir::Type(mlir::Float64Type::get(context)) : f32, pointer});

@@ -1,6 +1,7 @@
 //===- Emitter.cpp - building IR in few words -----------------------------===//
 #include "codegen/formulas/Emitter.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 
 #include "mlir/Dialect/Math/IR/Math.h"
@@ -147,7 +148,7 @@ Value Emitter::element(Value address, unsigned index) {
 bool Emitter::isWidenedLater() const {
   mlir::Operation *at = getInsertionBlock()->getParentOp();
   auto module = llvm::dyn_cast<mlir::ModuleOp>(at);
-  return (module ? module : at->getParentOfType<mlir::ModuleOp>())->hasAttr(ir::computesInDouble);
+  return ir::attr::inDouble.isOn(module ? module : at->getParentOfType<mlir::ModuleOp>());
 }
 
 bool Emitter::isTerminated() const {

@@ -10,9 +10,6 @@
 
 namespace rtsl::ir {
 
-/// On an `rtsl.member` on its way to LLVM: bytes from the start of the record.
-constexpr llvm::StringLiteral offsetInRecord = "rtsl.offset";
-
 /// Finds members of classes in constant time. Made for a pass in which declarations of classes
 /// neither come nor go.
 class ClassTable {

@@ -1,6 +1,7 @@
 //===- RtslDialect.cpp - the `rtsl` dialect itself ------------------------===//
 #include "codegen/ir/RtslDialect.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/RtslOps.h"
 #include "codegen/ir/RtslTypes.h"
 
@@ -11,6 +12,8 @@
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 #include "mlir/IR/DialectImplementation.h"
 #include "mlir/Transforms/InliningUtils.h"
+#include "llvm/ADT/StringMap.h"
+#include "llvm/ADT/StringSwitch.h"
 #include "llvm/ADT/TypeSwitch.h"
 
 #include "codegen/ir/RtslDialect.cpp.inc"
@@ -54,19 +57,49 @@ mlir::Operation *RtslDialect::materializeConstant(mlir::OpBuilder &builder, mlir
   return mlir::arith::ConstantOp::materialize(builder, value, type, location);
 }
 
-/// The attributes of functions that have a meaning to passes.
+namespace {
+
+struct DeclaredAttribute {
+  llvm::StringRef kind;
+  bool (*isOfKind)(mlir::Attribute);
+};
+
+template <typename Value>
+bool isOfKind(mlir::Attribute attribute) {
+  return llvm::isa<Value>(attribute);
+}
+
+const llvm::StringMap<DeclaredAttribute> &declaredAttributes() {
+  static const llvm::StringMap<DeclaredAttribute> attributes = {
+#define RTSL_ATTRIBUTE(Constant, Word, Kind, On, Meaning)                                          \
+  {attr::Constant.name, {#Kind, isOfKind<mlir::Kind##Attr>}},
+#include "codegen/ir/Attributes.def"
+  };
+  return attributes;
+}
+
+} // namespace
+
+/// A name that is misspelled would be one that nobody reads.
 mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
                                                           mlir::NamedAttribute attribute) {
-  llvm::StringRef name = attribute.getName();
-  bool isText = mlir::isa<mlir::StringAttr>(attribute.getValue());
-  bool isUnit = mlir::isa<mlir::UnitAttr>(attribute.getValue());
-  if ((name == "rtsl.class" || name == "rtsl.method") && !isText)
-    return op->emitOpError() << "`" << name << "` is to be a string";
-  if ((name == "rtsl.constructor" || name == "rtsl.export" || name == "rtsl.noinline" ||
-       name == "rtsl.states") &&
-      !isUnit)
+  const llvm::StringRef name = attribute.getName();
+  const auto declared = declaredAttributes().find(name);
+  if (declared == declaredAttributes().end())
+    return op->emitOpError() << "has the attribute `" << name
+                             << "`, which the dialect does not declare";
+  const auto &[kind, isOfKind] = declared->second;
+  if (isOfKind(attribute.getValue()))
+    return mlir::success();
+  if (kind == "Unit")
     return op->emitOpError() << "`" << name << "` takes no value";
-  return mlir::success();
+  const llvm::StringRef shown = llvm::StringSwitch<llvm::StringRef>(kind)
+                                    .Case("String", "a string")
+                                    .Case("Integer", "a whole number")
+                                    .Case("Array", "an array")
+                                    .Case("DenseI32Array", "an array of i32")
+                                    .Case("DenseF32Array", "an array of f32");
+  return op->emitOpError() << "`" << name << "` is to be " << shown;
 }
 
 } // namespace rtsl::ir

@@ -1,6 +1,7 @@
 //===- RtslOps.cpp - building and verifying the operations ----------------===//
 #include "codegen/ir/RtslOps.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/RtslDialect.h"
 
@@ -213,7 +214,7 @@ void MemberOp::getAsmResultNames(NameSetter setName) {
 }
 
 LogicalResult MemberOp::verifySymbolUses(mlir::SymbolTableCollection &symbols) {
-  if ((*this)->hasAttr(offsetInRecord)) // the class has done its work
+  if (attr::offset.isOn(*this)) // the class has done its work
     return mlir::success();
   llvm::StringRef className = llvm::cast<RefType>(getObject().getType()).getClassName();
   auto classOp = symbols.lookupNearestSymbolFrom<ClassOp>(

@@ -7,12 +7,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/ir/Attributes.h"
+
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 
 namespace rtsl::ir {
-
-/// On functions that are not inlined, neither here nor by LLVM.
-constexpr llvm::StringLiteral separateFunction = "rtsl.separate";
 
 /// A switch that chooses between more functions leaves them separate.
 constexpr std::size_t mostJoinedFunctions = 32;
@@ -21,7 +20,7 @@ inline void keepSeparateIfMany(llvm::ArrayRef<mlir::func::FuncOp> choices) {
   if (choices.size() <= mostJoinedFunctions)
     return;
   for (mlir::func::FuncOp function : choices)
-    function->setAttr(separateFunction, mlir::UnitAttr::get(function.getContext()));
+    attr::separate.set(function);
 }
 
 } // namespace rtsl::ir

@@ -8,6 +8,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/link/BindScene.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
@@ -31,19 +32,18 @@ namespace rtsl {
 
 namespace {
 
-constexpr llvm::StringLiteral exported = "rtsl.export";
 constexpr llvm::StringLiteral boundsEntry = "rtsl_rt_Primitive_computeBounds";
 
 /// Whether the runtime calls the function while a scene is built, and never again.
 bool isForBuilding(mlir::func::FuncOp function) {
   const llvm::StringRef name = function.getSymName();
-  return function->hasAttr("rtsl.constructor") || name == boundsEntry ||
-         (function->hasAttr(exported) && name.ends_with(".initialize"));
+  return ir::attr::constructor.isOn(function) || name == boundsEntry ||
+         (ir::attr::exported.isOn(function) && name.ends_with(".initialize"));
 }
 
 /// Makes an entry what nobody calls from outside.
 void hide(mlir::func::FuncOp function) {
-  function->removeAttr(exported);
+  ir::attr::exported.removeFrom(function);
   function.setPrivate();
 }
 
@@ -189,7 +189,7 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
 
 void keepConstructors(mlir::ModuleOp ir) {
   for (auto function : ir.getOps<mlir::func::FuncOp>())
-    if (function->hasAttr(exported) && !isForBuilding(function) &&
+    if (ir::attr::exported.isOn(function) && !isForBuilding(function) &&
         function.getSymName() != "rtsl_features")
       hide(function);
 }
@@ -222,7 +222,7 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
               {Item::Parameters, (record.getSymName() + "." + member.getSymName()).str()}))
         words = commonWords(classes, member, llvm::ArrayRef(objects->second).take_front());
       if (!words.empty() && !keep.has(Item::Parameters))
-        member->setAttr(codegen::boundWords, builder.getDenseI32ArrayAttr(words));
+        ir::attr::bound.set(member, builder.getDenseI32ArrayAttr(words));
     }
   }
   if (findings)
@@ -230,9 +230,8 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
   if (!keep.has(Item::Lights)) {
     const std::uint32_t lights =
         request.without.count({Item::Lights, "illuminance"}) ? 0 : scene.lightCount;
-    ir->setAttr(codegen::boundLightCount,
-                builder.getI32IntegerAttr(static_cast<std::int32_t>(lights)));
-    ir->setAttr(codegen::boundAmbient, builder.getDenseF32ArrayAttr(scene.ambient));
+    ir::attr::lightCount.set(ir, builder.getI32IntegerAttr(static_cast<std::int32_t>(lights)));
+    ir::attr::ambient.set(ir, builder.getDenseF32ArrayAttr(scene.ambient));
   }
 }
 

@@ -6,6 +6,7 @@
 // attributes, needs) rests on what is left.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 
@@ -69,14 +70,14 @@ private:
 
   void addBuildingRoots() {
     for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
-      if (function->hasAttr("rtsl.constructor"))
+      if (ir::attr::constructor.isOn(function))
         add(function, {"makes the object", {}});
     addMethods("rt_Primitive", "computeBounds", {"says where the tree has it", {}});
   }
 
   void addRoots() {
     for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
-      if (function->hasAttr(hitErrorAttribute)) // there are those alone that are needed
+      if (ir::attr::hitError.isOn(function)) // there are those alone that are needed
         add(function, {"says how exact a hit is", {}});
     if (context.request.engine == runtime::Engine::Classic) {
       addMethods("rt_Camera", "generateRay", {"begins every sample", {}});
@@ -172,7 +173,7 @@ bool traces(FuncOp function) {
 
 std::string shownName(FuncOp function) {
   auto [owner, method] = function.getSymName().split('.');
-  if (const auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.method")) {
+  if (const auto name = ir::attr::methodName.of(function)) {
     const auto [plain, payload] = name.getValue().split('.');
     return owner.str() + "." + plain.str() + (payload.empty() ? "" : "(" + payload.str() + ")");
   }
@@ -198,7 +199,7 @@ void dropUnreached(LinkContext &context) {
     if (FuncOp function = context.function(name); function && reach.isReachedByRendering(function))
       context.findings.push_back(finding);
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
-    const auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    const auto method = ir::attr::methodName.of(function);
     const auto found = reached.find(function);
     if (method) {
       Finding finding;
@@ -210,7 +211,7 @@ void dropUnreached(LinkContext &context) {
         finding.place = found->second.place;
       } else if (found != reached.end()) {
         finding.reason = "runs while the scene is built, and what renders is without it";
-        function->setAttr(whileBuilding, mlir::UnitAttr::get(function.getContext()));
+        ir::attr::whileBuilding.set(function);
       } else {
         finding.reason = finding.item == Item::States ? "no ray of this scene starts it"
                                                       : "nothing in this scene runs it";
@@ -224,7 +225,7 @@ void dropUnreached(LinkContext &context) {
       if (found == reached.end() && context.request.keep.has(item)) {
         // What no entry leads to must be one itself. What traces cannot be: only rays start it.
         if (item == Item::Methods && !traces(function))
-          function->setAttr(keptMethod, mlir::UnitAttr::get(function.getContext()));
+          ir::attr::kept.set(function);
         continue;
       }
     }

@@ -4,6 +4,7 @@
 // without objects are never called. Its declaration stays: other classes may name it as their base.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Steps.h"
 
 #include "frontend/source/Expansion.h"
@@ -28,9 +29,9 @@ llvm::StringSet<> wantedOf(const LinkRequest &request) {
 std::set<llvm::StringRef> classesThatRun(mlir::ModuleOp ir) {
   std::set<llvm::StringRef> names;
   for (auto function : ir.getOps<mlir::func::FuncOp>())
-    if (function->hasAttr("rtsl.method") && !function->hasAttr(whileBuilding) &&
-        !function->hasAttr(keptMethod))
-      if (const auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+    if (ir::attr::methodName.isOn(function) && !ir::attr::whileBuilding.isOn(function) &&
+        !ir::attr::kept.isOn(function))
+      if (const auto owner = ir::attr::className.of(function))
         names.insert(owner.getValue());
   return names;
 }
@@ -75,7 +76,7 @@ void dropUnusedClasses(LinkContext &context) {
   }
 
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<mlir::func::FuncOp>()))
-    if (auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+    if (auto name = ir::attr::className.of(function))
       if (!isWanted(name.getValue()) && !isKept)
         context.symbols.erase(function);
 }

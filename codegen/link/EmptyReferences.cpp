@@ -10,6 +10,7 @@
 // derived ones too, are their own affair.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Reflect.h"
 #include "codegen/link/Steps.h"
 
@@ -47,7 +48,7 @@ std::pair<std::string, std::string> keyOf(ir::MemberOp member) {
 /// What a constructor writes may be an object.
 void removeWritten(mlir::ModuleOp ir, Members &empty) {
   for (auto function : ir.getOps<FuncOp>())
-    if (function->hasAttr("rtsl.constructor"))
+    if (ir::attr::constructor.isOn(function))
       function.walk([&](ir::MemberOp member) {
         if (llvm::any_of(member->getUsers(),
                          [](mlir::Operation *user) { return !llvm::isa<ir::LoadOp>(user); }))

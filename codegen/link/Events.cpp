@@ -5,6 +5,7 @@
 // it.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Steps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -39,7 +40,7 @@ void makeFeatures(LinkContext &context) {
       builder, location,
       builder.getI32IntegerAttr(static_cast<std::int32_t>(context.request.features)));
   ir::ReturnOp::create(builder, location, features);
-  function->setAttr("rtsl.export", builder.getUnitAttr());
+  ir::attr::exported.set(function);
 }
 
 std::vector<runtime::PrintFormat> numberPrints(mlir::ModuleOp ir) {

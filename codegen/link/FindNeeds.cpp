@@ -6,6 +6,7 @@
 // the scene knows (Scene.cpp).
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Steps.h"
 
 #include "llvm/ADT/StringMap.h"
@@ -34,7 +35,7 @@ std::uint32_t needsOf(llvm::StringRef state) {
 /// Whether the function may run before the ray is known to hit the primitive, for `intersect`; what
 /// it then reads of the hit has to be there for each candidate.
 bool mayRunForCandidates(const Reader &reader) {
-  const auto method = reader.function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  const auto method = ir::attr::methodName.of(reader.function);
   return (reader.root.empty() || reader.root == "rt_Primitive" || reader.root == ir::helperRoot) &&
          !(method &&
            llvm::StringSwitch<bool>(method.getValue())
@@ -46,7 +47,7 @@ bool mayRunForCandidates(const Reader &reader) {
 /// Whether reading this is reading of a candidate.
 bool isOfCandidate(llvm::StringRef state, const Reader &reader) {
   if (state == "BoundMin" || state == "BoundMax") {
-    const auto method = reader.function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    const auto method = ir::attr::methodName.of(reader.function);
     return !method || method != "computeBounds";
   }
   return llvm::StringSwitch<bool>(state)
@@ -99,7 +100,7 @@ std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const Li
 } // namespace
 
 Reader readerOf(const mlir::SymbolTable &symbols, mlir::func::FuncOp function) {
-  const auto name = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
+  const auto name = ir::attr::className.of(function);
   auto owner = name ? symbols.lookup<ir::ClassOp>(name) : ir::ClassOp();
   return {function, owner ? owner.getRoot() : llvm::StringRef()};
 }
@@ -148,7 +149,7 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
     return std::vector<std::uint32_t>(context.classes.size(), RTSL_NEEDS_ALL);
   llvm::StringMap<std::vector<mlir::func::FuncOp>> methods; // by class
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
-    if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+    if (auto owner = ir::attr::className.of(function))
       methods[owner.getValue()].push_back(function);
   // Lights run on the state of whoever asks for them.
   const std::uint32_t ofLights = needsOfMethods(context, "rt_Light", "illumination");

@@ -5,6 +5,7 @@
 // here, and where that cannot be done, the author is told to state it.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Steps.h"
 
 #include "codegen/passes/errors/DeriveHitErrors.h"
@@ -59,7 +60,7 @@ namespace {
 std::set<std::string> findSenders(const LinkContext &context) {
   std::set<std::string> senders;
   for (mlir::Operation *function : functionsThatSendRays(context.ir, context.symbols))
-    if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+    if (auto owner = ir::attr::className.of(function))
       senders.insert(owner.str());
   std::set<std::string> materials;
   for (const LinkedClass &linked : context.classes)

@@ -1,5 +1,6 @@
 //===- Link.cpp - from classes to a program -------------------------------===//
 #include "codegen/link/Link.h"
+#include "codegen/ir/Attributes.h"
 
 #include "codegen/link/Reflect.h"
 #include "codegen/link/Steps.h"
@@ -70,7 +71,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
 std::vector<std::string> keptFunctions(mlir::ModuleOp ir) {
   std::vector<std::string> names;
   for (auto function : ir.getOps<mlir::func::FuncOp>())
-    if (function->hasAttr(linking::keptMethod))
+    if (ir::attr::kept.isOn(function))
       names.push_back(function.getSymName().str());
   return names;
 }

@@ -7,6 +7,7 @@
 //   func.func @Glass.construct(%self: !rtsl.ref<"Glass">, %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Reflect.h"
 #include "codegen/link/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
@@ -29,7 +30,7 @@ constexpr Slot samplingSlots[] = {
 };
 
 void exportFunction(mlir::func::FuncOp function) {
-  function->setAttr("rtsl.export", mlir::UnitAttr::get(function.getContext()));
+  ir::attr::exported.set(function);
   function.setPublic();
 }
 
@@ -88,7 +89,7 @@ void makeConstruct(LinkContext &context, LinkedClass &linked) {
       builder.getFunctionType(
           {target.getArgumentTypes().front(), ir::PtrType::get(linked.parameters)}, {}));
   context.symbols.insert(function);
-  function->setAttr("rtsl.constructor", mlir::UnitAttr::get(mlirContext));
+  ir::attr::constructor.set(function);
 
   mlir::Block *entry = function.addEntryBlock();
   builder.setInsertionPointToEnd(entry);
@@ -110,7 +111,7 @@ void makeConstruct(LinkContext &context, LinkedClass &linked) {
 void makeEntries(LinkContext &context) {
   for (auto function : context.ir.getOps<mlir::func::FuncOp>()) {
     function.setPrivate();
-    if (function->hasAttr(keptMethod))
+    if (ir::attr::kept.isOn(function))
       exportFunction(function);
   }
   for (const Slot &slot : slots)

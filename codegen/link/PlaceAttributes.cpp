@@ -5,6 +5,7 @@
 // nobody reads has no place, and is not stored.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/link/Reflect.h"
 #include "codegen/link/Steps.h"
@@ -99,7 +100,7 @@ std::vector<Attribute> collect(mlir::ModuleOp ir) {
       }
       found->uses.push_back(op);
       found->isRead |= isRead(op);
-      if (auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class"))
+      if (auto owner = ir::attr::className.of(function))
         found->primitives.insert(owner.str());
     });
   }

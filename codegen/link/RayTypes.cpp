@@ -12,6 +12,7 @@
 //   follows. Everywhere else they are asked in the order of hits.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/Steps.h"
 
 #include "runtime/device/ray/Abi.h"
@@ -254,7 +255,7 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
     }
     ir::ReturnOp::create(builder, location, mlir::ValueRange());
   }
-  slot->setAttr("rtsl.export", builder.getUnitAttr());
+  ir::attr::exported.set(slot);
 }
 
 } // namespace

@@ -82,12 +82,6 @@ void deriveHitErrors(LinkContext &context);
 /// Erases the methods that nothing runs. Slots have been resolved.
 void dropUnreached(LinkContext &context);
 
-/// On functions that nothing runs and that are compiled all the same.
-constexpr llvm::StringLiteral keptMethod = "rtsl.kept";
-
-/// On functions that run while a scene is built and never again: what renders is without them.
-constexpr llvm::StringLiteral whileBuilding = "rtsl.while_building";
-
 /// A function as an author would name it: "Painted.closestHit(Radiance)".
 std::string shownName(mlir::func::FuncOp function);
 

@@ -14,6 +14,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/link/UnrollRecursion.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Steps.h"
 
@@ -112,8 +113,8 @@ private:
     auto made = llvm::cast<FuncOp>(originals.at(function)->clone());
     made.setSymName(llvm::cast<FuncOp>(function).getSymName().str() + "." + std::to_string(level));
     made.setPrivate();
-    made->removeAttr("rtsl.export");
-    made->removeAttr("rtsl.method");
+    ir::attr::exported.removeFrom(made);
+    ir::attr::methodName.removeFrom(made);
     symbols.insert(made, std::next(mlir::Block::iterator(function)));
     copies[{function, level}] = made;
     redirect(made, level);

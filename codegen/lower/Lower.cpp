@@ -1,5 +1,6 @@
 //===- Lower.cpp - from the typed tree to level 1 -------------------------===//
 #include "codegen/lower/Lower.h"
+#include "codegen/ir/Attributes.h"
 
 #include "codegen/lower/HideConstants.h"
 #include "codegen/lower/Lowering.h"
@@ -16,9 +17,9 @@ mlir::OwningOpRef<mlir::ModuleOp> lower(const typed::Module &module, const Lower
   mlir::OwningOpRef<mlir::ModuleOp> target =
       mlir::ModuleOp::create(mlir::UnknownLoc::get(&context));
   if (options.source) // passes leave variables whole then
-    (*target)->setAttr("rtsl.source", mlir::UnitAttr::get(&context));
+    ir::attr::source.set(*target);
   if (options.isWidenedLater)
-    (*target)->setAttr(ir::computesInDouble, mlir::UnitAttr::get(&context));
+    ir::attr::inDouble.set(*target);
   lowering::ModuleLowering(module, options, *target).run();
   if (options.diagnostics->errorCount() != errorsBefore)
     return nullptr;

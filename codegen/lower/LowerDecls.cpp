@@ -7,6 +7,7 @@
 // why).
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/lower/Lowering.h"
 
 #include "frontend/source/Expansion.h"
@@ -112,15 +113,13 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
   emitter.setLoc(location(source.range));
   auto function = emitter.make<mlir::func::FuncOp>(symbolOf(key), functionType(key));
   if (key.concrete) {
-    function->setAttr("rtsl.class", emitter.getStringAttr(key.concrete->name));
+    ir::attr::className.set(function, emitter.getStringAttr(key.concrete->name));
     if (source.isConstructor)
-      function->setAttr("rtsl.constructor", emitter.getUnitAttr());
+      ir::attr::constructor.set(function);
     else if (!key.isForIntersect() && !key.isHidden)
-      function->setAttr("rtsl.method", emitter.getStringAttr(slotName(source)));
+      ir::attr::methodName.set(function, emitter.getStringAttr(slotName(source)));
     if (options.source && options.source->becomesStates(source))
-      function->setAttr("rtsl.states", emitter.getUnitAttr());
-    if (key.takesPayload())
-      function->setAttr("rtsl.payload", mlir::TypeAttr::get(type(source.parameters[0]->type)));
+      ir::attr::states.set(function);
   }
   functions[key] = function;
   pending.push_back(key);
@@ -214,8 +213,8 @@ void ModuleLowering::lowerInitialize(const typed::Class &definition) {
   symbols.insert(symbol);
   auto function = emitter.make<mlir::func::FuncOp>(
       symbol, emitter.getFunctionType({ir::RefType::get(context(), definition.name)}, {}));
-  function->setAttr("rtsl.class", emitter.getStringAttr(definition.name));
-  function->setAttr("rtsl.constructor", emitter.getUnitAttr());
+  ir::attr::className.set(function, emitter.getStringAttr(definition.name));
+  ir::attr::constructor.set(function);
   FunctionLowering(*this, {nullptr, &definition, false}, function).runInitialize(members);
 }
 

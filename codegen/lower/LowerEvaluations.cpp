@@ -7,6 +7,7 @@
 // own for the time, under the same name.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/lower/Lowering.h"
 #include "sema/typed/Analysis.h"
 
@@ -29,8 +30,9 @@ FunctionLowering::Evaluation::Evaluation(Value into) {
 Value FunctionLowering::variableOf(llvm::StringRef name, const Type *type) {
   Value variable = emitter.variable(name, module.type(type));
   if (SourceTable *table = module.options.source) {
-    variable.getDefiningOp()->setAttr(
-        "rtsl.declared", emitter.getI32IntegerAttr(static_cast<std::int32_t>(table->types.size())));
+    ir::attr::declared.set(
+        variable.getDefiningOp(),
+        emitter.getI32IntegerAttr(static_cast<std::int32_t>(table->types.size())));
     table->types.push_back(type);
   }
   return variable;
@@ -239,15 +241,15 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
     types.push_back(module.type(expr.type));
   auto op = emitter.make<ir::EvaluateOp>(types, number, evaluation.operands, writes);
   if (into) // all of it
-    op->setAttr("rtsl.into", emitter.getUnitAttr());
+    ir::attr::into.set(op);
   if (!evaluation.changed.empty())
-    op->setAttr("rtsl.changes", emitter.getDenseI32ArrayAttr(evaluation.changed));
+    ir::attr::changes.set(op, emitter.getDenseI32ArrayAttr(evaluation.changed));
   const bool isPrint = expr.kind == ExprKind::Builtin &&
                        cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
   if (evaluation.isNested)
-    op->setAttr("rtsl.nested", emitter.getUnitAttr());
+    ir::attr::nested.set(op);
   else if (!isPrint && (!isCall || isKept(expr))) // nothing but these variables is touched
-    op->setAttr("rtsl.plain", emitter.getUnitAttr());
+    ir::attr::plain.set(op);
   for (const auto &[where, copy] : evaluation.outputs)
     store(loadFrom(copy, where.type), where);
   return Parts(op.getResults().begin(), op.getResults().end());

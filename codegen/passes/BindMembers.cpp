@@ -1,6 +1,7 @@
 //===- BindMembers.cpp - members that are the same in all objects ---------===//
 #include "codegen/passes/BindMembers.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslOps.h"
@@ -63,7 +64,7 @@ std::optional<Words> wordsAt(const ir::ClassTable &classes, Value address) {
     llvm::StringRef className =
         llvm::cast<ir::RefType>(member.getObject().getType()).getClassName();
     ir::MemberDeclOp declaration = classes.find(className, member.getMember())->declaration;
-    auto words = declaration->getAttrOfType<mlir::DenseI32ArrayAttr>(boundWords);
+    auto words = ir::attr::bound.of(declaration);
     return words ? std::optional(words.asArrayRef()) : std::nullopt;
   }
   uint32_t bytes = 0;
@@ -101,8 +102,8 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
       classes = std::make_shared<ir::ClassTable>(module);
       described = module;
     }
-    auto lights = module->getAttrOfType<mlir::IntegerAttr>(boundLightCount);
-    auto ambient = module->getAttrOfType<mlir::DenseF32ArrayAttr>(boundAmbient);
+    auto lights = ir::attr::lightCount.of(module);
+    auto ambient = ir::attr::ambient.of(module);
     getOperation().walk([&](mlir::Operation *op) {
       if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
         if (std::optional<Words> words = wordsAt(*classes, load.getAddress()))

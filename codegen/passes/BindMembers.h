@@ -11,8 +11,6 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "llvm/ADT/StringRef.h"
-
 #include <memory>
 
 namespace mlir {
@@ -20,12 +18,6 @@ class Pass;
 } // namespace mlir
 
 namespace rtsl::codegen {
-
-/// On `rtsl.member_decl`: the words of the member in the record of every object that has it.
-constexpr llvm::StringLiteral boundWords = "rtsl.bound";
-/// On the module: what `rtsl.light_count` and `rtsl.ambient` give.
-constexpr llvm::StringLiteral boundLightCount = "rtsl.light_count";
-constexpr llvm::StringLiteral boundAmbient = "rtsl.ambient";
 
 /// `rtsl-bind-members`, on a function. It must not run on constructors.
 std::unique_ptr<mlir::Pass> createBindMembersPass();

@@ -1,6 +1,7 @@
 //===- ExpandCopies.cpp - small copies, value by value --------------------===//
 #include "codegen/passes/ExpandCopies.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/RtslOps.h"
 
@@ -80,7 +81,7 @@ struct ExpandCopies : mlir::PassWrapper<ExpandCopies, mlir::OperationPass<mlir::
   void runOnOperation() override {
     OpBuilder builder(&getContext());
     auto module = getOperation()->getParentOfType<mlir::ModuleOp>();
-    const bool isForPeople = module && module->hasAttr("rtsl.source");
+    const bool isForPeople = module && ir::attr::source.isOn(module);
     getOperation().walk([&](ir::CopyOp copy) {
       if (!isSmall(pointee(copy.getSource())) ||
           (isForPeople && staysWhole(copy.getSource()) && staysWhole(copy.getTarget())))

@@ -1,6 +1,7 @@
 //===- InlineFunctions.cpp - calls replaced by what they call -------------===//
 #include "codegen/passes/InlineFunctions.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/RtslOps.h"
 #include "codegen/ir/Separate.h"
 
@@ -52,14 +53,13 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
   bool isWorthIt(const mlir::Inliner::ResolvedCall &resolved) {
     auto callee = resolved.targetNode->getCallableRegion()->getParentOfType<mlir::func::FuncOp>();
     auto caller = resolved.call->getParentOfType<mlir::func::FuncOp>();
-    if (!callee || !caller || callee->hasAttr("rtsl.noinline") ||
-        callee->hasAttr(ir::separateFunction))
+    if (!callee || !caller || ir::attr::noinline.isOn(callee) || ir::attr::separate.isOn(callee))
       return false;
-    if (callee->hasAttr("rtsl.constructor") && !caller->hasAttr("rtsl.constructor"))
+    if (ir::attr::constructor.isOn(callee) && !ir::attr::constructor.isOn(caller))
       return false;
     if (inlinesAll)
       return true;
-    const bool isDouble = getOperation()->hasAttr(ir::computesInDouble);
+    const bool isDouble = ir::attr::inDouble.isOn(getOperation());
     unsigned limit = isDouble         ? smallFunctionInDouble
                      : traces(callee) ? smallTracingFunction
                                       : smallFunction;

@@ -1,15 +1,14 @@
 //===- PromoteVariables.cpp - all variables of a function become values ---===//
 #include "codegen/passes/PromoteVariables.h"
 
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/ir/RtslOps.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/PatternMatch.h"
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "mlir/Interfaces/DataLayoutInterfaces.h"
 #include "mlir/Pass/Pass.h"
 #include "mlir/Transforms/RegionUtils.h"
-#include "llvm/ADT/SetVector.h"
 
 namespace rtsl::codegen {
 
@@ -129,16 +128,10 @@ private:
 
   /// Passes on what the variable holds at the end of each block that leads to the argument's.
   void complete(mlir::BlockArgument argument, ir::VarOp variable) {
-    mlir::Block *block = argument.getOwner();
-    for (mlir::Block *predecessor :
-         llvm::SmallSetVector<mlir::Block *, 4>(block->pred_begin(), block->pred_end())) {
-      auto end = ends.find({predecessor, variable});
-      const Value value = end != ends.end() ? end->second : atStart(predecessor, variable);
-      auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-      for (unsigned edge = 0; edge < branch->getNumSuccessors(); ++edge)
-        if (branch->getSuccessor(edge) == block)
-          branch.getSuccessorOperands(edge).append(value);
-    }
+    ir::forEachEdgeInto(*argument.getOwner(), [&](ir::Edge edge) {
+      auto end = ends.find({edge.from(), variable});
+      edge.operands().append(end != ends.end() ? end->second : atStart(edge.from(), variable));
+    });
   }
 
   mlir::func::FuncOp function;

@@ -1,6 +1,8 @@
 //===- PropagateConstants.cpp - what is constant whichever way control comes ===//
 #include "codegen/passes/PropagateConstants.h"
 
+#include "codegen/ir/IncomingEdges.h"
+
 #include "mlir/Analysis/DataFlow/ConstantPropagationAnalysis.h"
 #include "mlir/Analysis/DataFlow/DeadCodeAnalysis.h"
 #include "mlir/Analysis/DataFlowFramework.h"
@@ -9,7 +11,6 @@
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 #include "mlir/Pass/Pass.h"
 #include "mlir/Transforms/FoldUtils.h"
-#include "llvm/ADT/SetVector.h"
 
 #include <algorithm>
 
@@ -50,18 +51,14 @@ constexpr std::size_t mostEdges = 32;
 /// thousands do, as from the cases of a switch, they come together in steps; simplification takes
 /// these back.
 void joinInSteps(mlir::Block &join) {
-  llvm::SmallVector<std::pair<mlir::Operation *, unsigned>> edges;
+  llvm::SmallVector<ir::Edge> edges;
   while (true) {
     edges.clear();
-    for (mlir::Block *from : llvm::SetVector<mlir::Block *>(join.pred_begin(), join.pred_end())) {
-      mlir::Operation *branch = from->getTerminator();
-      if (!llvm::isa<mlir::cf::BranchOp, mlir::cf::CondBranchOp, mlir::cf::SwitchOp>(branch))
-        return;
-      for (unsigned way = 0; way < branch->getNumSuccessors(); ++way)
-        if (branch->getSuccessor(way) == &join)
-          edges.push_back({branch, way});
-    }
-    if (edges.size() <= mostEdges)
+    ir::forEachEdgeInto(join, [&](ir::Edge edge) { edges.push_back(edge); });
+    if (edges.size() <= mostEdges || !llvm::all_of(edges, [](ir::Edge edge) {
+          return llvm::isa<mlir::cf::BranchOp, mlir::cf::CondBranchOp, mlir::cf::SwitchOp>(
+              edge.terminator);
+        }))
       return;
     const mlir::Location location = join.front().getLoc();
     for (auto rest = llvm::ArrayRef(edges); !rest.empty();
@@ -72,8 +69,8 @@ void joinInSteps(mlir::Block &join) {
         step->addArgument(argument.getType(), argument.getLoc());
       mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(step);
       mlir::cf::BranchOp::create(builder, location, &join, step->getArguments());
-      for (auto [branch, way] : rest.take_front(std::min(rest.size(), mostEdges)))
-        branch->setSuccessor(step, way);
+      for (ir::Edge edge : rest.take_front(std::min(rest.size(), mostEdges)))
+        edge.terminator->setSuccessor(step, edge.successor);
     }
   }
 }

@@ -1,6 +1,7 @@
 //===- Simplify.cpp - folding over `cf` -----------------------------------===//
 #include "codegen/passes/Simplify.h"
 
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/passes/FoldFma.h"
 #include "codegen/passes/ShareExpressions.h"
 
@@ -11,7 +12,6 @@
 #include "mlir/Pass/Pass.h"
 #include "mlir/Transforms/GreedyPatternRewriteDriver.h"
 #include "mlir/Transforms/RegionUtils.h"
-#include "llvm/ADT/SetVector.h"
 
 namespace rtsl::codegen {
 
@@ -60,18 +60,8 @@ static bool dropSameArguments(mlir::Region &body) {
       mlir::BlockArgument argument = block.getArgument(i);
       mlir::Value only;
       bool isOne = true;
-      auto forEachWay = [&](llvm::function_ref<void(mlir::SuccessorOperands)> act) {
-        for (mlir::Block *predecessor :
-             llvm::SetVector<mlir::Block *>(block.pred_begin(), block.pred_end())) {
-          auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-          for (unsigned way = 0; branch && way < predecessor->getNumSuccessors(); ++way)
-            if (predecessor->getSuccessor(way) == &block)
-              act(branch.getSuccessorOperands(way));
-          isOne &= static_cast<bool>(branch);
-        }
-      };
-      forEachWay([&](mlir::SuccessorOperands operands) {
-        mlir::Value incoming = operands[i];
+      ir::forEachEdgeInto(block, [&](ir::Edge edge) {
+        mlir::Value incoming = edge.passedTo(argument);
         if (incoming == argument)
           return;
         isOne &= incoming && (!only || only == incoming);
@@ -80,7 +70,7 @@ static bool dropSameArguments(mlir::Region &body) {
       if (!isOne || !only)
         continue;
       argument.replaceAllUsesWith(only);
-      forEachWay([&](mlir::SuccessorOperands operands) { operands.erase(i); });
+      ir::forEachEdgeInto(block, [&](ir::Edge edge) { edge.operands().erase(i); });
       block.eraseArgument(i);
       changed = true;
     }
@@ -116,31 +106,23 @@ static bool skipPassThrough(mlir::Region &body) {
       return llvm::any_of(argument.getUsers(),
                           [&](mlir::Operation *user) { return user != through; });
     };
-    llvm::SmallSetVector<mlir::Block *, 4> predecessors;
-    predecessors.insert(block.pred_begin(), block.pred_end());
     if (llvm::any_of(block.getArguments(), usedElsewhere) ||
-        llvm::any_of(predecessors, [](mlir::Block *predecessor) {
+        llvm::any_of(block.getPredecessors(), [](mlir::Block *predecessor) {
           return !llvm::isa<cf::BranchOp, cf::CondBranchOp, cf::SwitchOp>(
               predecessor->getTerminator());
         }))
       continue;
-    for (mlir::Block *predecessor : predecessors) {
-      auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-      for (unsigned i = 0; i < branch->getNumSuccessors(); ++i) {
-        if (branch->getSuccessor(i) != &block)
-          continue;
-        mlir::SuccessorOperands incoming = branch.getSuccessorOperands(i);
-        llvm::SmallVector<mlir::Value> operands;
-        for (mlir::Value operand : through.getDestOperands()) {
-          auto argument = llvm::dyn_cast<mlir::BlockArgument>(operand);
-          bool isOwn = argument && argument.getOwner() == &block;
-          operands.push_back(isOwn ? incoming[argument.getArgNumber()] : operand);
-        }
-        incoming.getMutableForwardedOperands().assign(operands);
-        branch->setSuccessor(through.getDest(), i);
-        changed = true;
+    ir::forEachEdgeInto(block, [&](ir::Edge edge) {
+      llvm::SmallVector<mlir::Value> operands;
+      for (mlir::Value operand : through.getDestOperands()) {
+        auto argument = llvm::dyn_cast<mlir::BlockArgument>(operand);
+        bool isOwn = argument && argument.getOwner() == &block;
+        operands.push_back(isOwn ? edge.passedTo(argument) : operand);
       }
-    }
+      edge.operands().getMutableForwardedOperands().assign(operands);
+      edge.terminator->setSuccessor(through.getDest(), edge.successor);
+      changed = true;
+    });
   }
   return changed;
 }

@@ -4,6 +4,7 @@ import ctypes
 import json
 import os
 import pathlib
+import re
 import resource
 import shutil
 import struct
@@ -59,6 +60,11 @@ class Case(unittest.TestCase):
         if status is not None:
             self.assertEqual(done.returncode, status, f"exit status of {arguments}:\n{error[:4000]}")
         return (done.stdout or b"").decode("utf-8", "replace"), error
+
+    def stages(self):
+        """What `rtslc compile --emit` takes, in order."""
+        text, _ = self.run_rtslc("compile", "--help")
+        return re.search(r"--emit ([\w|-]+)", text).group(1).split("|")
 
     def diagnose(self, *arguments, stdin=None, unprivileged=False, prepare=None):
         """The messages of a run that ends with errors, as data."""

@@ -125,8 +125,7 @@ class Outputs(Case):
         rows = [
             (RTSLC, ["--help"]), (RTSLC, ["--version"]), (RTSLC, ["-V"]), (RTSLC, ["help"]), (RTSLC, ["help", "render"]),
             (RTSLC, ["check", "--help"]), (RTSLC, ["check", "-Whelp"]),
-            *[(RTSLC, ["compile", "grey.rtsl", f"--emit={stage}"]) for stage in
-              ("preprocessed", "ast", "typed-ast", "ir", "ssa", "split", "structured", "llvm", "ptx", "cpp", "reflection")],
+            *[(RTSLC, ["compile", "grey.rtsl", f"--emit={stage}"]) for stage in self.stages()],
             (RTSLC, ["compile", "grey.rtsl", "--emit=ir", "-o", "ir", "-MD", "-MF", "-"]),
             (RTSLC, ["explain", "--states", "Glass.rtsl"]), (RTSLC, ["explain", "scene.json", "--json"]),
             (RTSLC, [*render, "-o", "c.exr", "--json"]), (RTSLC, [*render, "-o", "c.exr", "--print", *prints]),

@@ -3,6 +3,7 @@
 #include "Messages.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
+#include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
 
 #include <fmt/format.h>
@@ -54,11 +55,15 @@ void checkScene(const std::string &file, const CheckOptions &options, SceneBuild
     return;
   filesRead = withMeshes(description, filesRead);
   std::optional<runtime::Scene> scene;
-  emitScene(*module, linkRequest(description), Stage::Ir, options.common.compile,
-            messages.diagnostics, [&](const auto &constructors) {
-              scene = buildScene(description, constructors);
-              return scene->facts();
-            });
+  const LinkRequest request = linkRequest(description);
+  CompileInput input;
+  input.module = module.get();
+  input.scene = &request;
+  input.makeObjects = [&](const auto &constructors) {
+    scene = buildScene(description, constructors);
+    return scene->facts();
+  };
+  emit(stage("ir"), input, options.common.compile, messages.diagnostics);
   if (scene)
     for (const Warning &warning : scene->warnings())
       messages.report(warning);

@@ -4,9 +4,7 @@
 #include "SceneShaders.h"
 #include "Shaders.h"
 #include "codegen/cpp/EmitCpp.h"
-#include "codegen/driver/Compiler.h"
-#include "codegen/driver/Reflection.h"
-#include "frontend/syntax/Parser.h"
+#include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"
 
@@ -17,22 +15,10 @@ namespace rtsl::tool {
 
 namespace {
 
-const Choices<Stage> stages = {{"preprocessed", Stage::Preprocessed},
-                               {"ast", Stage::Ast},
-                               {"typed-ast", Stage::TypedAst},
-                               {"ir", Stage::Ir},
-                               {"ssa", Stage::Ssa},
-                               {"split", Stage::Split},
-                               {"structured", Stage::Structured},
-                               {"llvm", Stage::Llvm},
-                               {"ptx", Stage::Ptx},
-                               {"cpp", Stage::Cpp},
-                               {"reflection", Stage::Reflection}};
-
 struct CompileCommandOptions {
   CommonOptions common;
   std::vector<std::string> files;
-  std::optional<Stage> stage;
+  const Stage *stage = nullptr;
   std::vector<std::string> overrides;
   std::string output = "-";
   bool lineDirectives = false;
@@ -56,57 +42,45 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options,
   request.features |= features(options.prints, options.exceptions);
   keep(options.common.keep, request, compile);
   std::optional<runtime::Scene> scene;
+  CompileInput input;
+  input.module = module.get();
+  input.scene = &request;
+  input.makeObjects = [&](const auto &constructors) {
+    scene = buildScene(description, constructors);
+    return scene->facts();
+  };
   const std::optional<std::string> text =
-      emitScene(*module, request, *options.stage, compile, messages.diagnostics,
-                [&](const auto &constructors) {
-                  scene = buildScene(description, constructors);
-                  return scene->facts();
-                });
+      emit(*options.stage, input, compile, messages.diagnostics);
   if (scene)
     for (const Warning &warning : scene->warnings())
       messages.report(warning);
   return text;
 }
 
-/// The text of a stage that a checked module has.
-std::optional<std::string> translate(const CompileCommandOptions &options,
-                                     const typed::Module &module, Messages &messages) {
-  if (messages.diagnostics.hasErrors())
-    return std::nullopt;
-  if (*options.stage == Stage::TypedAst)
-    return typed::dump(module);
-  if (*options.stage == Stage::Reflection)
-    return emitReflection(module, options.common.compile, messages.diagnostics);
-  if (*options.stage == Stage::Cpp) {
-    const std::string &named = options.output == "-" ? options.files.front() : options.output;
-    return emitCpp(module, cpp::identifierOf(named), options.lineDirectives, options.trace,
-                   features(options.prints, options.exceptions), options.common.compile,
-                   messages.diagnostics);
-  }
-  return emit(module, *options.stage, options.common.compile, messages.diagnostics);
-}
-
-/// The text of the asked stage; nothing if there were errors.
+/// The text of the asked stage of RTSL files; nothing if there were errors.
 std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages,
                                      std::vector<std::string> &filesRead) {
-  std::optional<std::string> text;
-  if (*options.stage == Stage::Preprocessed) {
-    SourceLoader loader(messages.sources, messages.diagnostics, options.common.preprocessor);
-    text = "";
-    for (const std::string &file : options.files)
-      if (const std::optional<PreprocessedFile> preprocessed = loader.preprocessFile(file))
-        *text += printPreprocessed(preprocessed->text, messages.sources);
-    filesRead = loader.files();
-    return text;
-  }
-  Shaders shaders(messages, options.common.preprocessor, options.files);
-  if (*options.stage == Stage::Ast) {
-    text = "";
-    for (const ast::TranslationUnit *unit : shaders.units())
-      *text += dump(*unit);
+  CompileInput input;
+  Shaders shaders(messages, options.common.preprocessor);
+  std::unique_ptr<typed::Module> module;
+  if (options.stage->needs == Stage::Needs::Text) {
+    input.texts = shaders.preprocess(options.files);
   } else {
-    text = translate(options, *shaders.check(options.common.compile), messages);
+    for (const std::string &file : options.files)
+      shaders.add(file);
+    input.units = shaders.units();
   }
+  if (options.stage->needs == Stage::Needs::Module) {
+    module = shaders.check(options.common.compile);
+    if (messages.diagnostics.hasErrors())
+      return std::nullopt;
+    input.module = module.get();
+  }
+  const std::string &named = options.output == "-" ? options.files.front() : options.output;
+  input.cpp = {cpp::identifierOf(named), options.lineDirectives, options.trace,
+               features(options.prints, options.exceptions)};
+  const std::optional<std::string> text =
+      emit(*options.stage, input, options.common.compile, messages.diagnostics);
   if (!messages.diagnostics.hasErrors())
     filesRead = shaders.filesRead();
   return text;
@@ -119,21 +93,13 @@ void checkInputs(const CompileCommandOptions &options) {
   const auto scenes = std::count_if(options.files.begin(), options.files.end(), isScene);
   if (scenes > 0 && options.files.size() > 1)
     throw CLI::ValidationError("FILE", "give RTSL files or one scene");
-  if (scenes > 0 && (options.stage <= Stage::Ast || options.stage == Stage::TypedAst))
-    throw CLI::ValidationError(
-        "--emit", "a scene has no text and no syntax tree; give one of its RTSL files");
-  if (options.stage == Stage::Reflection && scenes > 0)
-    throw CLI::ValidationError("--emit",
-                               "reflection describes RTSL files; give those of the scene");
-  if (options.stage == Stage::Cpp && scenes > 0)
-    throw CLI::ValidationError("--emit", "C++ is generated from RTSL files, without a scene; the "
-                                         "program that it is linked to builds one");
-  if (scenes == 0 && options.stage != Stage::Cpp &&
+  if (scenes > 0 && options.stage->whyNoScene)
+    throw CLI::ValidationError("--emit", options.stage->whyNoScene);
+  if (scenes == 0 && !options.stage->keepsEvents &&
       features(options.prints, options.exceptions) != 0)
     throw CLI::ValidationError(options.prints ? "--print" : "--exceptions",
                                "is for C++ and for scenes");
-  if ((options.stage == Stage::Cpp || options.stage == Stage::Ptx) &&
-      options.common.compile.floatingPoint == FloatingPoint::Double)
+  if (!options.stage->hasDouble && options.common.compile.floatingPoint == FloatingPoint::Double)
     throw CLI::ValidationError("--fp",
                                "double is for machine code of this processor; give strict or fast");
   if (scenes == 0 && !options.overrides.empty())
@@ -170,9 +136,13 @@ void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   command
       ->add_option("FILE", options->files, "RTSL files; - is standard input; or one scene (.json)")
       ->required();
-  addChoice(*command, "--emit", options->stage, stages, "the stage to write");
+  Choices<const Stage *> choices;
+  for (const Stage &stage : stages())
+    choices.emplace_back(stage.name, &stage);
+  addChoice(*command, "--emit", options->stage, choices, "the stage to write");
   command->add_flag_callback(
-      "-E", [options] { options->stage = Stage::Preprocessed; }, "the same as --emit=preprocessed");
+      "-E", [options] { options->stage = &stage("preprocessed"); },
+      "the same as --emit=preprocessed");
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")
       ->type_name("OUT");
   addSetOption(*command, options->overrides);

@@ -6,6 +6,7 @@
 #include "sema/Sema.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,15 @@ public:
   void add(const std::string &file, SourceRange where = {}) {
     if (const ast::TranslationUnit *unit = loader.load(file, where))
       parsed.push_back(unit);
+  }
+
+  /// Reads files and runs the preprocessor alone.
+  std::vector<PreprocessedFile> preprocess(const std::vector<std::string> &files) {
+    std::vector<PreprocessedFile> preprocessed;
+    for (const std::string &file : files)
+      if (std::optional<PreprocessedFile> one = loader.preprocessFile(file))
+        preprocessed.push_back(std::move(*one));
+    return preprocessed;
   }
 
   const std::vector<const ast::TranslationUnit *> &units() const { return parsed; }

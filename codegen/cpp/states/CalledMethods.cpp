@@ -12,6 +12,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 #include "codegen/cpp/states/States.h"
+#include "codegen/ir/Attributes.h"
 
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "sema/typed/Analysis.h"
@@ -41,8 +42,8 @@ void ModulePrinter::findCalledMethods() {
   std::map<const typed::Class *, std::set<std::string>> structures;
   mlir::ModuleOp ir = states->ir;
   for (auto declaration : ir.getOps<mlir::func::FuncOp>()) {
-    auto ofClass = declaration->getAttrOfType<mlir::StringAttr>("rtsl.class");
-    auto slot = declaration->getAttrOfType<mlir::StringAttr>("rtsl.method");
+    auto ofClass = ir::attr::className.of(declaration);
+    auto slot = ir::attr::methodName.of(declaration);
     if (!declaration.isExternal() || !ofClass || !slot)
       continue;
     CalledMethod called;

@@ -1,5 +1,6 @@
 //===- StateNames.cpp - names and types of what a state computes ----------===//
 #include "codegen/cpp/states/StateWriter.h"
+#include "codegen/ir/Attributes.h"
 
 #include "codegen/passes/continuation/common/Names.h"
 #include "sema/typed/Casting.h"
@@ -185,7 +186,7 @@ const Type *StateWriter::declaredType(mlir::Value address) {
     const Type *base = declaredType(element.getBase());
     return base && (base->is(TypeKind::Array) || base->isMatrix()) ? base->element : nullptr;
   }
-  auto number = op ? op->getAttrOfType<mlir::IntegerAttr>("rtsl.declared") : mlir::IntegerAttr();
+  auto number = op ? ir::attr::declared.of(op) : mlir::IntegerAttr();
   return number ? source.types[static_cast<std::size_t>(number.getInt())] : nullptr;
 }
 

@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/states/StateWriter.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/passes/continuation/common/Names.h"
 
@@ -64,7 +65,7 @@ void StateWriter::note(mlir::Value address, Touches &touches, bool isWritten) {
 }
 
 bool changes(ir::EvaluateOp op, std::size_t operand) {
-  auto changed = op->getAttrOfType<mlir::DenseI32ArrayAttr>("rtsl.changes");
+  auto changed = ir::attr::changes.of(op);
   return changed && llvm::is_contained(changed.asArrayRef(), static_cast<std::int32_t>(operand));
 }
 
@@ -93,7 +94,7 @@ StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
           if (changes(call, index))
             note(operand, touches, true);
         }
-      if (!call->hasAttr("rtsl.plain")) {
+      if (!ir::attr::plain.isOn(call)) {
         touches.readsAny = true;
         touches.writes.insert({Location::Kind::Random, {}});
         touches.writesAny |= !call.getWrites();

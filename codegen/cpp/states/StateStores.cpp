@@ -1,5 +1,6 @@
 //===- StateStores.cpp - what a state writes -------------------------------===//
 #include "codegen/cpp/states/StateWriter.h"
+#include "codegen/ir/Attributes.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -48,7 +49,7 @@ void StateWriter::evaluate(ir::EvaluateOp op, Lines &out) {
   const bool isWrite =
       op.getNumResults() == 0 && entry.kind == SourceTable::Kind::Value &&
       (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);
-  printer.isNested = op->hasAttr("rtsl.nested");
+  printer.isNested = ir::attr::nested.isOn(op);
   if (printer.isNested) // its first part may change what waits for its last
     flush(touchesOf(op), out);
   Statements before, written;
@@ -83,7 +84,7 @@ void StateWriter::evaluate(ir::EvaluateOp op, Lines &out) {
     emit(out, std::move(statement));
   touches.add(consumed);
   if (op.getNumResults() != 0)
-    define(*op, code, touches, /*isPure=*/op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes"),
+    define(*op, code, touches, /*isPure=*/ir::attr::plain.isOn(op) && !ir::attr::changes.isOn(op),
            out);
   else if (code)
     emit(out, code);

@@ -1,5 +1,6 @@
 //===- States.cpp - methods that trace, as their states -------------------===//
 #include "codegen/cpp/states/States.h"
+#include "codegen/ir/Attributes.h"
 
 #include "codegen/cpp/Tracing.h"
 #include "codegen/cpp/states/StateWriter.h"
@@ -67,9 +68,9 @@ SourceTable makeSourceTable(const typed::Module &module) {
 void ModulePrinter::findStates() {
   mlir::ModuleOp ir = states->ir;
   for (auto function : ir.getOps<mlir::func::FuncOp>()) {
-    auto ofClass = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
-    auto ofMethod = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
-    if (function->hasAttr("rtsl.state") && ofClass && ofMethod)
+    auto ofClass = ir::attr::className.of(function);
+    auto ofMethod = ir::attr::methodName.of(function);
+    if (ir::attr::state.isOn(function) && ofClass && ofMethod)
       statesOf[{ofClass.str(), ofMethod.str(), continuation::isFramed(function)}].push_back(
           function);
   }

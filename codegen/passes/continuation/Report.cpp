@@ -7,6 +7,13 @@
 
 namespace rtsl {
 
+std::uint32_t SplitReport::stateCount() const {
+  std::size_t count = 0;
+  for (const FunctionReport &function : functions)
+    count += function.states.size();
+  return static_cast<std::uint32_t>(count);
+}
+
 std::uint32_t SplitReport::frameSize() const {
   std::uint32_t size = 0;
   for (const FunctionReport &function : functions)

@@ -98,6 +98,8 @@ struct SplitReport {
   std::vector<continuation::TrimmedPayload> trimmed;
   /// The limit of depth for which the stack is shown; that of scenes that name none.
   std::uint32_t maxDepth = 8;
+  /// States of all functions.
+  std::uint32_t stateCount() const;
   /// Bytes of the largest frame, with those of what is called above it.
   std::uint32_t frameSize() const;
   /// Bytes more for each object in a chain of references; 0 if no function calls itself.

@@ -1,5 +1,6 @@
 #include "codegen/passes/errors/DeriveHitErrors.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/Pipeline.h"
@@ -130,14 +131,14 @@ std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTabl
   std::vector<DerivedHitError> derived;
   for (FuncOp method : methods) {
     DerivedHitError &one = derived.emplace_back();
-    one.className = method->getAttrOfType<mlir::StringAttr>("rtsl.class").str();
+    one.className = ir::attr::className.of(method).str();
     one.hasFunction = boundHitError(method, elementary, one.unbound);
-    method->removeAttr("rtsl.method");
-    method->setAttr(hitErrorAttribute, mlir::UnitAttr::get(method.getContext()));
+    ir::attr::methodName.removeFrom(method);
+    ir::attr::hitError.set(method);
     method.setName(one.className + "." + hitErrorMethod.str());
   }
   for (auto function : llvm::make_early_inc_range(copy->getOps<FuncOp>()))
-    if (!function->hasAttr(hitErrorAttribute))
+    if (!ir::attr::hitError.isOn(function))
       function.erase();
   run(*copy, [](mlir::OpPassManager &module) {
     auto &functions = module.nest<FuncOp>();

@@ -21,8 +21,6 @@ namespace rtsl {
 
 /// How the function is called: a slot of language/Slots.def that no author can write.
 constexpr llvm::StringLiteral hitErrorMethod = "rt_boundHitError";
-/// On these functions.
-constexpr llvm::StringLiteral hitErrorAttribute = "rtsl.hit_error";
 
 struct DerivedHitError {
   std::string className;

@@ -1,5 +1,6 @@
 #include "codegen/passes/errors/RunningError.h"
 
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/Components.h"
 
@@ -7,7 +8,6 @@
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 #include "mlir/IR/IRMapping.h"
 #include "mlir/IR/Matchers.h"
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/TypeSwitch.h"
 
 #include <cmath>
@@ -99,12 +99,7 @@ static void forEachSource(Value value, llvm::function_ref<void(Value)> visit) {
     mlir::Block *block = argument.getOwner();
     if (block->isEntryBlock())
       return;
-    for (mlir::Block *predecessor : block->getPredecessors()) {
-      auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-      for (unsigned successor = 0; successor < branch->getNumSuccessors(); ++successor)
-        if (branch->getSuccessor(successor) == block)
-          visit(branch.getSuccessorOperands(successor)[argument.getArgNumber()]);
-    }
+    ir::forEachEdgeInto(*block, [&](ir::Edge edge) { visit(edge.passedTo(argument)); });
     return;
   }
   for (Value operand : value.getDefiningOp()->getOperands())
@@ -164,32 +159,22 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
     made.error = block->addArgument(type, argument.getLoc());
   known[argument] = made;
 
-  struct Edge {
-    mlir::BranchOpInterface branch;
-    unsigned successor;
-  };
-  llvm::SmallVector<Edge> edges;
-  for (mlir::Block *predecessor :
-       llvm::SmallSetVector<mlir::Block *, 4>(block->pred_begin(), block->pred_end())) {
-    auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-    for (unsigned successor = 0; successor < branch->getNumSuccessors(); ++successor)
-      if (branch->getSuccessor(successor) == block) {
-        branch.getSuccessorOperands(successor).append(zero); // until it is known
-        if (hasErrors)
-          branch.getSuccessorOperands(successor).append(zero);
-        edges.push_back({branch, successor});
-      }
-  }
-  for (Edge edge : edges) {
-    const auto operands = [&] { return edge.branch.getSuccessorOperands(edge.successor); };
-    const Unrounded incoming = unrounded(operands()[argument.getArgNumber()]);
+  llvm::SmallVector<ir::Edge> edges;
+  ir::forEachEdgeInto(*block, [&](ir::Edge edge) {
+    edge.operands().append(zero); // until it is known
+    if (hasErrors)
+      edge.operands().append(zero);
+    edges.push_back(edge);
+  });
+  for (ir::Edge edge : edges) {
+    const Unrounded incoming = unrounded(edge.passedTo(argument));
     if (obstacle)
       return {};
     if (incoming.error && !made.error) // no float that isIterated has followed leads here
       return fail(argument.getLoc(), "it goes through a whole number, which may jump");
-    operands().getMutableForwardedOperands().slice(index, 1).assign(incoming.value);
+    edge.operands().getMutableForwardedOperands().slice(index, 1).assign(incoming.value);
     if (incoming.error)
-      operands().getMutableForwardedOperands().slice(index + 1, 1).assign(incoming.error);
+      edge.operands().getMutableForwardedOperands().slice(index + 1, 1).assign(incoming.error);
   }
   return made;
 }

@@ -15,6 +15,7 @@
 // live-range identification", 2002).
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/passes/continuation/common/Liveness.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/restructure/Steps.h"
@@ -212,7 +213,7 @@ void Variables::makeVariables() {
     std::string name = web.name.empty() ? continuation::sourceName(web.members.front()) : web.name;
     auto variable = ir::VarOp::create(builder, web.members.front().getLoc(), names.unique(name),
                                       web.members.front().getType());
-    variable->setAttr("rtsl.value", builder.getUnitAttr()); // stores come before loads
+    ir::attr::value.set(variable); // stores come before loads
     web.address = variable;
   }
 }

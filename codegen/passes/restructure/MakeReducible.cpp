@@ -14,6 +14,7 @@
 // a factor of two a level of nesting.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/passes/Components.h"
 #include "codegen/passes/restructure/Steps.h"
 
@@ -107,15 +108,10 @@ void copyIntoLoop(const BlockSet &copied, const BlockSet &loop) {
       builder.clone(op, mapping);
   }
   for (Block *block : copied)
-    for (Block *from : llvm::to_vector(block->getPredecessors())) {
-      bool isCopy = llvm::is_contained(copies, from);
-      if (loop.contains(from) || isCopy)
-        continue;
-      mlir::Operation *terminator = from->getTerminator();
-      for (unsigned i = 0; i < terminator->getNumSuccessors(); ++i)
-        if (terminator->getSuccessor(i) == block)
-          terminator->setSuccessor(mapping.lookup(block), i);
-    }
+    ir::forEachEdgeInto(*block, [&](ir::Edge edge) {
+      if (!loop.contains(edge.from()) && !llvm::is_contained(copies, edge.from()))
+        edge.terminator->setSuccessor(mapping.lookup(block), edge.successor);
+    });
 }
 
 BlockSet blocksOf(FuncOp function) {

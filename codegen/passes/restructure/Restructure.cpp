@@ -1,5 +1,6 @@
 //===- Restructure.cpp - blocks and branches back to structured control flow ==//
 #include "codegen/passes/restructure/Restructure.h"
+#include "codegen/ir/Attributes.h"
 
 #include "codegen/passes/restructure/Steps.h"
 
@@ -19,7 +20,7 @@ namespace {
 
 /// Does an expression that goes to a variable, its first operand, change only that?
 bool changesNothingElse(mlir::Operation *evaluation) {
-  auto changed = evaluation->getAttrOfType<mlir::DenseI32ArrayAttr>("rtsl.changes");
+  auto changed = ir::attr::changes.of(evaluation);
   return !changed || (changed.size() == 1 && changed[0] == 0);
 }
 
@@ -30,8 +31,8 @@ void dropUnreadVariables(FuncOp function) {
   for (ir::VarOp variable : variables) {
     auto isWrite = [&](mlir::Operation *user) {
       auto store = llvm::dyn_cast<ir::StoreOp>(user);
-      const bool isAllOfIt = llvm::isa<ir::EvaluateOp>(user) && user->hasAttr("rtsl.into") &&
-                             user->hasAttr("rtsl.plain") &&
+      const bool isAllOfIt = llvm::isa<ir::EvaluateOp>(user) && ir::attr::into.isOn(user) &&
+                             ir::attr::plain.isOn(user) &&
                              llvm::count(user->getOperands(), variable.getResult()) == 1 &&
                              user->getOperand(0) == variable.getResult() &&
                              changesNothingElse(user);
@@ -57,10 +58,10 @@ mlir::Operation *ancestorIn(Block *block, mlir::Operation *op) {
 /// the author's, if they start there anew.
 void placeVariables(FuncOp function) {
   for (auto variable : llvm::to_vector(function.getBody().front().getOps<ir::VarOp>())) {
-    const bool isValue = variable->hasAttr("rtsl.value");
-    if (!isValue && !variable->hasAttr("rtsl.declared"))
+    const bool isValue = ir::attr::value.isOn(variable);
+    if (!isValue && !ir::attr::declared.isOn(variable))
       continue;
-    variable->removeAttr("rtsl.value");
+    ir::attr::value.removeFrom(variable);
     Block *common = nullptr;
     for (mlir::Operation *user : variable->getUsers()) {
       if (!common)
@@ -116,7 +117,7 @@ void findCondition(ir::LoopOp loop) {
 void dropDeadCode(FuncOp function) {
   function.walk<mlir::WalkOrder::PostOrder, mlir::ReverseIterator>([](mlir::Operation *op) {
     const bool isUnread = llvm::isa<ir::EvaluateOp>(op) && op->use_empty() &&
-                          op->hasAttr("rtsl.plain") && !op->hasAttr("rtsl.changes");
+                          ir::attr::plain.isOn(op) && !ir::attr::changes.isOn(op);
     if (isUnread || mlir::isOpTriviallyDead(op))
       op->erase();
   });

@@ -1,8 +1,8 @@
 //===- CompiledShaders.cpp ------------------------------------------------===//
 #include "CompiledShaders.h"
 
-#include "codegen/driver/Compiler.h"
 #include "codegen/driver/SourceLoader.h"
+#include "codegen/driver/Stages.h"
 #include "rtsl/program.h"
 #include "sema/Sema.h"
 #include "support/Error.h"
@@ -61,8 +61,12 @@ CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std:
     options.target =
         path == Path::Megakernel || path == Path::Gpu ? Target::HostMegakernel : Target::Host;
     compiled.program = compileProgram(*module, request, options, diagnostics);
-    if (path == Path::Gpu)
-      compiled.ptx = emitScene(*module, request, Stage::Ptx, options, diagnostics).value_or("");
+    if (path == Path::Gpu) {
+      CompileInput input;
+      input.module = module.get();
+      input.scene = &request;
+      compiled.ptx = emit(stage("ptx"), input, options, diagnostics).value_or("");
+    }
   }
   if (!compiled.program || diagnostics.hasErrors())
     throw Error(ErrorCode::Internal, renderText(diagnostics, false));

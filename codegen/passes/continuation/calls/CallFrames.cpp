@@ -13,6 +13,7 @@
 // there, and Dispatch.cpp says what is written where.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/common/Names.h"
@@ -71,8 +72,8 @@ void takeArgumentsFromFrame(FuncOp function) {
   });
   entry.eraseArguments(own, entry.getNumArguments() - own);
   function.setFunctionType(builder.getFunctionType(entry.getArgumentTypes(), {}));
-  function->setAttr("rtsl.frame_base",
-                    builder.getI32IntegerAttr(static_cast<std::int32_t>(layout.size)));
+  ir::attr::frameBase.set(function,
+                          builder.getI32IntegerAttr(static_cast<std::int32_t>(layout.size)));
 }
 
 //===----------------------------------------------------------------------===//
@@ -145,7 +146,7 @@ bool isOfMember(mlir::Value object, FuncOp state) {
 
 void FrameCounter::read(FuncOp state) {
   const unsigned number = numberOf(state.getSymName().rsplit(".state").first);
-  if (auto size = state->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_size"))
+  if (auto size = ir::attr::frameSize.of(state))
     functions[number].bytes = static_cast<std::uint32_t>(size.getInt());
   functions[number].isCalled |= isFramed(state);
   state.walk([&](ir::EnterOp call) {
@@ -190,7 +191,7 @@ std::uint32_t FrameCounter::bytes(unsigned function, unsigned chain) {
 
 std::vector<std::uint32_t> FrameCounter::run() {
   for (FuncOp state : module.getOps<FuncOp>())
-    if (state->hasAttr("rtsl.state"))
+    if (ir::attr::state.isOn(state))
       read(state);
   findCircles();
   const bool anyCircle = llvm::any_of(functions, [](const Function &f) { return f.comesRound; });

@@ -8,6 +8,7 @@
 // of its own (CallFrames.cpp).
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/passes/InlineFunctions.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 
@@ -109,7 +110,7 @@ llvm::SmallVector<CallOp> Inliner::inlineCall(CallOp call, FuncOp callee) {
       } else {
         mlir::Operation *clone = builder.clone(op, mapping);
         clone->setLoc(mlir::CallSiteLoc::get(op.getLoc(), call.getLoc()));
-        clone->removeAttr("rtsl.tail");
+        ir::attr::tail.removeFrom(clone);
         clones.push_back(clone);
       }
     }
@@ -151,15 +152,14 @@ void Inliner::visit(FuncOp function) {
   while (!pending.empty()) {
     CallOp call = pending.pop_back_val();
     FuncOp callee = tracingCallee(call);
-    if (!callee || call->hasAttr("rtsl.tail") || isFramed(call))
+    if (!callee || ir::attr::tail.isOn(call) || isFramed(call))
       continue;
     visit(callee);
-    auto mark = mlir::UnitAttr::get(module.getContext());
     if (visits[callee] == Visit::Done && isTail(call, callee)) {
-      call->setAttr("rtsl.tail", mark);
+      ir::attr::tail.set(call);
     } else if (wantsFrame(callee)) {
-      callee->setAttr("rtsl.framed", mark);
-      call->setAttr("rtsl.framed", mark);
+      ir::attr::framed.set(callee);
+      ir::attr::framed.set(call);
     } else {
       add(inlineCall(call, callee));
     }

@@ -10,6 +10,7 @@
 // cut before all that call them are.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/common/Recompute.h"
 
@@ -120,8 +121,8 @@ void OpenCalls::giveFrame(FuncOp method) {
     twin.setSymName((method.getSymName() + ".framed").str());
     symbols.insert(twin, std::next(method->getIterator()));
   }
-  for (const char *mark : {"rtsl.framed", "rtsl.noinline"})
-    twin->setAttr(mark, mlir::UnitAttr::get(module.getContext()));
+  ir::attr::framed.set(twin);
+  ir::attr::noinline.set(twin);
 }
 
 void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
@@ -140,8 +141,8 @@ void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
         call.getLoc(), name,
         builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
     declaration.setPrivate();
-    declaration->setAttr("rtsl.class", builder.getStringAttr(base));
-    declaration->setAttr("rtsl.method", call.getMethodAttr());
+    ir::attr::className.set(declaration, builder.getStringAttr(base));
+    ir::attr::methodName.set(declaration, call.getMethodAttr());
     symbols.insert(declaration);
     declarations.push_back({declaration, {}});
   }
@@ -151,7 +152,7 @@ void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
         if (!llvm::is_contained(stands, target))
           stands.push_back(target);
   auto framedCall = mlir::func::CallOp::create(builder, call.getLoc(), declaration, arguments);
-  framedCall->setAttr("rtsl.framed", builder.getUnitAttr());
+  ir::attr::framed.set(framedCall);
   call.replaceAllUsesWith(framedCall.getResults());
   call.erase();
 }
@@ -160,7 +161,7 @@ void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
 void OpenCalls::summariseWrites() {
   mlir::OpBuilder builder(module.getContext());
   for (auto &entry : declarations)
-    entry.first->setAttr("rtsl.writes", builder.getArrayAttr({}));
+    ir::attr::writes.set(entry.first, builder.getArrayAttr({}));
   bool changed = true;
   while (changed) {
     changed = false;
@@ -169,15 +170,15 @@ void OpenCalls::summariseWrites() {
       StateWrites writes;
       for (FuncOp target : stands)
         writes.add(summary.ofFunction(target));
-      const mlir::Attribute before = declaration->getAttr("rtsl.writes");
+      const mlir::Attribute before = ir::attr::writes.of(declaration);
       if (writes.any) {
-        declaration->removeAttr("rtsl.writes");
+        ir::attr::writes.removeFrom(declaration);
       } else {
         llvm::SmallVector<llvm::StringRef> names(writes.names.keys());
         llvm::sort(names);
-        declaration->setAttr("rtsl.writes", builder.getStrArrayAttr(names));
+        ir::attr::writes.set(declaration, builder.getStrArrayAttr(names));
       }
-      changed |= declaration->getAttr("rtsl.writes") != before;
+      changed |= ir::attr::writes.of(declaration) != before;
     }
   }
 }
@@ -195,7 +196,7 @@ void OpenCalls::run() {
   summariseWrites();
   for (auto &[declaration, stands] : declarations)
     for (FuncOp target : stands)
-      if (tracing.contains(target) || target->hasAttr("rtsl.states"))
+      if (tracing.contains(target) || ir::attr::states.isOn(target))
         giveFrame(target);
 }
 

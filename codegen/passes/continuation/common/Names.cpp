@@ -1,11 +1,11 @@
 //===- Names.cpp - what values are called in the source -------------------===//
 #include "codegen/passes/continuation/common/Names.h"
 
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/ir/SourcePlace.h"
 
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/SmallPtrSet.h"
 
 namespace rtsl::continuation {
@@ -58,24 +58,16 @@ static std::string nameOfArgument(mlir::BlockArgument argument,
   mlir::Block *block = argument.getOwner();
   if (!seen.insert(block).second)
     return {};
-  for (mlir::Block *predecessor : block->getPredecessors()) {
-    auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-    if (!branch)
-      continue;
-    for (unsigned i = 0; i < predecessor->getNumSuccessors(); ++i) {
-      if (predecessor->getSuccessor(i) != block)
-        continue;
-      mlir::Value value = branch.getSuccessorOperands(i)[argument.getArgNumber()];
-      if (!value || value == argument)
-        continue;
-      std::string name = nameInLocation(value.getLoc());
-      if (auto outer = llvm::dyn_cast<mlir::BlockArgument>(value); outer && name.empty())
-        name = nameOfArgument(outer, seen);
-      if (!name.empty())
-        return name;
-    }
-  }
-  return {};
+  std::string name;
+  ir::forEachEdgeInto(*block, [&](ir::Edge edge) {
+    mlir::Value value = edge.passedTo(argument);
+    if (!name.empty() || !value || value == argument)
+      return;
+    name = nameInLocation(value.getLoc());
+    if (auto outer = llvm::dyn_cast<mlir::BlockArgument>(value); outer && name.empty())
+      name = nameOfArgument(outer, seen);
+  });
+  return name;
 }
 
 std::string sourceName(mlir::Value value) {

@@ -1,6 +1,7 @@
 //===- Recompute.cpp - what gives the same value again behind a trace -----===//
 #include "codegen/passes/continuation/common/Recompute.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 
 #include "mlir/Interfaces/SideEffectInterfaces.h"
@@ -39,7 +40,7 @@ static StateWrites writesThrough(mlir::Value address) {
 }
 
 static bool isLight(FuncOp function) {
-  auto method = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  auto method = ir::attr::methodName.of(function);
   return (method && method.getValue() == "illumination") ||
          function.getSymName() == "rtsl_rt_Light_illumination";
 }
@@ -54,7 +55,7 @@ WriteSummary::WriteSummary(mlir::ModuleOp module) {
       hasLights |= isLight(function);
       continue;
     }
-    const auto known = function->getAttrOfType<mlir::ArrayAttr>("rtsl.writes"); // OpenCalls.cpp
+    const auto known = ir::attr::writes.of(function); // OpenCalls.cpp
     writes.any = !known;
     if (known)
       for (auto name : known.getAsRange<mlir::StringAttr>())
@@ -187,7 +188,7 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
     mlir::Operation *base = ir::baseOperation(address);
     return llvm::isa_and_nonnull<ir::TableOp>(base) ||
            (llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(base) &&
-            !function->hasAttr("rtsl.constructor"));
+            !ir::attr::constructor.isOn(function));
   };
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) {
     mlir::Operation *base = ir::baseOperation(load.getAddress());

@@ -8,9 +8,9 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/SsaRepair.h"
+#include "codegen/ir/IncomingEdges.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/PostOrderIterator.h"
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/SmallVector.h"
@@ -130,17 +130,9 @@ bool Repair::dropTrivialArgument(llvm::ArrayRef<mlir::Block *> order) {
 /// Hands the definitions that reach the predecessors to the arguments.
 void Repair::placeArguments(llvm::ArrayRef<mlir::Block *> order) {
   for (mlir::Block *block : order) {
-    if (!merges.contains(block))
-      continue;
-    llvm::SmallPtrSet<mlir::Block *, 4> seen; // a predecessor is listed once an edge
-    for (mlir::Block *predecessor : block->getPredecessors()) {
-      if (!seen.insert(predecessor).second)
-        continue;
-      auto branch = llvm::cast<mlir::BranchOpInterface>(predecessor->getTerminator());
-      for (unsigned i = 0; i < predecessor->getNumSuccessors(); ++i)
-        if (predecessor->getSuccessor(i) == block)
-          branch.getSuccessorOperands(i).append(atEnd(predecessor));
-    }
+    if (merges.contains(block))
+      ir::forEachEdgeInto(*block,
+                          [&](ir::Edge edge) { edge.operands().append(atEnd(edge.from())); });
   }
 }
 

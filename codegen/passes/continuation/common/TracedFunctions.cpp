@@ -1,5 +1,6 @@
 //===- TracedFunctions.cpp - the functions of a module that trace ---------===//
 #include "codegen/passes/continuation/common/TracedFunctions.h"
+#include "codegen/ir/Attributes.h"
 
 #include "llvm/ADT/DenseMap.h"
 
@@ -25,7 +26,7 @@ mlir::Value objectOf(FuncOp function) {
 }
 
 bool isFramed(mlir::Operation *op) {
-  return op->hasAttr("rtsl.framed");
+  return ir::attr::framed.isOn(op);
 }
 
 llvm::ArrayRef<llvm::StringLiteral> machineEntries() {

@@ -12,6 +12,7 @@
 // frame is smallest.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/continuation/frame/ObjectLifetimes.h"
 #include "codegen/passes/continuation/frame/Steps.h"
@@ -53,7 +54,7 @@ bool interfere(const Item &a, const Item &b) {
 class Layouter {
 public:
   explicit Layouter(FuncOp function) : function(function), suspends(suspendsOf(function)) {
-    if (auto bytes = function->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_base"))
+    if (auto bytes = ir::attr::frameBase.of(function))
       base = static_cast<std::uint32_t>(bytes.getInt());
   }
   FrameLayout run();
@@ -244,8 +245,8 @@ void Layouter::rewrite() {
       argument.replaceAllUsesWith(load.getResult());
       last = load;
       if (isShared(offset, bit ? 4 : ir::sizeInBytes(value.getType()))) {
-        store->setAttr("rtsl.shared", builder.getUnitAttr());
-        load->setAttr("rtsl.shared", builder.getUnitAttr());
+        ir::attr::shared.set(store);
+        ir::attr::shared.set(load);
       }
     }
     suspend.getSavedMutable().clear();
@@ -255,7 +256,7 @@ void Layouter::rewrite() {
   function.walk([&](ir::FrameObjectOp object) {
     object.setOffset(items[itemOf.lookup(("object " + object.getName()).str())].offset);
   });
-  function->setAttr("rtsl.frame_size", builder.getI32IntegerAttr(size));
+  ir::attr::frameSize.set(function, builder.getI32IntegerAttr(size));
 }
 
 FrameLayout Layouter::run() {

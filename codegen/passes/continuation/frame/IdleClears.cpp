@@ -9,6 +9,7 @@
 // wants the zeros.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/passes/continuation/frame/Steps.h"
 
@@ -31,7 +32,7 @@ bool overwrites(mlir::Operation *op, mlir::Value root) {
   if (auto copy = llvm::dyn_cast<ir::CopyOp>(op))
     return copy.getTarget() == root && ir::baseAddress(copy.getSource()) != root;
   if (auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op))
-    return evaluation->hasAttr("rtsl.into") && evaluation.getOperand(0) == root &&
+    return ir::attr::into.isOn(evaluation) && evaluation.getOperand(0) == root &&
            llvm::none_of(evaluation.getOperands().drop_front(), [&](mlir::Value operand) {
              return llvm::isa<ir::PtrType>(operand.getType()) && ir::baseAddress(operand) == root;
            });

@@ -9,10 +9,11 @@
 // through arguments of blocks.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/passes/continuation/states/Steps.h"
 
 #include "mlir/IR/PatternMatch.h"
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "mlir/Transforms/RegionUtils.h"
 #include "llvm/ADT/DenseSet.h"
 
@@ -25,7 +26,7 @@ public:
   explicit SlotContents(ir::FrameStoreOp store) : store(store) {}
 
   bool isHeldAlready() {
-    return !store->hasAttr("rtsl.shared") && holdsBefore(store, store.getValue());
+    return !ir::attr::shared.isOn(store) && holdsBefore(store, store.getValue());
   }
 
 private:
@@ -76,20 +77,12 @@ bool SlotContents::holdsBefore(mlir::Operation *op, mlir::Value value) {
     return true;
   auto argument = llvm::dyn_cast<mlir::BlockArgument>(value);
   bool merges = argument && argument.getOwner() == block;
-  for (mlir::Block *predecessor : block->getPredecessors()) {
-    mlir::Operation *terminator = predecessor->getTerminator();
-    auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(terminator);
-    for (unsigned i = 0; i < predecessor->getNumSuccessors(); ++i) {
-      if (predecessor->getSuccessor(i) != block)
-        continue;
-      mlir::Value incoming = value;
-      if (merges)
-        incoming = branch ? branch.getSuccessorOperands(i)[argument.getArgNumber()] : mlir::Value();
-      if (!incoming || !holdsBefore(terminator, incoming))
-        return false;
-    }
-  }
-  return true;
+  bool holds = true;
+  ir::forEachEdgeInto(*block, [&](ir::Edge edge) {
+    const mlir::Value incoming = merges ? edge.passedTo(argument) : value;
+    holds = holds && incoming && holdsBefore(edge.terminator, incoming);
+  });
+  return holds;
 }
 
 } // namespace

@@ -11,8 +11,7 @@
 //   func @rtsl_rays_kept(%part: i32) -> i32                     what of their state waiting rays read (KeptState.h)
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/passes/continuation/states/Dispatch.h"
-
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Separate.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/KeptState.h"
@@ -202,7 +201,7 @@ mlir::LogicalResult Dispatcher::passFrame(FuncOp state) {
   (void)state.insertArgument(state.getNumArguments(), frameType, {}, state.getLoc());
   mlir::Value frame = state.getArgument(state.getNumArguments() - 1);
   std::uint32_t frameSize = 0; // as those above it see it: addresses take eight bytes
-  if (auto size = state->getAttrOfType<mlir::IntegerAttr>("rtsl.frame_size"))
+  if (auto size = ir::attr::frameSize.of(state))
     frameSize = (static_cast<std::uint32_t>(size.getInt()) + 7) / 8 * 8;
   bool isFine = true;
   state.walk([&](mlir::Operation *op) {
@@ -269,7 +268,7 @@ FuncOp Dispatcher::makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type>
   builder.setInsertionPointToEnd(module.getBody());
   auto function = FuncOp::create(builder, builder.getUnknownLoc(), name,
                                  builder.getFunctionType(inputs, {builder.getI32Type()}));
-  function->setAttr("rtsl.export", builder.getUnitAttr());
+  ir::attr::exported.set(function);
   builder.setInsertionPointToEnd(function.addEntryBlock());
   return function;
 }
@@ -318,7 +317,7 @@ void Dispatcher::makeFrameSize() {
   }
   FuncOp table = makeTable("rtsl_frame_area", areas);
   table.setPrivate();
-  table->removeAttr("rtsl.export");
+  ir::attr::exported.removeFrom(table);
   FuncOp function = makeFunction("rtsl_frame_size", {builder.getI32Type()});
   mlir::Value chain = function.getArgument(0), last = constant(location, asInt(areas.size() - 1));
   mlir::Value isLong =
@@ -382,7 +381,7 @@ void Dispatcher::dropUncalled() {
                                            : mlir::WalkResult::advance();
                               })
                               .wasInterrupted();
-      if (traces && !function->hasAttr("rtsl.state") &&
+      if (traces && !ir::attr::state.isOn(function) &&
           mlir::SymbolTable::symbolKnownUseEmpty(function, module))
         uncalled.push_back(function);
     }
@@ -397,7 +396,7 @@ mlir::LogicalResult Dispatcher::run() {
   for (llvm::StringRef name : machineEntries())
     entries[name.str() + "_first"] = 0;
   for (FuncOp state : module.getOps<FuncOp>()) {
-    if (!state->hasAttr("rtsl.state"))
+    if (!ir::attr::state.isOn(state))
       continue;
     unsigned ownArguments = objectOf(state) ? 1 : 0;
     if (state.getNumArguments() != ownArguments)
@@ -406,7 +405,7 @@ mlir::LogicalResult Dispatcher::run() {
     states.push_back(state);
     std::int32_t number = states.size();
     numbers[state.getSymName()] = number;
-    if (auto entry = state->getAttrOfType<mlir::StringAttr>("rtsl.entry"))
+    if (auto entry = ir::attr::entry.of(state))
       entries[(entry.getValue() + "_first").str()] = number;
   }
   areas = frameAreas(module);
@@ -423,9 +422,7 @@ mlir::LogicalResult Dispatcher::run() {
   makeRunState();
   makeFrameSize();
   makeConstant("rtsl_calls", hasCalls);
-  const auto tellOfScene = [&](FuncOp function) {
-    function->setAttr(factOfScene, builder.getUnitAttr());
-  };
+  const auto tellOfScene = [&](FuncOp function) { ir::attr::factOfScene.set(function); };
   for (const auto &[name, number] : entries)
     tellOfScene(makeConstant(name, number));
   llvm::SmallVector<std::uint32_t> sent, sentLast;

@@ -11,10 +11,10 @@
 // Single Assignment Form", 2013, algorithm 5).
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/passes/Components.h"
 #include "codegen/passes/continuation/states/Steps.h"
 
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/MapVector.h"
 
 namespace rtsl::continuation {
@@ -41,31 +41,13 @@ private:
   llvm::DenseMap<Value, Value> forwarded;                    // what it is
 };
 
-/// The operands for the arguments of `block` on each way from `from`; false for a terminator that
-/// makes some itself.
-template <typename Visit>
-bool forEachWay(mlir::Block *from, mlir::Block &block, Visit visit) {
-  auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(from->getTerminator());
-  for (unsigned way = 0; way < from->getNumSuccessors(); ++way)
-    if (from->getSuccessor(way) == &block) {
-      if (!branch || branch.getSuccessorOperands(way).getProducedOperandCount() != 0)
-        return false;
-      visit(branch.getSuccessorOperands(way));
-    }
-  return true;
-}
-
 void Forwarder::collect(mlir::Block &block) {
-  llvm::SmallVector<llvm::SmallVector<Value>> found(block.getNumArguments());
-  const llvm::SmallSetVector<mlir::Block *, 4> predecessors(block.pred_begin(), block.pred_end());
-  for (mlir::Block *from : predecessors)
-    if (!forEachWay(from, block, [&](mlir::SuccessorOperands operands) {
-          for (unsigned i = 0; i < block.getNumArguments(); ++i)
-            found[i].push_back(operands[i]);
-        }))
-      return;
-  for (auto [argument, values] : llvm::zip(block.getArguments(), found))
-    incoming.insert({argument, std::move(values)});
+  for (mlir::BlockArgument argument : block.getArguments()) {
+    llvm::SmallVector<Value> passed;
+    ir::forEachEdgeInto(block, [&](ir::Edge edge) { passed.push_back(edge.passedTo(argument)); });
+    if (!llvm::is_contained(passed, Value())) // no terminator makes the value itself
+      incoming.insert({argument, std::move(passed)});
+  }
 }
 
 Value Forwarder::behind(Value value) const {
@@ -107,12 +89,10 @@ void Forwarder::forward(const Arguments &part) {
 }
 
 void Forwarder::erase(mlir::Block &block) {
-  const llvm::SmallSetVector<mlir::Block *, 4> predecessors(block.pred_begin(), block.pred_end());
   for (unsigned i = block.getNumArguments(); i-- > 0;) {
     if (!forwarded.count(block.getArgument(i)))
       continue;
-    for (mlir::Block *from : predecessors)
-      forEachWay(from, block, [&](mlir::SuccessorOperands operands) { operands.erase(i); });
+    ir::forEachEdgeInto(block, [&](ir::Edge edge) { edge.operands().erase(i); });
     block.eraseArgument(i);
   }
 }

@@ -1,6 +1,7 @@
 //===- KeptState.cpp - what of a waiting ray's state is kept --------------===//
 #include "codegen/passes/continuation/states/KeptState.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
@@ -202,7 +203,7 @@ void Finder::summarise() {
 
 /// Whether rays of the state's kind bring back a color, or the sample's color is theirs.
 bool bringsColor(FuncOp state) {
-  const auto method = state->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  const auto method = ir::attr::methodName.of(state);
   const llvm::StringRef name = state.getSymName();
   return !(method && method.getValue().contains('.')) &&
          !name.starts_with("rtsl_rt_Material_closestHit_payload.") &&
@@ -274,7 +275,7 @@ Fields Finder::run() {
     summarise();
     llvm::SmallVector<FuncOp> states;
     for (FuncOp function : module.getOps<FuncOp>())
-      if (function->hasAttr("rtsl.state"))
+      if (ir::attr::state.isOn(function))
         states.push_back(function);
     bool changed = true;
     while (changed) {

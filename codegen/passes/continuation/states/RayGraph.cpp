@@ -1,6 +1,7 @@
 //===- RayGraph.cpp - which rays send which -------------------------------===//
 #include "codegen/passes/continuation/states/RayGraph.h"
 
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "runtime/device/engines/StackBound.h"
@@ -41,7 +42,7 @@ llvm::StringRef payloadName(ir::SpawnPayloadOp spawn) {
 }
 
 bool isState(mlir::func::FuncOp function) {
-  return function->hasAttr("rtsl.state");
+  return ir::attr::state.isOn(function);
 }
 
 /// The kind of rays with this payload: its number in a linked program, or else the next one.
@@ -89,7 +90,7 @@ std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
   if (continuation::isFramed(state))
     return kindsOfCallers.lookup(state.getSymName().rsplit(".state").first);
   llvm::StringRef method;
-  if (auto name = state->getAttrOfType<mlir::StringAttr>("rtsl.method"))
+  if (auto name = ir::attr::methodName.of(state))
     method = name.getValue();
   const auto [base, suffix] = method.split('.');
   if (!suffix.empty()) {
@@ -189,7 +190,7 @@ bool RayGraph::grows() const {
 }
 
 bool isOfGenerate(mlir::func::FuncOp state) {
-  auto method = state->getAttrOfType<mlir::StringAttr>("rtsl.method");
+  auto method = ir::attr::methodName.of(state);
   return (method && method.getValue() == "generate") ||
          state.getSymName().starts_with("rtsl_rt_RayGeneration_generate.");
 }

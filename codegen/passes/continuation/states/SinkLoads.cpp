@@ -11,6 +11,7 @@
 // the block that dominates all their uses, but never into a loop.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/passes/continuation/states/Steps.h"
 
 #include "mlir/Analysis/CFGLoopInfo.h"
@@ -24,7 +25,7 @@ static bool mayMove(mlir::Operation &op) {
   // Stores stand at the ends of states, behind the beginning of any block; objects are written
   // anywhere.
   if (llvm::isa<ir::FrameLoadOp>(op))
-    return !op.hasAttr("rtsl.shared");
+    return !ir::attr::shared.isOn(&op);
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op)) // constant for a launch
     return llvm::isa_and_nonnull<ir::MemberOp>(load.getAddress().getDefiningOp());
   return !op.hasTrait<mlir::OpTrait::IsTerminator>() && mlir::isMemoryEffectFree(&op);

@@ -18,6 +18,7 @@
 // several ways is there several times, as `^loop` here.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/passes/continuation/states/Steps.h"
 #include "codegen/passes/continuation/suspend/CutJoins.h"
 
@@ -30,7 +31,7 @@ namespace {
 
 /// A call that is a jump to the first state of what it calls; nothing behind it runs.
 bool isJump(mlir::Operation &op) {
-  return op.hasAttr("rtsl.tail");
+  return ir::attr::tail.isOn(&op);
 }
 
 class Splitter {
@@ -109,7 +110,7 @@ void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
       if (llvm::isa<ir::CallReturnedOp>(suspend.getResume()->front())) {
         call.setResume(stateName(index + 1));
         endState(builder, op.getLoc(), ir::Transition::Jump, call.getCallee().str() + ".state0");
-      } else if (suspend->hasAttr(joinMark)) {
+      } else if (ir::attr::join.isOn(suspend)) {
         endState(builder, op.getLoc(), ir::Transition::Jump, stateName(index + 1));
       } else {
         endState(builder, op.getLoc(), ir::Transition::Trace, stateName(index + 1));
@@ -118,9 +119,9 @@ void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
       if (isFramed(function))
         ir::LeaveOp::create(builder, op.getLoc());
       endState(builder, op.getLoc(),
-               isFramed(function)        ? ir::Transition::Return
-               : op.hasAttr("rtsl.last") ? ir::Transition::Last
-                                         : ir::Transition::Done);
+               isFramed(function)         ? ir::Transition::Return
+               : ir::attr::last.isOn(&op) ? ir::Transition::Last
+                                          : ir::Transition::Done);
     } else if (auto copy = llvm::dyn_cast<ir::EnterOp>(builder.clone(op, mapping))) {
       call = copy;
     }
@@ -138,12 +139,13 @@ FuncOp Splitter::makeState(unsigned index, mlir::Block *start) {
   auto state = FuncOp::create(builder, function.getLoc(), stateName(index),
                               builder.getFunctionType(inputs, {builder.getI32Type()}));
   state.setPrivate();
-  for (llvm::StringRef name : {"rtsl.class", "rtsl.method", "rtsl.frame_size", "rtsl.framed"})
+  for (llvm::StringRef name : {ir::attr::className.name, ir::attr::methodName.name,
+                               ir::attr::frameSize.name, ir::attr::framed.name})
     if (mlir::Attribute value = function->getAttr(name))
       state->setAttr(name, value);
-  state->setAttr("rtsl.state", builder.getI32IntegerAttr(index));
-  if (index == 0 && function->hasAttr("rtsl.export"))
-    state->setAttr("rtsl.entry", builder.getStringAttr(function.getSymName()));
+  ir::attr::state.set(state, builder.getI32IntegerAttr(index));
+  if (index == 0 && ir::attr::exported.isOn(function))
+    ir::attr::entry.set(state, builder.getStringAttr(function.getSymName()));
 
   mlir::IRMapping mapping;
   llvm::SmallVector<mlir::Block *> blocks = reachableFrom(start);

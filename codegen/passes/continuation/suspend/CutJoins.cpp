@@ -15,6 +15,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/suspend/CutJoins.h"
+#include "codegen/ir/Attributes.h"
 
 #include "mlir/Analysis/CFGLoopInfo.h"
 #include "mlir/IR/Dominance.h"
@@ -155,7 +156,7 @@ void JoinCutter::cut(mlir::Block *join) {
   builder.setInsertionPointToEnd(before);
   auto jump = ir::SuspendOp::create(builder, location, mlir::Value(), mlir::Value(),
                                     mlir::ValueRange{}, builder.getArrayAttr({}), join);
-  jump->setAttr(joinMark, builder.getUnitAttr());
+  ir::attr::join.set(jump);
 }
 
 void JoinCutter::run() {

@@ -17,9 +17,6 @@ struct JoinOptions {
   static JoinOptions forPeople() { return {1500, 4, 32}; }
 };
 
-/// On suspends that send no ray: the state goes on in the next at once.
-constexpr llvm::StringLiteral joinMark = "rtsl.join";
-
 /// Gives code that many states would have copies of a state of its own. After insertSuspends() and
 /// endAtLastTraces().
 void cutJoins(FuncOp function, const JoinOptions &options = {});

@@ -5,10 +5,10 @@
 // some may lead past all, and what their conditions are made of.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/IncomingEdges.h"
 #include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
-#include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/SmallPtrSet.h"
 
@@ -50,13 +50,10 @@ void addSources(mlir::Value value, llvm::SetVector<mlir::Value> &seen,
       sources.push_back(source);
   };
   if (auto argument = llvm::dyn_cast<mlir::BlockArgument>(value)) {
-    for (mlir::Block *before : argument.getOwner()->getPredecessors()) {
-      auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(before->getTerminator());
-      for (unsigned i = 0; branch && i < before->getNumSuccessors(); ++i)
-        if (before->getSuccessor(i) == argument.getOwner())
-          if (mlir::Value passed = branch.getSuccessorOperands(i)[argument.getArgNumber()])
-            addSources(passed, seen, sources);
-    }
+    ir::forEachEdgeInto(*argument.getOwner(), [&](ir::Edge edge) {
+      if (mlir::Value passed = edge.passedTo(argument))
+        addSources(passed, seen, sources);
+    });
     return;
   }
   mlir::Operation *op = value.getDefiningOp();

@@ -26,6 +26,7 @@
 // there: that is another order of rounding. Such a ray keeps what they need and nothing else.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -263,7 +264,7 @@ void endAt(ir::SuspendOp suspend) {
   else
     spawnBefore(suspend).setLast(true);
   auto end = mlir::func::ReturnOp::create(builder, suspend.getLoc());
-  end->setAttr("rtsl.last", builder.getUnitAttr());
+  ir::attr::last.set(end);
   suspend.erase();
 }
 

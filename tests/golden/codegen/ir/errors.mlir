@@ -253,6 +253,29 @@ func.func private @f() attributes {rtsl.class}
 
 // -----
 
+// expected-error @below {{has the attribute `rtsl.clas`, which the dialect does not declare}}
+func.func private @f() attributes {rtsl.clas = "Glass"}
+
+// -----
+
+// expected-error @below {{`rtsl.export` takes no value}}
+func.func private @f() attributes {rtsl.export = "f"}
+
+// -----
+
+// expected-error @below {{`rtsl.frame_size` is to be a whole number}}
+func.func private @f() attributes {rtsl.frame_size = "16"}
+
+// -----
+
+func.func @f() {
+  // expected-error @below {{has the attribute `rtsl.sahred`, which the dialect does not declare}}
+  %x = rtsl.frame_load "x"[0] {rtsl.sahred} : f32
+  return
+}
+
+// -----
+
 func.func @f() {
   // expected-error @below {{has 1 words, and '!rtsl.array<2 x f32>' has 2}}
   %t = rtsl.table "t" [0] : !rtsl.ptr<!rtsl.array<2 x f32>>

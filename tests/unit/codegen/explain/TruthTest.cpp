@@ -1,7 +1,7 @@
 // Is what `rtslc explain` says true? For each thing that it calls needed the examples are compiled
 // without it, and the PTX must be another; what it calls left out can be taken away again, and the
 // PTX must stay.
-#include "codegen/driver/Compiler.h"
+#include "codegen/driver/Stages.h"
 #include "scenefile/SceneFile.h"
 #include "tools/rtslc/SceneShaders.h"
 
@@ -54,7 +54,11 @@ public:
         changed.features = 0;
     }
     Diagnostics unheard(messages.sources);
-    return emitScene(*module, changed, Stage::Ptx, compile, unheard, makeObjects());
+    CompileInput input;
+    input.module = module.get();
+    input.scene = &changed;
+    input.makeObjects = makeObjects();
+    return emit(stage("ptx"), input, compile, unheard);
   }
 
   LinkRequest request;

@@ -1,5 +1,6 @@
 //===- BindTest.cpp - linked programs that know their scene's objects -----===//
 #include "Linked.h"
+#include "codegen/ir/Attributes.h"
 
 #include "codegen/link/BindScene.h"
 #include "codegen/passes/BindMembers.h"
@@ -45,7 +46,7 @@ struct Records {
 std::vector<float> boundTo(Linked &linked, const std::string &className,
                            const std::string &member) {
   auto declaration = linked.ir->lookupSymbol<ir::ClassOp>(className).findMember(member);
-  auto words = declaration->getAttrOfType<mlir::DenseI32ArrayAttr>(codegen::boundWords);
+  auto words = ir::attr::bound.of(declaration);
   std::vector<float> values(words ? static_cast<std::size_t>(words.size()) : 0);
   if (words)
     std::memcpy(values.data(), words.asArrayRef().data(), values.size() * sizeof(float));

@@ -4,6 +4,7 @@
 #include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/lower/Lower.h"
@@ -161,7 +162,7 @@ Shader::Shader(const std::string &source, Options options) : code(std::make_uniq
   std::vector<std::string> exports;
   for (auto function : program.getOps<mlir::func::FuncOp>())
     if (!function.isPrivate()) {
-      function->setAttr("rtsl.export", mlir::UnitAttr::get(program.getContext()));
+      ir::attr::exported.set(function);
       exports.push_back(function.getName().str());
     }
   // What linking does in a real program.

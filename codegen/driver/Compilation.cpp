@@ -1,0 +1,83 @@
+//===- Compilation.cpp - from a checked module to the program of a scene --===//
+#include "codegen/driver/Compilation.h"
+
+#include "codegen/driver/HostCode.h"
+#include "codegen/driver/Places.h"
+#include "codegen/ir/Rtsl.h"
+#include "codegen/link/BindScene.h"
+#include "codegen/link/Link.h"
+#include "codegen/link/UnrollRecursion.h"
+#include "support/WorkerThreads.h"
+
+namespace rtsl::driver {
+
+static bool linkForScene(Compilation &compilation) {
+  const CompileOptions &options = compilation.options;
+  LinkRequest request = *compilation.input.scene;
+  request.features |= options.undefined;
+  return link(*compilation.ir, *compilation.input.module, request, options.colorComponents,
+              compilation.diagnostics, *compilation.program, compilation.findings,
+              options.floatingPoint);
+}
+
+/// Makes the objects of a scene, with a program that can do nothing else.
+static runtime::SceneFacts makeObjects(const Compilation &compilation) {
+  const mlir::OwningOpRef<mlir::ModuleOp> copy = mlir::ModuleOp(*compilation.ir).clone();
+  keepConstructors(*copy);
+  auto constructors = std::make_shared<runtime::Program>(*compilation.program);
+  compileConstructors(*copy, compilation.options, *constructors);
+  // Constructors and bounds may have large local variables.
+  runtime::SceneFacts facts;
+  runOnThreads(1, constructors->stackBytes(0, 0),
+               [&](unsigned) { facts = compilation.input.makeObjects(constructors); });
+  return facts;
+}
+
+/// Leaves what renders that scene alone.
+static void bindToScene(Compilation &compilation) {
+  LinkRequest request = *compilation.input.scene;
+  // With arithmetic in double what a scene sets stays a variable, for a bound index would change
+  // what lies in memory, and so where a number is rounded.
+  if (compilation.options.floatingPoint == FloatingPoint::Double) {
+    request.keep.add(Item::Parameters);
+    request.keep.add(Item::Lights);
+  }
+  bindScene(*compilation.ir, compilation.facts ? *compilation.facts : makeObjects(compilation),
+            request, compilation.findings);
+}
+
+bool reachIr(Compilation &compilation) {
+  if (compilation.ir)
+    return true;
+  const LinkRequest *scene = compilation.input.scene;
+  compilation.context = makeContext();
+  compilation.ir =
+      lowerModule(*compilation.input.module, compilation.options, scene ? *scene : LinkRequest(),
+                  compilation.diagnostics, *compilation.context);
+  if (!compilation.ir)
+    return false;
+  if (scene && !linkForScene(compilation)) {
+    compilation.ir = nullptr;
+    return false;
+  }
+  if (compilation.usesThreads)
+    allowThreads(*compilation.ir, compilation.options);
+  if (compilation.isBound())
+    bindToScene(compilation);
+  return true;
+}
+
+bool requireNoRecursion(Compilation &compilation) {
+  mlir::func::FuncOp function =
+      compilation.isBound() ? recursiveFunction(*compilation.ir) : mlir::func::FuncOp();
+  if (!function)
+    return true;
+  const std::string method = function.getSymName().rsplit('.').second.str();
+  const SourceRange range =
+      rangeAt(ir::placeOf(function->getLoc()), method, compilation.diagnostics);
+  compilation.diagnostics.report(Code::recursionTooDeep, range, method, mostRecursionLevels)
+      .note("on the CPU, `--target=host` renders it");
+  return false;
+}
+
+} // namespace rtsl::driver

@@ -1,0 +1,175 @@
+//===- ExplainScene.cpp - what a scene's program has and leaves out -------===//
+#include "codegen/driver/Compilation.h"
+#include "frontend/source/Expansion.h"
+#include "sema/typed/Casting.h"
+#include "sema/typed/Walk.h"
+
+#include "llvm/IR/Module.h"
+#include "llvm/IR/StructuralHash.h"
+
+#include <algorithm>
+
+namespace rtsl {
+
+using namespace driver;
+
+void keep(ItemSet items, LinkRequest &request, CompileOptions &options) {
+  request.keep.add(items);
+  if (!items.has(Item::Events))
+    return;
+  options.checkIndices = true;
+  if (!(request.features & RTSL_FEATURE_EXCEPTIONS))
+    request.features |= RTSL_FEATURE_EXCEPTIONS | RTSL_FEATURE_UNHEEDED;
+}
+
+namespace {
+
+/// The first `print` of the classes that the scene uses.
+SourceRange firstPrint(const typed::Module &module, const LinkRequest &request) {
+  SourceRange range;
+  for (const auto &one : module.classes)
+    for (const auto &function : one->functions)
+      if (function->body && std::count(request.classes.begin(), request.classes.end(), one->name))
+        forEachExpr(*function->body, [&](const typed::Expr &expr) {
+          const auto *call = dynCast<typed::BuiltinExpr>(&expr);
+          if (call && call->builtin == typed::Builtin::Print && !range.isValid())
+            range = call->range;
+        });
+  return range;
+}
+
+/// `hasChecks`: whether an index of the program is kept in range that could be out of it.
+void describeEvents(const typed::Module &module, const LinkRequest &request,
+                    const CompileOptions &options, bool hasChecks, const runtime::Program &program,
+                    const SourceManager &sources, Findings &findings) {
+  const bool hasExceptions =
+      (request.features & RTSL_FEATURE_EXCEPTIONS) && !(request.features & RTSL_FEATURE_UNHEEDED);
+  Finding exceptions = {Item::Events, "exceptions", hasExceptions, {}, {}};
+  exceptions.reason = hasExceptions ? "asked for, by the scene's `exception` or --exceptions"
+                                    : "the scene has no `exception`, and --exceptions is not given";
+  findings.push_back(std::move(exceptions));
+
+  const bool prints = !program.prints.empty();
+  const SourceRange print = firstPrint(module, request);
+  Finding printing = {
+      Item::Events, "print", prints, prints ? "--print" : "no shader that runs prints", {}};
+  if (print.isValid()) {
+    const ShownPlace place = shownBegin(sources, print);
+    printing.place = {std::string(place.file), place.at.line, place.at.column};
+    if (!(request.features & RTSL_FEATURE_PRINT))
+      printing.reason = "--print is not given";
+  }
+  findings.push_back(std::move(printing));
+
+  findings.push_back({Item::Events,
+                      "index checks",
+                      hasChecks,
+                      !options.checkIndices ? "--unchecked"
+                      : hasChecks           ? "an index is kept in range that is not known to be"
+                                            : "every index is known to be in range",
+                      {}});
+}
+
+/// What tells two programs apart: the structure of what a GPU runs, or of what this machine does in
+/// double.
+llvm::stable_hash fingerprint(Compilation &compilation) {
+  if (compilation.options.floatingPoint == FloatingPoint::Double) {
+    reachLlvm(compilation);
+  } else {
+    reachMachine(compilation);
+    compilation.llvm.emplace(
+        megakernel(*compilation.ir, compilation.options, *compilation.program, /*forGpu=*/true));
+    optimize(*compilation.llvm);
+  }
+  return llvm::StructuralHash(*compilation.llvm->module, /*DetailedHash=*/true);
+}
+
+/// Whether checks of indices change the program of a scene with these objects.
+bool hasIndexChecks(const CompileInput &input, const CompileOptions &options,
+                    const SourceManager &sources, const runtime::SceneFacts &facts) {
+  if (!options.checkIndices)
+    return false;
+  const auto compiled = [&](bool checks) {
+    CompileOptions checking = options;
+    checking.checkIndices = checks;
+    Diagnostics unheard(sources);
+    Compilation compilation(input, checking, unheard);
+    compilation.facts = &facts;
+    return fingerprint(compilation);
+  };
+  return compiled(true) != compiled(false);
+}
+
+/// What the bound program of a scene takes on a GPU. Nothing if it cannot be linked.
+std::optional<ProgramSize> measure(Compilation &compilation) {
+  if (!reachLlvm(compilation))
+    return std::nullopt;
+  ProgramSize size;
+  size.frameBytes = compilation.report.frameSize();
+  size.states = compilation.report.stateCount();
+  const llvm::Module &code = *compilation.llvm->module;
+  for (const llvm::Function &function : code)
+    size.instructions += function.getInstructionCount();
+  for (const llvm::GlobalVariable &global : code.globals())
+    if (global.isConstant() && global.hasInitializer())
+      size.constantBytes += code.getDataLayout().getTypeAllocSize(global.getValueType());
+  return size;
+}
+
+/// What it takes with `item` kept. Nothing if that cannot be: a class that the scene does not use
+/// may be incomplete.
+std::optional<ProgramSize> measureKeeping(Item item, const CompileInput &input,
+                                          const CompileOptions &options,
+                                          const SourceManager &sources,
+                                          const runtime::SceneFacts &facts) {
+  LinkRequest request = *input.scene;
+  CompileOptions keeping = options;
+  keep(ItemSet::only(item), request, keeping);
+  CompileInput kept = input;
+  kept.scene = &request;
+  Diagnostics unheard(sources);
+  Compilation compilation(kept, keeping, unheard);
+  compilation.facts = &facts;
+  return measure(compilation);
+}
+
+bool leavesOut(Item item, const Findings &findings) {
+  return std::any_of(findings.begin(), findings.end(), [&](const Finding &finding) {
+    return finding.item == item && !finding.isNeeded;
+  });
+}
+
+} // namespace
+
+std::optional<SceneExplanation>
+explainScene(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+             Diagnostics &diagnostics, const MakeObjects &makeObjects) {
+  const SourceManager &sources = diagnostics.sources();
+  SceneExplanation explanation;
+  runtime::SceneFacts facts; // made once: what a program leaves out changes no object
+  CompileInput input;
+  input.module = &module;
+  input.scene = &request;
+  input.makeObjects = [&](const auto &constructors) { return facts = makeObjects(constructors); };
+  {
+    Compilation compilation(input, options, diagnostics);
+    compilation.findings = &explanation.findings;
+    if (!reachIr(compilation))
+      return std::nullopt;
+    describeEvents(module, request, options, hasIndexChecks(input, options, sources, facts),
+                   *compilation.program, sources, explanation.findings);
+    explanation.size = *measure(compilation);
+    explanation.program = compilation.program;
+  }
+  for (Item item : allItems) {
+    if (request.keep.has(item))
+      continue;
+    if (item == Item::Meshes || !leavesOut(item, explanation.findings))
+      explanation.sizeKeeping[item] = explanation.size; // nothing changes in the program
+    else if (const auto size = measureKeeping(item, input, options, sources, facts))
+      explanation.sizeKeeping[item] = *size;
+  }
+  return explanation;
+}
+
+} // namespace rtsl

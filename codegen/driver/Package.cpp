@@ -1,0 +1,46 @@
+//===- Package.cpp - the program of a package -----------------------------===//
+#include "codegen/driver/Compilation.h"
+#include "codegen/emit/NativeImage.h"
+#include "runtime/program/DeviceBitcode.h"
+
+namespace rtsl {
+
+using namespace driver;
+
+/// Machine code of this processor that needs no library: it has its own `memcpy`.
+static runtime::NativeImage hostImage(const Compilation &compilation) {
+  const CompileOptions &options = compilation.options;
+  LlvmCode code = translate(*compilation.ir, machineOptions(options, /*hostCpu=*/false));
+  defineFacts(code, *compilation.program);
+  std::vector<std::string> kept = {"memcpy", "memmove", "memset"};
+  kept.insert(kept.end(), hostEntries().begin(), hostEntries().end());
+  std::vector<std::string_view> bitcodes = megakernelCode(/*forGpu=*/false);
+  bitcodes.push_back(runtime::hostMemoryBitcode());
+  linkDeviceCode(code, bitcodes, kept);
+  code.options.isMegakernel = true;
+  optimize(code);
+  codegen::NativeImage image =
+      take(codegen::makeNativeImage(*code.module, *code.machine, hostEntries()));
+  return {std::move(image.bytes), image.entries[0], image.entries[1],
+          static_cast<std::uint32_t>(image.stackBytes)};
+}
+
+bool compilePackage(const typed::Module &module, const LinkRequest &request,
+                    const CompileOptions &options, Diagnostics &diagnostics,
+                    const MakeObjects &makeObjects, runtime::Package &package) {
+  CompileInput input;
+  input.module = &module;
+  input.scene = &request;
+  input.makeObjects = makeObjects;
+  Compilation compilation(input, options, diagnostics);
+  if (!reachIr(compilation) || !requireNoRecursion(compilation) || !reachMachine(compilation))
+    return false;
+  package.frameBytes = compilation.report.frameSize();
+  package.stateCount = compilation.report.stateCount();
+  const mlir::OwningOpRef<mlir::ModuleOp> forGpu = mlir::ModuleOp(*compilation.ir).clone();
+  package.ptx = toPtx(megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true));
+  package.host = hostImage(compilation);
+  return true;
+}
+
+} // namespace rtsl

@@ -1,0 +1,197 @@
+//===- Steps.cpp - what the stages are made of ----------------------------===//
+#include "codegen/driver/Steps.h"
+
+#include "codegen/emit/CheckNumbers.h"
+#include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/DoublePrecision.h"
+#include "codegen/emit/FastMath.h"
+#include "codegen/emit/Ptx.h"
+#include "codegen/ir/Rtsl.h"
+#include "codegen/link/Link.h"
+#include "codegen/lower/Lower.h"
+#include "codegen/passes/Pipeline.h"
+#include "runtime/program/DeviceBitcode.h"
+
+#include "llvm/Support/raw_ostream.h"
+
+#include <cerrno>
+#include <cstring>
+#include <new>
+
+namespace rtsl::driver {
+
+void fail(const std::string &message) {
+  if (message.find(std::strerror(ENOMEM)) != std::string::npos)
+    throw std::bad_alloc();
+  throw std::logic_error(message);
+}
+
+std::unique_ptr<mlir::MLIRContext> makeContext() {
+  mlir::DialectRegistry registry;
+  registry.insert<ir::RtslDialect>();
+  codegen::registerPassDependencies(registry);
+  codegen::registerLlvmTranslation(registry);
+  auto context =
+      std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
+  context->loadAllAvailableDialects();
+  return context;
+}
+
+/// With fewer functions threads take longer to start than they save.
+constexpr std::ptrdiff_t fewestFunctionsForThreads = 100;
+
+void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
+  const auto functions = ir.getOps<mlir::func::FuncOp>();
+  if (options.threads == 1 ||
+      std::distance(functions.begin(), functions.end()) < fewestFunctionsForThreads)
+    return;
+  mlir::MLIRContext &context = *ir.getContext();
+  // Pipelines load their dialects when they run, and several that run at once must not.
+  for (const auto build : {codegen::buildSsaPipeline, codegen::buildLlvmPipeline}) {
+    mlir::PassManager passes(&context);
+    build(passes);
+    mlir::DialectRegistry dialects;
+    passes.getDependentDialects(dialects);
+    context.appendDialectRegistry(dialects);
+  }
+  context.loadAllAvailableDialects();
+  context.enableMultithreading();
+}
+
+mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
+                                              const CompileOptions &options,
+                                              const LinkRequest &request, Diagnostics &diagnostics,
+                                              mlir::MLIRContext &context) {
+  LowerOptions lowering;
+  lowering.diagnostics = &diagnostics;
+  lowering.colorComponents = options.colorComponents;
+  lowering.checkIndices = options.checkIndices;
+  lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
+  lowering.prints = request.features & RTSL_FEATURE_PRINT;
+  lowering.isWidenedLater = options.floatingPoint == FloatingPoint::Double;
+  if (!request.keep.has(Item::Classes))
+    lowering.classes = {request.classes.begin(), request.classes.end()};
+  return lower(module, lowering, context);
+}
+
+void expectSuccess(mlir::ModuleOp ir, llvm::function_ref<bool()> work) {
+  std::string messages;
+  mlir::ScopedDiagnosticHandler collect(ir.getContext(), [&](mlir::Diagnostic &diagnostic) {
+    messages += diagnostic.str() + "\n";
+    return mlir::success();
+  });
+  if (!work())
+    throw std::logic_error(messages);
+}
+
+void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &)) {
+  mlir::PassManager passes(ir.getContext());
+#ifdef NDEBUG
+  passes.enableVerifier(false);
+#endif
+  build(passes);
+  expectSuccess(ir, [&] { return mlir::succeeded(passes.run(ir)); });
+}
+
+SplitOptions splitOptions(const CompileOptions &options) {
+  SplitOptions split;
+  split.rematerialise = split.trim = split.cleanUp = !options.savesAllThatIsLive;
+  return split;
+}
+
+SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options) {
+  SplitReport report;
+  keepTracingMethods(ir);
+  run(ir, codegen::buildSsaPipeline);
+  expectSuccess(ir, [&] { return splitAtTrace(ir, options, report); });
+  return report;
+}
+
+std::string print(mlir::ModuleOp ir) {
+  std::string text;
+  llvm::raw_string_ostream stream(text);
+  ir.print(stream);
+  stream << "\n";
+  return text;
+}
+
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
+                   std::vector<Place> *numberPlaces) {
+  LlvmCode code;
+  code.kept = keptFunctions(ir);
+  run(ir, codegen::buildLlvmPipeline);
+  if (numberPlaces)
+    codegen::checkNumbers(ir, *numberPlaces);
+  code.options = options;
+  code.machine = take(codegen::createTargetMachine(options));
+  code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
+  if (options.floatingPoint == FloatingPoint::Fast)
+    codegen::relaxArithmetic(*code.module);
+  else if (options.floatingPoint == FloatingPoint::Double)
+    codegen::widenArithmetic(*code.module);
+  return code;
+}
+
+void defineFacts(LlvmCode &code, const runtime::Program &program) {
+  codegen::defineConstant(*code.module, "rtsl_needs", program.needs);
+  codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
+}
+
+const std::vector<std::string_view> &megakernelCode(bool forGpu) {
+  static const std::vector<std::string_view> host = {runtime::deviceBitcode(),
+                                                     runtime::megakernelBitcode()};
+  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(),
+                                                    runtime::gpuMegakernelBitcode()};
+  return forGpu ? gpu : host;
+}
+
+LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
+                    const runtime::Program &program, bool forGpu) {
+  LlvmCode code =
+      translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
+  defineFacts(code, program);
+  linkDeviceCode(code, megakernelCode(forGpu),
+                 forGpu ? std::vector<std::string>{"rtsl_render"} : hostEntries());
+  code.options.isMegakernel = true;
+  return code;
+}
+
+const std::vector<std::string> &hostEntries() {
+  static const std::vector<std::string> entries = {"rtsl_lane_bytes", "rtsl_run_lane"};
+  return entries;
+}
+
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
+                    std::vector<std::string> exports) {
+  exports.insert(exports.end(), code.kept.begin(), code.kept.end());
+  if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
+    throw std::logic_error(llvm::toString(std::move(error)));
+}
+
+codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu) {
+  codegen::MachineOptions machine;
+  machine.optimization = options.optimization;
+  machine.hostCpu = hostCpu;
+  machine.floatingPoint = options.floatingPoint;
+  return machine;
+}
+
+codegen::MachineOptions gpuOptions(const CompileOptions &options) {
+  codegen::MachineOptions machine;
+  machine.optimization = options.optimization;
+  machine.gpu = options.gpu;
+  machine.floatingPoint = options.floatingPoint;
+  return machine;
+}
+
+void optimize(LlvmCode &code) {
+  codegen::optimize(*code.module, *code.machine, code.options);
+}
+
+std::string toPtx(LlvmCode code) {
+  codegen::nameForPtx(*code.module);
+  optimize(code);
+  return take(codegen::printPtx(*code.module, *code.machine));
+}
+
+} // namespace rtsl::driver

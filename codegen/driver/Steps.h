@@ -1,0 +1,106 @@
+//===- Steps.h - what the stages are made of ------------------------------===//
+//
+// From a checked module to IR, states, LLVM IR and PTX; Stages.cpp puts these steps in order. A
+// step that fails is a mistake of ours, for the program was checked before: it throws
+// std::logic_error, which ends `rtslc` with a status of its own.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+#include "codegen/emit/LlvmModule.h"
+#include "codegen/passes/continuation/Split.h"
+
+#include "mlir/IR/BuiltinOps.h"
+#include "mlir/IR/MLIRContext.h"
+#include "mlir/IR/OwningOpRef.h"
+#include "mlir/Pass/PassManager.h"
+#include "llvm/IR/LLVMContext.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/Error.h"
+#include "llvm/Target/TargetMachine.h"
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtsl::driver {
+
+/// Throws std::logic_error, or std::bad_alloc if the message is that of a system without memory.
+[[noreturn]] void fail(const std::string &message);
+
+template <typename T>
+T take(llvm::Expected<T> expected) {
+  if (!expected)
+    fail(llvm::toString(expected.takeError()));
+  return std::move(*expected);
+}
+
+std::unique_ptr<mlir::MLIRContext> makeContext();
+
+/// Passes and what else works on functions alone may use several threads from now on, if the module
+/// is large.
+void allowThreads(mlir::ModuleOp ir, const CompileOptions &options);
+
+/// Null if something is not supported, which is reported.
+mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
+                                              const CompileOptions &options,
+                                              const LinkRequest &request, Diagnostics &diagnostics,
+                                              mlir::MLIRContext &context);
+
+/// Runs `work` on the module.
+void expectSuccess(mlir::ModuleOp ir, llvm::function_ref<bool()> work);
+
+void run(mlir::ModuleOp ir, void (*build)(mlir::OpPassManager &));
+
+SplitOptions splitOptions(const CompileOptions &options);
+
+/// Level 1 to level 2, to states.
+SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options);
+
+std::string print(mlir::ModuleOp ir);
+
+/// LLVM IR on its way to code.
+struct LlvmCode {
+  LlvmCode() = default;
+  LlvmCode(LlvmCode &&) = default;
+  std::unique_ptr<llvm::LLVMContext> context = std::make_unique<llvm::LLVMContext>();
+  std::unique_ptr<llvm::TargetMachine> machine;
+  std::unique_ptr<llvm::Module> module;
+  codegen::MachineOptions options;
+  std::vector<std::string> kept; // functions that nothing calls and that stay
+};
+
+/// Level 2 as LLVM IR that is not linked with device code yet.
+/// With `numberPlaces`, numbers are checked, and their places are added there (CheckNumbers.h).
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
+                   std::vector<Place> *numberPlaces = nullptr);
+
+/// Tells the device code what it may leave out.
+void defineFacts(LlvmCode &code, const runtime::Program &program);
+
+/// What a GPU's program needs of runtime/device, for one or for the CPU.
+const std::vector<std::string_view> &megakernelCode(bool forGpu);
+
+/// The states of a linked program as one that refers to nothing outside
+/// (runtime/device/engines/Megakernel.h), before it is optimised: for a GPU, or for the CPU.
+LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
+                    const runtime::Program &program, bool forGpu);
+
+/// What such a program exports on the CPU.
+const std::vector<std::string> &hostEntries();
+
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
+                    std::vector<std::string> exports);
+
+codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu);
+codegen::MachineOptions gpuOptions(const CompileOptions &options);
+
+void optimize(LlvmCode &code);
+
+/// Optimises and prints.
+std::string toPtx(LlvmCode code);
+
+} // namespace rtsl::driver
