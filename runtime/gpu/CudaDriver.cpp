@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <dlfcn.h>
 #include <memory>
 
@@ -28,6 +29,7 @@ enum DeviceAttribute {
   ComputeCapabilityMinor = 76,
 };
 enum FunctionAttribute { LocalSizeBytes = 3, RegisterCount = 4 };
+enum StreamFlag : unsigned { NonBlocking = 1 };
 enum JitOption { MaxRegisters = 0, ErrorLogBuffer = 5, ErrorLogBufferBytes = 6 };
 
 std::string version(int number) {
@@ -54,9 +56,17 @@ struct CudaDevice::Functions {
   int (*contextSetCurrent)(void *context);
   int (*memoryGetInfo)(std::size_t *free, std::size_t *total);
   int (*memoryAllocate)(Address *, std::size_t bytes);
+  int (*memoryFree)(Address);
   int (*memorySet)(Address, unsigned char value, std::size_t bytes);
+  int (*hostAllocate)(void **, std::size_t bytes);
+  int (*hostFree)(void *);
   int (*copyToDevice)(Address to, const void *from, std::size_t bytes);
   int (*copyToHost)(void *to, Address from, std::size_t bytes);
+  int (*copyToDeviceAsync)(Address to, const void *from, std::size_t bytes, void *stream);
+  int (*copyToHostAsync)(void *to, Address from, std::size_t bytes, void *stream);
+  int (*streamCreate)(void **stream, unsigned flags);
+  int (*streamDestroy)(void *stream);
+  int (*streamSynchronize)(void *stream);
   int (*moduleLoad)(void **module, const void *image, unsigned count, int *options, void **values);
   int (*moduleUnload)(void *module);
   int (*moduleGetFunction)(void **function, void *module, const char *name);
@@ -94,9 +104,17 @@ void CudaDevice::open() {
   find(f.contextSetCurrent, "cuCtxSetCurrent");
   find(f.memoryGetInfo, "cuMemGetInfo_v2");
   find(f.memoryAllocate, "cuMemAlloc_v2");
+  find(f.memoryFree, "cuMemFree_v2");
   find(f.memorySet, "cuMemsetD8_v2");
+  find(f.hostAllocate, "cuMemAllocHost_v2");
+  find(f.hostFree, "cuMemFreeHost");
   find(f.copyToDevice, "cuMemcpyHtoD_v2");
   find(f.copyToHost, "cuMemcpyDtoH_v2");
+  find(f.copyToDeviceAsync, "cuMemcpyHtoDAsync_v2");
+  find(f.copyToHostAsync, "cuMemcpyDtoHAsync_v2");
+  find(f.streamCreate, "cuStreamCreate");
+  find(f.streamDestroy, "cuStreamDestroy_v2");
+  find(f.streamSynchronize, "cuStreamSynchronize");
   find(f.moduleLoad, "cuModuleLoadDataEx");
   find(f.moduleUnload, "cuModuleUnload");
   find(f.moduleGetFunction, "cuModuleGetFunction");
@@ -134,14 +152,25 @@ CudaDevice::CudaDevice() {
   try {
     open();
   } catch (...) {
-    this->~CudaDevice();
+    close();
     throw;
   }
 }
 
 CudaDevice::~CudaDevice() {
-  if (context) // its memory and module go with it
+  close();
+}
+
+void CudaDevice::close() {
+  if (context) { // frees its memory, unless another CudaDevice of this process uses it
+    if (pageLocked)
+      functions->hostFree(pageLocked);
+    if (stream)
+      functions->streamDestroy(stream);
+    if (module)
+      functions->moduleUnload(module);
     functions->primaryContextRelease(device);
+  }
   delete functions;
   if (library)
     dlclose(library);
@@ -177,6 +206,10 @@ CudaDevice::Address CudaDevice::allocate(std::size_t bytes, const char *what) {
   return address;
 }
 
+void CudaDevice::release(Address address) {
+  check(functions->memoryFree(address), "cuMemFree");
+}
+
 void CudaDevice::clear(Address address, std::size_t bytes) {
   check(functions->memorySet(address, 0, bytes), "cuMemsetD8");
 }
@@ -187,6 +220,28 @@ void CudaDevice::upload(Address to, const void *from, std::size_t bytes) {
 
 void CudaDevice::download(void *to, Address from, std::size_t bytes) {
   check(functions->copyToHost(to, from, bytes), "cuMemcpyDtoH");
+}
+
+void CudaDevice::openMeanwhile() {
+  check(functions->contextSetCurrent(context), "cuCtxSetCurrent"); // of this thread
+  if (!stream)
+    check(functions->streamCreate(&stream, NonBlocking), "cuStreamCreate");
+  if (!pageLocked)
+    check(functions->hostAllocate(&pageLocked, mostBytesMeanwhile), "cuMemAllocHost");
+}
+
+void CudaDevice::uploadMeanwhile(Address to, const void *from, std::size_t bytes) {
+  openMeanwhile();
+  std::memcpy(pageLocked, from, bytes);
+  check(functions->copyToDeviceAsync(to, pageLocked, bytes, stream), "cuMemcpyHtoDAsync");
+  check(functions->streamSynchronize(stream), "cuStreamSynchronize");
+}
+
+void CudaDevice::downloadMeanwhile(void *to, Address from, std::size_t bytes) {
+  openMeanwhile();
+  check(functions->copyToHostAsync(pageLocked, from, bytes, stream), "cuMemcpyDtoHAsync");
+  check(functions->streamSynchronize(stream), "cuStreamSynchronize");
+  std::memcpy(to, pageLocked, bytes);
 }
 
 void CudaDevice::load(const std::string &ptx, unsigned maxRegisters) {
@@ -201,9 +256,9 @@ void CudaDevice::load(const std::string &ptx, unsigned maxRegisters) {
       functions->moduleLoad(&module, ptx.c_str(), maxRegisters ? 3 : 2, options, values);
   log.resize(log.find('\0'));
   if (status == UnsupportedPtxVersion)
-    fail("the CUDA driver is too old for the package's PTX");
+    fail("the CUDA driver is too old for the program's PTX");
   if (status == NoBinaryForGpu || status == InvalidPtx)
-    fail(fmt::format("{} (sm_{}) does not take the package's code: {}", deviceName,
+    fail(fmt::format("{} (sm_{}) does not take the program's code: {}", deviceName,
                      computeCapability, log.empty() ? "it was made for a newer GPU" : log));
   check(status, "cuModuleLoadDataEx");
 }

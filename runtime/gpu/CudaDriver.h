@@ -32,9 +32,15 @@ public:
   using Address = std::uint64_t;
   /// `what` is for messages. All memory is freed with the device.
   Address allocate(std::size_t bytes, const char *what);
+  void release(Address address);
   void clear(Address address, std::size_t bytes);
   void upload(Address to, const void *from, std::size_t bytes);
   void download(void *to, Address from, std::size_t bytes);
+  /// Copies of up to mostBytesMeanwhile bytes while a kernel runs, without waiting for the kernel.
+  /// Called from another thread than launch().
+  void uploadMeanwhile(Address to, const void *from, std::size_t bytes);
+  void downloadMeanwhile(void *to, Address from, std::size_t bytes);
+  static constexpr std::size_t mostBytesMeanwhile = 64;
 
   /// Compiles PTX for the device; one module at a time. `maxRegisters` 0: as many as the code
   /// wants.
@@ -57,11 +63,16 @@ private:
   void find(Function &function, const char *name);
   void check(int status, const char *call) const;
   void open();
+  void close();
+  void openMeanwhile();
 
   void *library = nullptr;
   Functions *functions = nullptr;
   int device = 0;
   void *context = nullptr, *module = nullptr;
+  // For copies while a kernel runs: a stream that does not wait for the kernel, and page-locked
+  // host memory.
+  void *stream = nullptr, *pageLocked = nullptr;
   std::string deviceName;
   int computeCapability = 0, multiprocessorCount = 0;
 };

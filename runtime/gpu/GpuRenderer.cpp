@@ -1,7 +1,6 @@
 #include "runtime/gpu/GpuRenderer.h"
 
-#include "runtime/gpu/CudaDriver.h"
-#include "runtime/render/HostMegakernel.h"
+#include "support/Error.h"
 
 #include <fmt/format.h>
 
@@ -47,58 +46,83 @@ unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel,
 
 } // namespace
 
-Image renderOnGpu(const Package &package, const RenderOptions &options, unsigned maxRegisters,
-                  RenderStatistics &statistics, GpuStatistics &gpu) {
-  checkOptions(options);
-  CudaDevice device;
-  gpu.device = device.name();
-  Clock::time_point start = Clock::now();
-  device.load(package.ptx, maxRegisters ? maxRegisters : defaultRegisters);
-  const CudaDevice::Kernel kernel = device.kernel("rtsl_render");
-  gpu.loadSeconds = secondsSince(start);
-  gpu.registers = kernel.registers;
-  gpu.localBytes = kernel.localBytes;
+GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scene,
+                         const RenderOptions &options)
+    : Megakernel(std::move(scene), options), device(device) {
+  const Clock::time_point start = Clock::now();
+  device.load(code.ptx, code.maxRegisters ? code.maxRegisters : defaultRegisters);
+  kernel = device.kernel("rtsl_render");
+  figures.device = device.name();
+  figures.loadSeconds = secondsSince(start);
+  figures.registers = kernel.registers;
+  figures.localBytes = kernel.localBytes;
+  figures.laneBytes = code.laneBytes;
+  figures.threadsPerBlock = threadsPerBlock;
+  try {
+    prepare();
+  } catch (...) {
+    release();
+    throw;
+  }
+  figures.uploadSeconds = buildSeconds;
+  buildSeconds += figures.loadSeconds;
+}
 
-  start = Clock::now();
-  const CudaDevice::Address status = device.allocate(sizeof(RtslStatus), "the launch");
-  device.clear(status, sizeof(RtslStatus));
-  FlatScene scene = package.scene;
-  setOptions(scene, options, reinterpret_cast<RtslStatus *>(status));
-  const CudaDevice::Address sceneAddress = device.allocate(scene.bytes.size(), "the scene");
-  scene.relocate(sceneAddress);
-  device.upload(sceneAddress, scene.bytes.data(), scene.bytes.size());
-  gpu.uploadSeconds = secondsSince(start);
+GpuRenderer::~GpuRenderer() {
+  release();
+}
 
-  Image image = newImage(options.width, options.height, scene.launch().colorComponents);
-  const std::size_t pixelBytes = image.pixels.size() * sizeof(float);
-  const CudaDevice::Address pixels = device.allocate(pixelBytes, "the picture");
+void GpuRenderer::release() {
+  try {
+    for (const Address one : memory)
+      device.release(one);
+  } catch (const Error &) { // after a failure of the device nothing can be freed
+  }
+  memory.clear();
+}
 
-  RtslJob job{};
-  job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
-  job.status = reinterpret_cast<RtslStatus *>(status);
-  job.laneBytes = package.laneBytes[options.maxDepth];
-  job.pixels = reinterpret_cast<float *>(pixels);
-  job.samplesPerPixel = options.samplesPerPixel;
-  gpu.laneBytes = job.laneBytes;
-  gpu.threadsPerBlock = threadsPerBlock;
-  gpu.blocks =
-      blockCount(device, kernel, std::uint64_t(options.width) * options.height, job.laneBytes);
-  job.lanes = reinterpret_cast<std::uint8_t *>(device.allocate(
-      std::uint64_t(gpu.blocks) * threadsPerBlock * job.laneBytes, "rays in flight"));
-  CudaDevice::Address jobAddress = device.allocate(sizeof job, "the launch");
-  device.upload(jobAddress, &job, sizeof job);
+std::uint64_t GpuRenderer::laneCount(std::uint64_t laneBytes) {
+  figures.blocks = blockCount(device, kernel, pixelCount(), laneBytes);
+  return std::uint64_t(figures.blocks) * threadsPerBlock;
+}
 
-  start = Clock::now();
-  void *arguments[] = {&jobAddress};
-  device.launch(kernel, gpu.blocks, threadsPerBlock, arguments);
-  const double seconds = secondsSince(start);
+Megakernel::Address GpuRenderer::allocate(std::uint64_t bytes, const char *what) {
+  memory.push_back(device.allocate(bytes, what));
+  return memory.back();
+}
 
-  RtslStatus said{};
-  device.download(&said, status, sizeof said);
-  readStatus(said, options, statistics);
-  statistics.renderSeconds = seconds;
-  device.download(image.pixels.data(), pixels, pixelBytes);
-  return image;
+void GpuRenderer::upload(Address to, const void *from, std::uint64_t bytes) {
+  device.upload(to, from, bytes);
+}
+
+void GpuRenderer::download(void *to, Address from, std::uint64_t bytes) {
+  device.download(to, from, bytes);
+}
+
+Megakernel::Address GpuRenderer::clearedPixels() {
+  if (!pixelAddress)
+    pixelAddress = allocate(pixelBytes(), "the picture");
+  device.clear(pixelAddress, pixelBytes());
+  return pixelAddress;
+}
+
+void GpuRenderer::fetchPixels() {
+  device.download(picture.pixels.data(), pixelAddress, pixelBytes());
+}
+
+void GpuRenderer::runLanes(Address job) {
+  void *arguments[] = {&job};
+  device.launch(kernel, figures.blocks, threadsPerBlock, arguments);
+}
+
+std::uint64_t GpuRenderer::get(Address number) {
+  std::uint64_t value = 0;
+  device.downloadMeanwhile(&value, number, sizeof value);
+  return value;
+}
+
+void GpuRenderer::set(Address number, std::uint32_t value) {
+  device.uploadMeanwhile(number, &value, sizeof value);
 }
 
 } // namespace rtsl::runtime

@@ -1,26 +1,63 @@
-//===- GpuRenderer.h - a package on a CUDA device -------------------------===//
+//===- GpuRenderer.h - a scene on a CUDA device ---------------------------===//
 #pragma once
 
-#include "runtime/image/Image.h"
-#include "runtime/package/Package.h"
+#include "runtime/gpu/CudaDriver.h"
+#include "runtime/render/Megakernel.h"
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace rtsl::runtime {
 
-/// What ran, for people who ask how fast it was and why.
+/// The program of a scene, as in a package.
+struct GpuCode {
+  const std::string &ptx;
+  std::uint64_t laneBytes;   // the result of the program's rtsl_lane_bytes for the options' depth
+  unsigned maxRegisters = 0; // per thread; 0: a default that is fast for most programs
+};
+
+/// What ran on the GPU, to explain its speed.
 struct GpuStatistics {
   std::string device;
-  int registers = 0, localBytes = 0; // of a thread
+  int registers = 0, localBytes = 0; // per thread
   unsigned blocks = 0, threadsPerBlock = 0;
   std::uint64_t laneBytes = 0;
   double loadSeconds = 0;   // the driver's compiler, on PTX that it has not seen
   double uploadSeconds = 0; // the scene
 };
 
-/// Renders a package on the first CUDA device. `maxRegisters` 0: as the code wants. Throws
-/// NoDevice, OutOfMemory, OutOfRange.
-Image renderOnGpu(const Package &package, const RenderOptions &options, unsigned maxRegisters,
-                  RenderStatistics &statistics, GpuStatistics &gpu);
+class GpuRenderer final : public Megakernel {
+public:
+  /// Loads the program and copies the scene, which is not relocated, to the device. The device must
+  /// outlive the renderer, and load nothing else during its lifetime. Throws NoDevice, OutOfMemory,
+  /// OutOfRange.
+  GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scene,
+              const RenderOptions &options);
+  ~GpuRenderer() override;
+
+  const GpuStatistics &gpu() const { return figures; }
+
+private:
+  std::uint64_t laneBytes(const RtslLaunch &) override { return figures.laneBytes; }
+  std::uint64_t laneCount(std::uint64_t laneBytes) override;
+  Address allocate(std::uint64_t bytes, const char *what) override;
+  void upload(Address to, const void *from, std::uint64_t bytes) override;
+  void download(void *to, Address from, std::uint64_t bytes) override;
+  Address clearedPixels() override;
+  void fetchPixels() override;
+  void runLanes(Address job) override;
+  std::uint64_t get(Address number) override;
+  void set(Address number, std::uint32_t value) override;
+
+  void release();
+  std::uint64_t pixelBytes() const { return picture.pixels.size() * sizeof(float); }
+
+  CudaDevice &device;
+  CudaDevice::Kernel kernel;
+  GpuStatistics figures;
+  std::vector<Address> memory;
+  Address pixelAddress = 0;
+};
 
 } // namespace rtsl::runtime

@@ -1,28 +1,46 @@
 //===- HostMegakernel.h - the GPU's whole program on the CPU --------------===//
 //
-// A lane a thread, on a flat scene: nothing runs that does not run on a GPU. It is there to be
-// compared with: the same bits, without the GPU.
+// One lane per thread, on a flat scene: the code is that of a GPU. It is the reference for GPUs,
+// with the same bits.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/accel/FlatScene.h"
-#include "runtime/image/Image.h"
 #include "runtime/program/Program.h"
-#include "runtime/render/RenderOptions.h"
+#include "runtime/render/HostThreads.h"
+#include "runtime/render/Megakernel.h"
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
 
 namespace rtsl::runtime {
 
-/// Renders a scene that was not relocated yet. Throws OutOfRange, OutOfMemory, Cancelled.
-Image renderOnHost(const MegakernelCode &code, FlatScene scene, const RenderOptions &options,
-                   RenderStatistics *statistics = nullptr);
+class HostMegakernel final : public Megakernel {
+public:
+  /// `scene` is not relocated; the code behind `code` must stay loaded. Throws OutOfRange,
+  /// OutOfMemory.
+  HostMegakernel(const MegakernelCode &code, FlatScene scene, const RenderOptions &options);
 
-/// Makes `scene` a launch of the given size, depth and seed.
-void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status);
+private:
+  std::uint64_t laneBytes(const RtslLaunch &launch) override;
+  std::uint64_t laneCount(std::uint64_t) override { return threads.count(); }
+  Address allocate(std::uint64_t bytes, const char *what) override;
+  void upload(Address to, const void *from, std::uint64_t bytes) override;
+  void download(void *to, Address from, std::uint64_t bytes) override;
+  Address clearedPixels() override;
+  void fetchPixels() override {} // lanes write directly to the picture
+  void runLanes(Address job) override;
+  std::uint64_t get(Address number) override;
+  void set(Address number, std::uint32_t value) override;
 
-/// What a job's status says of its rendering. Throws Cancelled if it was stopped and is not to be
-/// kept as far as it is, Internal if lanes had too little memory.
-void readStatus(const RtslStatus &status, const RenderOptions &options,
-                RenderStatistics &statistics);
+  struct Free {
+    void operator()(void *memory) const { std::free(memory); }
+  };
+
+  const MegakernelCode code;
+  const HostThreads threads;
+  std::vector<std::unique_ptr<std::uint8_t, Free>> memory;
+};
 
 } // namespace rtsl::runtime

@@ -1,8 +1,9 @@
 #include "runtime/render/Renderer.h"
 
 #include "runtime/embree/HostScene.h"
+#include "runtime/render/HostThreads.h"
+#include "runtime/render/Watch.h"
 #include "support/FirstFew.h"
-#include "support/WorkerThreads.h"
 
 #include <algorithm>
 #include <chrono>
@@ -18,61 +19,50 @@ namespace {
 /// Small enough that cores finish together, large enough that taking one costs nothing.
 constexpr std::uint32_t tileSize = 16;
 
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-} // namespace
-
 using SamplesNotFinite = FirstFew<SampleId, std::less<SampleId>>;
 
-struct Renderer::Implementation {
-  struct Worker;
-
-  const Scene &scene;
-  RenderOptions options;
-  std::unique_ptr<HostScene> host;
-  RtslLaunch launch{};
-  double buildSeconds = 0;
-
-  // One rendering.
-  Image image;
-  std::atomic<std::uint64_t> nextTile{0};
-  std::atomic<bool> stop{false};
-  std::uint64_t tilesAcross = 0, tileCount = 0;
-  std::mutex mutex; // for what follows
-  std::uint64_t tilesDone = 0;
-  RenderStatistics totals;
-  SamplesNotFinite notFinite{RTSL_FIRST_NOT_FINITE};
-
-  Implementation(const Scene &scene, const RenderOptions &options)
-      : scene(scene), options(options) {}
-
-  bool isCancelled() const {
-    return stop.load(std::memory_order_relaxed) ||
-           (options.cancel && options.cancel->load(std::memory_order_relaxed));
-  }
-  template <typename Count>
-  void renderTile(std::uint64_t tile, Worker &worker, Count components);
-  void work();
-  void add(Worker &worker);
-  void report();
-};
-
 /// What one thread has rendered and met.
-struct Renderer::Implementation::Worker {
+struct Worker {
   RtslLaunch launch;
   RtslStatus status{}; // lanes count in it
   std::uint64_t samples = 0, pixels = 0, pixelsWithoutSample = 0;
   SamplesNotFinite notFinite;
 };
 
+std::uint64_t stackBytes(const Program &program, const RtslLaunch &launch) {
+  return program.stackBytes ? program.stackBytes(launch.maxDepth, launch.referenceChain) : 0;
+}
+
+} // namespace
+
+struct Renderer::Implementation {
+  const Scene &scene;
+  const RenderOptions &options;
+  std::unique_ptr<HostScene> host;
+  RtslLaunch launch{};
+
+  // One rendering.
+  Image *image = nullptr;
+  Watch *watch = nullptr;
+  std::atomic<std::uint64_t> nextTile{0};
+  std::uint64_t tilesAcross = 0, tileCount = 0;
+  std::mutex mutex; // for what follows
+  RenderStatistics totals;
+  SamplesNotFinite notFinite{RTSL_FIRST_NOT_FINITE};
+
+  Implementation(const Scene &scene, const RenderOptions &options)
+      : scene(scene), options(options) {}
+
+  template <typename Count>
+  void renderTile(std::uint64_t tile, Worker &worker, Count components);
+  void work();
+  void add(Worker &worker);
+};
+
 Renderer::Renderer(const Scene &scene, const RenderOptions &options)
-    : self(std::make_unique<Implementation>(scene, options)) {
-  checkOptions(options);
-  Clock::time_point start = Clock::now();
+    : Backend(options), self(std::make_unique<Implementation>(scene, this->options)) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
   self->launch = scene.launch();
   const Program &program = scene.program();
   if (!program.sample)
@@ -82,8 +72,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
                                              threadCount(options));
     if (options.traversal == Traversal::Device)
       self->launch = self->host->deviceLaunch();
-    // while little was done
-    self->image = newImage(options.width, options.height, program.colorComponents);
+    makePicture(program.colorComponents);
   } catch (const std::bad_alloc &) {
     throw Error(ErrorCode::OutOfMemory, "not enough memory for the scene's acceleration structure");
   }
@@ -92,13 +81,20 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
   self->launch.height = options.height;
   self->launch.maxDepth = options.maxDepth;
   self->launch.seed = options.seed;
-  self->buildSeconds = secondsSince(start);
+  self->tilesAcross = (options.width + tileSize - 1) / tileSize;
+  self->tileCount = self->tilesAcross * ((options.height + tileSize - 1) / tileSize);
+  buildSeconds = std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 Renderer::~Renderer() = default;
 
 const RtslLaunch &Renderer::launch() const {
   return self->launch;
+}
+
+void Renderer::onThread(const std::function<void()> &work) const {
+  const HostThreads threads(options, 1, stackBytes(self->scene.program(), self->launch));
+  threads.run([&](unsigned) { work(); });
 }
 
 /// Sums of a pixel are taken in the order of its samples, whoever takes them. A sample that is not
@@ -115,7 +111,7 @@ void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Co
     for (std::uint32_t x = x0; x < x1; ++x) {
       double sum[RTSL_MAX_COLOR] = {};
       std::uint32_t taken = 0, counted = 0;
-      for (; taken < options.samplesPerPixel && !isCancelled(); ++taken) {
+      for (; taken < options.samplesPerPixel && !watch->isStopped(); ++taken) {
         float color[RTSL_MAX_COLOR];
         sample(&worker.launch, x, y, taken, color);
         bool finite = true;
@@ -132,7 +128,7 @@ void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Co
       worker.samples += taken;
       worker.pixels += taken == options.samplesPerPixel;
       worker.pixelsWithoutSample += taken > 0 && counted == 0;
-      float *pixel = image.at(x, y);
+      float *pixel = image->at(x, y);
       for (std::uint32_t c = 0; c < components; ++c)
         pixel[c] = counted ? float(sum[c] / double(counted)) : taken ? options.withoutSample : 0.0f;
     }
@@ -143,7 +139,7 @@ void Renderer::Implementation::work() {
   Worker worker{launch, {}, 0, 0, 0, SamplesNotFinite(options.mostNotFinite)};
   worker.launch.status = &worker.status;
   try {
-    while (!isCancelled()) {
+    while (!watch->isStopped()) {
       std::uint64_t tile = nextTile.fetch_add(1, std::memory_order_relaxed);
       if (tile >= tileCount)
         break;
@@ -151,10 +147,10 @@ void Renderer::Implementation::work() {
         renderTile(tile, worker, std::integral_constant<std::uint32_t, 3>());
       else
         renderTile(tile, worker, launch.colorComponents);
-      report();
+      watch->advance(tileCount);
     }
   } catch (...) {
-    stop = true;
+    watch->stop();
     throw;
   }
   add(worker);
@@ -169,48 +165,32 @@ void Renderer::Implementation::add(Worker &worker) {
   totals.badRays += counters.badRays;
   totals.retracedRays += counters.retracedRays;
   totals.rescaledRays += counters.rescaledRays;
-  totals.raysTooDeep += worker.status.raysTooDeep;
-  for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
-    totals.exceptions[i] += worker.status.exceptions[i];
+  addEvents(worker.status, totals);
   notFinite.add(std::move(worker.notFinite));
 }
 
-void Renderer::Implementation::report() {
-  std::lock_guard<std::mutex> lock(mutex);
-  ++tilesDone;
-  if (options.progress)
-    options.progress(double(tilesDone) / double(tileCount));
+std::uint32_t Renderer::channels() const {
+  return self->launch.colorComponents;
 }
 
-Image Renderer::render(RenderStatistics *statistics) {
-  Implementation &s = *self;
-  Clock::time_point start = Clock::now();
-  s.image = newImage(s.options.width, s.options.height, s.launch.colorComponents);
-  s.tilesAcross = (s.options.width + tileSize - 1) / tileSize;
-  s.tileCount = s.tilesAcross * ((s.options.height + tileSize - 1) / tileSize);
-  s.nextTile = 0;
-  s.tilesDone = 0;
-  s.stop = false;
-  s.totals = RenderStatistics();
-  s.notFinite = SamplesNotFinite(s.options.mostNotFinite);
+void Renderer::begin() {
+  self->nextTile = 0;
+  self->totals = RenderStatistics();
+  self->notFinite = SamplesNotFinite(options.mostNotFinite);
+}
 
-  const Program &program = s.scene.program();
-  const std::uint64_t stackBytes =
-      program.stackBytes ? program.stackBytes(s.options.maxDepth, s.launch.referenceChain) : 0;
-  const unsigned threads = unsigned(std::min<std::uint64_t>(threadCount(s.options), s.tileCount));
-  runOnThreads(threads, stackBytes, [&s](unsigned) { s.work(); });
+void Renderer::run(Watch &watch) {
+  self->image = &picture;
+  self->watch = &watch;
+  const HostThreads threads(options, self->tileCount,
+                            stackBytes(self->scene.program(), self->launch));
+  threads.run([this](unsigned) { self->work(); });
+}
 
-  const std::uint64_t pixels = std::uint64_t(s.options.width) * s.options.height;
-  s.totals.isUnfinished = s.totals.pixels < pixels;
-  if (s.totals.isUnfinished && !s.options.keepsUnfinished)
-    throw Error(ErrorCode::Cancelled, "rendering was cancelled");
-  s.totals.samplesNotFinite = s.notFinite.total();
-  s.totals.notFinite = s.notFinite.take();
-  s.totals.buildSeconds = s.buildSeconds;
-  s.totals.renderSeconds = secondsSince(start);
-  if (statistics)
-    *statistics = s.totals;
-  return std::move(s.image);
+RenderStatistics Renderer::finish() {
+  self->totals.samplesNotFinite = self->notFinite.total();
+  self->totals.notFinite = self->notFinite.take();
+  return std::move(self->totals);
 }
 
 Image render(const Scene &scene, const RenderOptions &options, RenderStatistics *statistics) {

@@ -1,30 +1,35 @@
-//===- Renderer.h - from a scene to an image ------------------------------===//
+//===- Renderer.h - the fastest backend of the CPU ------------------------===//
 #pragma once
 
-#include "runtime/image/Image.h"
-#include "runtime/render/RenderOptions.h"
+#include "runtime/render/Backend.h"
 #include "runtime/scene/Scene.h"
 
+#include <functional>
 #include <memory>
 
 namespace rtsl::runtime {
 
-/// Holds the acceleration structures of a scene, which must stay as it is meanwhile.
-class Renderer {
+/// Calls Program::sample for each sample, on all cores, with the traversal that the options select.
+/// Holds the acceleration structures of a scene, which must not change during its lifetime. The
+/// picture does not depend on the number of threads.
+class Renderer final : public Backend {
 public:
   /// Throws OutOfMemory, OutOfRange, IncompleteScene, MissingMethod.
   Renderer(const Scene &scene, const RenderOptions &options);
-  ~Renderer();
+  ~Renderer() override;
 
-  /// Renders with the program's number of channels. The result does not depend on the number of
-  /// threads. Throws Cancelled, and OutOfMemory if
-  /// there is none for the picture or for the stacks of rays.
-  Image render(RenderStatistics *statistics = nullptr);
-
-  /// The launch that is handed to the program, for tools that call it themselves.
+  /// The launch that is passed to the program, for tools that call the program themselves.
   const RtslLaunch &launch() const;
+  /// Runs `work`, which calls the program, on a thread with enough stack for its frames, and waits.
+  /// Throws OutOfMemory if there is no such stack. Rethrows exceptions of `work`.
+  void onThread(const std::function<void()> &work) const;
 
 private:
+  std::uint32_t channels() const override;
+  void begin() override;
+  void run(Watch &watch) override;
+  RenderStatistics finish() override;
+
   struct Implementation;
   std::unique_ptr<Implementation> self;
 };

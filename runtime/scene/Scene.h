@@ -8,28 +8,13 @@
 
 #include "runtime/geometry/Mesh.h"
 #include "runtime/program/Program.h"
-#include "runtime/scene/Value.h"
+#include "runtime/scene/SceneData.h"
 
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
-#include <variant>
 #include <vector>
 
 namespace rtsl::runtime {
-
-/// How an object is described: constructor arguments by position or by name, then public members.
-struct ObjectValues {
-  std::variant<std::monostate, std::vector<Value>, std::vector<NamedValue>> constructor;
-  std::vector<NamedValue> members;
-  std::optional<Place> place; // of the object, for messages
-};
-
-/// A box. A side may be infinite.
-struct Bounds {
-  float lower[3], upper[3];
-};
 
 class Scene {
 public:
@@ -46,13 +31,8 @@ public:
   /// that meets them is dropped.
   void useProgram(std::shared_ptr<const Program> program);
 
-  /// Normals or texture coordinates of a mesh, as useProgram found them.
-  struct MeshAttribute {
-    std::string mesh; // its name
-    const char *name; // "normals"
-    std::size_t bytes = 0;
-    bool isNeeded = false; // by the material of some instance
-  };
+  /// Normals and texture coordinates of meshes, as useProgram found them.
+  using MeshAttribute = runtime::MeshAttribute;
   const std::vector<MeshAttribute> &meshAttributes() const;
 
   /// Adds an object of class `className`: defaults, then the constructor, then the public members.
@@ -106,10 +86,7 @@ public:
   /// Bytes of all records, from RtslLaunch::records.
   std::size_t recordBytes() const;
   /// The RtslBuffers in the records.
-  struct BufferPlace {
-    std::uint32_t offset; // from the start of the records
-    std::size_t bytes;    // of its elements
-  };
+  using BufferPlace = runtime::BufferPlace;
   std::vector<BufferPlace> buffers() const;
 
   /// World bounds of an RTSL primitive's instance, as computeBounds gave them, a few units in the

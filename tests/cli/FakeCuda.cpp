@@ -1,13 +1,16 @@
 // Stands in for libcuda.so.1: a device whose memory is the process's, and whose one kernel paints a
 // pattern after having checked that it was launched as rtsl_render has to be. FAKE_CUDA makes it
-// fail in one of the ways in which drivers and devices do.
+// fail in one of the ways in which drivers and devices do, or paint half of the picture and go on
+// until it is stopped ("endless").
 #include "runtime/device/ray/Abi.h"
 
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <thread>
 
 namespace {
 
@@ -28,6 +31,8 @@ bool is(const char *failure) {
   const char *wanted = std::getenv("FAKE_CUDA");
   return wanted && std::strcmp(wanted, failure) == 0;
 }
+
+RtslStatus *endlessStatus = nullptr; // of a kernel that runs until it is stopped
 
 std::map<std::uintptr_t, std::size_t> allocations;
 std::size_t allocated = 0;
@@ -106,6 +111,23 @@ int cuMemAlloc_v2(std::uint64_t *address, std::size_t bytes) {
   allocated += bytes;
   return Success;
 }
+int cuMemFree_v2(std::uint64_t address) {
+  const auto found = allocations.find(address);
+  if (found == allocations.end())
+    return InvalidValue;
+  allocated -= found->second;
+  allocations.erase(found);
+  std::free(reinterpret_cast<void *>(address));
+  return Success;
+}
+int cuMemAllocHost_v2(void **memory, std::size_t bytes) {
+  *memory = std::malloc(bytes);
+  return Success;
+}
+int cuMemFreeHost(void *memory) {
+  std::free(memory);
+  return Success;
+}
 int cuMemsetD8_v2(std::uint64_t address, unsigned char value, std::size_t bytes) {
   if (!isAllocated(reinterpret_cast<void *>(address), bytes))
     return InvalidValue;
@@ -122,6 +144,34 @@ int cuMemcpyDtoH_v2(void *to, std::uint64_t from, std::size_t bytes) {
   if (!isAllocated(reinterpret_cast<void *>(from), bytes))
     return InvalidValue;
   std::memcpy(to, reinterpret_cast<void *>(from), bytes);
+  return Success;
+}
+int cuStreamCreate(void **stream, unsigned flags) {
+  *stream = &allocations;
+  return flags == 1 ? Success : InvalidValue; // it must not wait for the kernel
+}
+int cuStreamDestroy_v2(void *) {
+  return Success;
+}
+int cuStreamSynchronize(void *) {
+  return Success;
+}
+int cuMemcpyHtoDAsync_v2(std::uint64_t to, const void *from, std::size_t bytes, void *stream) {
+  if (!stream || !isAllocated(reinterpret_cast<void *>(to), bytes) ||
+      bytes != sizeof(std::uint32_t))
+    return InvalidValue;
+  std::uint32_t value;
+  std::memcpy(&value, from, sizeof value);
+  __atomic_store_n(reinterpret_cast<std::uint32_t *>(to), value, __ATOMIC_RELAXED);
+  return Success;
+}
+int cuMemcpyDtoHAsync_v2(void *to, std::uint64_t from, std::size_t bytes, void *stream) {
+  if (!stream || !isAllocated(reinterpret_cast<void *>(from), bytes) ||
+      bytes != sizeof(std::uint64_t))
+    return InvalidValue;
+  const std::uint64_t value =
+      __atomic_load_n(reinterpret_cast<std::uint64_t *>(from), __ATOMIC_RELAXED);
+  std::memcpy(to, &value, sizeof value);
   return Success;
 }
 int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *options,
@@ -179,17 +229,24 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
               isAllocated(launch.meshes[i].indices, 12 * launch.meshes[i].triangleCount);
   if (!isFine)
     return IllegalAddress;
-  for (std::uint64_t i = 0; i < pixels; ++i) {
+  const std::uint64_t painted = is("endless") ? pixels / 2 : pixels;
+  for (std::uint64_t i = 0; i < pixels * launch.colorComponents; ++i)
+    if (job.pixels[i] != 0)
+      return IllegalAddress;
+  for (std::uint64_t i = 0; i < painted; ++i) {
     job.pixels[3 * i] = float(i % launch.width);
     job.pixels[3 * i + 1] = float(i / launch.width);
     job.pixels[3 * i + 2] = float(launch.seed);
   }
-  job.status->nextPixel = pixels;
+  __atomic_store_n(&job.status->nextPixel, painted, __ATOMIC_RELAXED);
+  endlessStatus = is("endless") ? job.status : nullptr;
   if (is("overflow"))
     job.status->problem = RTSL_PROBLEM_STACK;
   return Success;
 }
 int cuCtxSynchronize() {
+  while (endlessStatus && !__atomic_load_n(&endlessStatus->stop, __ATOMIC_RELAXED))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return is("fault") ? IllegalAddress : Success;
 }
 

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 import unittest
+import unittest.mock
 
 from harness import RTSLC, SECONDS, Case
 
@@ -95,6 +96,21 @@ class Interruptions(Case):
             self.assertIn(f"stopped by {by.name} after 0.0 % of the samples", error)
             self.assert_partly_black("a.exr")
             (self.folder / "a.exr").unlink()
+
+    def test_a_gpu_is_stopped_too(self):
+        """The stand-in of the driver paints half of the picture, and ends when it is told to stop."""
+        self.run_rtslc("pack", "scene.json", "-o", "glass.rtslpkg", "-q")
+        fake = {"LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"], "FAKE_CUDA": "endless"}
+        with unittest.mock.patch.dict(os.environ, fake):
+            for command in ((RTSLC, "render", "scene.json", "-Wno-depth-limit"), (RTSL_RUN, "glass.rtslpkg")):
+                for by in (signal.SIGINT, signal.SIGTERM):
+                    with self.subTest(command=command[0], by=by):
+                        out, error = self.interrupt(*command, "--target=gpu", "-o", "a.exr", "--json", "--size", "64x64", by=by)
+                        figures = json.loads(out)
+                        self.assertEqual((figures["pixels"], figures["stoppedBy"]), (2048, by.name))
+                        self.assertIn("2048 of 4096 pixels are done", error)
+                        self.assert_partly_black("a.exr")
+                        (self.folder / "a.exr").unlink()
 
     def test_what_was_stopped_by_nobody_says_nothing(self):
         out, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--size", "8x8", "--spp", "1", "--json",

@@ -108,8 +108,8 @@ class Packages(Case):
     def test_what_is_wrong_with_a_gpu_is_said(self):
         for fake, text in (("no-device", "there is a CUDA driver, but no device"),
                            ("old-driver", "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer"),
-                           ("old-ptx", "the CUDA driver is too old for the package's PTX"),
-                           ("other-gpu", "Fake 1000 (sm_75) does not take the package's code: SM version 120 is needed"),
+                           ("old-ptx", "the CUDA driver is too old for the program's PTX"),
+                           ("other-gpu", "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed"),
                            ("little-memory", "not enough GPU memory for")):
             with self.subTest(fake=fake):
                 _, error = self.run_package("--target=gpu", *SMALL, fake=fake, status=DIAGNOSED)

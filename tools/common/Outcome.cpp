@@ -40,4 +40,11 @@ std::string unfinishedText(const runtime::RenderStatistics &statistics,
                      statistics.pixels, pixels);
 }
 
+std::string gpuText(const runtime::GpuStatistics &gpu) {
+  return fmt::format("{}: {} registers and {} local bytes per thread, {} blocks of {} threads, {} "
+                     "bytes for the rays of each; code loaded in {:.0f} ms, scene in {:.0f} ms",
+                     gpu.device, gpu.registers, gpu.localBytes, gpu.blocks, gpu.threadsPerBlock,
+                     gpu.laneBytes, gpu.loadSeconds * 1e3, gpu.uploadSeconds * 1e3);
+}
+
 } // namespace rtsl::tool

@@ -1,6 +1,7 @@
 //===- Outcome.h - what a rendering met, in words --------------------------===//
 #pragma once
 
+#include "runtime/gpu/GpuRenderer.h"
 #include "runtime/render/RenderOptions.h"
 
 #include <string>
@@ -20,5 +21,8 @@ std::string tooDeepText(const runtime::RenderStatistics &statistics,
 /// "stopped by SIGINT after 12.5 % of the samples: 100 of 800 pixels are done, ..."
 std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options);
+
+/// "NVIDIA H100: 80 registers and 2400 local bytes per thread, ..."
+std::string gpuText(const runtime::GpuStatistics &gpu);
 
 } // namespace rtsl::tool

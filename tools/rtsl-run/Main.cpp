@@ -120,11 +120,7 @@ void report(const Options &options, const runtime::Package &package,
              render.height, render.samplesPerPixel, statistics.renderSeconds,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (gpu)
-    fmt::print(stderr,
-               "{}: {} registers and {} local bytes per thread, {} blocks of {} threads, {} bytes "
-               "for the rays of each; code loaded in {:.0f} ms, scene in {:.0f} ms\n",
-               gpu->device, gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock,
-               gpu->laneBytes, gpu->loadSeconds * 1e3, gpu->uploadSeconds * 1e3);
+    fmt::print(stderr, "{}\n", tool::gpuText(*gpu));
   if (statistics.badRays)
     fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
                statistics.badRays);
@@ -173,10 +169,15 @@ int render(const Options &options) {
   std::optional<runtime::GpuStatistics> gpu;
   runtime::Image image;
   if (options.target == Target::Gpu) {
-    image = runtime::renderOnGpu(package, render, options.registers, statistics, gpu.emplace());
+    runtime::CudaDevice device;
+    const runtime::GpuCode code = {package.ptx, package.laneBytes[render.maxDepth],
+                                   options.registers};
+    runtime::GpuRenderer renderer(device, code, package.scene, render);
+    image = renderer.render(&statistics);
+    gpu = renderer.gpu();
   } else {
     const runtime::NativeCode code(package.host);
-    image = runtime::renderOnHost(code.entries(), package.scene, render, &statistics);
+    image = runtime::HostMegakernel(code.entries(), package.scene, render).render(&statistics);
   }
   if (statistics.samples == 0)
     throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");

@@ -1,6 +1,7 @@
 //===- CommandLine.cpp - what the commands of rtslc share -----------------===//
 #include "CommandLine.h"
 
+#include "GpuArchitectures.h"
 #include "codegen/driver/LlvmErrors.h"
 #include "runtime/device/ray/Abi.h"
 #include "support/ClosestName.h"
@@ -150,8 +151,7 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             Choices<bool>{{"needed", false}, {"live", true}},
             "what states save across a `trace`: needed, rematerialise cheap values; live, spill "
             "everything, for comparison");
-  addChoice(command, "--gpu-arch", options.compile.gpu,
-            {"sm_75", "sm_80", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"},
+  addChoice(command, "--gpu-arch", options.compile.gpu, gpuArchitectures(),
             "the oldest NVIDIA GPU that the PTX supports; default sm_75");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");

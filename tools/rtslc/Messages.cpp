@@ -70,9 +70,10 @@ Code codeFor(ErrorCode code) {
     return Code::cancelled;
   case E::OutOfMemory:
     return Code::outOfMemory;
-  // rtslc reads no packages and runs nothing on a GPU; rtsl-run has messages of its own.
-  case E::BadPackage:
   case E::NoDevice:
+    return Code::noDevice;
+  // rtslc reads no packages; rtsl-run has messages of its own.
+  case E::BadPackage:
   case E::Internal:
     break; // Main.cpp ends the run with its own status
   }

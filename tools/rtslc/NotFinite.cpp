@@ -3,7 +3,6 @@
 
 #include "runtime/program/NumberCheck.h"
 #include "runtime/program/PrintLog.h"
-#include "support/WorkerThreads.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,11 +55,9 @@ std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &s
     renderer.render(&again);
     samples = again.notFinite;
   }
-  RtslLaunch launch = renderer.launch();
-  const std::uint64_t stackBytes = program->stackBytes(render.maxDepth, launch.referenceChain);
-  runOnThreads(1, stackBytes, [&](unsigned) {
+  renderer.onThread([&] {
     for (const runtime::SampleId &sample : samples)
-      result.push_back(explain(sample, launch, *program));
+      result.push_back(explain(sample, renderer.launch(), *program));
   });
   runtime::takePrintLog(); // they have printed again
   return result;

@@ -1,6 +1,7 @@
 //===- PackCommand.cpp - rtslc pack ---------------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
+#include "ScenePackage.h"
 #include "SceneShaders.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/package/NativeCode.h"
@@ -41,13 +42,11 @@ void packScene(const PackOptions &options, Messages &messages) {
   runtime::Package package;
   package.compiler = "rtslc " RTSL_VERSION;
   package.options = scene::renderOptions(description.render);
-  // Constructors and bounds run here and now; what is packed has only their results.
-  std::optional<runtime::Scene> scene;
-  const auto makeObjects = [&](const std::shared_ptr<const runtime::Program> &constructors) {
-    scene = scene::buildScene(description, constructors);
-    return scene->facts();
-  };
-  if (!compilePackage(*module, request, compile, messages.diagnostics, makeObjects, package))
+  const std::optional<runtime::Scene> scene = compileScenePackage(
+      *module, request, compile, messages.diagnostics,
+      [&](const auto &constructors) { return scene::buildScene(description, constructors); },
+      package);
+  if (!scene)
     return;
   for (const Warning &warning : scene->warnings())
     messages.report(warning);

@@ -2,13 +2,10 @@
 #include "CommandLine.h"
 #include "Messages.h"
 #include "NotFinite.h"
+#include "RenderTarget.h"
 #include "SceneShaders.h"
-#include "codegen/driver/SceneProgram.h"
-#include "runtime/accel/FlatScene.h"
 #include "runtime/program/PrintLog.h"
-#include "runtime/render/HostMegakernel.h"
 #include "runtime/render/MachineStack.h"
-#include "runtime/render/Renderer.h"
 #include "scenefile/SceneFile.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
@@ -47,6 +44,8 @@ struct RenderCommandOptions {
   bool quiet = false;
   bool prints = false, exceptions = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
+  TargetName target = TargetName::Host;
+  bool hasGpuArchitecture = false; // --gpu-arch was given
 };
 
 double secondsSince(Clock::time_point start) {
@@ -101,6 +100,7 @@ struct Summary {
   std::vector<SampleNotFinite> notFinite;
   std::vector<std::string> printed;
   Times times;
+  const runtime::GpuStatistics *gpu = nullptr; // null: no GPU took part
 };
 
 nlohmann::ordered_json toJson(const SampleNotFinite &one) {
@@ -116,6 +116,17 @@ nlohmann::ordered_json toJson(const SampleNotFinite &one) {
     document["place"] = {
         {"file", one.place->file}, {"line", one.place->line}, {"column", one.place->column}};
   return document;
+}
+
+nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
+  return {{"device", gpu.device},
+          {"registers", gpu.registers},
+          {"localBytes", gpu.localBytes},
+          {"blocks", gpu.blocks},
+          {"threadsPerBlock", gpu.threadsPerBlock},
+          {"laneBytes", gpu.laneBytes},
+          {"loadSeconds", gpu.loadSeconds},
+          {"uploadSeconds", gpu.uploadSeconds}};
 }
 
 std::string toJson(const RenderCommandOptions &options, const Summary &summary) {
@@ -150,6 +161,8 @@ std::string toJson(const RenderCommandOptions &options, const Summary &summary) 
   for (std::uint32_t i = 1; i < RTSL_EXCEPTIONS; ++i)
     if (statistics.exceptions[i])
       document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
+  if (summary.gpu)
+    document["gpu"] = toJson(*summary.gpu);
   return document.dump(2) + "\n";
 }
 
@@ -166,6 +179,8 @@ void printSummary(const RenderCommandOptions &options, const Summary &summary) {
       options.output == "-" ? "standard output" : options.output, render.width, render.height,
       render.samplesPerPixel, summary.times.compile * 1e3, statistics.renderSeconds,
       double(statistics.samples) / statistics.renderSeconds * 1e-6);
+  if (summary.gpu)
+    fmt::print(stderr, "{}\n", gpuText(*summary.gpu));
   printExceptions(render, statistics);
   if (statistics.badRays)
     fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
@@ -205,14 +220,14 @@ void warn(const Summary &summary, Messages &messages) {
     messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, summary.render));
 }
 
-/// By the GPU's program.
-runtime::Image renderFlat(const runtime::Scene &scene, const runtime::RenderOptions &options,
-                          runtime::RenderStatistics &statistics) {
+/// Renders, and frees the acceleration structures.
+runtime::Image renderOn(RenderTarget &target, const runtime::Scene &scene,
+                        const runtime::RenderOptions &options,
+                        runtime::RenderStatistics &statistics) {
   const Clock::time_point start = Clock::now();
-  runtime::FlatScene flat = runtime::flatten(scene);
+  const std::unique_ptr<runtime::Backend> backend = target.prepare(scene, options);
   const double seconds = secondsSince(start);
-  runtime::Image image =
-      runtime::renderOnHost(scene.program().megakernel, std::move(flat), options, &statistics);
+  runtime::Image image = backend->render(&statistics);
   statistics.buildSeconds = seconds;
   return image;
 }
@@ -223,6 +238,8 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   const scene::SceneDescription description =
       readScene(options.scene, options.overrides, messages, "render");
 
+  const std::unique_ptr<RenderTarget> target =
+      makeRenderTarget(options.target, options.hasGpuArchitecture);
   Summary summary;
   Clock::time_point start = Clock::now();
   std::vector<std::string> filesRead;
@@ -237,10 +254,10 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   LinkRequest request = linkRequest(description);
   request.features |= features(options.prints, options.exceptions);
   keep(options.common.keep, request, compile);
-  if (options.common.keep.has(Item::Events)) // the lines are thrown away
-    request.features |= RTSL_FEATURE_PRINT;
+  if (options.common.keep.has(Item::Events) && options.target != TargetName::Gpu)
+    request.features |= RTSL_FEATURE_PRINT; // the lines are thrown away
   std::optional<runtime::Scene> scene =
-      compileScene(*module, request, compile, messages.diagnostics, [&](const auto &program) {
+      target->compile(*module, request, compile, messages.diagnostics, [&](const auto &program) {
         const Clock::time_point begin = Clock::now();
         runtime::Scene made = scene::buildScene(description, program);
         summary.times.scene = secondsSince(begin);
@@ -257,9 +274,8 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   Progress progress("rendering");
   if (!options.quiet)
     render.progress = [&](double share) { progress.update(share); };
-  const runtime::Image image = options.common.compile.target == Target::HostMegakernel
-                                   ? renderFlat(*scene, render, summary.statistics)
-                                   : runtime::render(*scene, render, &summary.statistics);
+  const runtime::Image image = renderOn(*target, *scene, render, summary.statistics);
+  summary.gpu = target->gpu();
   progress.finish();
   if (summary.statistics.samples == 0)
     throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
@@ -296,10 +312,23 @@ int render(const RenderCommandOptions &options) {
   Messages messages(options.common);
   try {
     renderScene(options, messages);
-  } catch (const Error &error) {
+  } catch (Error &error) {
+    if (error.code == ErrorCode::NoDevice)
+      error.note("`--target=host-megakernel` renders the same picture on the CPU");
     messages.report(error);
   }
   return statusAfterInterruption(messages.status());
+}
+
+/// Rejects options that a GPU cannot support.
+void rejectWithoutGpuSupport(const RenderCommandOptions &options) {
+  if (options.prints)
+    throw CLI::ValidationError("--print",
+                               "a GPU cannot print; `--target=host-megakernel` prints, and renders "
+                               "the same picture");
+  if (options.common.compile.floatingPoint == FloatingPoint::Double)
+    throw CLI::ValidationError("--fp",
+                               "shaders on a GPU compute in single precision; give strict or fast");
 }
 
 } // namespace
@@ -323,10 +352,12 @@ void addRenderCommand(CLI::App &app, Action &action) {
             Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree},
                                         {"device", runtime::Traversal::Device}},
             "embree: fast; device: the traversal that GPUs use");
-  addChoice(
-      *command, "--target", options->common.compile.target,
-      Choices<Target>{{"host", Target::Host}, {"host-megakernel", Target::HostMegakernel}},
-      "host: the fastest code for this machine; host-megakernel: the GPU's program, on the CPU");
+  addChoice(*command, "--target", options->target,
+            Choices<TargetName>{{"host", TargetName::Host},
+                                {"host-megakernel", TargetName::HostMegakernel},
+                                {"gpu", TargetName::Gpu}},
+            "host: the fastest code for this machine; gpu: the first CUDA device; "
+            "host-megakernel: the GPU's program, on the CPU");
   command->add_flag("--print", options->prints,
                     "write the output of `print` to standard output, in the order of pixels");
   command->add_flag("--exceptions", options->exceptions,
@@ -341,12 +372,17 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addMessageOptions(*command, options->common);
   command->footer(
       "example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");
-  command->callback([options, &action] {
+  command->callback([options, command, &action] {
     for (const auto &[name, isGiven] :
          {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
       if (isGiven && options->output == "-")
         throw CLI::ValidationError(name, "standard output is the picture; give a file to `-o`");
     checkPictureName(options->output, options->format);
+    if (options->target == TargetName::Gpu)
+      rejectWithoutGpuSupport(*options);
+    if (options->target != TargetName::Host)
+      options->common.compile.target = Target::HostMegakernel;
+    options->hasGpuArchitecture = command->count("--gpu-arch") != 0;
     action = [options] { return render(*options); };
   });
 }

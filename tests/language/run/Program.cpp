@@ -227,7 +227,8 @@ std::string Builder::run() {
     render.traversal = configuration.traversal;
     if (configuration.compile.target == Target::HostMegakernel)
       return judge(
-          runtime::renderOnHost(scene.program().megakernel, runtime::flatten(scene), render));
+          runtime::HostMegakernel(scene.program().megakernel, runtime::flatten(scene), render)
+              .render());
     return judge(runtime::render(scene, render));
   } catch (const Error &error) {
     return std::string(error.what()) + "\n";

@@ -110,8 +110,7 @@ private:
 
 /// The pixel, as the status says; a sample that was not finite was left out of it.
 Color seen(const RtslStatus &status, const Color &pixel) {
-  runtime::RenderStatistics statistics;
-  runtime::readStatus(status, onePixel(), statistics);
+  const runtime::RenderStatistics statistics = runtime::readStatus(status, onePixel());
   return statistics.samplesNotFinite ? unlessNotFinite({std::numeric_limits<float>::infinity()})
                                      : pixel;
 }
@@ -140,7 +139,7 @@ public:
   }
 
   runtime::Image picture(const runtime::RenderOptions &options) override {
-    return runtime::renderOnHost(code, runtime::flatten(flat->source()), options);
+    return runtime::HostMegakernel(code, runtime::flatten(flat->source()), options).render();
   }
 
 private:
@@ -209,13 +208,10 @@ public:
   }
 
   runtime::Image picture(const runtime::RenderOptions &options) override {
-    runtime::Package package;
-    package.ptx = ptx;
-    package.scene = runtime::flatten(flat->source());
-    package.laneBytes[options.maxDepth] = std::uint32_t(flat->laneBytes());
-    runtime::RenderStatistics statistics;
-    runtime::GpuStatistics gpu;
-    return runtime::renderOnGpu(package, options, /*maxRegisters=*/0, statistics, gpu);
+    runtime::CudaDevice own; // this one's program stays
+    return runtime::GpuRenderer(own, {ptx, flat->laneBytes()}, runtime::flatten(flat->source()),
+                                options)
+        .render();
   }
 
 private:

@@ -1,0 +1,58 @@
+#include "runtime/render/Backend.h"
+
+#include "runtime/render/Watch.h"
+#include "support/Error.h"
+
+#include <chrono>
+#include <utility>
+
+namespace rtsl::runtime {
+
+static const RenderOptions &checked(const RenderOptions &options) {
+  checkOptions(options);
+  return options;
+}
+
+Backend::Backend(const RenderOptions &options) : options(checked(options)) {}
+
+Backend::~Backend() = default;
+
+void Backend::makePicture(std::uint32_t channels) {
+  picture = newImage(options.width, options.height, channels);
+}
+
+void addEvents(const RtslStatus &status, RenderStatistics &statistics) {
+  statistics.badRays += status.badRays;
+  statistics.raysTooDeep += status.raysTooDeep;
+  for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
+    statistics.exceptions[i] += status.exceptions[i];
+}
+
+Image Backend::render(RenderStatistics *statistics) {
+  using Clock = std::chrono::steady_clock;
+  if (picture.pixels.empty())
+    makePicture(channels());
+  RenderStatistics said;
+  try {
+    begin();
+    Watch watch(options);
+    const Clock::time_point start = Clock::now();
+    run(watch);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    said = finish();
+    said.renderSeconds = seconds;
+  } catch (...) { // part of a picture is none
+    picture = Image();
+    throw;
+  }
+  said.buildSeconds = buildSeconds;
+  said.isUnfinished = said.pixels < pixelCount();
+  Image image = std::exchange(picture, Image());
+  if (said.isUnfinished && !options.keepsUnfinished)
+    throw Error(ErrorCode::Cancelled, "rendering was cancelled");
+  if (statistics)
+    *statistics = std::move(said);
+  return image;
+}
+
+} // namespace rtsl::runtime

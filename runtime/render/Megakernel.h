@@ -1,0 +1,66 @@
+//===- Megakernel.h - backends that run the megakernel --------------------===//
+//
+// The common part of running the megakernel (runtime/device/engines/Megakernel.h) on a CPU and on a
+// GPU: a scene in one block of bytes, a status, memory for the rays of each lane, and the job that
+// points to them.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/accel/FlatScene.h"
+#include "runtime/render/Backend.h"
+
+#include <cstdint>
+
+namespace rtsl::runtime {
+
+/// Sets the size, depth and seed of the scene's launch, and its status.
+void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status);
+
+/// The statistics of a job, without the times and isUnfinished. Throws Internal if the lanes had too
+/// little memory.
+RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options);
+
+class Megakernel : public Backend {
+protected:
+  /// An address in the device's memory.
+  using Address = std::uint64_t;
+
+  /// Takes a scene that is not relocated. Constructors of devices call prepare() once their memory
+  /// and program are available.
+  Megakernel(FlatScene scene, const RenderOptions &options);
+
+  /// Copies the scene and the job to the device. Throws OutOfMemory.
+  void prepare();
+
+private:
+  /// The result of rtsl_lane_bytes for this launch, a multiple of 16.
+  virtual std::uint64_t laneBytes(const RtslLaunch &launch) = 0;
+  /// The number of lanes, limited by work and memory.
+  virtual std::uint64_t laneCount(std::uint64_t laneBytes) = 0;
+  // The device's memory. `what` names the contents in messages.
+  virtual Address allocate(std::uint64_t bytes, const char *what) = 0;
+  virtual void upload(Address to, const void *from, std::uint64_t bytes) = 0;
+  virtual void download(void *to, Address from, std::uint64_t bytes) = 0;
+  /// The address of the pixels on the device, which are set to 0.
+  virtual Address clearedPixels() = 0;
+  /// Copies them to `picture`.
+  virtual void fetchPixels() = 0;
+  /// Runs all lanes of the job and waits for them.
+  virtual void runLanes(Address job) = 0;
+  // Read and write a number in the status while lanes run, from another thread.
+  virtual std::uint64_t get(Address number) = 0;
+  virtual void set(Address number, std::uint32_t value) = 0;
+
+  std::uint32_t channels() const final { return colorComponents; }
+  void begin() final;
+  void run(Watch &watch) final;
+  RenderStatistics finish() final;
+
+  FlatScene scene; // empty after prepare()
+  const std::uint32_t colorComponents;
+  Address statusAddress = 0, jobAddress = 0;
+  RtslJob job{};
+};
+
+} // namespace rtsl::runtime

@@ -1,0 +1,155 @@
+#include "runtime/scene/ObjectValues.h"
+
+#include "support/ClosestName.h"
+#include "support/ErrorCollector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+namespace rtsl::runtime {
+
+namespace {
+
+std::string listParameters(const ClassInfo &info) {
+  std::string text = info.name + "(";
+  for (std::size_t i = 0; i < info.parameters.size(); ++i)
+    text += fmt::format("{}{} {}", i ? ", " : "", info.parameters[i].type.name,
+                        info.parameters[i].name);
+  return text + ")";
+}
+
+/// The value of each parameter, in their order.
+std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const ObjectValues &values) {
+  if (!classInfo.hasConstructor)
+    throw Error(ErrorCode::BadArguments,
+                fmt::format("class `{}` has no constructor; set its public members by name",
+                            classInfo.name),
+                values.place);
+  const std::vector<MemberInfo> &parameters = classInfo.parameters;
+  std::vector<const Value *> arguments(parameters.size(), nullptr);
+  if (auto *list = std::get_if<std::vector<Value>>(&values.constructor)) {
+    if (list->size() != parameters.size())
+      throw Error(ErrorCode::BadArguments,
+                  fmt::format("the constructor of `{}` takes {} argument{}, not {}", classInfo.name,
+                              parameters.size(), parameters.size() == 1 ? "" : "s", list->size()),
+                  values.place)
+          .note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      arguments[i] = &(*list)[i];
+  } else if (auto *named = std::get_if<std::vector<NamedValue>>(&values.constructor)) {
+    for (const NamedValue &one : *named) {
+      auto found =
+          std::find_if(parameters.begin(), parameters.end(),
+                       [&](const MemberInfo &parameter) { return parameter.name == one.name; });
+      if (found == parameters.end()) {
+        Error error(
+            ErrorCode::BadArguments,
+            fmt::format("the constructor of `{}` has no parameter `{}`", classInfo.name, one.name),
+            one.place ? one.place : values.place);
+        std::vector<std::string> names;
+        for (const MemberInfo &parameter : parameters)
+          names.push_back(parameter.name);
+        if (const std::string near = closestName(one.name, names); !near.empty())
+          error.fix(near);
+        throw error.note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+      }
+      const Value *&argument = arguments[std::size_t(found - parameters.begin())];
+      if (argument)
+        throw Error(ErrorCode::BadArguments, fmt::format("parameter `{}` is given twice", one.name),
+                    one.place ? one.place : values.place);
+      argument = &one.value;
+    }
+  }
+  std::string missing;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (!arguments[i])
+      missing += fmt::format("{}`{}`", missing.empty() ? "" : ", ", parameters[i].name);
+  if (!missing.empty())
+    throw Error(
+        ErrorCode::BadArguments,
+        fmt::format("the constructor of `{}` misses an argument for {}", classInfo.name, missing),
+        values.place)
+        .note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+  return arguments;
+}
+
+/// Writes one member.
+void setMember(const ClassInfo &classInfo, const std::string &name, const NamedValue &one,
+               const std::optional<Place> &place, std::uint8_t *record,
+               const StoreContext &context) {
+  auto found = std::find_if(classInfo.members.begin(), classInfo.members.end(),
+                            [&](const MemberInfo &member) { return member.name == one.name; });
+  if (found == classInfo.members.end()) {
+    Error error(ErrorCode::UnknownMember,
+                fmt::format("class `{}` has no member `{}`", classInfo.name, one.name),
+                one.place ? one.place : place);
+    std::vector<std::string> names;
+    for (const MemberInfo &member : classInfo.members)
+      if (member.isPublic)
+        names.push_back(member.name);
+    if (const std::string near = closestName(one.name, names); !near.empty())
+      error.fix(near);
+    throw error;
+  }
+  if (!found->isPublic)
+    throw Error(ErrorCode::NotSettable,
+                fmt::format("member `{}` of `{}` is not public", one.name, classInfo.name),
+                one.place ? one.place : place);
+  storeValue(found->type, one.value, record + found->offset, context,
+             fmt::format("member `{}` of `{}`", one.name, name), place);
+}
+
+} // namespace
+
+std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const ObjectValues &values,
+                                         const StoreContext &context) {
+  const std::vector<MemberInfo> &parameters = classInfo.parameters;
+  const std::vector<const Value *> arguments = matchArguments(classInfo, values);
+  // Words, for the packed arguments are read as such.
+  std::vector<std::uint32_t> packed(classInfo.parameterSize / 4 + 1, 0);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    storeValue(parameters[i].type, *arguments[i],
+               reinterpret_cast<std::uint8_t *>(packed.data()) + parameters[i].offset, context,
+               fmt::format("parameter `{}` of `{}`", parameters[i].name, classInfo.name),
+               values.place);
+  return packed;
+}
+
+void storeMembers(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
+                  std::uint8_t *record, const StoreContext &context) {
+  ErrorCollector errors;
+  for (const NamedValue &one : values.members)
+    errors.attempt([&] { setMember(classInfo, name, one, values.place, record, context); });
+  errors.throwIfAny();
+}
+
+void checkUnset(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
+                const std::uint8_t *record, std::vector<Warning> &warnings) {
+  for (const MemberInfo &member : classInfo.members) {
+    if (!member.isPublic || member.hasDefault)
+      continue;
+    bool given = std::any_of(values.members.begin(), values.members.end(),
+                             [&](const NamedValue &one) { return one.name == member.name; });
+    if (given)
+      continue;
+    if (member.type.kind == ValueType::Kind::Reference && member.type.bufferRank == 0 &&
+        member.type.arraySizes.empty()) {
+      RtslRef reference;
+      std::memcpy(&reference, record + member.offset, 4);
+      if (reference == 0)
+        throw Error(ErrorCode::MissingMember,
+                    fmt::format("`{}` refers to nothing: set member `{}` of class `{}`, a `{}`",
+                                name, member.name, classInfo.name, member.type.className),
+                    values.place);
+    } else if (!classInfo.hasConstructor && member.type.bufferRank == 0) {
+      warnings.push_back({fmt::format("member `{}` of `{}` is not set and has no default: it is 0",
+                                      member.name, name),
+                          values.place});
+    }
+  }
+}
+
+} // namespace rtsl::runtime

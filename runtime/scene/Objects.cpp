@@ -1,0 +1,235 @@
+#include "runtime/scene/Objects.h"
+
+#include "runtime/device/ray/Random.h"
+#include "runtime/scene/ObjectValues.h"
+#include "runtime/scene/References.h"
+#include "support/ClosestName.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <unordered_set>
+
+namespace rtsl::runtime {
+
+namespace {
+
+/// Records begin behind this: reference 0 is "none", and a class id of 0 there makes every dispatch
+/// do nothing.
+constexpr std::uint32_t firstRecord = 16;
+constexpr std::uint32_t recordAlignment = 16;
+
+bool hasMethod(const ClassInfo &info, const std::string &method) {
+  return std::find(info.methods.begin(), info.methods.end(), method) != info.methods.end();
+}
+
+/// Throws UnknownClass.
+const ClassInfo &findClass(const Program &program, const std::string &className,
+                           const std::optional<Place> &place) {
+  if (const ClassInfo *classInfo = program.find(className))
+    return *classInfo;
+  Error error(ErrorCode::UnknownClass, fmt::format("no class is named `{}`", className), place);
+  std::vector<std::string> names;
+  for (const ClassInfo &one : program.classes)
+    names.push_back(one.name);
+  if (const std::string near = closestName(className, names); !near.empty())
+    error.fix(near);
+  throw error;
+}
+
+} // namespace
+
+std::vector<std::string> ifClassic(const Program &program, const char *method) {
+  return program.engine == Engine::Classic ? std::vector<std::string>{method}
+                                           : std::vector<std::string>{};
+}
+
+void callOutsideOfRays(const RtslLaunch &launch, RtslRef object,
+                       const std::function<void(RtslState &)> &call) {
+  RtslState state{};
+  state.launch = &launch;
+  state.instance = state.primitive = RTSL_NO_HIT;
+  state.HitDistance = std::numeric_limits<float>::infinity();
+  device::Words3 key = device::hash3(object, 0, 0);
+  state.randomKey[0] = key.x;
+  state.randomKey[1] = key.y;
+  call(state);
+}
+
+Objects::Objects(std::shared_ptr<const Program> program)
+    : code(std::move(program)), records(firstRecord, 0) {
+  if (code->colorComponents < 1 || code->colorComponents > RTSL_MAX_COLOR)
+    throw Error(ErrorCode::OutOfRange, fmt::format("a color has 1 to {} components, not {}",
+                                                   RTSL_MAX_COLOR, code->colorComponents));
+}
+
+void Objects::useProgram(std::shared_ptr<const Program> program) {
+  const std::vector<ClassInfo> &before = code->classes, &after = program->classes;
+  if (program->engine != code->engine || program->colorComponents != code->colorComponents ||
+      !std::equal(before.begin(), before.end(), after.begin(), after.end(),
+                  [](const ClassInfo &a, const ClassInfo &b) {
+                    return a.name == b.name && a.id == b.id && a.recordSize == b.recordSize;
+                  }))
+    throw Error(ErrorCode::Internal, "the scene was made for another program");
+  for (Object &object : objects)
+    object.classInfo = &after[std::size_t(object.classInfo - before.data())];
+  code = std::move(program);
+}
+
+RtslRef Objects::add(const std::string &className, const ObjectValues &values,
+                     const std::string &name, const std::function<RtslLaunch()> &launch,
+                     std::vector<Warning> &warnings) {
+  const ClassInfo &classInfo = findClass(*code, className, values.place);
+  std::size_t start = (records.size() + recordAlignment - 1) / recordAlignment * recordAlignment;
+  if (start + classInfo.recordSize > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorCode::OutOfMemory, "the objects of the scene take more than 4 GiB",
+                values.place);
+  std::size_t before = records.size();
+  records.resize(start + std::max(classInfo.recordSize, 4u), 0);
+  std::memcpy(records.data() + start, &classInfo.id, 4);
+  const Object object = {RtslRef(start), &classInfo, name.empty() ? className : name, values.place};
+  objects.push_back(object);
+  try {
+    if (classInfo.initialize)
+      callOutsideOfRays(launch(), object.reference,
+                        [&](RtslState &state) { classInfo.initialize(&state, object.reference); });
+    runConstructor(object, values, launch);
+    storeMembers(classInfo, object.name, values, recordOf(object), storeContext());
+    checkUnset(classInfo, object.name, values, recordOf(object), warnings);
+    measureChain(object);
+  } catch (...) { // half an object is none
+    objects.pop_back();
+    records.resize(before);
+    throw;
+  }
+  return object.reference;
+}
+
+void Objects::runConstructor(const Object &object, const ObjectValues &values,
+                             const std::function<RtslLaunch()> &launch) {
+  const ClassInfo &classInfo = *object.classInfo;
+  if (!classInfo.hasConstructor && std::holds_alternative<std::monostate>(values.constructor))
+    return;
+  const std::vector<std::uint32_t> arguments = packArguments(classInfo, values, storeContext());
+  if (classInfo.construct)
+    callOutsideOfRays(launch(), object.reference, [&](RtslState &state) {
+      classInfo.construct(&state, object.reference, arguments.data());
+    });
+}
+
+bool Objects::derivesFrom(const ClassInfo *info, const std::string &className) const {
+  for (; info; info = code->find(info->base))
+    if (info->name == className || info->base == className || info->root == className)
+      return true;
+  return false;
+}
+
+StoreContext Objects::storeContext() {
+  StoreContext context;
+  context.colorComponents = code->colorComponents;
+  context.allocate = [this](std::size_t bytes) {
+    bufferMemory.push_back(std::make_unique<std::uint32_t[]>(bytes / 4 + 1));
+    return reinterpret_cast<std::uint8_t *>(bufferMemory.back().get());
+  };
+  context.classMismatch = [this](RtslRef object,
+                                 const std::string &className) -> const std::string * {
+    const ClassInfo *classInfo = at(object).classInfo;
+    return derivesFrom(classInfo, className) ? nullptr : &classInfo->name;
+  };
+  return context;
+}
+
+const Objects::Object &Objects::at(RtslRef reference) const {
+  auto found =
+      std::lower_bound(objects.begin(), objects.end(), reference,
+                       [](const Object &object, RtslRef ref) { return object.reference < ref; });
+  if (found == objects.end() || found->reference != reference)
+    throw Error(ErrorCode::UnknownName,
+                fmt::format("no object of the scene has the reference {}", reference));
+  return *found;
+}
+
+const std::uint8_t *Objects::record(RtslRef reference) const {
+  return records.data() + at(reference).reference;
+}
+
+void Objects::requireRole(RtslRef reference, const std::string &root,
+                          const std::vector<std::string> &methods) const {
+  const Object &given = at(reference);
+  if (given.classInfo->root != root)
+    throw Error(ErrorCode::WrongClass,
+                fmt::format("`{}` is a `{}`, where a `{}` is needed", given.name,
+                            given.classInfo->name, root),
+                given.place);
+  for (const std::string &method : methods)
+    if (!hasMethod(*given.classInfo, method))
+      throw Error(ErrorCode::MissingMethod,
+                  fmt::format("class `{}` of `{}` does not define `{}`", given.classInfo->name,
+                              given.name, method),
+                  given.place);
+}
+
+/// Counts the references that lead on from an object that is complete. Those that it refers to
+/// were made before it.
+void Objects::measureChain(const Object &object) {
+  std::uint32_t chain = 0;
+  for (const MemberInfo &member : object.classInfo->members) {
+    if (holdsReferences(member.type)) // if only to no object: it is called, and does nothing
+      chain = std::max(chain, 1u);
+    forEachReference(member.type, recordOf(object) + member.offset, [&](RtslRef reference) {
+      if (const auto found = chains.find(reference); found != chains.end())
+        chain = std::max(chain, found->second + 1);
+    });
+  }
+  chains[object.reference] = chain;
+  longestChain = std::max(longestChain, chain);
+}
+
+std::vector<RtslRef> Objects::reachedFrom(std::vector<RtslRef> references) const {
+  std::unordered_set<RtslRef> seen(references.begin(), references.end());
+  for (std::size_t next = 0; next < references.size(); ++next) {
+    const Object &object = at(references[next]);
+    for (const MemberInfo &member : object.classInfo->members)
+      forEachReference(member.type, records.data() + object.reference + member.offset,
+                       [&](RtslRef reference) {
+                         if (seen.insert(reference).second)
+                           references.push_back(reference);
+                       });
+  }
+  return references;
+}
+
+std::uint32_t Objects::needsOf(RtslRef reference) const {
+  std::uint32_t needs = 0;
+  for (RtslRef one : reachedFrom({reference}))
+    needs |= at(one).classInfo->needs;
+  return code->needs & needs;
+}
+
+std::vector<BufferPlace> Objects::buffers() const {
+  std::vector<BufferPlace> places;
+  for (const Object &object : objects)
+    for (const MemberInfo &member : object.classInfo->members) {
+      if (member.type.bufferRank == 0)
+        continue;
+      const std::uint32_t offset = object.reference + member.offset;
+      RtslBuffer buffer;
+      std::memcpy(&buffer, records.data() + offset, sizeof buffer);
+      std::size_t bytes = member.type.elementSize;
+      for (std::uint8_t i = 0; i < member.type.bufferRank; ++i)
+        bytes *= buffer.size[i];
+      places.push_back({offset, bytes});
+    }
+  return places;
+}
+
+void Objects::fill(RtslLaunch &launch) {
+  launch.records = records.data();
+  launch.colorComponents = code->colorComponents;
+  launch.needs = code->needs;
+  launch.referenceChain = longestChain;
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,94 @@
+//===- Objects.h - the records of a scene's objects -----------------------===//
+//
+// One block of bytes holds the records of all objects, with the layouts of their classes. Code of
+// the program, the member defaults and the constructor, initialises a record; then the scene's
+// members are written.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/program/Program.h"
+#include "runtime/scene/SceneData.h"
+#include "runtime/scene/ValueStore.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace rtsl::runtime {
+
+class Objects {
+public:
+  /// Throws OutOfRange if the program's number of color components is invalid.
+  explicit Objects(std::shared_ptr<const Program> program);
+
+  const Program &program() const { return *code; }
+
+  /// Scene::useProgram. Throws Internal if the program has other classes.
+  void useProgram(std::shared_ptr<const Program> program);
+
+  /// Scene::addObject. `launch` returns the scene's current launch, for the code that runs. If it
+  /// throws, nothing is added.
+  RtslRef add(const std::string &className, const ObjectValues &values, const std::string &name,
+              const std::function<RtslLaunch()> &launch, std::vector<Warning> &warnings);
+
+  struct Object {
+    RtslRef reference;
+    const ClassInfo *classInfo;
+    std::string name;
+    std::optional<Place> place;
+  };
+  /// Throws UnknownName.
+  const Object &at(RtslRef reference) const;
+  /// In the order in which they were added, which is that of their references.
+  const std::vector<Object> &all() const { return objects; }
+
+  /// Throws WrongClass if the object's class does not derive from the class `root` of the language,
+  /// and MissingMethod if it lacks one of the methods.
+  void requireRole(RtslRef reference, const std::string &root,
+                   const std::vector<std::string> &methods) const;
+
+  const std::uint8_t *record(RtslRef reference) const;
+
+  /// The given objects and all objects reachable through their references.
+  std::vector<RtslRef> reachedFrom(std::vector<RtslRef> references) const;
+  /// RTSL_NEEDS_*: the state that methods of this object and of all reachable objects read.
+  std::uint32_t needsOf(RtslRef reference) const;
+  /// The longest chain of references from object to object.
+  std::uint32_t referenceChain() const { return longestChain; }
+
+  std::vector<BufferPlace> buffers() const;
+
+  /// Bytes of all records.
+  std::size_t recordBytes() const { return records.size(); }
+
+  /// Sets the launch's fields about objects. Code that uses the launch may write the records.
+  void fill(RtslLaunch &launch);
+
+private:
+  void runConstructor(const Object &object, const ObjectValues &values,
+                      const std::function<RtslLaunch()> &launch);
+  void measureChain(const Object &object);
+  bool derivesFrom(const ClassInfo *info, const std::string &className) const;
+  StoreContext storeContext();
+  std::uint8_t *recordOf(const Object &object) { return records.data() + object.reference; }
+
+  std::shared_ptr<const Program> code;
+  std::vector<std::uint8_t> records;
+  std::vector<Object> objects; // ascending by reference
+  std::vector<std::unique_ptr<std::uint32_t[]>> bufferMemory;
+  std::unordered_map<RtslRef, std::uint32_t> chains; // measureChain
+  std::uint32_t longestChain = 0;
+};
+
+/// The method if the program uses the classic engine, which calls it; otherwise nothing.
+std::vector<std::string> ifClassic(const Program &program, const char *method);
+
+/// Runs code of the program for an object outside of any ray, with the scene's launch.
+void callOutsideOfRays(const RtslLaunch &launch, RtslRef object,
+                       const std::function<void(RtslState &)> &call);
+
+} // namespace rtsl::runtime

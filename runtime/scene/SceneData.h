@@ -1,0 +1,41 @@
+//===- SceneData.h - plain structs in the interface of scenes -------------===//
+#pragma once
+
+#include "runtime/scene/Value.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// How an object is described: constructor arguments by position or by name, then public members.
+struct ObjectValues {
+  std::variant<std::monostate, std::vector<Value>, std::vector<NamedValue>> constructor;
+  std::vector<NamedValue> members;
+  std::optional<Place> place; // of the object, for messages
+};
+
+/// A box. A side may be infinite.
+struct Bounds {
+  float lower[3], upper[3];
+};
+
+/// Normals or texture coordinates of a mesh, and whether the program reads them.
+struct MeshAttribute {
+  std::string mesh; // its name
+  const char *name; // "normals"
+  std::size_t bytes = 0;
+  bool isNeeded = false; // by the material of some instance
+};
+
+/// An RtslBuffer in the records of a scene.
+struct BufferPlace {
+  std::uint32_t offset; // from the start of the records
+  std::size_t bytes;    // of its elements
+};
+
+} // namespace rtsl::runtime

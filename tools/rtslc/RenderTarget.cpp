@@ -1,0 +1,87 @@
+#include "RenderTarget.h"
+
+#include "GpuArchitectures.h"
+#include "ScenePackage.h"
+#include "runtime/accel/FlatScene.h"
+#include "runtime/gpu/CudaDriver.h"
+#include "runtime/package/NativeCode.h"
+#include "runtime/render/HostMegakernel.h"
+#include "runtime/render/Renderer.h"
+
+namespace rtsl::tool {
+
+namespace {
+
+/// The fastest code for this machine.
+class Host : public RenderTarget {
+public:
+  std::optional<runtime::Scene> compile(const typed::Module &module, const LinkRequest &request,
+                                        const CompileOptions &options, Diagnostics &diagnostics,
+                                        const BuildScene &build) override {
+    return compileScene(module, request, options, diagnostics, build);
+  }
+
+  std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
+                                            const runtime::RenderOptions &options) override {
+    return std::make_unique<runtime::Renderer>(scene, options);
+  }
+};
+
+/// The GPU's whole program on the CPU.
+class HostMegakernel : public Host {
+public:
+  std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
+                                            const runtime::RenderOptions &options) override {
+    return std::make_unique<runtime::HostMegakernel>(scene.program().megakernel,
+                                                     runtime::flatten(scene), options);
+  }
+};
+
+class Gpu : public RenderTarget {
+public:
+  explicit Gpu(bool hasArchitecture) : hasArchitecture(hasArchitecture) {}
+
+  std::optional<runtime::Scene> compile(const typed::Module &module, const LinkRequest &request,
+                                        const CompileOptions &options, Diagnostics &diagnostics,
+                                        const BuildScene &build) override {
+    CompileOptions compile = options;
+    if (!hasArchitecture)
+      compile.gpu = gpuArchitecture(device.capability());
+    return compileScenePackage(module, request, compile, diagnostics, build, package);
+  }
+
+  std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
+                                            const runtime::RenderOptions &options) override {
+    const runtime::NativeCode host(package.host); // to compute the size of a lane's stack
+    const std::uint64_t laneBytes =
+        host.entries().laneBytes(options.maxDepth, scene.launch().referenceChain);
+    auto renderer = std::make_unique<runtime::GpuRenderer>(
+        device, runtime::GpuCode{package.ptx, laneBytes}, runtime::flatten(scene), options);
+    figures = renderer->gpu();
+    return renderer;
+  }
+
+  const runtime::GpuStatistics *gpu() const override { return figures ? &*figures : nullptr; }
+
+private:
+  const bool hasArchitecture;
+  runtime::CudaDevice device;
+  runtime::Package package; // only its code
+  std::optional<runtime::GpuStatistics> figures;
+};
+
+} // namespace
+
+std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture) {
+  switch (name) {
+  case TargetName::Host:
+    return std::make_unique<Host>();
+  case TargetName::HostMegakernel:
+    return std::make_unique<HostMegakernel>();
+  case TargetName::Gpu:
+    break;
+  }
+  return std::make_unique<Gpu>(hasArchitecture);
+}
+
+} // namespace rtsl::tool

@@ -1,0 +1,42 @@
+//===- RenderTarget.h - the targets of `rtslc render` ---------------------===//
+//
+// A target compiles a scene's program and creates the backend of the runtime that renders it.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/driver/SceneProgram.h"
+#include "runtime/gpu/GpuRenderer.h"
+#include "runtime/render/Backend.h"
+
+#include <memory>
+#include <optional>
+
+namespace rtsl::tool {
+
+class RenderTarget {
+public:
+  virtual ~RenderTarget() = default;
+
+  /// Compiles the module for the scene that `build` creates, and returns the scene. Nothing if there
+  /// were errors.
+  virtual std::optional<runtime::Scene>
+  compile(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
+          Diagnostics &diagnostics, const BuildScene &build) = 0;
+
+  /// The backend for the scene that compile() returned. The target must outlive it, and the scene
+  /// must not change during its lifetime.
+  virtual std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
+                                                    const runtime::RenderOptions &options) = 0;
+
+  /// What runs on the GPU, after prepare(). Null for targets without a GPU.
+  virtual const runtime::GpuStatistics *gpu() const { return nullptr; }
+};
+
+enum class TargetName : std::uint8_t { Host, HostMegakernel, Gpu };
+
+/// `hasArchitecture`: CompileOptions::gpu was set by the user; otherwise code for a GPU is compiled
+/// for the installed one. Throws NoDevice if the target is a GPU and there is none.
+std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture);
+
+} // namespace rtsl::tool
