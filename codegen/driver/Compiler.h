@@ -1,6 +1,7 @@
 //===- Compiler.h - the compiler as a library -----------------------------===//
 //
-// From a checked module to the text of a stage, or to a program that runs in this process.
+// From a checked module to a program that runs in this process, to a package, to C++, and to what
+// is said of them. Stages.h has the stages in between.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

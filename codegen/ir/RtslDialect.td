@@ -20,16 +20,9 @@ def Rtsl_Dialect : Dialect {
     arrays, matrices, buffers) are never values: they live in memory behind `!rtsl.ptr` and are reached by `rtsl.field`,
     `rtsl.element` and `rtsl.buffer_element`.
 
-    Functions are `func.func`. The state of the ray is a parameter of each that shows only in LLVM. Discardable
-    attributes of functions:
-
-    | attribute | |
-    |---|---|
-    | `rtsl.class = "Glass"`, `rtsl.method = "shade"` | a method; its first argument is the object |
-    | `rtsl.constructor` | writes the record of its object, so members are not constants there |
-    | `rtsl.export` | keeps its name and may be called from outside of the program |
-    | `rtsl.noinline` | stays a function |
-    | `rtsl.states` | becomes states, even if it does not trace |
+    Functions are `func.func`. The state of the ray is a parameter of each that shows only in LLVM. Methods have the
+    discardable attributes `rtsl.class = "Glass"` and `rtsl.method = "shade"`; Attributes.def lists these and all others,
+    on functions and other operations, and the verifier rejects what is not listed there.
   }];
   let useDefaultTypePrinterParser = 1;
   let useDefaultAttributePrinterParser = 1;

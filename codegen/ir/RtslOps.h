@@ -39,10 +39,6 @@ constexpr llvm::StringLiteral helperRoot = "helper class";
 /// Zero of a value type: `arith.constant` or `rtsl.null_ref`.
 mlir::Value createZero(mlir::OpBuilder &builder, mlir::Location location, mlir::Type type);
 
-/// Of a module: its arithmetic will be done in double, so that nothing of it may be computed in
-/// single before.
-constexpr llvm::StringLiteral computesInDouble = "rtsl.double";
-
 } // namespace rtsl::ir
 
 #endif

@@ -27,8 +27,8 @@ def Rtsl_EvaluateOp : Rtsl_Op<"evaluate"> {
   let summary = "a call of the author's that may have effects";
   let description = [{
     The operands are what in it may change: values, and addresses of variables that stay whole. `writes` names the state
-    variables that may change; without it all may. The attribute `rtsl.changes` has the numbers of the operands whose
-    variables may change; `rtsl.reads` says that nothing else happens but that variables are read.
+    variables that may change; without it all may. Attributes.def explains `rtsl.into`, `rtsl.changes`, `rtsl.plain` and
+    `rtsl.nested`, which say what else happens.
 
     Example: `%f = rtsl.evaluate 4 (%x) writes ["LightColor"] : (f32) -> f32`
   }];

@@ -314,9 +314,9 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
 
     def test_usage(self):
         self.write_scene()
-        for arguments, text in ((("explain", "all.rtsl"), "give one, or --states"),
+        for arguments, text in ((("explain", "all.rtsl"), "give a scene, or --states"),
                                 (("explain", "scene.json", "--measure", "--pairs=9"), "--pairs"),
-                                (("explain", "scene.json", "--measure", "--states"), "renders scenes"),
+                                (("explain", "scene.json", "--measure", "--states"), "cannot be combined with --states"),
                                 (("explain", "scene.json", "--format=svg"), "only --states has pictures"),
                                 (("render", "scene.json", "-o", "a.exr", "--keep=everything"), "`everything` is none of all|objects|classes"),
                                 (("compile", "all.rtsl", "--emit=ir", "--keep=all"), "a file alone keeps everything")):
