@@ -16,7 +16,7 @@ ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options
                              Diagnostics &diagnostics, const StateProgram *states)
     : module(module), options(options), names(module),
       effects(module, options.prints, options.exceptions && options.checkIndices),
-      hitAnswers(module), notes(diagnostics.sources()), tracing(module),
+      hitAnswers(module), notes(diagnostics.sources()),
       mayReferToNothing(typed::mayReferToNothing(module)), lookupsNest(typed::lookupsNest(module)),
       states(states), diagnostics(diagnostics) {
   if (!states)

@@ -11,7 +11,6 @@
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
-#include "codegen/cpp/Tracing.h"
 #include "codegen/cpp/tree/Print.h"
 #include "sema/typed/Analysis.h"
 
@@ -212,7 +211,6 @@ private:
   std::map<std::pair<const typed::Class *, std::string>, MethodCall>
       firstCalls;                                // by class and method
   std::vector<std::string> frames, calledFrames; // the structs
-  TracingFunctions tracing;
   const bool mayReferToNothing; // some reference
   const bool lookupsNest;       // some texture looks up another
   std::vector<CalledMethod> calledMethods;

@@ -209,7 +209,7 @@ mlir::OwningOpRef<mlir::ModuleOp> deriveHitErrors(const typed::Module &module,
 bool mayTrace(const typed::Module &module) {
   for (const auto &definition : module.classes)
     for (const auto &function : definition->functions)
-      if (function->mayTrace)
+      if (function->sends.traced)
         return true;
   return false;
 }

@@ -117,7 +117,7 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
       function->setAttr("rtsl.constructor", emitter.getUnitAttr());
     else if (!key.isForIntersect() && !key.isHidden)
       function->setAttr("rtsl.method", emitter.getStringAttr(slotName(source)));
-    if (options.source && options.source->becomesStates(source))
+    if (options.source && source.sends.traced)
       function->setAttr("rtsl.states", emitter.getUnitAttr());
     if (key.takesPayload())
       function->setAttr("rtsl.payload", mlir::TypeAttr::get(type(source.parameters[0]->type)));

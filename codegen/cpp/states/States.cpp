@@ -1,7 +1,6 @@
 //===- States.cpp - methods that trace, as their states -------------------===//
 #include "codegen/cpp/states/States.h"
 
-#include "codegen/cpp/Tracing.h"
 #include "codegen/cpp/states/StateWriter.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "sema/typed/Analysis.h"
@@ -31,25 +30,17 @@ static const std::vector<std::pair<StateVariable, const char *>> &stateVariables
 
 SourceTable makeSourceTable(const typed::Module &module) {
   auto effects = std::make_shared<EffectsOf>(module);
-  auto tracing = std::make_shared<TracingFunctions>(module);
   SourceTable table;
-  table.isPure = [effects, tracing](const typed::Function &function) {
+  table.isPure = [effects](const typed::Function &function) {
     const Effects &inside = effects->function(function);
-    return inside.isPure() && !inside.usesRay && !inside.usesScratch && !function.mayTrace &&
-           !tracing->mayBeCalled(function);
-  };
-  table.mayTrace = [tracing](const typed::Function &function) {
-    return tracing->mayBeCalled(function);
-  };
-  table.becomesStates = [tracing](const typed::Function &function) {
-    return tracing->contains(function);
+    return inside.isPure() && !inside.usesRay && !inside.usesScratch;
   };
   table.writes = [effects](const typed::Expr &expr) -> std::optional<std::vector<std::string>> {
     auto *call = dynCast<typed::CallExpr>(&expr);
     if (!call) // of a method that is known when the scene is
       return std::nullopt;
     const Effects &inside = effects->function(*call->function);
-    if (inside.traces || inside.writesScratch || inside.reportsHit)
+    if (typed::raysOf(expr).any() || inside.writesScratch || inside.reportsHit)
       return std::nullopt;
     std::vector<std::string> names;
     for (const auto &[variable, name] : stateVariables())
@@ -76,14 +67,14 @@ void ModulePrinter::findStates() {
 }
 
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
-  return states && tracing.contains(method) &&
+  return states && method.sends.traced &&
          (method.isStateMethod || calledMethod(definition, method)) &&
          statesOf.count(
              {definition.name, typed::slotName(module, method), !method.isStateMethod}) != 0;
 }
 
 bool ModulePrinter::isPartOfStates(const typed::Function &function) const {
-  return states && !function.isStateMethod && tracing.contains(function);
+  return states && !function.isStateMethod && function.sends.traced;
 }
 
 const std::set<std::string> &ModulePrinter::namesInFile() const {
