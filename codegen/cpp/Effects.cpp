@@ -15,7 +15,6 @@ void Effects::add(const Effects &other) {
   writes.insert(other.writes.begin(), other.writes.end());
   random |= other.random;
   reportsHit |= other.reportsHit;
-  traces |= other.traces;
   usesRay |= other.usesRay;
   usesScratch |= other.usesScratch;
   writesScratch |= other.writesScratch;
@@ -25,7 +24,7 @@ void Effects::add(const Effects &other) {
 
 bool Effects::operator==(const Effects &other) const {
   return reads == other.reads && writes == other.writes && random == other.random &&
-         reportsHit == other.reportsHit && traces == other.traces && usesRay == other.usesRay &&
+         reportsHit == other.reportsHit && usesRay == other.usesRay &&
          usesScratch == other.usesScratch && writesScratch == other.writesScratch &&
          writesMembers == other.writesMembers && hasOutput == other.hasOutput;
 }
@@ -145,7 +144,7 @@ Effects EffectsOf::expression(const typed::Expr &expr) {
 
 /// What lights do with a point.
 void EffectsOf::collectLights(Effects &effects) {
-  effects.usesRay = effects.traces = effects.random = true;
+  effects.usesRay = effects.random = true;
   for (typed::StateVariable variable :
        {typed::StateVariable::LightDirection, typed::StateVariable::LightDistance,
         typed::StateVariable::LightColor})
@@ -259,14 +258,12 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     switch (builtin.builtin) {
     case Builtin::Rand:
     case Builtin::RandOpen:
+    case Builtin::Trace:
       effects.usesRay = effects.random = true;
       break;
     case Builtin::TracePayload:
       collectWrite(*builtin.args[4], effects);
-      effects.usesRay = effects.random = effects.traces = true;
-      break;
-    case Builtin::Trace:
-      effects.usesRay = effects.random = effects.traces = true;
+      effects.usesRay = effects.random = true;
       break;
     case Builtin::Hit:
       effects.usesRay = effects.reportsHit = true;

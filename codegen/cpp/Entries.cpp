@@ -270,100 +270,33 @@ std::string ModulePrinter::slots() {
 
 namespace {
 
-using typed::StateVariable;
+struct Need {
+  std::uint32_t bit;
+  const char *word;
+};
+constexpr Need allNeeds[] = {{RTSL_NEEDS_NORMALS, "RTSL_NEEDS_NORMALS"},
+                             {RTSL_NEEDS_TEXTURE_COORDINATES, "RTSL_NEEDS_TEXTURE_COORDINATES"},
+                             {RTSL_NEEDS_DERIVATIVES, "RTSL_NEEDS_DERIVATIVES"},
+                             {RTSL_NEEDS_TRANSFORMS, "RTSL_NEEDS_TRANSFORMS"},
+                             {RTSL_NEEDS_INVERSE_DIRECTION, "RTSL_NEEDS_INVERSE_DIRECTION"},
+                             {RTSL_NEEDS_TIME, "RTSL_NEEDS_TIME"},
+                             {RTSL_NEEDS_LAUNCH, "RTSL_NEEDS_LAUNCH"},
+                             {RTSL_NEEDS_LENS, "RTSL_NEEDS_LENS"},
+                             {RTSL_NEEDS_SAMPLING, "RTSL_NEEDS_SAMPLING"},
+                             {RTSL_NEEDS_CANDIDATE, "RTSL_NEEDS_CANDIDATE"},
+                             {RTSL_NEEDS_ANY_HIT, "RTSL_NEEDS_ANY_HIT"},
+                             {RTSL_NEEDS_HIT_ERRORS, "RTSL_NEEDS_HIT_ERRORS"}};
 
-bool readsAny(const Effects &facts, std::initializer_list<StateVariable> variables) {
-  return std::any_of(variables.begin(), variables.end(), [&](StateVariable variable) {
-    return facts.reads.count(EffectsOf::place(variable)) != 0;
-  });
-}
-
-constexpr auto coordinates = {StateVariable::TextureUV, StateVariable::TextureUVW};
-constexpr auto derivatives = {StateVariable::dPdu, StateVariable::dPdv, StateVariable::dsdu,
-                              StateVariable::dsdv, StateVariable::dtdu, StateVariable::dtdv};
-
-/// RTSL_NEEDS_* for what is read.
-std::vector<std::string> needsOf(const Effects &facts) {
+/// `.needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_TIME)`; empty where nothing is needed.
+std::string callOfNeeds(const char *function, std::uint32_t needs) {
   std::vector<std::string> words;
-  auto ask = [&](const char *word, std::initializer_list<StateVariable> variables) {
-    if (readsAny(facts, variables))
-      words.emplace_back(word);
-  };
-  ask("RTSL_NEEDS_TEXTURE_COORDINATES", coordinates);
-  ask("RTSL_NEEDS_DERIVATIVES", derivatives);
-  ask("RTSL_NEEDS_TRANSFORMS", {StateVariable::ObjectToWorld, StateVariable::WorldToObject});
-  ask("RTSL_NEEDS_INVERSE_DIRECTION", {StateVariable::InverseRayDirection});
-  ask("RTSL_NEEDS_TIME", {StateVariable::Time, StateVariable::TimeSeed});
-  ask("RTSL_NEEDS_LAUNCH", {StateVariable::LaunchIndex, StateVariable::LaunchSize});
-  ask("RTSL_NEEDS_LENS", {StateVariable::LensCoord});
-  ask("RTSL_NEEDS_SAMPLING",
-      {StateVariable::EmissionColor, StateVariable::BSDFValue, StateVariable::BSDFSeed,
-       StateVariable::PDF, StateVariable::du, StateVariable::dv});
-  return words;
-}
-
-std::string callWithWords(const char *function, const std::vector<std::string> &words) {
+  for (const Need &need : allNeeds)
+    if (needs & need.bit)
+      words.emplace_back(need.word);
   return words.empty() ? "" : std::string(function) + "(" + join(words, " | ") + ")";
 }
 
 } // namespace
-
-/// What the methods of this name do in all classes below a base.
-Effects ModulePrinter::effectsOfAll(const char *root, const std::string &method) {
-  Effects all;
-  for (const auto &definition : module.classes)
-    if (definition->root == root)
-      for (const auto &function : definition->functions)
-        if (function->name == method)
-          all.add(effects.function(*function));
-  return all;
-}
-
-/// What a class's methods read of a hit, with what else runs on the same state for them.
-std::vector<std::string> ModulePrinter::needsAtHits(const typed::Class &definition) {
-  Effects facts;
-  auto add = [&](const Effects &inside) {
-    facts.add(inside);
-    if (inside.traces)
-      facts.add(effectsOfAll("rt_Light", "illumination"));
-    if (facts.writes.count(EffectsOf::place(StateVariable::TextureColor)))
-      facts.add(effectsOfAll("rt_Texture", "lookup"));
-  };
-  if (const typed::Function *shade = slotMethod(definition, "shade"))
-    add(effects.function(*shade));
-  for (const char *method : {"closestHit", "anyHit"})
-    for (const typed::Function *program : payloadMethods(definition, method))
-      add(effects.function(*program));
-  if (readsAny(facts, derivatives))
-    facts.add(effectsOfAll("rt_Primitive", "computeDerivatives"));
-  if (readsAny(facts, coordinates))
-    facts.add(effectsOfAll("rt_Primitive", "computeTextureCoordinates"));
-  facts.add(effectsOfAll("rt_Primitive", "computeNormal")); // which always runs
-  return needsOf(facts);
-}
-
-/// What the methods of the program read.
-std::vector<std::string> ModulePrinter::needsOfProgram() {
-  Effects everything, ofHits;
-  bool hasAnyHit = false;
-  for (const auto &definition : module.classes)
-    for (const auto &function : definition->functions) {
-      everything.add(effects.function(*function));
-      if (definition->root == "rt_Primitive" && function->isStateMethod &&
-          function->name != "computeBounds")
-        ofHits.add(effects.function(*function));
-      hasAnyHit |= function->isStateMethod && function->name == "anyHit";
-    }
-  std::vector<std::string> words = needsOf(everything);
-  if (readsAny(ofHits, {StateVariable::BoundMin, StateVariable::BoundMax}) ||
-      readsAny(effectsOfAll("rt_Primitive", "intersect"),
-               {StateVariable::PrimitiveIndex, StateVariable::InstanceIndex,
-                StateVariable::ObjectToWorld, StateVariable::WorldToObject}))
-    words.emplace_back("RTSL_NEEDS_CANDIDATE");
-  if (hasAnyHit)
-    words.emplace_back("RTSL_NEEDS_ANY_HIT");
-  return words;
-}
 
 /// All structs below a type.
 static void structsOf(const Type *type, std::vector<const typed::Struct *> &found) {
@@ -434,7 +367,7 @@ std::string ModulePrinter::description() {
                            : "\"" + function->name + "\"");
     if (!methods.empty())
       text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
-    text += callWithWords(".needs", needsAtHits(*definition));
+    text += callOfNeeds(".needs", facts.needsOfClass.at(definition.get()));
     std::vector<std::string> asked;
     for (const typed::Function *anyHit : payloadMethods(*definition, "anyHit"))
       asked.push_back(names.of(anyHit->parameters.front()->type->structure));
@@ -442,7 +375,7 @@ std::string ModulePrinter::description() {
       text += fmt::format(".asks<{}>()", fmt::join(asked, ", "));
     text += ";\n";
   }
-  if (const std::string needs = callWithWords("program.needs", needsOfProgram()); !needs.empty())
+  if (const std::string needs = callOfNeeds("program.needs", facts.needs); !needs.empty())
     text += needs + ";\n";
   for (const Slot &slot : allSlots)
     for (const typed::Class *definition : classesBelow(slot.base))

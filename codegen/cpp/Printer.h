@@ -12,6 +12,7 @@
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
 #include "codegen/cpp/tree/Print.h"
+#include "codegen/link/ModuleFacts.h"
 #include "sema/typed/Analysis.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -54,8 +55,8 @@ struct CalledMethod {
 class ModulePrinter {
 public:
   /// `states`: what traces, split; null: traces are calls.
-  ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
-                const StateProgram *states);
+  ModulePrinter(const typed::Module &module, const ModuleFacts &facts, const Options &options,
+                Diagnostics &diagnostics, const StateProgram *states);
   std::string run();
 
   /// `inMemory`: as it lies in a record, a struct or an array, where a bool has 32 bits.
@@ -97,6 +98,7 @@ public:
   std::optional<SourcePlace> lineDirective(SourceRange ofFile, unsigned line) const;
 
   const typed::Module &module;
+  const ModuleFacts &facts;
   const Options &options;
   Names names;
   EffectsOf effects;
@@ -128,7 +130,6 @@ private:
   std::string hitErrors();
 
   // Attributes.cpp
-  void placeAttributes();
   const typed::Class &top(const typed::Class &definition) const;
   std::vector<const typed::Class *> family(const typed::Class &definition) const;
   bool hasScratch(const typed::Class &definition);
@@ -161,11 +162,9 @@ private:
   Statements runCalledMethod(const CalledMethod &called);
 
   // Payloads.cpp
-  void numberRayTypes();
   std::string rayType(const typed::Struct &structure) const;
   std::vector<const typed::Function *> payloadMethods(const typed::Class &definition,
                                                       const std::string &name) const;
-  bool orderShows(const std::vector<const typed::Function *> &anyHits, bool hasClosestHit);
   std::string payloadSlots();
   std::string describePayloads();
 
@@ -174,9 +173,6 @@ private:
   std::string referenceMethods();
   std::string slots();
   std::string description();
-  Effects effectsOfAll(const char *root, const std::string &method);
-  std::vector<std::string> needsAtHits(const typed::Class &definition);
-  std::vector<std::string> needsOfProgram();
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
   Statements dispatch(const std::vector<const typed::Class *> &classes,
                       const std::function<Statements(const typed::Class &)> &run,
@@ -211,16 +207,9 @@ private:
   std::map<std::pair<const typed::Class *, std::string>, MethodCall>
       firstCalls;                                // by class and method
   std::vector<std::string> frames, calledFrames; // the structs
-  const bool mayReferToNothing; // some reference
-  const bool lookupsNest;       // some texture looks up another
+  const bool mayReferToNothing;                  // some reference
+  const bool lookupsNest;                        // some texture looks up another
   std::vector<CalledMethod> calledMethods;
-
-  struct RayType {
-    const typed::Struct *payload;
-    unsigned number; // from 1
-    std::vector<std::string> search;
-  };
-  std::vector<RayType> rayTypes;
 
   const StateProgram *states;
   /// The states of each method of each class, by the names that the IR has and whether the method
@@ -233,7 +222,6 @@ private:
     const typed::Function *function; // null: lookup, lookupFloat
   };
   std::map<std::string, std::vector<ThroughReference>> referenced; // by class
-  std::map<std::pair<std::string, const Type *>, unsigned> attributeWords;
   std::map<const typed::Class *, std::optional<bool>> scratchOfFamily;
   std::set<const typed::Class *> withHitErrors; // that hitErrors() has printed
 };
