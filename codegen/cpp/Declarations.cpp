@@ -498,7 +498,11 @@ std::string ModulePrinter::run() {
   for (const auto &definition : module.classes)
     classes += "\n" + classDefinition(*definition);
   const std::string hitErrors = this->hitErrors();
-  std::string entries = module.classes.empty() ? std::string() : slots() + description();
+  std::string entries;
+  if (!module.classes.empty()) {
+    entries = slots();
+    entries += description();
+  }
   std::string structs;
   for (const auto &structure : module.structs)
     structs += "\n" + this->structure(*structure);

@@ -210,6 +210,45 @@ void EffectsOf::collectCall(const typed::Function &callee, const std::vector<typ
   effects.add(function(callee));
 }
 
+void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effects) {
+  switch (builtin.builtin) {
+  case Builtin::Rand:
+  case Builtin::RandOpen:
+  case Builtin::Trace:
+    effects.usesRay = effects.random = true;
+    break;
+  case Builtin::TracePayload:
+    collectWrite(*builtin.args[4], effects);
+    effects.usesRay = effects.random = true;
+    break;
+  case Builtin::Hit:
+    effects.usesRay = effects.reportsHit = true;
+    effects.writes.insert(place(typed::StateVariable::HitDistance));
+    break;
+  case Builtin::Ambient:
+  case Builtin::LightCount:
+    effects.usesRay = true;
+    break;
+  case Builtin::Illuminate:
+    collectLights(effects);
+    break;
+  case Builtin::IgnoreIntersection:
+  case Builtin::TerminateRay:
+  case Builtin::VisitChild:
+    effects.usesRay = effects.hasOutput = true;
+    break;
+  case Builtin::Print:
+    effects.usesRay = effects.hasOutput = true;
+    break;
+  default:
+    if (typed::info(builtin.builtin).effect == typed::BuiltinEffect::Outputs)
+      for (std::size_t i = 0; i < builtin.args.size(); ++i)
+        if (isOutArgument(builtin.builtin, i))
+          collectWrite(*builtin.args[i], effects);
+    break;
+  }
+}
+
 void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
   switch (expr.kind) {
   case ExprKind::Variable:
@@ -253,46 +292,9 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     }
     break;
   }
-  case ExprKind::Builtin: {
-    const auto &builtin = cast<typed::BuiltinExpr>(expr);
-    switch (builtin.builtin) {
-    case Builtin::Rand:
-    case Builtin::RandOpen:
-    case Builtin::Trace:
-      effects.usesRay = effects.random = true;
-      break;
-    case Builtin::TracePayload:
-      collectWrite(*builtin.args[4], effects);
-      effects.usesRay = effects.random = true;
-      break;
-    case Builtin::Hit:
-      effects.usesRay = effects.reportsHit = true;
-      effects.writes.insert(place(typed::StateVariable::HitDistance));
-      break;
-    case Builtin::Ambient:
-    case Builtin::LightCount:
-      effects.usesRay = true;
-      break;
-    case Builtin::Illuminate:
-      collectLights(effects);
-      break;
-    case Builtin::IgnoreIntersection:
-    case Builtin::TerminateRay:
-    case Builtin::VisitChild:
-      effects.usesRay = effects.hasOutput = true;
-      break;
-    case Builtin::Print:
-      effects.usesRay = effects.hasOutput = true;
-      break;
-    default:
-      if (typed::info(builtin.builtin).effect == typed::BuiltinEffect::Outputs)
-        for (std::size_t i = 0; i < builtin.args.size(); ++i)
-          if (isOutArgument(builtin.builtin, i))
-            collectWrite(*builtin.args[i], effects);
-      break;
-    }
+  case ExprKind::Builtin:
+    collectBuiltin(cast<typed::BuiltinExpr>(expr), effects);
     break;
-  }
   default:
     break;
   }

@@ -76,6 +76,7 @@ private:
   template <typename Tree>
   void collectAll(const Tree &tree, Effects &effects);
   void collect(const typed::Expr &expr, Effects &effects);
+  void collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effects);
   void collectWrite(const typed::Expr &place, Effects &effects);
   void collectLights(Effects &effects);
   Effects ofBodies(const typed::Function &function);

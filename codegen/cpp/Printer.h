@@ -33,8 +33,11 @@ struct Interval {
   std::int64_t low = 0, high = 0;
 };
 
+// states/StateWriter.h
 struct StateProgram;
 struct FrameField;
+struct Machine;
+class StateWriter;
 
 /// A method that traces and is called through references: it runs on a frame of its own, which
 /// begins with what it is given and returns.
@@ -142,6 +145,10 @@ private:
   /// The name in C++ of the first state of a method that rays start, or others call.
   std::string nameOfMachine(const typed::Class &definition, const typed::Function &method) const;
   std::string stateMachine(const typed::Class &definition, const typed::Function &method);
+  Machine machineOf(const typed::Class &definition, const typed::Function &method,
+                    std::set<std::string> &taken);
+  std::string frameStructure(Machine &machine, std::set<std::string> &taken);
+  std::string stateFunction(const Machine &machine, StateWriter &writer, std::size_t number);
   bool differsIn(const typed::Class &derived, const typed::Function &method) const;
   std::vector<std::string> inheritedStateMachines(const typed::Class &definition);
   std::string meaningOf(const typed::Function &method, const FrameField &field);
@@ -172,7 +179,6 @@ private:
   std::string references();
   std::string referenceMethods();
   std::string slots();
-  std::string description();
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
   Statements dispatch(const std::vector<const typed::Class *> &classes,
                       const std::function<Statements(const typed::Class &)> &run,
@@ -188,6 +194,13 @@ private:
   Statements withState(const Statements &body) const;
   const typed::Function *findMethod(const typed::Class &definition,
                                     const typed::Function &like) const;
+
+  // Description.cpp
+  std::string description(); // of what slots() and others have printed
+  std::string describeStructs();
+  std::string describeClass(const typed::Class &definition);
+  std::string describeConstructor(const typed::Function &constructor);
+  std::string describeFeatures() const;
 
   /// `shadeAfterTrace1(rt, frame)`, on an object.
   struct MethodCall {
@@ -224,6 +237,8 @@ private:
   std::map<std::string, std::vector<ThroughReference>> referenced; // by class
   std::map<const typed::Class *, std::optional<bool>> scratchOfFamily;
   std::set<const typed::Class *> withHitErrors; // that hitErrors() has printed
+  // that slots() has printed, by base and method
+  std::vector<std::pair<std::string, std::string>> filledSlots;
 };
 
 class FunctionPrinter {
@@ -363,6 +378,8 @@ private:
   friend class StateWriter;
 };
 
+/// The method that a class has for a slot of language/Slots.def or SamplingSlots.def; null: none.
+const typed::Function *slotMethod(const typed::Class &definition, const char *name);
 /// Does it lie in a record, a struct or an array, where bools have 32 bits?
 bool isInMemory(const typed::Expr &expr);
 std::string join(const std::vector<std::string> &parts, const char *between);
