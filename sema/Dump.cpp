@@ -157,7 +157,7 @@ void Dumper::function(const Function &function) {
     parameters += (parameters.empty() ? "" : ", ") + parameterText(*parameter);
   const char *kind = function.isConstructor ? "" : function.isStateMethod ? "method " : "function ";
   line(fmt::format("{}{}({}) : {}{}", kind, function.name, parameters,
-                   toString(function.returnType), function.mayTrace ? " traces" : ""));
+                   toString(function.returnType), function.sends.any() ? " traces" : ""));
   Indent indent(*this);
   if (function.body)
     for (const StmtPtr &inner : static_cast<const CompoundStmt &>(*function.body).body)

@@ -12,11 +12,12 @@
 
 namespace rtsl::cpp {
 
-ModulePrinter::ModulePrinter(const typed::Module &module, const Options &options,
-                             Diagnostics &diagnostics, const StateProgram *states)
-    : module(module), options(options), names(module),
+ModulePrinter::ModulePrinter(const typed::Module &module, const ModuleFacts &facts,
+                             const Options &options, Diagnostics &diagnostics,
+                             const StateProgram *states)
+    : module(module), facts(facts), options(options), names(module),
       effects(module, options.prints, options.exceptions && options.checkIndices),
-      hitAnswers(module), notes(diagnostics.sources()), tracing(module),
+      hitAnswers(module), notes(diagnostics.sources()),
       mayReferToNothing(typed::mayReferToNothing(module)), lookupsNest(typed::lookupsNest(module)),
       states(states), diagnostics(diagnostics) {
   if (!states)
@@ -488,8 +489,6 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
 //===----------------------------------------------------------------------===//
 
 std::string ModulePrinter::run() {
-  placeAttributes();
-  numberRayTypes();
   // From the inside out: what functions ask for is known when they have been printed.
   std::string constants;
   for (const auto &constant : module.constants)
@@ -499,7 +498,11 @@ std::string ModulePrinter::run() {
   for (const auto &definition : module.classes)
     classes += "\n" + classDefinition(*definition);
   const std::string hitErrors = this->hitErrors();
-  std::string entries = module.classes.empty() ? std::string() : slots() + description();
+  std::string entries;
+  if (!module.classes.empty()) {
+    entries = slots();
+    entries += description();
+  }
   std::string structs;
   for (const auto &structure : module.structs)
     structs += "\n" + this->structure(*structure);
@@ -560,9 +563,10 @@ std::string ModulePrinter::run() {
   return format(text);
 }
 
-std::optional<std::string> print(const typed::Module &module, const Options &options,
-                                 Diagnostics &diagnostics, const StateProgram *states) {
-  ModulePrinter printer(module, options, diagnostics, states);
+std::optional<std::string> print(const typed::Module &module, const ModuleFacts &facts,
+                                 const Options &options, Diagnostics &diagnostics,
+                                 const StateProgram *states) {
+  ModulePrinter printer(module, facts, options, diagnostics, states);
   std::string text = printer.run();
   if (printer.failed || diagnostics.hasErrors())
     return std::nullopt;

@@ -15,7 +15,6 @@ void Effects::add(const Effects &other) {
   writes.insert(other.writes.begin(), other.writes.end());
   random |= other.random;
   reportsHit |= other.reportsHit;
-  traces |= other.traces;
   usesRay |= other.usesRay;
   usesScratch |= other.usesScratch;
   writesScratch |= other.writesScratch;
@@ -25,7 +24,7 @@ void Effects::add(const Effects &other) {
 
 bool Effects::operator==(const Effects &other) const {
   return reads == other.reads && writes == other.writes && random == other.random &&
-         reportsHit == other.reportsHit && traces == other.traces && usesRay == other.usesRay &&
+         reportsHit == other.reportsHit && usesRay == other.usesRay &&
          usesScratch == other.usesScratch && writesScratch == other.writesScratch &&
          writesMembers == other.writesMembers && hasOutput == other.hasOutput;
 }
@@ -145,7 +144,7 @@ Effects EffectsOf::expression(const typed::Expr &expr) {
 
 /// What lights do with a point.
 void EffectsOf::collectLights(Effects &effects) {
-  effects.usesRay = effects.traces = effects.random = true;
+  effects.usesRay = effects.random = true;
   for (typed::StateVariable variable :
        {typed::StateVariable::LightDirection, typed::StateVariable::LightDistance,
         typed::StateVariable::LightColor})
@@ -211,6 +210,45 @@ void EffectsOf::collectCall(const typed::Function &callee, const std::vector<typ
   effects.add(function(callee));
 }
 
+void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effects) {
+  switch (builtin.builtin) {
+  case Builtin::Rand:
+  case Builtin::RandOpen:
+  case Builtin::Trace:
+    effects.usesRay = effects.random = true;
+    break;
+  case Builtin::TracePayload:
+    collectWrite(*builtin.args[4], effects);
+    effects.usesRay = effects.random = true;
+    break;
+  case Builtin::Hit:
+    effects.usesRay = effects.reportsHit = true;
+    effects.writes.insert(place(typed::StateVariable::HitDistance));
+    break;
+  case Builtin::Ambient:
+  case Builtin::LightCount:
+    effects.usesRay = true;
+    break;
+  case Builtin::Illuminate:
+    collectLights(effects);
+    break;
+  case Builtin::IgnoreIntersection:
+  case Builtin::TerminateRay:
+  case Builtin::VisitChild:
+    effects.usesRay = effects.hasOutput = true;
+    break;
+  case Builtin::Print:
+    effects.usesRay = effects.hasOutput = true;
+    break;
+  default:
+    if (typed::info(builtin.builtin).effect == typed::BuiltinEffect::Outputs)
+      for (std::size_t i = 0; i < builtin.args.size(); ++i)
+        if (isOutArgument(builtin.builtin, i))
+          collectWrite(*builtin.args[i], effects);
+    break;
+  }
+}
+
 void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
   switch (expr.kind) {
   case ExprKind::Variable:
@@ -254,48 +292,9 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     }
     break;
   }
-  case ExprKind::Builtin: {
-    const auto &builtin = cast<typed::BuiltinExpr>(expr);
-    switch (builtin.builtin) {
-    case Builtin::Rand:
-    case Builtin::RandOpen:
-      effects.usesRay = effects.random = true;
-      break;
-    case Builtin::TracePayload:
-      collectWrite(*builtin.args[4], effects);
-      effects.usesRay = effects.random = effects.traces = true;
-      break;
-    case Builtin::Trace:
-      effects.usesRay = effects.random = effects.traces = true;
-      break;
-    case Builtin::Hit:
-      effects.usesRay = effects.reportsHit = true;
-      effects.writes.insert(place(typed::StateVariable::HitDistance));
-      break;
-    case Builtin::Ambient:
-    case Builtin::LightCount:
-      effects.usesRay = true;
-      break;
-    case Builtin::Illuminate:
-      collectLights(effects);
-      break;
-    case Builtin::IgnoreIntersection:
-    case Builtin::TerminateRay:
-    case Builtin::VisitChild:
-      effects.usesRay = effects.hasOutput = true;
-      break;
-    case Builtin::Print:
-      effects.usesRay = effects.hasOutput = true;
-      break;
-    default:
-      if (typed::info(builtin.builtin).effect == typed::BuiltinEffect::Outputs)
-        for (std::size_t i = 0; i < builtin.args.size(); ++i)
-          if (isOutArgument(builtin.builtin, i))
-            collectWrite(*builtin.args[i], effects);
-      break;
-    }
+  case ExprKind::Builtin:
+    collectBuiltin(cast<typed::BuiltinExpr>(expr), effects);
     break;
-  }
   default:
     break;
   }

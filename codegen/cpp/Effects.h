@@ -1,8 +1,11 @@
 //===- Effects.h - what evaluation reads and writes -----------------------===//
 //
-// RTSL evaluates from left to right. C++ leaves the order of most operands open, so the printer
-// asks which operands could notice; the same facts say which functions need the ray's state, which
-// methods are const, and what the reflection tells of a method.
+// RTSL evaluates operands from left to right, C++ in any order. So the printer must know which
+// operands depend on the order; the same facts decide which functions take the ray's state and
+// which methods are const, and reflection prints them. These are properties of the author's
+// expressions as C++ evaluates them, which the IR does not represent. Which rays an expression
+// sends is decided by sema (typed::raysOf), which parts of a hit are read by linking
+// (codegen/link/ModuleFacts.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -21,7 +24,6 @@ struct Effects {
   std::set<const void *> reads, writes;
   bool random = false; // draws random numbers
   bool reportsHit = false;
-  bool traces = false;  // trace or illuminance
   bool usesRay = false; // needs the state for anything: state variables, other objects, rays
   bool usesScratch = false;
   bool writesScratch = false;
@@ -30,7 +32,7 @@ struct Effects {
 
   void add(const Effects &other);
   bool operator==(const Effects &other) const;
-  bool isPure() const { return writes.empty() && !random && !reportsHit && !traces && !hasOutput; }
+  bool isPure() const { return writes.empty() && !random && !reportsHit && !hasOutput; }
 };
 
 /// Would it show if `second` were evaluated before `first`?
@@ -74,6 +76,7 @@ private:
   template <typename Tree>
   void collectAll(const Tree &tree, Effects &effects);
   void collect(const typed::Expr &expr, Effects &effects);
+  void collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effects);
   void collectWrite(const typed::Expr &place, Effects &effects);
   void collectLights(Effects &effects);
   Effects ofBodies(const typed::Function &function);

@@ -2,7 +2,8 @@
 //
 // Prints RTSL as one file of C++17 on GLM and rtsl/shader.h. It is printed from the typed tree,
 // which still has the author's loops, expressions and names; docs/cpp-output.md says why, and how
-// the output keeps the bits of the compiler's own machine code.
+// the output keeps the bits of the compiler's own machine code. What the runtime is told of the
+// program (types of rays, places of attributes, what of a hit is read) comes from linking.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,6 +14,10 @@
 
 #include <optional>
 #include <string>
+
+namespace rtsl {
+struct ModuleFacts;
+}
 
 namespace rtsl::cpp {
 
@@ -34,9 +39,11 @@ struct Options {
 
 struct StateProgram;
 
-/// The text, formatted; nothing if something cannot be printed, which is reported. `states`:
-/// methods that trace, split, to be printed as their states (States.h); null: traces are calls.
-std::optional<std::string> print(const typed::Module &module, const Options &options,
-                                 Diagnostics &diagnostics, const StateProgram *states = nullptr);
+/// The text, formatted; nothing if something cannot be printed, which is reported. `facts`: what
+/// linking has found out of the module (codegen/link/LinkModule.h). `states`: methods that trace,
+/// split, to be printed as their states (States.h); null: traces are calls.
+std::optional<std::string> print(const typed::Module &module, const ModuleFacts &facts,
+                                 const Options &options, Diagnostics &diagnostics,
+                                 const StateProgram *states = nullptr);
 
 } // namespace rtsl::cpp

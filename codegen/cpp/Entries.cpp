@@ -1,9 +1,7 @@
 //===- Entries.cpp - how the runtime and references reach the classes -----===//
 #include "codegen/cpp/Printer.h"
 
-#include "codegen/link/Members.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
-#include "runtime/device/ray/Abi.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
@@ -213,7 +211,7 @@ constexpr Slot allSlots[] = {
 };
 } // namespace
 
-static const typed::Function *slotMethod(const typed::Class &definition, const char *name) {
+const typed::Function *slotMethod(const typed::Class &definition, const char *name) {
   for (const typed::Class *at = &definition; at; at = at->base)
     for (const auto &function : at->functions)
       if (function->name == name && function->isStateMethod && function->parameters.empty())
@@ -257,219 +255,13 @@ std::string ModulePrinter::slots() {
                                               : std::vector<Code>{rt};
       return {statement(callMember(object, names.of(method), arguments))};
     });
-    if (!body.empty())
-      text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n{}}}\n",
-                          slot.method, print(withState(body)));
+    if (body.empty())
+      continue;
+    text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n{}}}\n", slot.method,
+                        print(withState(body)));
+    filledSlots.emplace_back(slot.base, slot.method);
   }
   return text + payloadSlots() + runState() + "\n} // namespace slots\n";
-}
-
-//===----------------------------------------------------------------------===//
-// Description
-//===----------------------------------------------------------------------===//
-
-namespace {
-
-using typed::StateVariable;
-
-bool readsAny(const Effects &facts, std::initializer_list<StateVariable> variables) {
-  return std::any_of(variables.begin(), variables.end(), [&](StateVariable variable) {
-    return facts.reads.count(EffectsOf::place(variable)) != 0;
-  });
-}
-
-constexpr auto coordinates = {StateVariable::TextureUV, StateVariable::TextureUVW};
-constexpr auto derivatives = {StateVariable::dPdu, StateVariable::dPdv, StateVariable::dsdu,
-                              StateVariable::dsdv, StateVariable::dtdu, StateVariable::dtdv};
-
-/// RTSL_NEEDS_* for what is read.
-std::vector<std::string> needsOf(const Effects &facts) {
-  std::vector<std::string> words;
-  auto ask = [&](const char *word, std::initializer_list<StateVariable> variables) {
-    if (readsAny(facts, variables))
-      words.emplace_back(word);
-  };
-  ask("RTSL_NEEDS_TEXTURE_COORDINATES", coordinates);
-  ask("RTSL_NEEDS_DERIVATIVES", derivatives);
-  ask("RTSL_NEEDS_TRANSFORMS", {StateVariable::ObjectToWorld, StateVariable::WorldToObject});
-  ask("RTSL_NEEDS_INVERSE_DIRECTION", {StateVariable::InverseRayDirection});
-  ask("RTSL_NEEDS_TIME", {StateVariable::Time, StateVariable::TimeSeed});
-  ask("RTSL_NEEDS_LAUNCH", {StateVariable::LaunchIndex, StateVariable::LaunchSize});
-  ask("RTSL_NEEDS_LENS", {StateVariable::LensCoord});
-  ask("RTSL_NEEDS_SAMPLING",
-      {StateVariable::EmissionColor, StateVariable::BSDFValue, StateVariable::BSDFSeed,
-       StateVariable::PDF, StateVariable::du, StateVariable::dv});
-  return words;
-}
-
-std::string callWithWords(const char *function, const std::vector<std::string> &words) {
-  return words.empty() ? "" : std::string(function) + "(" + join(words, " | ") + ")";
-}
-
-} // namespace
-
-/// What the methods of this name do in all classes below a base.
-Effects ModulePrinter::effectsOfAll(const char *root, const std::string &method) {
-  Effects all;
-  for (const auto &definition : module.classes)
-    if (definition->root == root)
-      for (const auto &function : definition->functions)
-        if (function->name == method)
-          all.add(effects.function(*function));
-  return all;
-}
-
-/// What a class's methods read of a hit, with what else runs on the same state for them.
-std::vector<std::string> ModulePrinter::needsAtHits(const typed::Class &definition) {
-  Effects facts;
-  auto add = [&](const Effects &inside) {
-    facts.add(inside);
-    if (inside.traces)
-      facts.add(effectsOfAll("rt_Light", "illumination"));
-    if (facts.writes.count(EffectsOf::place(StateVariable::TextureColor)))
-      facts.add(effectsOfAll("rt_Texture", "lookup"));
-  };
-  if (const typed::Function *shade = slotMethod(definition, "shade"))
-    add(effects.function(*shade));
-  for (const char *method : {"closestHit", "anyHit"})
-    for (const typed::Function *program : payloadMethods(definition, method))
-      add(effects.function(*program));
-  if (readsAny(facts, derivatives))
-    facts.add(effectsOfAll("rt_Primitive", "computeDerivatives"));
-  if (readsAny(facts, coordinates))
-    facts.add(effectsOfAll("rt_Primitive", "computeTextureCoordinates"));
-  facts.add(effectsOfAll("rt_Primitive", "computeNormal")); // which always runs
-  return needsOf(facts);
-}
-
-/// What the methods of the program read.
-std::vector<std::string> ModulePrinter::needsOfProgram() {
-  Effects everything, ofHits;
-  bool hasAnyHit = false;
-  for (const auto &definition : module.classes)
-    for (const auto &function : definition->functions) {
-      everything.add(effects.function(*function));
-      if (definition->root == "rt_Primitive" && function->isStateMethod &&
-          function->name != "computeBounds")
-        ofHits.add(effects.function(*function));
-      hasAnyHit |= function->isStateMethod && function->name == "anyHit";
-    }
-  std::vector<std::string> words = needsOf(everything);
-  if (readsAny(ofHits, {StateVariable::BoundMin, StateVariable::BoundMax}) ||
-      readsAny(effectsOfAll("rt_Primitive", "intersect"),
-               {StateVariable::PrimitiveIndex, StateVariable::InstanceIndex,
-                StateVariable::ObjectToWorld, StateVariable::WorldToObject}))
-    words.emplace_back("RTSL_NEEDS_CANDIDATE");
-  if (hasAnyHit)
-    words.emplace_back("RTSL_NEEDS_ANY_HIT");
-  return words;
-}
-
-/// All structs below a type.
-static void structsOf(const Type *type, std::vector<const typed::Struct *> &found) {
-  if (type->is(TypeKind::Array) || type->is(TypeKind::Buffer))
-    return structsOf(type->element, found);
-  if (!type->is(TypeKind::Struct))
-    return;
-  for (const typed::Field &field : type->structure->fields)
-    structsOf(field.type, found);
-  if (std::find(found.begin(), found.end(), type->structure) == found.end())
-    found.push_back(type->structure);
-}
-
-std::string ModulePrinter::description() {
-  std::string text;
-  std::vector<const typed::Struct *> described;
-  for (const auto &definition : module.classes) {
-    for (const auto &member : definition->members)
-      if (!member->isConst && member->access != ast::Access::Scratch)
-        structsOf(member->type, described);
-    for (const auto &function : definition->functions)
-      if (function->isConstructor)
-        for (const auto &parameter : function->parameters)
-          structsOf(parameter->type, described);
-  }
-  for (const typed::Struct *structure : described) {
-    text += fmt::format("\ninline void describeFields(rtsl::StructDescription<{0}> &fields) "
-                        "{{\nfields.name = \"{1}\";\n",
-                        names.of(structure), structure->name);
-    for (const typed::Field &field : structure->fields)
-      text += fmt::format("fields.add(\"{}\", &{}::{});\n", field.name, names.of(structure),
-                          names.of(&field));
-    text += "}\n";
-  }
-
-  text += fmt::format("\nstatic RtslShaders describe() {{\nrtsl::Program<{}> program;\n",
-                      options.colorComponents);
-  for (const auto &definition : module.classes) {
-    const std::string &name = names.of(definition.get());
-    text += fmt::format(
-        "program.add<{0}>(static_cast<std::uint32_t>(Id::{0}), \"{1}\", \"{2}\", \"{3}\")", name,
-        definition->name, definition->base ? definition->base->name : definition->root,
-        definition->root);
-    for (const typed::Member *member : allMembers(*definition)) {
-      if (member->isConst || member->access == ast::Access::Scratch)
-        continue;
-      text += fmt::format(".member(\"{}\", &{}::{}, rtsl::Access::{}{})", member->name, name,
-                          names.of(member),
-                          member->access == ast::Access::Public ? "Public" : "Private",
-                          member->init || member->isOptional ? ", rtsl::Default::Given" : "");
-    }
-    if (const typed::Function *constructor = findConstructor(*definition)) {
-      std::vector<std::string> parameters;
-      for (std::size_t i = 0; i < constructor->parameters.size(); ++i) {
-        const std::string &parameter = constructor->parameters[i]->name;
-        parameters.push_back(
-            "\"" + (parameter.empty() ? "unnamed" + std::to_string(i) : parameter) + "\"");
-      }
-      text += fmt::format(".constructor<&{}::{}>({{{}}})", names.of(constructor->owner),
-                          names.of(constructor), join(parameters, ", "));
-    }
-    std::set<std::string> methods;
-    for (const typed::Class *at = definition.get(); at; at = at->base)
-      for (const auto &function : at->functions)
-        methods.insert(typed::takesPayload(*function)
-                           ? fmt::format("\"{}({})\"", function->name,
-                                         toString(function->parameters.front()->type))
-                           : "\"" + function->name + "\"");
-    if (!methods.empty())
-      text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
-    text += callWithWords(".needs", needsAtHits(*definition));
-    std::vector<std::string> asked;
-    for (const typed::Function *anyHit : payloadMethods(*definition, "anyHit"))
-      asked.push_back(names.of(anyHit->parameters.front()->type->structure));
-    if (!asked.empty())
-      text += fmt::format(".asks<{}>()", fmt::join(asked, ", "));
-    text += ";\n";
-  }
-  if (const std::string needs = callWithWords("program.needs", needsOfProgram()); !needs.empty())
-    text += needs + ";\n";
-  for (const Slot &slot : allSlots)
-    for (const typed::Class *definition : classesBelow(slot.base))
-      if (slot.method == hitErrorMethod
-              ? withHitErrors.count(definition) != 0
-              : !isRunBySteps(slot.method) && slotMethod(*definition, slot.method) != nullptr) {
-        text += fmt::format("program.slots().{}_{} = &slots::{};\n", slot.base, slot.method,
-                            slot.method);
-        break;
-      }
-  std::vector<std::string> features;
-  if (options.exceptions)
-    features.emplace_back("RTSL_FEATURE_EXCEPTIONS");
-  if (options.prints)
-    features.emplace_back("RTSL_FEATURE_PRINT");
-  if (options.undefined & RTSL_FEATURE_UNDEFINED_BYTES)
-    features.emplace_back("RTSL_FEATURE_UNDEFINED_BYTES");
-  if (options.undefined & RTSL_FEATURE_UNDEFINED_NAN)
-    features.emplace_back("RTSL_FEATURE_UNDEFINED_NAN");
-  if (!features.empty())
-    text += "program.features(" + join(features, " | ") + ");\n";
-  for (const typed::Class *definition : classesBelow("rt_RayGeneration"))
-    if (slotMethod(*definition, "generate")) {
-      text += "program.engine(rtsl::runtime::Engine::Either);\n";
-      break;
-    }
-  return text + describePayloads() + describeStates() + "return program.finish();\n}\n";
 }
 
 } // namespace rtsl::cpp

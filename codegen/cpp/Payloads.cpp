@@ -1,8 +1,8 @@
 //===- Payloads.cpp - rays that carry a struct ----------------------------===//
 //
-// A struct that rays carry gets a number, and says how hits of its rays are searched for, as
-// linking does for machine code (codegen/link/RayTypes.cpp). Methods that take a payload are
-// reached through slots that ask which it is.
+// A struct that rays carry has a number, and says how hits of its rays are searched for: both come
+// from linking (codegen/link/RayTypes.cpp). Methods that take a payload are reached through slots
+// that ask which it is.
 //
 // `ignoreIntersection()` and `terminateRay()` end `anyHit` at once, from functions that it calls
 // too: in C++ each `return`s, and so does who called it. Where C++ has no `return`, in the middle
@@ -11,6 +11,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/Printer.h"
 
+#include "runtime/device/ray/Abi.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
@@ -47,89 +48,25 @@ std::vector<const typed::Function *> ModulePrinter::payloadMethods(const typed::
   return methods;
 }
 
-/// Does anybody see in which order materials are asked? Where it cannot be ruled out quickly, yes.
-bool ModulePrinter::orderShows(const std::vector<const typed::Function *> &anyHits,
-                               bool hasClosestHit) {
-  for (const typed::Function *method : anyHits) {
-    const Effects inside = effects.statement(*method->body);
-    if (inside.random || inside.writes.count(method->parameters.front().get()))
-      return true;
-    bool shows = false;
-    std::set<const typed::Function *> visited;
-    std::function<void(const typed::Function &)> look = [&](const typed::Function &function) {
-      if (!function.body || !visited.insert(&function).second)
-        return;
-      effects.forEachEvaluated(*function.body, [&](const typed::Expr &expr) {
-        if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-          shows |= builtin->builtin == Builtin::Print ||
-                   (hasClosestHit && builtin->builtin == Builtin::TerminateRay);
-        shows |= expr.kind == typed::ExprKind::MethodCall;
-        if (auto *call = dynCast<typed::CallExpr>(&expr)) {
-          look(*call->function);
-          for (const auto &definition : module.classes)
-            if (const typed::Function *other =
-                    call->function->owner ? findMethod(*definition, *call->function) : nullptr)
-              look(*other);
-        }
-      });
-    };
-    look(*method);
-    if (shows)
-      return true;
-  }
-  return false;
-}
-
-void ModulePrinter::numberRayTypes() {
-  auto add = [&](const typed::Struct *payload) {
-    for (const RayType &known : rayTypes)
-      if (known.payload == payload)
-        return;
-    rayTypes.push_back({payload, static_cast<unsigned>(rayTypes.size()) + 1, {}});
-  };
-  auto lookInto = [&](const typed::Function &function) {
-    if (isPayloadMethod(function))
-      add(payloadOf(function));
-    if (function.body)
-      forEachExpr(*function.body, [&](const typed::Expr &expr) {
-        if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
-            builtin && builtin->builtin == Builtin::TracePayload)
-          add(builtin->args[4]->type->structure);
-      });
-  };
-  for (const auto &function : module.functions)
-    lookInto(*function);
-  for (const auto &definition : module.classes)
-    for (const auto &function : definition->functions)
-      lookInto(*function);
-
-  for (RayType &type : rayTypes) {
-    auto programs = [&](const char *name) {
-      std::vector<const typed::Function *> found;
-      for (const auto &definition : module.classes)
-        for (const auto &function : definition->functions)
-          if (isPayloadMethod(*function) && function->name == name &&
-              payloadOf(*function) == type.payload)
-            found.push_back(function.get());
-      return found;
-    };
-    const bool hasClosestHit = !programs("closestHit").empty();
-    const std::vector<const typed::Function *> anyHits = programs("anyHit");
-    if (!hasClosestHit)
-      type.search.emplace_back("rtsl::firstHit");
-    if (!anyHits.empty())
-      type.search.emplace_back("rtsl::askAnyHit");
-    if (!anyHits.empty() && orderShows(anyHits, hasClosestHit))
-      type.search.emplace_back("rtsl::inOrder");
-  }
+/// RTSL_FIRST_HIT and others, as the header names them.
+static std::vector<std::string> searchWords(std::uint32_t search) {
+  std::vector<std::string> words;
+  for (const auto &[bit, word] :
+       {std::pair(RTSL_FIRST_HIT, "rtsl::firstHit"), std::pair(RTSL_ASK_ANY_HIT, "rtsl::askAnyHit"),
+        std::pair(RTSL_IN_ORDER, "rtsl::inOrder")})
+    if (search & bit)
+      words.emplace_back(word);
+  return words;
 }
 
 std::string ModulePrinter::rayType(const typed::Struct &structure) const {
-  for (const RayType &type : rayTypes)
-    if (type.payload == &structure)
+  for (const RayTypeFacts &type : facts.rayTypes)
+    if (type.payload == &structure) {
+      const std::string search = join(searchWords(type.search), " | ");
       return fmt::format("// The type of the rays that carry it.\nstatic constexpr rtsl::RayType "
                          "rayType{{{}{}}};\n\n",
-                         type.number, type.search.empty() ? "" : ", " + join(type.search, " | "));
+                         type.number, search.empty() ? "" : ", " + search);
+    }
   return {};
 }
 
@@ -155,7 +92,7 @@ std::string ModulePrinter::payloadSlots() {
       continue;       // runState has them
     Statements tests; // from the last type to the first
     const std::vector<const typed::Class *> classes = classesBelow(slot.base);
-    for (auto type = rayTypes.rbegin(); type != rayTypes.rend(); ++type) {
+    for (auto type = facts.rayTypes.rbegin(); type != facts.rayTypes.rend(); ++type) {
       Statements body = dispatch(classes, [&](const typed::Class &definition) -> Statements {
         for (const typed::Function *method : payloadMethods(definition, slot.method))
           if (payloadOf(*method) == type->payload) {

@@ -11,8 +11,8 @@
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
-#include "codegen/cpp/Tracing.h"
 #include "codegen/cpp/tree/Print.h"
+#include "codegen/link/ModuleFacts.h"
 #include "sema/typed/Analysis.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -33,8 +33,11 @@ struct Interval {
   std::int64_t low = 0, high = 0;
 };
 
+// states/StateWriter.h
 struct StateProgram;
 struct FrameField;
+struct Machine;
+class StateWriter;
 
 /// A method that traces and is called through references: it runs on a frame of its own, which
 /// begins with what it is given and returns.
@@ -55,8 +58,8 @@ struct CalledMethod {
 class ModulePrinter {
 public:
   /// `states`: what traces, split; null: traces are calls.
-  ModulePrinter(const typed::Module &module, const Options &options, Diagnostics &diagnostics,
-                const StateProgram *states);
+  ModulePrinter(const typed::Module &module, const ModuleFacts &facts, const Options &options,
+                Diagnostics &diagnostics, const StateProgram *states);
   std::string run();
 
   /// `inMemory`: as it lies in a record, a struct or an array, where a bool has 32 bits.
@@ -98,6 +101,7 @@ public:
   std::optional<SourcePlace> lineDirective(SourceRange ofFile, unsigned line) const;
 
   const typed::Module &module;
+  const ModuleFacts &facts;
   const Options &options;
   Names names;
   EffectsOf effects;
@@ -129,7 +133,6 @@ private:
   std::string hitErrors();
 
   // Attributes.cpp
-  void placeAttributes();
   const typed::Class &top(const typed::Class &definition) const;
   std::vector<const typed::Class *> family(const typed::Class &definition) const;
   bool hasScratch(const typed::Class &definition);
@@ -142,6 +145,10 @@ private:
   /// The name in C++ of the first state of a method that rays start, or others call.
   std::string nameOfMachine(const typed::Class &definition, const typed::Function &method) const;
   std::string stateMachine(const typed::Class &definition, const typed::Function &method);
+  Machine machineOf(const typed::Class &definition, const typed::Function &method,
+                    std::set<std::string> &taken);
+  std::string frameStructure(Machine &machine, std::set<std::string> &taken);
+  std::string stateFunction(const Machine &machine, StateWriter &writer, std::size_t number);
   bool differsIn(const typed::Class &derived, const typed::Function &method) const;
   std::vector<std::string> inheritedStateMachines(const typed::Class &definition);
   std::string meaningOf(const typed::Function &method, const FrameField &field);
@@ -162,11 +169,9 @@ private:
   Statements runCalledMethod(const CalledMethod &called);
 
   // Payloads.cpp
-  void numberRayTypes();
   std::string rayType(const typed::Struct &structure) const;
   std::vector<const typed::Function *> payloadMethods(const typed::Class &definition,
                                                       const std::string &name) const;
-  bool orderShows(const std::vector<const typed::Function *> &anyHits, bool hasClosestHit);
   std::string payloadSlots();
   std::string describePayloads();
 
@@ -174,10 +179,6 @@ private:
   std::string references();
   std::string referenceMethods();
   std::string slots();
-  std::string description();
-  Effects effectsOfAll(const char *root, const std::string &method);
-  std::vector<std::string> needsAtHits(const typed::Class &definition);
-  std::vector<std::string> needsOfProgram();
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
   Statements dispatch(const std::vector<const typed::Class *> &classes,
                       const std::function<Statements(const typed::Class &)> &run,
@@ -193,6 +194,13 @@ private:
   Statements withState(const Statements &body) const;
   const typed::Function *findMethod(const typed::Class &definition,
                                     const typed::Function &like) const;
+
+  // Description.cpp
+  std::string description(); // of what slots() and others have printed
+  std::string describeStructs();
+  std::string describeClass(const typed::Class &definition);
+  std::string describeConstructor(const typed::Function &constructor);
+  std::string describeFeatures() const;
 
   /// `shadeAfterTrace1(rt, frame)`, on an object.
   struct MethodCall {
@@ -212,17 +220,9 @@ private:
   std::map<std::pair<const typed::Class *, std::string>, MethodCall>
       firstCalls;                                // by class and method
   std::vector<std::string> frames, calledFrames; // the structs
-  TracingFunctions tracing;
-  const bool mayReferToNothing; // some reference
-  const bool lookupsNest;       // some texture looks up another
+  const bool mayReferToNothing;                  // some reference
+  const bool lookupsNest;                        // some texture looks up another
   std::vector<CalledMethod> calledMethods;
-
-  struct RayType {
-    const typed::Struct *payload;
-    unsigned number; // from 1
-    std::vector<std::string> search;
-  };
-  std::vector<RayType> rayTypes;
 
   const StateProgram *states;
   /// The states of each method of each class, by the names that the IR has and whether the method
@@ -235,9 +235,10 @@ private:
     const typed::Function *function; // null: lookup, lookupFloat
   };
   std::map<std::string, std::vector<ThroughReference>> referenced; // by class
-  std::map<std::pair<std::string, const Type *>, unsigned> attributeWords;
   std::map<const typed::Class *, std::optional<bool>> scratchOfFamily;
   std::set<const typed::Class *> withHitErrors; // that hitErrors() has printed
+  // that slots() has printed, by base and method
+  std::vector<std::pair<std::string, std::string>> filledSlots;
 };
 
 class FunctionPrinter {
@@ -377,6 +378,8 @@ private:
   friend class StateWriter;
 };
 
+/// The method that a class has for a slot of language/Slots.def or SamplingSlots.def; null: none.
+const typed::Function *slotMethod(const typed::Class &definition, const char *name);
 /// Does it lie in a record, a struct or an array, where bools have 32 bits?
 bool isInMemory(const typed::Expr &expr);
 std::string join(const std::vector<std::string> &parts, const char *between);

@@ -105,7 +105,7 @@ std::string ModulePrinter::runState() {
     Statements body;
     if (!one.hasPayload)
       body = begin(one, nullptr);
-    for (const RayType &type : rayTypes)
+    for (const RayTypeFacts &type : facts.rayTypes)
       if (Statements run = one.hasPayload ? begin(one, type.payload) : Statements(); !run.empty())
         body.push_back(branch(carries(*type.payload), std::move(run), /*hasBraces=*/true));
     if (!endsInReturn(body))

@@ -8,6 +8,7 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
+#include "codegen/link/LinkModule.h"
 #include "codegen/lower/KnownConditions.h"
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/continuation/calls/Steps.h"
@@ -21,9 +22,10 @@ using namespace driver;
 namespace {
 
 /// C++ with the states of what traces.
-std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp::Options &printing,
-                                         const CompileOptions &options, Diagnostics &diagnostics) {
-  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+std::optional<std::string> printSplitCpp(const typed::Module &module, const ModuleFacts &facts,
+                                         const cpp::Options &printing,
+                                         const CompileOptions &options, mlir::MLIRContext &context,
+                                         Diagnostics &diagnostics) {
   SourceTable source = cpp::makeSourceTable(module);
   LowerOptions lowering;
   lowering.diagnostics = &diagnostics;
@@ -31,7 +33,7 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
   lowering.checkIndices = false; // C++ looks at an index where it takes it
   lowering.prints = printing.prints;
   lowering.source = &source;
-  const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, *context);
+  const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, context);
   if (!ir)
     return std::nullopt;
   continuation::callThroughFrames(*ir);
@@ -44,46 +46,22 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const cpp:
     if (ir::attr::state.isOn(function))
       expectSuccess(*ir, [&] { return mlir::succeeded(restructure(function)); });
   const cpp::StateProgram states = {program, source};
-  return cpp::print(module, printing, diagnostics, &states);
+  return cpp::print(module, facts, printing, diagnostics, &states);
 }
 
-/// Bounds of t for the primitives of a program in C++, whose scene is not known: any of its
-/// materials may be on any of them.
-mlir::OwningOpRef<mlir::ModuleOp> deriveHitErrors(const typed::Module &module,
-                                                  const CompileOptions &options,
-                                                  mlir::MLIRContext &context,
-                                                  Diagnostics &diagnostics) {
-  std::vector<std::string> primitives;
-  for (const auto &definition : module.classes)
-    if (definition->root == "rt_Primitive")
-      primitives.push_back(definition->name);
-  if (primitives.empty())
-    return {};
-  LowerOptions lowering;
-  lowering.diagnostics = &diagnostics;
-  lowering.colorComponents = options.colorComponents;
-  lowering.checkIndices = options.checkIndices;
-  mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, context);
-  if (!ir)
-    return {};
-  mlir::SymbolTable symbols(*ir);
-  if (functionsThatSendRays(*ir, symbols).empty())
-    return {};
-  warnOfUnboundHits(
-      rtsl::deriveHitErrors(*ir, symbols, primitives, elementaryErrorsOf(options.floatingPoint)),
-      module, diagnostics);
-  for (auto function : llvm::make_early_inc_range(ir->getOps<mlir::func::FuncOp>()))
+/// Leaves the bounds of t of a linked module's primitives, as C++ shows them.
+void keepHitErrors(mlir::ModuleOp module) {
+  for (auto function : llvm::make_early_inc_range(module.getOps<mlir::func::FuncOp>()))
     if (!ir::attr::hitError.isOn(function))
       function.erase();
     else
-      expectSuccess(*ir, [&] { return mlir::succeeded(restructure(function)); });
-  return ir;
+      expectSuccess(module, [&] { return mlir::succeeded(restructure(function)); });
 }
 
 bool mayTrace(const typed::Module &module) {
   for (const auto &definition : module.classes)
     for (const auto &function : definition->functions)
-      if (function->mayTrace)
+      if (function->sends.traced)
         return true;
   return false;
 }
@@ -94,6 +72,20 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
                                    bool lineDirectives, std::optional<TraceMode> trace,
                                    std::uint32_t features, const CompileOptions &options,
                                    Diagnostics &diagnostics) {
+  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
+  LinkRequest request;
+  request.features = features;
+  const mlir::OwningOpRef<mlir::ModuleOp> ir =
+      lowerModule(module, options, request, diagnostics, *context);
+  if (!ir)
+    return std::nullopt;
+  const std::optional<ModuleFacts> facts =
+      linkModule(*ir, module, diagnostics, options.floatingPoint);
+  if (!facts)
+    return std::nullopt;
+  keepHitErrors(*ir);
+  const cpp::HitErrorFunctions hitErrors = {*ir};
+
   cpp::Options printing;
   printing.prints = features & RTSL_FEATURE_PRINT;
   printing.exceptions = features & RTSL_FEATURE_EXCEPTIONS;
@@ -103,24 +95,22 @@ std::optional<std::string> emitCpp(const typed::Module &module, const std::strin
   printing.name = name;
   printing.colorComponents = options.colorComponents;
   printing.lineDirectives = lineDirectives;
-  const std::unique_ptr<mlir::MLIRContext> context = makeContext();
-  const mlir::OwningOpRef<mlir::ModuleOp> bounds =
-      deriveHitErrors(module, options, *context, diagnostics);
-  const cpp::HitErrorFunctions hitErrors = {bounds ? *bounds : mlir::ModuleOp()};
-  if (bounds)
-    printing.hitErrors = &hitErrors;
+  printing.hitErrors = &hitErrors;
   if (trace == TraceMode::Recurse || !mayTrace(module))
-    return cpp::print(module, printing, diagnostics);
+    return cpp::print(module, *facts, printing, diagnostics);
+  const auto printStates = [&](Diagnostics &refusals) {
+    return printSplitCpp(module, *facts, printing, options, *context, refusals);
+  };
   if (trace == TraceMode::Split)
-    return printSplitCpp(module, printing, options, diagnostics);
+    return printStates(diagnostics);
   Diagnostics refusals(diagnostics.sources());
-  if (std::optional<std::string> text = printSplitCpp(module, printing, options, refusals))
+  if (std::optional<std::string> text = printStates(refusals))
     return text;
   if (!refusals.all().empty()) {
     const std::string &message = refusals.all().front().message;
     printing.whyCalls = message.substr(0, message.find(" (")); // without the advice in parentheses
   }
-  return cpp::print(module, printing, diagnostics);
+  return cpp::print(module, *facts, printing, diagnostics);
 }
 
 } // namespace rtsl

@@ -173,7 +173,7 @@ private:
 #include "language/StateVariables.def"
     json["stateRead"] = std::move(reads);
     json["stateWritten"] = std::move(writes);
-    json["traces"] = function.mayTrace;
+    json["traces"] = function.sends.any();
     json["random"] = facts.random;
     return json;
   }

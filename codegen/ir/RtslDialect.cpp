@@ -95,7 +95,8 @@ mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
     return op->emitOpError() << "`" << name << "` takes no value";
   const llvm::StringRef shown = llvm::StringSwitch<llvm::StringRef>(kind)
                                     .Case("String", "a string")
-                                    .Case("Integer", "a whole number")
+                                    .Case("Integer", "an integer")
+                                    .Case("Type", "a type")
                                     .Case("Array", "an array")
                                     .Case("DenseI32Array", "an array of i32")
                                     .Case("DenseF32Array", "an array of f32");

@@ -15,11 +15,13 @@
 
 #include <algorithm>
 
-namespace rtsl {
+namespace rtsl::linking {
+
+namespace {
 
 /// The `hit(t)` that begins there; no place if there is none.
-static SourceRange findHit(const typed::Module &module, const SourceManager &sources,
-                           const ir::SourcePlace &place) {
+SourceRange findHit(const typed::Module &module, const SourceManager &sources,
+                    const ir::SourcePlace &place) {
   SourceRange range;
   const auto look = [&](const typed::Function &function) {
     if (!function.body)
@@ -42,6 +44,7 @@ static SourceRange findHit(const typed::Module &module, const SourceManager &sou
   return range;
 }
 
+/// Tells the author which hits of primitives that rays leave have no bound of their error.
 void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module,
                        Diagnostics &diagnostics) {
   for (const DerivedHitError &one : derived)
@@ -51,10 +54,6 @@ void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed:
                   findHit(module, diagnostics.sources(), ir::placeOf(hit.place)), hit.reason)
           .note("state how far off t may be at most: `hit(t, error)`");
 }
-
-namespace linking {
-
-namespace {
 
 /// The materials whose methods send rays.
 std::set<std::string> findSenders(const LinkContext &context) {
@@ -83,6 +82,10 @@ std::map<std::string, std::string> findSendersOn(const LinkContext &context,
 }
 
 } // namespace
+
+ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint) {
+  return floatingPoint == FloatingPoint::Fast ? fastErrors : strictErrors;
+}
 
 void deriveHitErrors(LinkContext &context) {
   const std::set<std::string> senders = findSenders(context);
@@ -123,6 +126,4 @@ void deriveHitErrors(LinkContext &context) {
   warnOfUnboundHits(derived, context.module, context.diagnostics);
 }
 
-} // namespace linking
-
-} // namespace rtsl
+} // namespace rtsl::linking

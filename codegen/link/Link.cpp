@@ -20,10 +20,6 @@ std::string intersectSymbol(const std::string &className) {
   return className + ".intersect";
 }
 
-ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint) {
-  return floatingPoint == FloatingPoint::Fast ? fastErrors : strictErrors;
-}
-
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
           std::uint32_t colorComponents, Diagnostics &diagnostics, runtime::Program &program,
           Findings *findings, FloatingPoint floatingPoint) {
@@ -33,7 +29,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
                                request,
                                diagnostics,
                                findings ? *findings : unasked,
-                               elementaryErrorsOf(floatingPoint)};
+                               linking::elementaryErrorsOf(floatingPoint)};
   linking::dropUnusedClasses(context);
   linking::emptyReferences(context);
   linking::findUsedObjects(context);

@@ -19,14 +19,13 @@
 //      (MakeEntries.cpp),
 //   8. finds out what of a hit the program reads (FindNeeds.cpp).
 // What LinkRequest::keep names stays although the scene does not need it. Each step notes what it
-// left out, and why.
+// left out, and why. Without a scene, LinkModule.h runs the steps that leave nothing out.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "codegen/ir/FloatingPoint.h"
 #include "codegen/link/LinkRequest.h"
-#include "codegen/passes/errors/ElementaryErrors.h"
 #include "frontend/diagnostics/Diagnostics.h"
 #include "sema/typed/TypedAst.h"
 
@@ -44,13 +43,6 @@ namespace rtsl {
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
           std::uint32_t colorComponents, Diagnostics &diagnostics, runtime::Program &program,
           Findings *findings = nullptr, FloatingPoint floatingPoint = FloatingPoint::Strict);
-
-struct DerivedHitError;
-/// Tells the author which hits of primitives that rays leave have no bound of their error.
-void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module,
-                       Diagnostics &diagnostics);
-/// How far the elementary functions of a program are off.
-ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint);
 
 /// The functions of a linked program that nothing runs and that were to be kept.
 std::vector<std::string> keptFunctions(mlir::ModuleOp ir);

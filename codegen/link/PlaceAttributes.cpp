@@ -4,6 +4,9 @@
 // itself, matched by name and type. Two attributes may share a place if no primitive has both. What
 // nobody reads has no place, and is not stored.
 //
+// Without a scene, attributes that nobody reads have a place too if there is room, and attributes
+// of classes with a common base do not overlap: C++ has one struct for all of them.
+//
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
@@ -30,13 +33,6 @@ ClassesByName classesOf(const LinkContext &context) {
 const typed::Class *findClass(const ClassesByName &classes, const std::string &name) {
   const auto found = classes.find(name);
   return found == classes.end() ? nullptr : found->second;
-}
-
-const typed::Member *findScratch(const typed::Class &info, const std::string &name) {
-  for (const typed::Member *member : allMembers(info))
-    if (member->access == ast::Access::Scratch && member->name == name)
-      return member;
-  return nullptr;
 }
 
 /// Every scratch member that the material declares must be one of the primitive's, of the same
@@ -70,10 +66,11 @@ void matchSurface(LinkContext &context, const ClassesByName &classes,
 struct Attribute {
   std::string name;
   mlir::Type type;
+  const typed::Member *member = nullptr; // of the first class that mentions it
   std::uint32_t words = 0;
   std::uint32_t offset = 0;
   bool isRead = false;
-  std::set<std::string> primitives; // classes whose functions mention it
+  std::set<std::string> primitives; // classes whose functions mention it, or their first bases
   std::vector<ir::AttributeOp> uses;
 };
 
@@ -82,10 +79,21 @@ bool isRead(ir::AttributeOp op) {
                      [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
 }
 
+/// Attributes of classes in the same group must not overlap.
+std::string groupOf(const LinkContext &context, const ClassesByName &classes,
+                    const std::string &name) {
+  const typed::Class *info = findClass(classes, name);
+  if (context.hasScene || !info)
+    return name;
+  while (info->base)
+    info = info->base;
+  return info->name;
+}
+
 /// All attributes of the module, in the order in which they are first mentioned.
-std::vector<Attribute> collect(mlir::ModuleOp ir) {
+std::vector<Attribute> collect(const LinkContext &context, const ClassesByName &classes) {
   std::vector<Attribute> attributes;
-  for (auto function : ir.getOps<mlir::func::FuncOp>()) {
+  for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>()) {
     function.walk([&](ir::AttributeOp op) {
       const mlir::Type type = mlir::cast<ir::PtrType>(op.getType()).getPointee();
       auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute &known) {
@@ -100,8 +108,11 @@ std::vector<Attribute> collect(mlir::ModuleOp ir) {
       }
       found->uses.push_back(op);
       found->isRead |= isRead(op);
-      if (auto owner = ir::attr::className.of(function))
-        found->primitives.insert(owner.str());
+      if (auto owner = ir::attr::className.of(function)) {
+        found->primitives.insert(groupOf(context, classes, owner.str()));
+        if (const typed::Class *info = findClass(classes, owner.str()); info && !found->member)
+          found->member = findScratch(*info, found->name);
+      }
     });
   }
   return attributes;
@@ -154,6 +165,13 @@ void eraseStores(Attribute &attribute) {
 
 } // namespace
 
+const typed::Member *findScratch(const typed::Class &info, const std::string &name) {
+  for (const typed::Member *member : allMembers(info))
+    if (member->access == ast::Access::Scratch && member->name == name)
+      return member;
+  return nullptr;
+}
+
 void placeAttributes(LinkContext &context) {
   const ClassesByName classes = classesOf(context);
   std::set<std::pair<std::string, std::string>> seen;
@@ -162,29 +180,39 @@ void placeAttributes(LinkContext &context) {
         info && seen.insert({primitive, material}).second)
       matchSurface(context, classes, primitive, *info);
 
-  std::vector<Attribute> attributes = collect(context.ir);
+  std::vector<Attribute> attributes = collect(context, classes);
+  for (const Attribute &attribute : attributes)
+    note(context, attribute);
+  // Attributes that nobody reads get the remaining space.
+  std::stable_partition(attributes.begin(), attributes.end(),
+                        [](const Attribute &attribute) { return attribute.isRead; });
   std::vector<const Attribute *> placed;
   std::uint32_t words = 0;
+  const typed::Member *last = nullptr;
   for (Attribute &attribute : attributes) {
-    note(context, attribute);
     if (attribute.isRead && context.isWithout(Item::Attributes, attribute.name))
       eraseStores(attribute);
     attribute.offset = firstFit(attribute, placed);
     if (!attribute.isRead) {
       // Nobody asked for more than there is room for: what is kept only for its own sake gives way.
       const bool fits = attribute.offset + attribute.words <= RTSL_MAX_ATTRIBUTE_WORDS;
-      if (!context.request.keep.has(Item::Attributes) || !fits) {
+      const bool isKept = context.request.keep.has(Item::Attributes) || !context.hasScene;
+      if (!isKept || !fits) {
         eraseStores(attribute);
         continue;
       }
     }
     placed.push_back(&attribute);
-    words = std::max(words, attribute.offset + attribute.words);
+    if (attribute.offset + attribute.words > words) {
+      words = attribute.offset + attribute.words;
+      last = attribute.member;
+    }
     for (ir::AttributeOp op : attribute.uses)
       op.setOffset(attribute.offset);
   }
   if (words > RTSL_MAX_ATTRIBUTE_WORDS)
-    context.diagnostics.report(Code::attributesTooLarge, {}, words, RTSL_MAX_ATTRIBUTE_WORDS);
+    context.diagnostics.report(Code::attributesTooLarge, last ? last->range : SourceRange(), words,
+                               RTSL_MAX_ATTRIBUTE_WORDS);
 }
 
 } // namespace rtsl::linking

@@ -186,18 +186,12 @@ bool orderShows(const LinkContext &context, const std::vector<FuncOp> &anyHits,
 // The types
 //===----------------------------------------------------------------------===//
 
-const typed::Struct *structOf(const LinkContext &context, const RayType &type) {
-  for (const auto &candidate : context.module.structs)
-    if (candidate->name == type.name())
-      return candidate.get();
-  return nullptr;
-}
-
 /// How rtsl_traverse is to search for hits of rays of this type.
 std::uint32_t searchFor(LinkContext &context, const RayType &type) {
   const bool hasClosestHit = !programsFor(context, type, "closestHit").empty();
   const std::vector<FuncOp> anyHits = programsFor(context, type, "anyHit");
-  if (!hasClosestHit && anyHits.empty() && programsFor(context, type, "miss").empty())
+  if (context.hasScene && !hasClosestHit && anyHits.empty() &&
+      programsFor(context, type, "miss").empty())
     if (const typed::Struct *payload = structOf(context, type))
       context.diagnostics.report(Code::rayTypeUnanswered, payload->range, payload->name);
   std::uint32_t how = hasClosestHit ? 0 : RTSL_FIRST_HIT;
@@ -260,18 +254,28 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
 
 } // namespace
 
+/// The type of this payload, which gets the next number if it has none.
+static RayType &rayTypeOf(mlir::Type payload, std::vector<RayType> &types) {
+  const auto structure = llvm::cast<ir::StructType>(payload);
+  const auto known = std::find_if(types.begin(), types.end(),
+                                  [&](const RayType &type) { return type.payload == structure; });
+  if (known != types.end())
+    return *known;
+  return types.emplace_back(RayType{structure, static_cast<std::uint32_t>(types.size()) + 1, 0});
+}
+
+const typed::Struct *structOf(const LinkContext &context, const RayType &type) {
+  for (const auto &candidate : context.module.structs)
+    if (candidate->name == type.name())
+      return candidate.get();
+  return nullptr;
+}
+
 std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
   std::vector<RayType> types;
   auto number = [&](auto ray) {
-    const auto payload = llvm::cast<ir::StructType>(
-        llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee());
-    auto known = std::find_if(types.begin(), types.end(),
-                              [&](const RayType &type) { return type.payload == payload; });
-    if (known == types.end()) {
-      types.push_back({payload, static_cast<std::uint32_t>(types.size()) + 1});
-      known = types.end() - 1;
-    }
-    ray.setRayType(known->number);
+    const auto payload = llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee();
+    ray.setRayType(rayTypeOf(payload, types).number);
     ray.setHow(RTSL_ASK_ANY_HIT | RTSL_IN_ORDER); // what is right for any scene
   };
   ir.walk([&](mlir::Operation *op) {
@@ -285,10 +289,15 @@ std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
 
 void resolveRayTypes(LinkContext &context) {
   context.rayTypes = numberRayTypes(context.ir);
-  std::map<std::uint32_t, std::uint32_t> search;
-  for (const RayType &type : context.rayTypes)
-    search[type.number] = searchFor(context, type);
-  context.ir.walk([&](ir::TracePayloadOp trace) { trace.setHow(search[*trace.getRayType()]); });
+  if (!context.hasScene)
+    for (auto function : context.ir.getOps<FuncOp>())
+      if (const auto payload = ir::attr::payload.of(function))
+        rayTypeOf(payload.getValue(), context.rayTypes);
+  for (RayType &type : context.rayTypes)
+    type.search = searchFor(context, type);
+  context.ir.walk([&](ir::TracePayloadOp trace) {
+    trace.setHow(context.rayTypes[*trace.getRayType() - 1].search);
+  });
 }
 
 void makePayloadSlots(LinkContext &context) {

@@ -145,7 +145,7 @@ void resolveSlots(LinkContext &context) {
         continue;
       if (linked.isUsed)
         classes.push_back(&linked);
-      if (linked.hasObjects && !findMethod(context, linked, slot.method))
+      if (context.hasScene && linked.hasObjects && !findMethod(context, linked, slot.method))
         context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method,
                                    linked.info->name);
     }

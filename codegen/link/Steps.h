@@ -5,6 +5,7 @@
 #include "codegen/ir/SourcePlace.h"
 #include "codegen/link/Items.h"
 #include "codegen/link/Link.h"
+#include "codegen/passes/errors/ElementaryErrors.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/SymbolTable.h"
 
@@ -30,6 +31,8 @@ struct LinkedClass {
 struct RayType {
   ir::StructType payload;
   std::uint32_t number = 0; // from 1, in the order in which they are mentioned
+  // how hits are searched for: RTSL_FIRST_HIT, RTSL_ASK_ANY_HIT, RTSL_IN_ORDER
+  std::uint32_t search = 0;
 
   std::string name() const { return payload.getName().str(); }
 };
@@ -41,6 +44,7 @@ struct LinkContext {
   Diagnostics &diagnostics;
   Findings &findings; // what the steps leave out, and what not
   ElementaryErrors elementaryErrors;
+  bool hasScene = true; // otherwise every class may have objects (LinkModule.h)
   std::vector<LinkedClass> classes = {};
   // of the functions of this name, to be noted if something runs them
   std::map<std::string, Finding> dispatches = {};
@@ -76,6 +80,9 @@ void noteClasses(LinkContext &context);
 /// they are not.
 void emptyReferences(LinkContext &context);
 
+/// How far the elementary functions of a program are off.
+ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint);
+
 /// HitErrors.cpp: bounds of the error of t for the primitives that rays leave.
 void deriveHitErrors(LinkContext &context);
 
@@ -92,9 +99,12 @@ void dropUnreadOutputs(LinkContext &context);
 /// RTSL_NEEDS_* of what LinkRequest::without names.
 std::uint32_t needsLeftOut(const LinkContext &context);
 
-/// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody
-/// reads.
+/// Sets the offset of every `rtsl.attribute`, and erases the stores of attributes that nobody of a
+/// scene reads.
 void placeAttributes(LinkContext &context);
+
+/// The scratch member of this name that objects of the class have; null if there is none.
+const typed::Member *findScratch(const typed::Class &info, const std::string &name);
 
 /// How the functions begin that a call through a reference becomes: `@dispatch.rt_Texture.lookup`.
 constexpr llvm::StringLiteral dispatchPrefix = "dispatch.";
@@ -117,12 +127,15 @@ bool derivesFrom(const typed::Class &info, llvm::StringRef base);
 /// Gives every slot its dispatch function.
 void resolveSlots(LinkContext &context);
 
-/// Numbers the types of payloads that the module traces.
+/// Numbers the types of payloads that the module traces. Each trace may search for hits in any way.
 std::vector<RayType> numberRayTypes(mlir::ModuleOp ir);
 
-/// The same for a program, and finds out how hits are to be searched for. Warns where nobody
-/// answers.
+/// The same for a program, and finds out how hits are to be searched for. Warns where nobody of a
+/// scene answers. Without a scene the types that methods answer are there too.
 void resolveRayTypes(LinkContext &context);
+
+/// The struct in the author's words; null if there is none.
+const typed::Struct *structOf(const LinkContext &context, const RayType &type);
 
 /// EndlessRays.cpp: warns where every material that answers a kind of rays sends another, whatever
 /// it finds.

@@ -118,8 +118,10 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
       ir::attr::constructor.set(function);
     else if (!key.isForIntersect() && !key.isHidden)
       ir::attr::methodName.set(function, emitter.getStringAttr(slotName(source)));
-    if (options.source && options.source->becomesStates(source))
+    if (options.source && source.sends.traced)
       ir::attr::states.set(function);
+    if (key.takesPayload())
+      ir::attr::payload.set(function, mlir::TypeAttr::get(type(source.parameters[0]->type)));
   }
   functions[key] = function;
   pending.push_back(key);

@@ -182,13 +182,8 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
 }
 
 /// One that traces, or whose parts run only sometimes, is taken apart.
-static bool isOneStep(const typed::Expr &expr, const SourceTable &table) {
-  const typed::Function *callee = nullptr;
-  if (auto *call = dynCast<typed::CallExpr>(&expr))
-    callee = call->function;
-  if (auto *method = dynCast<typed::MethodCallExpr>(&expr))
-    callee = method->function;
-  if (callee && table.mayTrace(*callee))
+static bool isOneStep(const typed::Expr &expr) {
+  if (typed::mayTrace(expr))
     return false;
   if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
     return typed::isPure(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
@@ -200,7 +195,7 @@ std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, 
   const bool isWrite = expr.kind == ExprKind::Assign || expr.kind == ExprKind::IncDec;
   if (into && isWrite)
     return lowerNested(expr, /*hasResult=*/true, into);
-  if (!isOneStep(expr, *module.options.source))
+  if (!isOneStep(expr))
     return std::nullopt;
   const bool isChoice = expr.kind == ExprKind::Conditional || expr.kind == ExprKind::Binary;
   if (isChoice && !isKept(expr))
@@ -260,17 +255,15 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
 //===----------------------------------------------------------------------===//
 
 /// Can it run between two rays, from its first part to its last?
-static bool isBetweenRays(const typed::Expr &expr, const SourceTable &table) {
+static bool isBetweenRays(const typed::Expr &expr) {
   bool found = true;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
       found = found &&
               (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
                builtin->builtin == typed::Builtin::Print || typed::drawsRandom(builtin->builtin));
-    else if (auto *call = dynCast<typed::CallExpr>(&inner))
-      found = found && !table.mayTrace(*call->function);
-    else if (auto *method = dynCast<typed::MethodCallExpr>(&inner))
-      found = found && !(method->function && table.mayTrace(*method->function));
+    else
+      found = found && !typed::mayTrace(inner);
   });
   return found;
 }
@@ -280,7 +273,7 @@ static bool isBetweenRays(const typed::Expr &expr, const SourceTable &table) {
 /// their own for the time.
 std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool hasResult,
                                                    Value into) {
-  if (!module.options.source || !isBetweenRays(expr, *module.options.source))
+  if (!module.options.source || !isBetweenRays(expr))
     return std::nullopt;
   if (hasResult && !into && livesInMemory(expr.type)) {
     const Value address = temporary("value", expr.type);

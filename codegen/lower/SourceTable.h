@@ -34,11 +34,6 @@ struct SourceTable {
 
   /// Does a call read nothing but its arguments and members, and change nothing?
   std::function<bool(const typed::Function &)> isPure;
-  /// May a call trace, whichever class the object is of?
-  std::function<bool(const typed::Function &)> mayTrace;
-  /// Is it made states, or part of some, in each class that has it? So it is even where nothing in
-  /// it traces: by what a class overrides, or because that is never reached.
-  std::function<bool(const typed::Function &)> becomesStates;
   /// The state variables that a call may change; nothing: any.
   std::function<std::optional<std::vector<std::string>>(const typed::Expr &call)> writes;
 };

@@ -52,9 +52,11 @@ bool FunctionChecker::recordSpecial(Ability ability, const std::string &what, So
   use.what = what;
   use.range = range;
   use.member = member;
-  if (facts && (ability == Ability::Trace || (ability == Ability::Illuminance &&
-                                              (what == "illuminance" || what == "illuminate"))))
-    facts->traces = true;
+  if (facts) {
+    facts->sends.traced |= ability == Ability::Trace;
+    facts->sends.shadow |=
+        ability == Ability::Illuminance && (what == "illuminance" || what == "illuminate");
+  }
   return record(std::move(use));
 }
 

@@ -53,7 +53,7 @@ struct FunctionFacts {
   // those that depend on the callers; uses in engine methods are checked immediately
   std::vector<Use> uses;
   std::vector<CallEdge> calls;
-  bool traces = false; // contains `trace` or `illuminance`
+  typed::SentRays sends; // by the body itself
 };
 
 /// A class with its names. `own` functions and members are declared in the class itself.

@@ -2,8 +2,9 @@
 //
 // Functions must not call themselves, except through references in members: the objects that
 // members refer to form no cycle, so such a recursion ends, and the scene determines its depth. A
-// function may trace if one of its callees may, and a helper may use what the methods that reach it
-// may use. All traversals are loops: chains of calls may be long.
+// function may send rays if one of its callees may: this is the one place that decides it
+// (typed::Function::sends). A helper may use what the methods that reach it may use. All traversals
+// are loops: chains of calls may be long.
 //
 //===----------------------------------------------------------------------===//
 #include "sema/check/Program.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <unordered_set>
+#include <utility>
 
 namespace rtsl {
 
@@ -164,6 +166,7 @@ public:
 
   void findOverriders();
   void refuseRecursion();
+  void findRays();
   void judgeHelpers();
 
 private:
@@ -180,8 +183,7 @@ private:
     SourceRange closing;
   };
   using IsFollowed = bool (*)(const CallEdge &);
-  void walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles);
-  void spreadTracing();
+  void walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) const;
   std::unordered_map<const typed::Function *, unsigned> findCycles() const;
   void reportCycle(const Cycle &cycle);
   void judgeFrom(const typed::Function &method, const ClassScope &scope, const MethodModel &rules);
@@ -232,7 +234,7 @@ CallGraph::Functions CallGraph::targetsFor(const CallEdge &edge, const ClassScop
 }
 
 //===----------------------------------------------------------------------===//
-// Recursion, and which functions may trace
+// Recursion
 //===----------------------------------------------------------------------===//
 
 void CallGraph::reportCycle(const Cycle &cycle) {
@@ -252,13 +254,12 @@ void CallGraph::reportCycle(const Cycle &cycle) {
                   "`member.function()`");
 }
 
-/// Depth first over all functions and the calls for which `isFollowed` holds. Callees are finished
-/// before their callers, so that `mayTrace` is known, except for functions in a cycle.
-void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
+/// Depth first over all functions and the calls for which `isFollowed` holds.
+void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) const {
   enum class Mark : std::uint8_t { Open, Done };
   std::unordered_map<const typed::Function *, Mark> marks;
   struct Frame {
-    typed::Function *function;
+    const typed::Function *function;
     std::vector<std::pair<const typed::Function *, SourceRange>> next;
     std::size_t position = 0;
   };
@@ -267,12 +268,11 @@ void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
   std::vector<SourceRange> calls;
   auto enter = [&](const typed::Function *function, SourceRange call) {
     marks[function] = Mark::Open;
-    Frame frame{const_cast<typed::Function *>(function), {}, 0};
+    Frame frame{function, {}, 0};
     for (const CallEdge &edge : factsOf(function).calls)
       if (isFollowed(edge))
         for (const typed::Function *target : targets(edge))
           frame.next.emplace_back(target, edge.range);
-    frame.function->mayTrace |= factsOf(function).traces;
     stack.push_back(std::move(frame));
     path.push_back(function);
     calls.push_back(call);
@@ -284,13 +284,10 @@ void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
     while (!stack.empty()) {
       Frame &frame = stack.back();
       if (frame.position == frame.next.size()) {
-        const bool traces = frame.function->mayTrace;
         marks[frame.function] = Mark::Done;
         stack.pop_back();
         path.pop_back();
         calls.pop_back();
-        if (!stack.empty())
-          stack.back().function->mayTrace |= traces;
         continue;
       }
       const auto [target, range] = frame.next[frame.position++];
@@ -299,8 +296,6 @@ void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
         enter(target, range);
       else if (mark->second == Mark::Open)
         cycles.push_back({path, calls, target, range});
-      else
-        frame.function->mayTrace |= target->mayTrace;
     }
   };
   for (const std::unique_ptr<typed::Function> &function : program.module.functions)
@@ -308,28 +303,6 @@ void CallGraph::walkCalls(IsFollowed isFollowed, std::vector<Cycle> &cycles) {
   for (const ClassScope *scope : baseFirst)
     for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
       walk(function.get());
-}
-
-/// If one function of a cycle may trace, all of them may.
-void CallGraph::spreadTracing() {
-  std::unordered_map<const typed::Function *, std::vector<typed::Function *>> callers;
-  Functions tracing;
-  for (const auto &[function, facts] : program.facts) {
-    for (const CallEdge &edge : facts.calls)
-      for (const typed::Function *target : targets(edge))
-        callers[target].push_back(const_cast<typed::Function *>(function));
-    if (function->mayTrace)
-      tracing.push_back(function);
-  }
-  while (!tracing.empty()) {
-    const typed::Function *callee = tracing.back();
-    tracing.pop_back();
-    for (typed::Function *caller : callers[callee])
-      if (!caller->mayTrace) {
-        caller->mayTrace = true;
-        tracing.push_back(caller);
-      }
-  }
 }
 
 /// Functions in the same cycle of calls have the same number.
@@ -399,10 +372,7 @@ void CallGraph::refuseRecursion() {
   walkCalls([](const CallEdge &) { return true; }, cycles);
   for (const Cycle &cycle : endless)
     reportCycle(cycle);
-  if (cycles.empty())
-    return;
-  spreadTracing();
-  if (!endless.empty())
+  if (cycles.empty() || !endless.empty())
     return;
   // References other than members may not be part of a cycle either: they may lead back to the same
   // object.
@@ -423,6 +393,43 @@ void CallGraph::refuseRecursion() {
   for (const ClassScope *scope : baseFirst)
     for (const std::unique_ptr<typed::Function> &function : scope->definition->functions)
       judge(function.get());
+}
+
+//===----------------------------------------------------------------------===//
+// Which functions send rays
+//===----------------------------------------------------------------------===//
+
+/// Propagates from functions whose bodies send rays to all that may call them.
+void CallGraph::findRays() {
+  std::unordered_map<const typed::Function *, std::vector<typed::Function *>> callers;
+  for (const auto &[function, facts] : program.facts)
+    for (const CallEdge &edge : facts.calls)
+      for (const typed::Function *target : targets(edge))
+        callers[target].push_back(const_cast<typed::Function *>(function));
+  for (bool typed::SentRays::*kind : {&typed::SentRays::traced, &typed::SentRays::shadow}) {
+    std::vector<typed::Function *> pending;
+    for (const auto &[function, facts] : program.facts)
+      if (facts.sends.*kind)
+        pending.push_back(const_cast<typed::Function *>(function));
+    while (!pending.empty()) {
+      typed::Function *function = pending.back();
+      pending.pop_back();
+      if (std::exchange(function->sends.*kind, true))
+        continue;
+      if (const auto found = callers.find(function); found != callers.end())
+        pending.insert(pending.end(), found->second.begin(), found->second.end());
+    }
+  }
+  for (const auto &entry : program.facts) {
+    auto *function = const_cast<typed::Function *>(entry.first);
+    CallEdge call;
+    call.callee = function;
+    call.dispatched = true;
+    for (const typed::Function *target : targets(call)) {
+      function->callSends.traced |= target->sends.traced;
+      function->callSends.shadow |= target->sends.shadow;
+    }
+  }
 }
 
 //===----------------------------------------------------------------------===//
@@ -524,6 +531,7 @@ void Program::judgeCalls() {
   CallGraph graph(*this, baseFirst);
   graph.findOverriders();
   graph.refuseRecursion();
+  graph.findRays();
   graph.judgeHelpers();
 }
 

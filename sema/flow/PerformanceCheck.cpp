@@ -7,6 +7,7 @@
 //===----------------------------------------------------------------------===//
 #include "sema/check/Program.h"
 #include "sema/fold/ConstantFold.h"
+#include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 #include "sema/typed/TypeProperties.h"
 #include "sema/typed/Walk.h"
@@ -135,18 +136,9 @@ private:
 // Recursion that a loop could replace
 //===----------------------------------------------------------------------===//
 
-bool isTrace(const Expr &expr) {
-  if (const auto *builtin = dynCast<BuiltinExpr>(&expr))
-    return builtin->builtin == Builtin::Trace || builtin->builtin == Builtin::TracePayload;
-  const auto *call = dynCast<CallExpr>(&expr);
-  const auto *method = dynCast<MethodCallExpr>(&expr);
-  const Function *callee = call ? call->function : method ? method->function : nullptr;
-  return callee && callee->mayTrace;
-}
-
 std::size_t countTraces(const Expr &expr) {
   std::size_t count = 0;
-  forEachExpr(expr, [&](const Expr &inner) { count += isTrace(inner); });
+  forEachExpr(expr, [&](const Expr &inner) { count += mayTrace(inner); });
   return count;
 }
 
@@ -159,7 +151,7 @@ public:
 
   void run() {
     std::size_t traces = 0;
-    forEachExpr(*function.body, [&](const Expr &expr) { traces += isTrace(expr); });
+    forEachExpr(*function.body, [&](const Expr &expr) { traces += mayTrace(expr); });
     if (traces == 0)
       return;
     visit(*function.body, true);
@@ -214,7 +206,7 @@ private:
 
   /// The only trace in an expression, if its value is only added to and multiplied; otherwise null.
   const Expr *linearTrace(const Expr &expr) const {
-    if (isTrace(expr))
+    if (mayTrace(expr))
       return expr.kind == ExprKind::Builtin ? &expr : nullptr;
     if (const auto *unary = dynCast<UnaryExpr>(&expr))
       return linearTrace(*unary->operand);

@@ -153,6 +153,20 @@ const Function &resolve(const CallExpr &call, const Class *concrete) {
   return call.isOfBase ? *call.function : resolve(*call.function, concrete);
 }
 
+SentRays raysOf(const Expr &expr) {
+  if (auto *builtin = dynCast<BuiltinExpr>(&expr))
+    return {builtin->builtin == Builtin::Trace || builtin->builtin == Builtin::TracePayload,
+            builtin->builtin == Builtin::Illuminate};
+  if (auto *call = dynCast<CallExpr>(&expr))
+    return call->isOfBase ? call->function->sends : call->function->callSends;
+  auto *method = dynCast<MethodCallExpr>(&expr);
+  return method && method->function ? method->function->callSends : SentRays();
+}
+
+bool mayTrace(const Expr &expr) {
+  return raysOf(expr).traced;
+}
+
 static bool takesPart(const Function &function, const Class *concrete,
                       std::set<const Function *> &visited) {
   if (!function.body || !visited.insert(&function).second)

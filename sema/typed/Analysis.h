@@ -30,6 +30,13 @@ bool hasSideEffects(const Expr &expr);
 /// unconditionally.
 bool isCheap(const Expr &expr);
 
+/// The rays that evaluating this expression may send, not counting its operands: it is a built-in
+/// function that sends rays, or a call. For a call that is dispatched: by any class of the module.
+SentRays raysOf(const Expr &expr);
+
+/// May it send rays with `trace`?
+bool mayTrace(const Expr &expr);
+
 /// Does `function`, or one of its callees, report hits or use scratch members? `concrete` is the
 /// class of the object; null for a free function.
 bool takesPartInIntersection(const Function &function, const Class *concrete);

@@ -115,6 +115,14 @@ struct Member {
   std::string comment;
 };
 
+/// Rays that something may send.
+struct SentRays {
+  bool traced = false; // by `trace`
+  bool shadow = false; // for lights, by `illuminance` or `illuminate`
+
+  bool any() const { return traced || shadow; }
+};
+
 struct Function {
   std::string name;
   const Type *returnType = nullptr;
@@ -124,7 +132,8 @@ struct Function {
   const Class *owner = nullptr;                  // methods
   bool isConstructor = false;
   bool isStateMethod = false; // overrides an engine method of its base class: intersect, shade, ...
-  bool mayTrace = false;      // itself or its callees
+  SentRays sends;             // by itself or its callees, and by methods that override these
+  SentRays callSends;         // by a call of it, which may run an overriding method
   bool mayRunInLookup = false; // reachable from a texture's `lookup`
   SourceRange range;           // of the name
   std::string comment;

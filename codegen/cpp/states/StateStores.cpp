@@ -43,7 +43,7 @@ static bool clears(const Statement &statement, const Code &target) {
 }
 
 /// Variables that stay whole are read and written where they lie, by the author's expression.
-void StateWriter::evaluate(ir::EvaluateOp op, Lines &out) {
+void StateWriter::write(ir::EvaluateOp op, Lines &out) {
   const SourceTable::Entry &entry = source.entries[op.getSource()];
   usesScratch |= module.effects.expression(*entry.expr).usesScratch;
   const bool isWrite =
@@ -90,7 +90,7 @@ void StateWriter::evaluate(ir::EvaluateOp op, Lines &out) {
     emit(out, code);
 }
 
-void StateWriter::clear(ir::ClearOp op, Lines &out) {
+void StateWriter::write(ir::ClearOp op, Lines &out) {
   auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
   const Code target = place(op.getAddress());
   flush(touchesOf(op), out);
@@ -111,7 +111,7 @@ Code StateWriter::assignment(const Code &target, const Code &value, mlir::Value 
   return assign(target, value);
 }
 
-void StateWriter::store(ir::StoreOp op, Lines &out) {
+void StateWriter::write(ir::StoreOp op, Lines &out) {
   auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
   const Type *declared = variable ? nullptr : declaredType(op.getAddress());
   const Type *type = variable ? varType(variable) : declared ? declared : typeOf(op.getValue());

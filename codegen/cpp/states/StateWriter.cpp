@@ -3,7 +3,6 @@
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
-#include "mlir/IR/Matchers.h"
 #include "llvm/ADT/TypeSwitch.h"
 
 #include <fmt/format.h>
@@ -58,203 +57,131 @@ void StateWriter::unsupported(mlir::Operation &op) {
 // Operations
 //===----------------------------------------------------------------------===//
 
+static Code onState(const char *function) {
+  return cpp::call(function, {name("rt")});
+}
+
 void StateWriter::operation(mlir::Operation &op, Lines &out) {
   consumed = {};
   if (unsigned line = lineOf(op.getLoc(), machine.file))
     currentLine = line;
-  auto pure = [&](Code code) { define(op, std::move(code), consumed, true, out); };
-  auto infix = [&](Operator sign) {
-    const Code left = use(op.getOperand(0));
-    pure(binary(sign, left, use(op.getOperand(1))));
-  };
-  auto isBool = [&] { return op.getResult(0).getType().isInteger(1); };
-  auto field = [&](llvm::StringRef slot) -> const FrameField * {
-    for (const FrameField &known : machine.frame)
-      if (!known.isObject && known.slot == slot)
-        return &known;
-    return nullptr;
-  };
   llvm::TypeSwitch<mlir::Operation *>(&op)
-      .Case([&](ir::VarOp variable) {
-        Line line;
-        line.declares = variable;
-        out.push_back(std::move(line));
-      })
-      .Case([&](ir::LoadOp load) {
-        const Code code = place(load.getAddress());
-        Touches touches;
-        note(load.getAddress(), touches, false);
-        flush(touches, out);
-        define(op, code, touches, true, out);
-      })
-      .Case([&](ir::FrameLoadOp load) {
-        if (const FrameField *from = field(load.getName())) {
-          Touches touches;
-          touches.reads.insert({Location::Kind::Frame, from->slot});
-          define(op, frameField(from->name), touches, true, out);
-        }
-      })
-      .Case([&](ir::ExpressionOp whole) {
-        const Code code = expression(source.entries[whole.getSource()], op.getOperands());
-        usesScratch |=
-            module.effects.expression(*source.entries[whole.getSource()].expr).usesScratch;
-        pure(code);
-      })
-      .Case([&](ir::EvaluateOp inner) { evaluate(inner, out); })
-      .Case([&](ir::ClearOp inner) { clear(inner, out); })
-      .Case([&](ir::CopyOp copy) {
-        const Code from = place(copy.getSource()), to = place(copy.getTarget());
-        flush(touchesOf(&op), out);
-        if (!same(from, to))
-          emit(out, assign(to, from));
-      })
-      .Case([&](ir::SpawnPayloadOp spawn) { spawnPayload(spawn); })
-      .Case([&](ir::RandOp rand) {
-        Touches touches = touchesOf(&op);
-        flush(touches, out);
-        define(op, cpp::call(rand.getOpen() ? "rtsl::randOpen" : "rtsl::rand", {name("rt")}),
-               touches, false, out);
-      })
-      .Case([&](ir::CallArgumentOp argument) {
-        if (!llvm::isa<ir::PtrType>(argument.getType()))
-          define(op, frameField(machine.called->fields[machine.given(argument)]), {}, true, out);
-      })
-      .Case([&](ir::CallResultOp result) {
-        const Code value = use(result.getValue(), machine.method->returnType);
-        emit(out, assign(frameField(machine.called->returned), value));
-      })
-      .Case([&](ir::CallReturnedOp) {
-        const auto before =
-            machine.callBefore.find(op.getParentOfType<mlir::func::FuncOp>().getSymName().str());
-        if (op.getNumResults() != 0 && before->second)
-          define(op, member(name(machine.callName), before->second->returned), {}, true, out);
-      })
-      .Case([&](ir::CastRefOp cast) { pure(use(cast.getObject())); })
-      .Case([&](ir::TraceResultOp) {
-        define(op, cpp::call("rtsl::traced", {name("rt")}), {}, true, out);
-      })
-      .Case([&](ir::LightCountOp) {
-        define(op, cpp::call("rtsl::lightCount", {name("rt")}), {}, true, out);
-      })
-      .Case([&](ir::IlluminateOp light) {
-        std::vector<Code> arguments = {name("rt")};
-        for (mlir::Value operand : op.getOperands())
-          arguments.push_back(use(operand));
-        Touches touches = touchesOf(&op);
-        flush(touches, out);
-        touches.add(consumed);
-        define(op, cpp::call("rtsl::illuminate", std::move(arguments)), touches, false, out);
-      })
-      .Case([&](ir::StoreOp stored) { store(stored, out); })
-      .Case([&](ir::FrameStoreOp stored) {
-        if (const FrameField *to = field(stored.getName())) {
-          const Code value = use(stored.getValue(), to->type), target = frameField(to->name);
-          flush(touchesOf(&op), out);
-          if (!same(value, target))
-            emit(out, assign(target, value));
-        }
-      })
-      .Case([&](ir::SpawnOp spawn) {
-        const Code origin = use(spawn.getOrigin(), vec3());
-        spawned = {origin, use(spawn.getDirection(), vec3())};
-      })
-      .Case([&](ir::ReturnOp end) { leave(end, out); })
-      .Case([&](ir::BreakOp) { emit(out, simple(StatementKind::Break)); })
-      .Case([&](ir::ContinueOp) { emit(out, simple(StatementKind::Continue)); })
+      // variables, and the frame
+      .Case<ir::VarOp, ir::LoadOp, ir::StoreOp, ir::CopyOp, ir::ClearOp, ir::ElementOp>(
+          [&](auto one) { write(one, out); })
+      .Case<ir::FrameLoadOp, ir::FrameStoreOp>([&](auto one) { write(one, out); })
+      // the author's expressions
+      .Case<ir::ExpressionOp, ir::EvaluateOp>([&](auto one) { write(one, out); })
+      // rays, lights and random numbers
+      .Case<ir::SpawnOp, ir::SpawnPayloadOp>([&](auto one) { write(one); })
+      .Case<ir::RandOp, ir::IlluminateOp>([&](auto one) { write(one, out); })
+      .Case([&](ir::TraceResultOp) { makeAnywhere(op, onState("rtsl::traced"), out); })
+      .Case([&](ir::LightCountOp) { makeAnywhere(op, onState("rtsl::lightCount"), out); })
+      // methods that are called through references
+      .Case<ir::CallArgumentOp, ir::CallResultOp, ir::CallReturnedOp>(
+          [&](auto one) { write(one, out); })
+      // control flow
       .Case([&](ir::IfOp inner) { choice(inner, out); })
       .Case([&](ir::LoopOp inner) { loop(inner, out); })
       .Case([&](ir::SwitchOp inner) { switchOver(inner, out); })
-      .Case([&](mlir::vector::ExtractOp part) {
-        auto position = part.getStaticPosition();
-        if (position.size() != 1 || (!part.hasDynamicPosition() && position.front() > 3))
-          return unsupported(op);
-        const Code vector = use(part.getSource());
-        if (part.hasDynamicPosition())
-          pure(cpp::call("rtsl::at", {vector, use(part.getDynamicPosition().front())}));
-        else
-          pure(component(vector, static_cast<std::size_t>(position.front())));
-      })
-      .Case([&](mlir::vector::InsertOp part) {
-        auto position = part.getStaticPosition();
-        if (position.size() != 1 || (!part.hasDynamicPosition() && position.front() > 3))
-          return unsupported(op);
-        Insertion whole;
-        if (auto before = insertions.find(part.getDest());
-            before != insertions.end() && pending.count(part.getDest()))
-          whole = before->second;
-        const Code vector = use(part.getDest(), typeOf(part.getResult()));
-        if (whole.parts.empty()) {
-          whole.before = part.getDest();
-          whole.vector = vector;
-        }
-        Insertion::Part &last = whole.parts.emplace_back();
-        last.value = use(part.getValueToStore());
-        if (part.hasDynamicPosition())
-          last.index = use(part.getDynamicPosition().front());
-        else
-          last.component = static_cast<std::size_t>(position.front());
-        insertions[part.getResult()] = whole;
-        pure(whole.code());
-      })
-      .Case([&](mlir::vector::FromElementsOp made) {
-        const Type *type = typeOf(made.getResult());
-        if (!type)
-          return unsupported(op);
-        std::vector<Code> parts;
-        for (mlir::Value part : made.getElements())
-          parts.push_back(use(part));
-        pure(construct(module.type(type), std::move(parts)));
-      })
-      .Case([&](mlir::vector::BroadcastOp same) {
-        const Type *type = typeOf(same.getResult());
-        if (!type || !same.getSourceType().isIntOrFloat())
-          return unsupported(op);
-        pure(construct(module.type(type), {use(same.getSource())}));
-      })
-      .Case([&](mlir::vector::ShuffleOp chosen) {
-        const Type *type = typeOf(chosen.getResult());
-        if (!type)
-          return unsupported(op);
-        const Code first = named(chosen.getV1(), out);
-        const Code second = chosen.getV1() == chosen.getV2() ? first : named(chosen.getV2(), out);
-        const std::int64_t width = chosen.getV1VectorType().getNumElements();
-        std::vector<Code> parts;
-        for (std::int64_t at : chosen.getMask())
-          parts.push_back(component(at < width ? first : second,
-                                    static_cast<std::size_t>(at < width ? at : at - width)));
-        pure(construct(module.type(type), std::move(parts)));
-      })
-      .Case([&](arith::XOrIOp negation) {
-        if (!isBool() || !mlir::matchPattern(negation.getRhs(), mlir::m_One()))
-          return unsupported(op);
-        pure(opposite(negation.getLhs(), use(negation.getLhs())));
-      })
-      .Case([&](arith::AndIOp) { isBool() ? infix(Operator::And) : unsupported(op); })
-      .Case([&](arith::OrIOp) { isBool() ? infix(Operator::Or) : unsupported(op); })
-      .Case([&](arith::IndexCastUIOp index) { pure(use(index.getIn())); })
-      .Case([&](arith::AddIOp) { infix(Operator::Add); }) // of a light's number
-      .Case([&](arith::CmpIOp compare) {
-        compare.getPredicate() == arith::CmpIPredicate::ult ? infix(Operator::Less)
-                                                            : unsupported(op);
-      })
-      .Case([&](arith::SelectOp select) {
-        const Type *type = typeOf(select.getResult());
-        const Code condition = use(select.getCondition());
-        const Code first = use(select.getTrueValue(), type);
-        pure(choose(module, condition, first, use(select.getFalseValue(), type), type));
-      })
+      .Case([&](ir::BreakOp) { emit(out, simple(StatementKind::Break)); })
+      .Case([&](ir::ContinueOp) { emit(out, simple(StatementKind::Continue)); })
+      .Case([&](ir::ReturnOp end) { leave(end, out); })
+      // what the passes have made of expressions (StateValues.cpp)
+      .Case<mlir::vector::ExtractOp, mlir::vector::InsertOp, mlir::vector::FromElementsOp,
+            mlir::vector::BroadcastOp, mlir::vector::ShuffleOp>([&](auto one) { write(one, out); })
+      .Case<arith::XOrIOp, arith::AndIOp, arith::OrIOp, arith::AddIOp, arith::CmpIOp,
+            arith::SelectOp>([&](auto one) { write(one, out); })
+      .Case([&](ir::CastRefOp cast) { make(op, use(cast.getObject()), out); })
+      .Case([&](arith::IndexCastUIOp index) { make(op, use(index.getIn()), out); })
+      // printed with what uses them
       .Case<arith::ConstantOp, ir::NullRefOp, ir::NextOp, ir::StateOp, ir::YieldOp, ir::ConditionOp,
             ir::TraceReturnedOp, ir::EnterOp, ir::LeaveOp, ir::FrameObjectOp, ir::PayloadOp,
             ir::FieldOp, ir::TableOp>([](auto) {})
-      .Case([&](ir::ElementOp element) { elementIndices[element] = use(element.getIndex()); })
       .Default([&](mlir::Operation *) { unsupported(op); });
 }
 
+void StateWriter::make(mlir::Operation &op, Code code, Lines &out) {
+  define(op, std::move(code), consumed, true, out);
+}
+
+void StateWriter::makeAnywhere(mlir::Operation &op, Code code, Lines &out) {
+  define(op, std::move(code), {}, true, out);
+}
+
 //===----------------------------------------------------------------------===//
-// The end of a state
+// Variables, and the frame
 //===----------------------------------------------------------------------===//
 
-void StateWriter::spawnPayload(ir::SpawnPayloadOp op) {
+void StateWriter::write(ir::VarOp op, Lines &out) {
+  Line line;
+  line.declares = op;
+  out.push_back(std::move(line));
+}
+
+void StateWriter::write(ir::LoadOp op, Lines &out) {
+  const Code code = place(op.getAddress());
+  Touches touches;
+  note(op.getAddress(), touches, false);
+  flush(touches, out);
+  define(*op, code, touches, true, out);
+}
+
+void StateWriter::write(ir::CopyOp op, Lines &out) {
+  const Code from = place(op.getSource()), to = place(op.getTarget());
+  flush(touchesOf(op), out);
+  if (!same(from, to))
+    emit(out, assign(to, from));
+}
+
+void StateWriter::write(ir::ElementOp op, Lines &) {
+  elementIndices[op] = use(op.getIndex());
+}
+
+/// What a value is saved as; null: it is not in the frame.
+const FrameField *StateWriter::savedField(llvm::StringRef slot) const {
+  for (const FrameField &known : machine.frame)
+    if (!known.isObject && known.slot == slot)
+      return &known;
+  return nullptr;
+}
+
+void StateWriter::write(ir::FrameLoadOp op, Lines &out) {
+  const FrameField *from = savedField(op.getName());
+  if (!from)
+    return;
+  Touches touches;
+  touches.reads.insert({Location::Kind::Frame, from->slot});
+  define(*op, frameField(from->name), touches, true, out);
+}
+
+void StateWriter::write(ir::FrameStoreOp op, Lines &out) {
+  const FrameField *to = savedField(op.getName());
+  if (!to)
+    return;
+  const Code value = use(op.getValue(), to->type), target = frameField(to->name);
+  flush(touchesOf(op), out);
+  if (!same(value, target))
+    emit(out, assign(target, value));
+}
+
+void StateWriter::write(ir::ExpressionOp op, Lines &out) {
+  const SourceTable::Entry &entry = source.entries[op.getSource()];
+  const Code code = expression(entry, op->getOperands());
+  usesScratch |= module.effects.expression(*entry.expr).usesScratch;
+  make(*op, code, out);
+}
+
+//===----------------------------------------------------------------------===//
+// Rays, lights and random numbers
+//===----------------------------------------------------------------------===//
+
+void StateWriter::write(ir::SpawnOp op) {
+  const Code origin = use(op.getOrigin(), vec3());
+  spawned = {origin, use(op.getDirection(), vec3())};
+}
+
+void StateWriter::write(ir::SpawnPayloadOp op) {
   spawned = {use(op.getOrigin(), vec3())};
   spawned.push_back(use(op.getDirection(), vec3()));
   spawned.push_back(use(op.getTmin()));
@@ -265,6 +192,47 @@ void StateWriter::spawnPayload(ir::SpawnPayloadOp op) {
     if (optional)
       spawned.push_back(use(optional));
 }
+
+void StateWriter::write(ir::RandOp op, Lines &out) {
+  Touches touches = touchesOf(op);
+  flush(touches, out);
+  define(*op, onState(op.getOpen() ? "rtsl::randOpen" : "rtsl::rand"), touches, false, out);
+}
+
+void StateWriter::write(ir::IlluminateOp op, Lines &out) {
+  std::vector<Code> arguments = {name("rt")};
+  for (mlir::Value operand : op->getOperands())
+    arguments.push_back(use(operand));
+  Touches touches = touchesOf(op);
+  flush(touches, out);
+  touches.add(consumed);
+  define(*op, cpp::call("rtsl::illuminate", std::move(arguments)), touches, false, out);
+}
+
+//===----------------------------------------------------------------------===//
+// Methods that are called through references
+//===----------------------------------------------------------------------===//
+
+void StateWriter::write(ir::CallArgumentOp op, Lines &out) {
+  if (!llvm::isa<ir::PtrType>(op.getType()))
+    makeAnywhere(*op, frameField(machine.called->fields[machine.given(op)]), out);
+}
+
+void StateWriter::write(ir::CallResultOp op, Lines &out) {
+  const Code value = use(op.getValue(), machine.method->returnType);
+  emit(out, assign(frameField(machine.called->returned), value));
+}
+
+void StateWriter::write(ir::CallReturnedOp op, Lines &out) {
+  const auto before =
+      machine.callBefore.find(op->getParentOfType<mlir::func::FuncOp>().getSymName().str());
+  if (op->getNumResults() != 0 && before->second)
+    makeAnywhere(*op, member(name(machine.callName), before->second->returned), out);
+}
+
+//===----------------------------------------------------------------------===//
+// The end of a state
+//===----------------------------------------------------------------------===//
 
 /// A call with which the state ends: its arguments are evaluated there, for what is saved is saved
 /// before.

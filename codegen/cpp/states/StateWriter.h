@@ -11,7 +11,9 @@
 #include "codegen/cpp/states/States.h"
 #include "codegen/ir/Rtsl.h"
 
+#include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "mlir/Dialect/Vector/IR/VectorOps.h"
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/MapVector.h"
 
@@ -35,9 +37,13 @@ struct FrameField {
 struct Machine {
   const typed::Class *definition = nullptr;
   const typed::Function *method = nullptr;
-  std::string file; // that has the method
+  std::string file;       // that has the method
+  std::string slot, name; // of the method, in the IR and in C++
   std::vector<mlir::func::FuncOp> states;
+  std::vector<std::string> functions; // what C++ calls them
   std::vector<FrameField> frame;
+  // the struct of it, as the class names it and as others do; empty: there is none
+  std::string frameStruct, frameType;
   std::string frameName = "frame", callName = "call"; // of the parameters
   std::map<std::string, std::string> stepOf;          // by the symbol of the state
   const CalledMethod *called = nullptr;               // the method is called through references
@@ -147,10 +153,42 @@ private:
 
   // StateWriter.cpp
   void operation(mlir::Operation &op, Lines &out);
-  void spawnPayload(ir::SpawnPayloadOp op);
+  /// The result of an operation is this, made of the operands that were used for it; or it is the
+  /// same wherever it stands in the state.
+  void make(mlir::Operation &op, Code code, Lines &out);
+  void makeAnywhere(mlir::Operation &op, Code code, Lines &out);
+  const FrameField *savedField(llvm::StringRef slot) const;
+  void write(ir::VarOp op, Lines &out);
+  void write(ir::LoadOp op, Lines &out);
+  void write(ir::CopyOp op, Lines &out);
+  void write(ir::ElementOp op, Lines &out);
+  void write(ir::FrameLoadOp op, Lines &out);
+  void write(ir::FrameStoreOp op, Lines &out);
+  void write(ir::ExpressionOp op, Lines &out);
+  void write(ir::SpawnOp op);
+  void write(ir::SpawnPayloadOp op);
+  void write(ir::RandOp op, Lines &out);
+  void write(ir::IlluminateOp op, Lines &out);
+  void write(ir::CallArgumentOp op, Lines &out);
+  void write(ir::CallResultOp op, Lines &out);
+  void write(ir::CallReturnedOp op, Lines &out);
   Code call(ir::ReturnOp op);
   void leave(ir::ReturnOp op, Lines &out);
   void unsupported(mlir::Operation &op);
+
+  // StateValues.cpp
+  void infix(mlir::Operation &op, Operator sign, Lines &out);
+  void write(mlir::vector::ExtractOp op, Lines &out);
+  void write(mlir::vector::InsertOp op, Lines &out);
+  void write(mlir::vector::FromElementsOp op, Lines &out);
+  void write(mlir::vector::BroadcastOp op, Lines &out);
+  void write(mlir::vector::ShuffleOp op, Lines &out);
+  void write(mlir::arith::XOrIOp op, Lines &out);
+  void write(mlir::arith::AndIOp op, Lines &out);
+  void write(mlir::arith::OrIOp op, Lines &out);
+  void write(mlir::arith::AddIOp op, Lines &out);
+  void write(mlir::arith::CmpIOp op, Lines &out);
+  void write(mlir::arith::SelectOp op, Lines &out);
 
   // StateStatements.cpp
   void block(mlir::Block &block, Lines &out);
@@ -164,9 +202,9 @@ private:
   void joinDeclarations(Lines &lines);
 
   // StateStores.cpp
-  void evaluate(ir::EvaluateOp op, Lines &out);
-  void clear(ir::ClearOp op, Lines &out);
-  void store(ir::StoreOp op, Lines &out);
+  void write(ir::EvaluateOp op, Lines &out);
+  void write(ir::ClearOp op, Lines &out);
+  void write(ir::StoreOp op, Lines &out);
   Code assignment(const Code &target, const Code &value, mlir::Value made);
   void joinFields(mlir::Value address, Lines &out);
 

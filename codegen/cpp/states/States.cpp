@@ -2,7 +2,6 @@
 #include "codegen/cpp/states/States.h"
 #include "codegen/ir/Attributes.h"
 
-#include "codegen/cpp/Tracing.h"
 #include "codegen/cpp/states/StateWriter.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "sema/typed/Analysis.h"
@@ -32,25 +31,17 @@ static const std::vector<std::pair<StateVariable, const char *>> &stateVariables
 
 SourceTable makeSourceTable(const typed::Module &module) {
   auto effects = std::make_shared<EffectsOf>(module);
-  auto tracing = std::make_shared<TracingFunctions>(module);
   SourceTable table;
-  table.isPure = [effects, tracing](const typed::Function &function) {
+  table.isPure = [effects](const typed::Function &function) {
     const Effects &inside = effects->function(function);
-    return inside.isPure() && !inside.usesRay && !inside.usesScratch && !function.mayTrace &&
-           !tracing->mayBeCalled(function);
-  };
-  table.mayTrace = [tracing](const typed::Function &function) {
-    return tracing->mayBeCalled(function);
-  };
-  table.becomesStates = [tracing](const typed::Function &function) {
-    return tracing->contains(function);
+    return inside.isPure() && !inside.usesRay && !inside.usesScratch;
   };
   table.writes = [effects](const typed::Expr &expr) -> std::optional<std::vector<std::string>> {
     auto *call = dynCast<typed::CallExpr>(&expr);
     if (!call) // of a method that is known when the scene is
       return std::nullopt;
     const Effects &inside = effects->function(*call->function);
-    if (inside.traces || inside.writesScratch || inside.reportsHit)
+    if (typed::raysOf(expr).any() || inside.writesScratch || inside.reportsHit)
       return std::nullopt;
     std::vector<std::string> names;
     for (const auto &[variable, name] : stateVariables())
@@ -77,14 +68,14 @@ void ModulePrinter::findStates() {
 }
 
 bool ModulePrinter::isSplit(const typed::Class &definition, const typed::Function &method) const {
-  return states && tracing.contains(method) &&
+  return states && method.sends.traced &&
          (method.isStateMethod || calledMethod(definition, method)) &&
          statesOf.count(
              {definition.name, typed::slotName(module, method), !method.isStateMethod}) != 0;
 }
 
 bool ModulePrinter::isPartOfStates(const typed::Function &function) const {
-  return states && !function.isStateMethod && tracing.contains(function);
+  return states && !function.isStateMethod && function.sends.traced;
 }
 
 const std::set<std::string> &ModulePrinter::namesInFile() const {
@@ -270,137 +261,172 @@ std::string ModulePrinter::nameOfMachine(const typed::Class &definition,
          (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
 }
 
-std::string ModulePrinter::stateMachine(const typed::Class &definition,
-                                        const typed::Function &method) {
+/// The states of a method, with the names that they have in C++.
+Machine ModulePrinter::machineOf(const typed::Class &definition, const typed::Function &method,
+                                 std::set<std::string> &taken) {
   Machine machine;
   machine.definition = &definition;
   machine.method = &method;
   machine.file = notes.shownFile(method.range);
   machine.called = method.isStateMethod ? nullptr : calledMethod(definition, method);
-  const std::string slot = typed::slotName(module, method);
-  machine.states = statesOf.at({definition.name, slot, machine.called != nullptr});
-  std::string name = nameOfMachine(definition, method);
-  const typed::Variable *payload =
-      typed::takesPayload(method) ? method.parameters.front().get() : nullptr;
+  machine.slot = typed::slotName(module, method);
+  machine.states = statesOf.at({definition.name, machine.slot, machine.called != nullptr});
+  machine.name = nameOfMachine(definition, method);
   if (machine.called &&
-      machine.called->structure != capitalised(name)) // there are others of the name
-    name = uncapitalised(machine.called->structure);
+      machine.called->structure != capitalised(machine.name)) // there are others of the name
+    machine.name = uncapitalised(machine.called->structure);
   for (mlir::func::FuncOp state : machine.states)
     state.walk([&](ir::EnterOp call) {
       machine.callBefore[call.getResume().value_or("").str()] =
           calledMethod(call.getCallee().str());
     });
   machine.joins = joinsOf(machine.states);
-  // what is printed beside the author's own stands behind it
-  std::set<std::string> taken = namesInClass(definition);
-  std::vector<std::string> functions = {name};
+  machine.functions = {machine.name};
   for (std::size_t i = 1; i < machine.states.size(); ++i) {
     const std::string symbol = machine.states[i].getSymName().str();
     const char *begin = machine.joins.count(symbol)        ? "FromJoin"
                         : machine.callBefore.count(symbol) ? "AfterCall"
                                                            : "AfterTrace";
-    functions.push_back(unique(fmt::format("{}{}{}", name, begin, i), taken, namesInFile()));
-    machine.stepOf[symbol] = stepName(definition, functions.back());
+    machine.functions.push_back(
+        unique(fmt::format("{}{}{}", machine.name, begin, i), taken, namesInFile()));
+    machine.stepOf[symbol] = stepName(definition, machine.functions.back());
   }
+  return machine;
+}
+
+/// The struct of what a method has in its frame; empty: nothing that is not given.
+std::string ModulePrinter::frameStructure(Machine &machine, std::set<std::string> &taken) {
+  if (machine.frame.empty()) {
+    if (machine.called)
+      machine.frameStruct = machine.frameType = structureOf(*machine.called);
+    return {};
+  }
+  machine.frameStruct = unique(capitalised(machine.name) + "Frame", taken, namesInFile());
+  machine.frameType = names.of(machine.definition) + "::" + machine.frameStruct;
+  std::string text =
+      fmt::format("// What `{}` needs when its rays come back.\nstruct {}{} {{\n", machine.name,
+                  machine.frameStruct, machine.called ? " : " + structureOf(*machine.called) : "");
+  const auto isBool = [](const FrameField &field) {
+    return field.type && field.type->is(TypeKind::Bool) && !field.isObject;
+  };
+  // bools share a byte
+  const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1;
+  for (const FrameField &field : machine.frame) {
+    if (!field.type) {
+      unsupported(machine.method->range,
+                  fmt::format("`{}` in the frame of a method in C++", field.slot));
+      continue;
+    }
+    text += fmt::format("{} {}{}; // needed by line {}: {}\n", type(field.type), field.name,
+                        packs && isBool(field) ? " : 1" : "", field.neededBy,
+                        meaningOf(*machine.method, field));
+  }
+  return text + "};\n\n";
+}
+
+/// Does a state write what is in its frame?
+static bool writesFrame(mlir::func::FuncOp state) {
+  bool writes = false;
+  state.walk([&](mlir::Operation *op) {
+    writes |= llvm::isa<ir::FrameStoreOp, ir::CallResultOp>(op);
+    if (llvm::isa<ir::FrameObjectOp>(op))
+      for (mlir::Operation *user : op->getUsers())
+        writes |= writesTo(user, op->getResult(0));
+  });
+  return writes;
+}
+
+/// Where a state begins, in the author's lines.
+static std::string headingOf(const Machine &machine, mlir::func::FuncOp state) {
+  unsigned line = 0;
+  state.walk([&](mlir::Operation *op) {
+    if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp, ir::CallReturnedOp>(op) && line == 0)
+      line = lineOf(op->getLoc(), machine.file);
+  });
+  const std::string symbol = state.getSymName().str();
+  if (line == 0)
+    return "\n";
+  if (machine.joins.count(symbol) != 0)
+    return fmt::format("\n// From line {} on, whatever came before.\n", line);
+  if (machine.callBefore.count(symbol) != 0)
+    return fmt::format("\n// When the call of line {} is over.\n", line);
+  return fmt::format("\n// When the ray of line {} is back.\n", line);
+}
+
+/// One state as a function, whose parameters are what its body mentions; notes how it is called.
+std::string ModulePrinter::stateFunction(const Machine &machine, StateWriter &writer,
+                                         std::size_t number) {
+  const typed::Class &definition = *machine.definition;
+  const typed::Function &method = *machine.method;
+  mlir::func::FuncOp state = machine.states[number];
+  Statements body = writer.body(state);
+  for (std::size_t at = 0; machine.called && at < machine.called->given.size();
+       ++at) // under the author's name
+    if (const std::string address = machine.addressName(*this, at); mentions(body, address)) {
+      const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
+      body.insert(body.begin(), cpp::declaration(type(machine.givenType(at)) + " &", address,
+                                                 unary(UnaryOperator::Dereference, given)));
+    }
+
+  std::vector<std::string> parameters = {mentions(body, "rt") ? "State &rt" : "State &"};
+  std::vector<Code> arguments = {cpp::name("rt")};
+  const typed::Variable *payload =
+      typed::takesPayload(method) ? method.parameters.front().get() : nullptr;
+  if (payload && mentions(body, names.of(payload))) {
+    parameters.push_back(names.of(payload->type->structure) + " &" + names.of(payload));
+    arguments.push_back(payloadAt(*payload->type->structure));
+  }
+  if (writer.usesScratch) {
+    parameters.emplace_back("const Scratch &scratch");
+    arguments.push_back(storedScratch(definition));
+  }
+  const Code bottom = cpp::name("frame");
+  const Code frame =
+      machine.hasFrame()
+          ? cpp::call(withParameters(machine.called ? "rtsl::calledFrameAt" : "rtsl::frameAt",
+                                     {machine.frameType}),
+                      {bottom})
+          : bottom;
+  if (mentions(body, machine.frameName)) {
+    parameters.push_back((writesFrame(state) ? "" : "const ") + machine.frameStruct + " &" +
+                         machine.frameName);
+    arguments.push_back(frame);
+  }
+  const std::string symbol = state.getSymName().str();
+  const auto before = machine.callBefore.find(symbol);
+  if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
+    const std::string given = structureOf(*before->second);
+    parameters.push_back("const " + given + " &" + machine.callName);
+    arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {given}), {frame}));
+  }
+
+  std::string text;
+  const MethodCall call = {machine.functions[number], std::move(arguments)};
+  if (number == 0) {
+    firstCalls[{&definition, machine.slot}] = call;
+    text = commentText(method.comment);
+    if (const auto place = lineDirective(method.range))
+      text += print(*place);
+  } else {
+    steps.push_back({machine.stepOf.at(symbol), &definition, &method, call});
+    text = headingOf(machine, state);
+  }
+  return text + fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", call.method,
+                            join(parameters, ", "), print(body));
+}
+
+std::string ModulePrinter::stateMachine(const typed::Class &definition,
+                                        const typed::Function &method) {
+  // what is printed beside the author's own stands behind it
+  std::set<std::string> taken = namesInClass(definition);
+  Machine machine = machineOf(definition, method, taken);
   StateWriter writer(*this, states->source, machine);
   collectFrame(machine, writer, typeNames());
-
-  std::string frame = unique(capitalised(name) + "Frame", taken, namesInFile());
-  const std::string scope = names.of(&definition) + "::";
-  std::string text;
-  if (!machine.frame.empty()) {
-    text += fmt::format("// What `{}` needs when its rays come back.\nstruct {}{} {{\n", name,
-                        frame, machine.called ? " : " + structureOf(*machine.called) : "");
-    const auto isBool = [](const FrameField &field) {
-      return field.type && field.type->is(TypeKind::Bool) && !field.isObject;
-    };
-    // bools share a byte
-    const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1;
-    for (const FrameField &field : machine.frame) {
-      if (!field.type) {
-        unsupported(method.range, fmt::format("`{}` in the frame of a method in C++", field.slot));
-        continue;
-      }
-      text += fmt::format("{} {}{}; // needed by line {}: {}\n", type(field.type), field.name,
-                          packs && isBool(field) ? " : 1" : "", field.neededBy,
-                          meaningOf(method, field));
-    }
-    text += "};\n\n";
-  } else if (machine.called) {
-    frame = structureOf(*machine.called);
-  }
-  const std::string frameType = machine.frame.empty() ? frame : scope + frame;
-  const bool hasFrame = machine.hasFrame();
-  if (hasFrame)
-    (machine.called ? calledFrames : frames).push_back(frameType);
-  const Code bottom = cpp::name("frame");
-  const Code frameHere =
-      hasFrame ? cpp::call(withParameters(machine.called ? "rtsl::calledFrameAt" : "rtsl::frameAt",
-                                          {frameType}),
-                           {bottom})
-               : bottom;
-
-  for (std::size_t i = 0; i < machine.states.size(); ++i) {
-    Statements body = writer.body(machine.states[i]);
-    for (std::size_t at = 0; machine.called && at < machine.called->given.size();
-         ++at) // under the author's name
-      if (const std::string address = machine.addressName(*this, at); mentions(body, address)) {
-        const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
-        body.insert(body.begin(), cpp::declaration(type(machine.givenType(at)) + " &", address,
-                                                   unary(UnaryOperator::Dereference, given)));
-      }
-    std::vector<std::string> parameters = {mentions(body, "rt") ? "State &rt" : "State &"};
-    std::vector<Code> arguments = {cpp::name("rt")};
-    if (payload && mentions(body, names.of(payload))) {
-      parameters.push_back(names.of(payload->type->structure) + " &" + names.of(payload));
-      arguments.push_back(payloadAt(*payload->type->structure));
-    }
-    if (writer.usesScratch) {
-      parameters.emplace_back("const Scratch &scratch");
-      arguments.push_back(storedScratch(definition));
-    }
-    if (mentions(body, machine.frameName)) {
-      bool writes = false;
-      machine.states[i].walk([&](mlir::Operation *op) {
-        writes |= llvm::isa<ir::FrameStoreOp, ir::CallResultOp>(op);
-      });
-      machine.states[i].walk([&](ir::FrameObjectOp object) {
-        for (mlir::Operation *user : object->getUsers())
-          writes |= writesTo(user, object);
-      });
-      parameters.push_back((writes ? "" : "const ") + frame + " &" + machine.frameName);
-      arguments.push_back(frameHere);
-    }
-    const auto before = machine.callBefore.find(machine.states[i].getSymName().str());
-    if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
-      const std::string given = structureOf(*before->second);
-      parameters.push_back("const " + given + " &" + machine.callName);
-      arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {given}), {frameHere}));
-    }
-    const MethodCall call = {functions[i], std::move(arguments)};
-    if (i == 0) {
-      text += commentText(method.comment);
-      firstCalls[{&definition, slot}] = call;
-    } else {
-      unsigned line = 0;
-      machine.states[i].walk([&](mlir::Operation *op) {
-        if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp, ir::CallReturnedOp>(op) && line == 0)
-          line = lineOf(op->getLoc(), machine.file);
-      });
-      const bool isCall = before != machine.callBefore.end();
-      const bool isJoin = machine.joins.count(machine.states[i].getSymName().str()) != 0;
-      text += !line    ? "\n"
-              : isJoin ? fmt::format("\n// From line {} on, whatever came before.\n", line)
-              : isCall ? fmt::format("\n// When the call of line {} is over.\n", line)
-                       : fmt::format("\n// When the ray of line {} is back.\n", line);
-      steps.push_back(
-          {machine.stepOf.at(machine.states[i].getSymName().str()), &definition, &method, call});
-    }
-    if (const auto place = lineDirective(method.range); place && i == 0)
-      text += print(*place);
-    text += fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", functions[i], join(parameters, ", "),
-                        print(body));
-  }
+  std::string text = frameStructure(machine, taken);
+  if (machine.hasFrame())
+    (machine.called ? calledFrames : frames).push_back(machine.frameType);
+  for (std::size_t number = 0; number < machine.states.size(); ++number)
+    text += stateFunction(machine, writer, number);
   return text;
 }
 

@@ -44,9 +44,6 @@ struct StructDescription {
 
 namespace detail {
 
-/// What the runtime computes for a hit from which rays may be sent.
-inline constexpr std::uint32_t ofRaysFromHits = RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS;
-
 /// Bytes from the start of an object to a member.
 template <typename Class, typename Owner, typename T>
 inline std::uint32_t offsetOf(T Owner::*member) {
@@ -287,7 +284,7 @@ public:
   }
   /// RTSL_NEEDS_*: the parts of a hit that the class's methods read.
   ClassDescription &needs(std::uint32_t what) {
-    info.needs = what | detail::ofRaysFromHits; // it is not known which classes send rays
+    info.needs = what;
     return *this;
   }
   /// Has `anyHit` for rays with these payloads.
@@ -331,7 +328,7 @@ public:
     selfTest<N>();
     result->colorComponents = N;
     result->sample = &rtsl_sample_slots;
-    result->needs = detail::ofRaysFromHits;
+    result->needs = 0;
   }
 
   /// Adds a class; numbers count from 1. The description is valid until the next class.
@@ -343,7 +340,7 @@ public:
     info.name = name;
     info.base = base;
     info.root = root;
-    info.needs = detail::ofRaysFromHits;
+    info.needs = 0;
     return ClassDescription<Class>(info);
   }
 
@@ -365,7 +362,8 @@ public:
     result->slots.states.calledFrameSize =
         static_cast<std::uint32_t>(RTSL_CALL_HEADER + (size + 7) / 8 * 8);
   }
-  void needs(std::uint32_t what) { result->needs = what | detail::ofRaysFromHits; }
+  /// RTSL_NEEDS_*: the parts of a hit that the methods of the program read.
+  void needs(std::uint32_t what) { result->needs = what; }
   /// RTSL_FEATURE_*: side effects of samples.
   void features(std::uint32_t what) { result->slots.features = what; }
   void engine(runtime::Engine engine) { result->engine = engine; }

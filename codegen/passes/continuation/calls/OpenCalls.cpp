@@ -3,11 +3,11 @@
 //   rtsl.call_method "follow" on %f(%d)
 //       ==>   func.call @dispatch.Filter.follow(%f, %d) {rtsl.framed}
 //
-// where some class below Filter has a `follow` that traces. Which one runs is known when there is a
-// scene, so `@dispatch.Filter.follow` is only declared, under the first class that has the method;
-// whoever makes a program of this (codegen/cpp) chooses there. The methods that it may stand for
-// get frames of their own. The declaration says what they may write, `rtsl.writes`, for they are
-// cut before all that call them are.
+// where some class below Filter has a `follow` that may trace. Which one runs is known when there
+// is a scene, so `@dispatch.Filter.follow` is only declared, under the first class that has the
+// method; whoever makes a program of this (codegen/cpp) chooses there. The methods that it may
+// stand for get frames of their own. The declaration says what they may write, `rtsl.writes`, for
+// they are cut before all that call them are.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -31,7 +31,6 @@ private:
   ir::ClassOp baseClass(ir::ClassOp definition);
   bool isBelow(ir::ClassOp derived, llvm::StringRef base);
   llvm::SmallVector<FuncOp> targets(llvm::StringRef base, llvm::StringRef method);
-  void findTracing();
   std::string firstWith(llvm::StringRef className, llvm::StringRef method);
   void replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun);
   void giveFrame(FuncOp method);
@@ -39,7 +38,6 @@ private:
 
   mlir::ModuleOp module;
   mlir::SymbolTable symbols;
-  llvm::SmallSetVector<mlir::Operation *, 16> tracing;
   llvm::SmallSetVector<mlir::Operation *, 8> framed; // what was called so
   // and what they may stand for
   llvm::SmallVector<std::pair<FuncOp, llvm::SmallVector<FuncOp>>> declarations;
@@ -72,30 +70,9 @@ static llvm::StringRef baseOf(ir::CallMethodOp call) {
   return llvm::cast<ir::RefType>(call.getObject().getType()).getClassName();
 }
 
-/// What traces, with what calls it through references.
-void OpenCalls::findTracing() {
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (FuncOp function : module.getOps<FuncOp>()) {
-      if (tracing.contains(function))
-        continue;
-      const bool traces =
-          function
-              .walk([&](mlir::Operation *op) {
-                bool here = llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op);
-                if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
-                  here = tracing.contains(symbols.lookup(call.getCallee()));
-                if (auto call = llvm::dyn_cast<ir::CallMethodOp>(op))
-                  here = llvm::any_of(targets(baseOf(call), call.getMethod()),
-                                      [&](FuncOp target) { return tracing.contains(target); });
-                return here ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
-              })
-              .wasInterrupted();
-      if (traces)
-        changed |= tracing.insert(function);
-    }
-  }
+/// Does the method run as states? Lowering marks all methods that may trace (typed::Function::sends).
+static bool runsAsStates(FuncOp method) {
+  return ir::attr::states.isOn(method);
 }
 
 /// The class that has the method and whose base has not.
@@ -184,19 +161,17 @@ void OpenCalls::summariseWrites() {
 }
 
 void OpenCalls::run() {
-  findTracing();
   llvm::SmallVector<ir::CallMethodOp> calls;
   module.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
   for (ir::CallMethodOp call : calls) {
     const llvm::SmallVector<FuncOp> mayRun = targets(baseOf(call), call.getMethod());
-    if (llvm::none_of(mayRun, [&](FuncOp target) { return tracing.contains(target); }))
-      continue;
-    replace(call, mayRun);
+    if (llvm::any_of(mayRun, runsAsStates))
+      replace(call, mayRun);
   }
   summariseWrites();
   for (auto &[declaration, stands] : declarations)
     for (FuncOp target : stands)
-      if (tracing.contains(target) || ir::attr::states.isOn(target))
+      if (runsAsStates(target))
         giveFrame(target);
 }
 

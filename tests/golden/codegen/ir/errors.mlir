@@ -263,7 +263,7 @@ func.func private @f() attributes {rtsl.export = "f"}
 
 // -----
 
-// expected-error @below {{`rtsl.frame_size` is to be a whole number}}
+// expected-error @below {{`rtsl.frame_size` is to be an integer}}
 func.func private @f() attributes {rtsl.frame_size = "16"}
 
 // -----

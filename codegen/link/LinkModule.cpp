@@ -1,0 +1,68 @@
+//===- LinkModule.cpp - linking a module without a scene ------------------===//
+#include "codegen/link/LinkModule.h"
+
+#include "codegen/ir/Attributes.h"
+#include "codegen/link/Steps.h"
+
+namespace rtsl {
+
+namespace linking {
+
+namespace {
+
+std::vector<RayTypeFacts> rayTypesOf(const LinkContext &context) {
+  std::vector<RayTypeFacts> facts;
+  for (const RayType &type : context.rayTypes)
+    facts.push_back({structOf(context, type), type.number, type.search});
+  return facts;
+}
+
+/// By scratch member, for the members that some method mentions.
+std::map<const typed::Member *, std::uint32_t> attributeWordsOf(const LinkContext &context) {
+  std::map<std::string, const typed::Class *> classes;
+  for (const LinkedClass &linked : context.classes)
+    classes[linked.info->name] = linked.info;
+  std::map<const typed::Member *, std::uint32_t> words;
+  mlir::ModuleOp(context.ir).walk([&](ir::AttributeOp attribute) {
+    const auto function = attribute->getParentOfType<mlir::func::FuncOp>();
+    const auto owner = ir::attr::className.of(function);
+    const auto found = owner ? classes.find(owner.str()) : classes.end();
+    if (found == classes.end() || !attribute.getOffset())
+      return;
+    if (const typed::Member *member = findScratch(*found->second, attribute.getName().str()))
+      words[member] = *attribute.getOffset();
+  });
+  return words;
+}
+
+} // namespace
+
+} // namespace linking
+
+std::optional<ModuleFacts> linkModule(mlir::ModuleOp ir, const typed::Module &module,
+                                      Diagnostics &diagnostics, FloatingPoint floatingPoint) {
+  LinkRequest request;
+  request.isSampled = true;
+  Findings unasked;
+  linking::LinkContext context{ir,          module,  request,
+                               diagnostics, unasked, linking::elementaryErrorsOf(floatingPoint)};
+  context.hasScene = false;
+  linking::dropUnusedClasses(context);
+  linking::deriveHitErrors(context);
+  linking::resolveSlots(context);
+  linking::placeAttributes(context);
+  linking::resolveRayTypes(context);
+  if (diagnostics.hasErrors())
+    return std::nullopt;
+
+  ModuleFacts facts;
+  facts.rayTypes = linking::rayTypesOf(context);
+  facts.attributeWords = linking::attributeWordsOf(context);
+  const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context);
+  for (const auto &[index, linked] : llvm::enumerate(context.classes))
+    facts.needsOfClass[linked.info] = needs[index];
+  facts.needs = linking::findNeeds(context);
+  return facts;
+}
+
+} // namespace rtsl

@@ -1,0 +1,30 @@
+//===- ModuleFacts.h - results of linking a module without a scene --------===//
+#pragma once
+
+#include "sema/typed/TypedAst.h"
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace rtsl {
+
+/// The type of the rays that carry a payload, and how traversal handles their hits.
+struct RayTypeFacts {
+  const typed::Struct *payload = nullptr;
+  std::uint32_t number = 0; // from 1
+  std::uint32_t search = 0; // RTSL_FIRST_HIT, RTSL_ASK_ANY_HIT, RTSL_IN_ORDER
+};
+
+struct ModuleFacts {
+  /// All payload types: first those that are traced, then those that only have methods.
+  std::vector<RayTypeFacts> rayTypes;
+  /// Offsets of scratch members in the attributes of a hit, in 32-bit words. A member that no
+  /// method mentions has none. Members of classes with a common base do not overlap.
+  std::map<const typed::Member *, std::uint32_t> attributeWords;
+  /// RTSL_NEEDS_*: the parts of a hit that the methods of a class read, and those of the program.
+  std::map<const typed::Class *, std::uint32_t> needsOfClass;
+  std::uint32_t needs = 0;
+};
+
+} // namespace rtsl
