@@ -16,6 +16,7 @@
 #include "codegen/link/Steps.h"
 
 #include "runtime/device/ray/Abi.h"
+#include "sema/typed/Analysis.h"
 
 #include "mlir/IR/Matchers.h"
 #include "llvm/ADT/SetVector.h"
@@ -287,12 +288,23 @@ std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
   return types;
 }
 
+/// The types that have methods and are not traced. Of these only the names are used.
+static void addAnsweredTypes(LinkContext &context) {
+  for (const auto &definition : context.module.classes)
+    for (const auto &method : definition->functions) {
+      if (!typed::takesPayload(*method))
+        continue;
+      const std::string &name = method->parameters.front()->type->structure->name;
+      if (std::none_of(context.rayTypes.begin(), context.rayTypes.end(),
+                       [&](const RayType &type) { return type.name() == name; }))
+        rayTypeOf(ir::StructType::get(context.ir.getContext(), name, {}, {}), context.rayTypes);
+    }
+}
+
 void resolveRayTypes(LinkContext &context) {
   context.rayTypes = numberRayTypes(context.ir);
   if (!context.hasScene)
-    for (auto function : context.ir.getOps<FuncOp>())
-      if (const auto payload = ir::attr::payload.of(function))
-        rayTypeOf(payload.getValue(), context.rayTypes);
+    addAnsweredTypes(context);
   for (RayType &type : context.rayTypes)
     type.search = searchFor(context, type);
   context.ir.walk([&](ir::TracePayloadOp trace) {

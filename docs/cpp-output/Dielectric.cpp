@@ -91,7 +91,9 @@ static RtslShaders describe() {
                        "rt_Material")
       .member("index", &Dielectric::index, rtsl::Access::Public, rtsl::Default::Given)
       .member("tint", &Dielectric::tint, rtsl::Access::Public, rtsl::Default::Given)
-      .methods({"reflectance", "shade"});
+      .methods({"reflectance", "shade"})
+      .needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);
+  program.needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);
   program.states<Dielectric::ShadeFrame>(&slots::runState);
   program.slots().states.shadeFirst = static_cast<rtsl::Next>(Step::shade);
   return program.finish();

@@ -68,7 +68,9 @@ static RtslShaders describe() {
                        "rt_Material")
       .member("index", &Dielectric::index, rtsl::Access::Public, rtsl::Default::Given)
       .member("tint", &Dielectric::tint, rtsl::Access::Public, rtsl::Default::Given)
-      .methods({"reflectance", "shade"});
+      .methods({"reflectance", "shade"})
+      .needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);
+  program.needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);
   program.slots().rt_Material_shade = &slots::shade;
   return program.finish();
 }

@@ -76,7 +76,9 @@ static RtslShaders describe() {
   program.add<Ggx>(static_cast<std::uint32_t>(Id::Ggx), "Ggx", "rt_Material", "rt_Material")
       .member("roughness", &Ggx::roughness, rtsl::Access::Public, rtsl::Default::Given)
       .member("reflectance", &Ggx::reflectance, rtsl::Access::Public, rtsl::Default::Given)
-      .methods({"distribution", "shade", "visibility"});
+      .methods({"distribution", "shade", "visibility"})
+      .needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);
+  program.needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);
   program.slots().rt_Material_shade = &slots::shade;
   return program.finish();
 }

@@ -77,7 +77,8 @@ static RtslShaders describe() {
       .member("frame", &LensCamera::frame, rtsl::Access::Private)
       .member("extent", &LensCamera::extent, rtsl::Access::Private)
       .constructor<&LensCamera::constructor>({"eye_", "target", "up", "fieldOfView", "aspect"})
-      .methods({"constructor", "generateRay", "onDisk"});
+      .methods({"constructor", "generateRay", "onDisk"})
+      .needs(RTSL_NEEDS_LENS);
   program.needs(RTSL_NEEDS_LENS);
   program.slots().rt_Camera_generateRay = &slots::generateRay;
   return program.finish();

@@ -91,7 +91,8 @@ static RtslShaders describe() {
       .member("octaves", &NoiseTexture::octaves, rtsl::Access::Public, rtsl::Default::Given)
       .member("dark", &NoiseTexture::dark, rtsl::Access::Public, rtsl::Default::Given)
       .member("light", &NoiseTexture::light, rtsl::Access::Public, rtsl::Default::Given)
-      .methods({"gradient", "hash", "lookup", "noise"});
+      .methods({"gradient", "hash", "lookup", "noise"})
+      .needs(RTSL_NEEDS_TEXTURE_COORDINATES);
   program.needs(RTSL_NEEDS_TEXTURE_COORDINATES);
   program.slots().rt_Texture_lookup = &slots::lookup;
   return program.finish();
