@@ -96,7 +96,6 @@ mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
   const llvm::StringRef shown = llvm::StringSwitch<llvm::StringRef>(kind)
                                     .Case("String", "a string")
                                     .Case("Integer", "an integer")
-                                    .Case("Type", "a type")
                                     .Case("Array", "an array")
                                     .Case("DenseI32Array", "an array of i32")
                                     .Case("DenseF32Array", "an array of f32");

@@ -120,8 +120,6 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
       ir::attr::methodName.set(function, emitter.getStringAttr(slotName(source)));
     if (options.source && source.sends.traced)
       ir::attr::states.set(function);
-    if (key.takesPayload())
-      ir::attr::payload.set(function, mlir::TypeAttr::get(type(source.parameters[0]->type)));
   }
   functions[key] = function;
   pending.push_back(key);
