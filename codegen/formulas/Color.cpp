@@ -5,15 +5,6 @@
 
 namespace rtsl::lowering {
 
-// Each component a constant of its own.
-static Num constantVector(Emitter &emitter, const std::vector<double> &values) {
-  llvm::SmallVector<float, 16> floats(values.begin(), values.end());
-  auto type =
-      mlir::VectorType::get({static_cast<std::int64_t>(floats.size())}, emitter.getF32Type());
-  return {emitter, emitter.make<mlir::arith::ConstantOp>(
-                       mlir::DenseElementsAttr::get(type, llvm::ArrayRef<float>(floats)))};
-}
-
 Num colorOfGrey(Num x, unsigned components) {
   return x.splat(components);
 }
@@ -27,25 +18,10 @@ Num colorOfRgb(Num red, Num green, Num blue, unsigned components) {
     std::vector<double> values;
     for (const std::vector<double> &row : basis.toColor)
       values.push_back(row[index]);
-    return constantVector(emitter, values);
+    return red.constants(values);
   };
   Num redPart = red * band(0), greenPart = green * band(1), bluePart = blue * band(2);
   return (redPart + greenPart) + bluePart;
-}
-
-Num luminance(Num color) {
-  ColorBasis basis = makeColorBasis(color.count());
-  std::vector<double> weights(color.count(), 0.0);
-  for (unsigned i = 0; i < color.count(); ++i)
-    for (unsigned j = 0; j < 3; ++j)
-      weights[i] += luminanceWeights[j] * basis.toRgb[j][i];
-  if (color.count() == 1)
-    return color[0]; // the one component is it
-  Num products = color * constantVector(color.at(), weights);
-  Num sum = products[0];
-  for (unsigned i = 1; i < color.count(); ++i)
-    sum = sum + products[i];
-  return sum;
 }
 
 } // namespace rtsl::lowering

@@ -6,6 +6,7 @@
 
 #include "mlir/Dialect/Math/IR/Math.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
+#include "mlir/IR/Matchers.h"
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 
 namespace rtsl::lowering {
@@ -248,6 +249,20 @@ Num Num::operator[](unsigned component) const {
   return width() == 0 ? *this : Num(*emitter, emitter->extract(value, component));
 }
 
+Num Num::constants(const std::vector<double> &values) const {
+  llvm::SmallVector<float, 16> floats(values.begin(), values.end());
+  auto type =
+      mlir::VectorType::get({static_cast<std::int64_t>(floats.size())}, emitter->getF32Type());
+  return {*emitter, emitter->make<arith::ConstantOp>(
+                        mlir::DenseElementsAttr::get(type, llvm::ArrayRef<float>(floats)))};
+}
+
+Num Num::vector(const std::vector<Num> &components) {
+  const llvm::SmallVector<Value, 4> values(components.begin(), components.end());
+  Emitter &emitter = components.front().at();
+  return {emitter, emitter.vector(values)};
+}
+
 Num Num::shuffle(std::initializer_list<std::int64_t> components) const {
   return {*emitter, emitter->shuffle(value, components)};
 }
@@ -372,6 +387,29 @@ Num any(Num a) {
   for (unsigned i = 1; i < a.count(); ++i)
     result = result | a[i];
   return result;
+}
+
+template <typename Op>
+static Num convert(Num a, mlir::Type scalar) {
+  Value operand = a;
+  return {a.at(), a.at().fold<Op>(withScalar(a.type(), scalar), operand)};
+}
+
+Num toInt(Num a) {
+  return convert<ir::ToSintOp>(a, a.at().getI32Type());
+}
+Num toFloat(Num a) {
+  return convert<arith::SIToFPOp>(a, a.at().getF32Type());
+}
+Num fromBool(Num a) {
+  return convert<arith::ExtUIOp>(a, a.at().getI32Type());
+}
+
+std::optional<std::int32_t> constantOf(Num value) {
+  llvm::APInt constant;
+  if (mlir::matchPattern(static_cast<Value>(value), mlir::m_ConstantInt(&constant)))
+    return static_cast<std::int32_t>(constant.getSExtValue());
+  return std::nullopt;
 }
 
 } // namespace rtsl::lowering

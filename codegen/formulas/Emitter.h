@@ -8,6 +8,7 @@
 #pragma once
 
 #include "codegen/ir/RtslOps.h"
+#include "language/formulas/Operations.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Math/IR/Math.h"
@@ -16,11 +17,14 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <optional>
 #include <vector>
 
 namespace rtsl::lowering {
 
 using mlir::Value;
+
+class Library;
 
 class Emitter : public mlir::ImplicitLocOpBuilder {
 public:
@@ -83,6 +87,9 @@ public:
     return createOrFold<Op>(std::forward<Args>(args)...);
   }
 
+  /// Where long formulas become functions; null: they are emitted in place.
+  Library *library = nullptr;
+
   /// Whether arithmetic will be done in double, so that none may be done in single now
   /// (HideConstants.h).
   bool isWidenedLater() const;
@@ -111,7 +118,8 @@ mlir::Type withScalar(mlir::Type shape, mlir::Type scalar);
 
 /// A scalar or vector of f32, i32 or i1 with operators. Beside a vector, a scalar or a C++ number
 /// stands for a vector that has it in each component. Comparisons of integers are signed unless
-/// they say otherwise.
+/// they say otherwise. The operations are those of which formulas are made
+/// (language/formulas/Operations.h); Library.h has the rest of them.
 class Num {
 public:
   Num() = default;
@@ -127,6 +135,13 @@ public:
   unsigned count() const { return width() == 0 ? 1 : width(); }
 
   Num like(double constant) const { return {*emitter, emitter->constant(type(), constant)}; }
+  /// A scalar constant.
+  Num real(float constant) const { return {*emitter, emitter->floatConstant(constant)}; }
+  Num integer(std::int32_t constant) const { return {*emitter, emitter->intConstant(constant)}; }
+  /// A vector of floats.
+  Num constants(const std::vector<double> &values) const;
+  /// Of scalars, at least one.
+  static Num vector(const std::vector<Num> &components);
   /// Component; a scalar is its own component 0.
   Num operator[](unsigned component) const;
   Num splat(unsigned count) const { return {*emitter, emitter->splat(value, count)}; }
@@ -134,6 +149,8 @@ public:
 
   Num bits() const;    // f32 -> i32, the same bits
   Num asFloat() const; // i32 -> f32, the same bits
+
+  class Variable;
 
 private:
   Emitter *emitter = nullptr;
@@ -241,5 +258,12 @@ Num abs(Num a);       // integers too; the most negative integer stays
 /// All components of a vector of bools.
 Num all(Num a);
 Num any(Num a);
+
+Num toInt(Num a);    // f32 -> i32: truncates and saturates, NaN gives 0
+Num toFloat(Num a);  // signed
+Num fromBool(Num a); // i32: 0 or 1
+
+/// The value of a scalar integer, if it is a constant.
+std::optional<std::int32_t> constantOf(Num value);
 
 } // namespace rtsl::lowering

@@ -1,4 +1,4 @@
-//===- Library.cpp - helper functions made on demand ----------------------===//
+//===- Library.cpp - functions of the module that formulas become ---------===//
 #include "codegen/formulas/Library.h"
 
 #include "codegen/ir/Rtsl.h"
@@ -16,12 +16,13 @@ std::string typeWord(mlir::Type type) {
   return (scalar.isF32() ? "float" : prefix + "vec") + std::to_string(width); // a color
 }
 
-mlir::func::FuncOp Library::define(const std::string &symbol, mlir::FunctionType type,
-                                   const std::function<void(Emitter &, mlir::ValueRange)> &body) {
+// The body may change the type of what the function returns.
+mlir::func::FuncOp Library::define(const std::string &symbol, mlir::FunctionType type, Body body) {
   auto [place, isNew] = functions.try_emplace(symbol);
   if (!isNew)
     return place->second;
   Emitter emitter(module.getContext());
+  emitter.library = this;
   emitter.setLoc(mlir::NameLoc::get(emitter.getStringAttr(symbol)));
   emitter.setInsertionPointToEnd(module.getBody());
   auto function = emitter.make<mlir::func::FuncOp>(symbol, type);
@@ -29,7 +30,7 @@ mlir::func::FuncOp Library::define(const std::string &symbol, mlir::FunctionType
   // std::map keeps its nodes: the body may define further functions.
   place->second = function;
   emitter.setInsertionPointToStart(function.addEntryBlock());
-  body(emitter, function.getArguments());
+  body(emitter, function);
   eraseUnused(function.getBody());
   return function;
 }
@@ -46,31 +47,25 @@ static llvm::SmallVector<Value, 4> valuesOf(const Values &nums) {
   return llvm::SmallVector<Value, 4>(nums.begin(), nums.end());
 }
 
-llvm::SmallVector<Num, 2> Library::call(const std::string &name, llvm::ArrayRef<Num> arguments,
-                                        llvm::ArrayRef<mlir::Type> results, const Body &body) {
+Library::Numbers Library::call(const std::string &name, const Numbers &arguments,
+                               llvm::function_ref<Numbers(const Numbers &)> body) {
   Emitter &emitter = arguments.front().at();
   auto function = define("rtsl." + name + "." + typeWord(arguments.front().type()),
-                         emitter.getFunctionType(typesOf(arguments), results),
-                         [&](Emitter &inner, mlir::ValueRange values) {
-                           llvm::SmallVector<Num, 4> parameters;
-                           for (Value value : values)
+                         emitter.getFunctionType(typesOf(arguments), {}),
+                         [&](Emitter &inner, mlir::func::FuncOp function) {
+                           Numbers parameters;
+                           for (Value value : function.getArguments())
                              parameters.push_back({inner, value});
-                           inner.returnValues(valuesOf(body(parameters)));
+                           const Numbers results = body(parameters);
+                           function.setFunctionType(
+                               inner.getFunctionType(typesOf(arguments), typesOf(results)));
+                           inner.returnValues(valuesOf(results));
                          });
   auto call = emitter.make<mlir::func::CallOp>(function, valuesOf(arguments));
-  llvm::SmallVector<Num, 2> values;
+  Numbers values;
   for (Value value : call.getResults())
     values.push_back({emitter, value});
   return values;
-}
-
-Num Library::callOne(const std::string &name, llvm::ArrayRef<Num> arguments, mlir::Type result,
-                     const std::function<Num(llvm::ArrayRef<Num>)> &body) {
-  return call(name, arguments, result,
-              [&](llvm::ArrayRef<Num> parameters) {
-                return llvm::SmallVector<Num, 2>{body(parameters)};
-              })
-      .front();
 }
 
 //===----------------------------------------------------------------------===//
@@ -100,15 +95,17 @@ static void storeColumns(Emitter &emitter, const Columns &columns, Value address
     emitter.store(columns[i], emitter.element(address, i));
 }
 
-Columns Library::callMatrix(const std::string &name, const Columns &m, const MatrixBody &body) {
+Columns Library::callMatrix(const std::string &name, const Columns &m,
+                            llvm::function_ref<Columns(const Columns &)> body) {
   Emitter &emitter = m.front().at();
   ir::ArrayType type = matrixType(m);
   auto pointer = ir::PtrType::get(type);
   auto count = static_cast<unsigned>(m.size());
   auto function =
       define("rtsl." + name + "." + matrixWord(m), emitter.getFunctionType({pointer, pointer}, {}),
-             [&](Emitter &inner, mlir::ValueRange values) {
-               storeColumns(inner, body(loadColumns(inner, values[1], count)), values[0]);
+             [&](Emitter &inner, mlir::func::FuncOp function) {
+               storeColumns(inner, body(loadColumns(inner, function.getArgument(1), count)),
+                            function.getArgument(0));
                inner.returnValues({});
              });
   Value argument = emitter.variable("matrix", type);
@@ -119,20 +116,65 @@ Columns Library::callMatrix(const std::string &name, const Columns &m, const Mat
 }
 
 Num Library::callMatrixToScalar(const std::string &name, const Columns &m,
-                                const std::function<Num(const Columns &)> &body) {
+                                llvm::function_ref<Num(const Columns &)> body) {
   Emitter &emitter = m.front().at();
   ir::ArrayType type = matrixType(m);
   auto count = static_cast<unsigned>(m.size());
   auto function = define("rtsl." + name + "." + matrixWord(m),
                          emitter.getFunctionType({ir::PtrType::get(type)}, {emitter.getF32Type()}),
-                         [&](Emitter &inner, mlir::ValueRange values) {
-                           Value result = body(loadColumns(inner, values[0], count));
+                         [&](Emitter &inner, mlir::func::FuncOp function) {
+                           Value result = body(loadColumns(inner, function.getArgument(0), count));
                            inner.returnValues(result);
                          });
   Value argument = emitter.variable("matrix", type);
   storeColumns(emitter, m, argument);
   auto call = emitter.make<mlir::func::CallOp>(function, argument);
   return {emitter, call.getResult(0)};
+}
+
+//===----------------------------------------------------------------------===//
+// Functions that are one operation of the IR
+//===----------------------------------------------------------------------===//
+
+static ir::Elementary operationOf(formulas::Elementary function) {
+  switch (function) {
+#define RTSL_ELEMENTARY_UNARY(Id, name)                                                            \
+  case formulas::Elementary::Id:                                                                   \
+    return ir::Elementary::Id;
+#define RTSL_ELEMENTARY_BINARY RTSL_ELEMENTARY_UNARY
+#include "math/ElementaryFunctions.def"
+  }
+  llvm_unreachable("not an elementary function");
+}
+
+Num elementary(formulas::Elementary function, Num x) {
+  Value operand = x;
+  return {x.at(), x.at().make<ir::ElementaryOp>(x.type(), operationOf(function), operand)};
+}
+
+// `pow(color, float)`: a scalar operand goes to every component.
+Num elementary(formulas::Elementary function, Num x, Num y) {
+  if (y.width() == 0 && x.width() != 0)
+    y = y.splat(x.width());
+  const Value operands[] = {x, y};
+  return {x.at(), x.at().make<ir::ElementaryOp>(x.type(), operationOf(function), operands)};
+}
+
+Num refract(Num i, Num n, Num eta) {
+  Value incident = i, normal = n, index = eta;
+  return {i.at(), i.at().fold<ir::RefractOp>(i.type(), incident, normal, index)};
+}
+
+void multiplyExtended(Num x, Num y, formulas::IntegerSign sign, Num &high, Num &low) {
+  Emitter &emitter = x.at();
+  Value a = x, b = y;
+  mlir::Operation *product;
+  if (sign == formulas::IntegerSign::Unsigned)
+    product = emitter.make<mlir::arith::MulUIExtendedOp>(a, b);
+  else
+    product = emitter.make<mlir::arith::MulSIExtendedOp>(a, b);
+  high = {emitter, product->getResult(1)};
+  low = {emitter, product->getResult(0)};
 }
 
 } // namespace rtsl::lowering

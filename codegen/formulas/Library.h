@@ -1,12 +1,8 @@
-//===- Library.h - what the built-in functions compute --------------------===//
+//===- Library.h - functions of the module, and other parts of formulas ---===//
 //
-// The built-in functions as formulas over IR, apart from the syntax tree. Each operation is one
-// IEEE single operation in the order written; only where `fma` stands are two fused. What is short
-// is emitted in place. What is long, or has a rare path, becomes a private function of the module,
-// `@rtsl.normalize.vec3`, made when it is first needed.
-//
-// Errors that are stated are in ulp of the result, for results that are neither subnormal nor too
-// large.
+// What the formulas of built-in functions (language/formulas) are made of, beside the operators of
+// Emitter.h. What is short is emitted in place. What is long, or has a rare path, `outline` makes a
+// private function of the module, `@rtsl.normalize.vec3`, when it is first needed.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -16,107 +12,136 @@
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/BuiltinOps.h"
 
+#include <array>
 #include <functional>
 #include <map>
 #include <string>
+#include <type_traits>
 
 namespace rtsl::lowering {
 
 /// A matrix: its columns.
-using Columns = llvm::SmallVector<Num, 4>;
+using Columns = formulas::Columns<Num>;
 
+//===----------------------------------------------------------------------===//
+// Functions of the module
+//===----------------------------------------------------------------------===//
+
+/// The private functions that a module has for long formulas. An emitter that refers to it makes
+/// them.
 class Library {
 public:
   explicit Library(mlir::ModuleOp module) : module(module) {}
 
-  // LibraryGeometry.cpp
-  Num length(Num v);
-  Num normalize(Num v);
-  Num perpendicularTo(Num v);
-
-  // LibraryCommon.cpp
-  Num powInt(Num x, Num exponent); // exponent: a scalar
-  Num frexp(Num x, Num &exponent);
-  Num ldexp(Num x, Num exponent);
-
-  // LibraryMatrix.cpp
-  Num determinant(const Columns &m);
-  Columns inverse(const Columns &m);
-
-  // LibraryInteger.cpp
-  Num bitCount(Num x);
-  Num bitfieldReverse(Num x);
-  Num findLSB(Num x);
-  Num findMSB(Num x, bool isSigned);
-
-  // LibraryPacking.cpp
-  Num halfFromFloat(Num x); // f32 -> the 16 bits of a half in an i32
-  Num floatFromHalf(Num bits);
-
-  using Body = std::function<llvm::SmallVector<Num, 2>(llvm::ArrayRef<Num> arguments)>;
-  using MatrixBody = std::function<Columns(const Columns &)>;
+  using Numbers = llvm::SmallVector<Num, 4>;
+  /// Calls `@rtsl.<name>.<type of the first argument>`, made with `body` if it is not there yet.
+  Numbers call(const std::string &name, const Numbers &arguments,
+               llvm::function_ref<Numbers(const Numbers &)> body);
+  /// The same for a function of a matrix, to a matrix of its shape or to a float.
+  Columns callMatrix(const std::string &name, const Columns &m,
+                     llvm::function_ref<Columns(const Columns &)> body);
+  Num callMatrixToScalar(const std::string &name, const Columns &m,
+                         llvm::function_ref<Num(const Columns &)> body);
 
 private:
-  /// Calls `@rtsl.<name>.<type of the first argument>`, made with `body` if it is not there yet.
-  llvm::SmallVector<Num, 2> call(const std::string &name, llvm::ArrayRef<Num> arguments,
-                                 llvm::ArrayRef<mlir::Type> results, const Body &body);
-  Num callOne(const std::string &name, llvm::ArrayRef<Num> arguments, mlir::Type result,
-              const std::function<Num(llvm::ArrayRef<Num>)> &body);
-  Columns callMatrix(const std::string &name, const Columns &m, const MatrixBody &body);
-  Num callMatrixToScalar(const std::string &name, const Columns &m,
-                         const std::function<Num(const Columns &)> &body);
-  mlir::func::FuncOp define(const std::string &symbol, mlir::FunctionType type,
-                            const std::function<void(Emitter &, mlir::ValueRange)> &body);
+  using Body = llvm::function_ref<void(Emitter &, mlir::func::FuncOp)>;
+  mlir::func::FuncOp define(const std::string &symbol, mlir::FunctionType type, Body body);
 
   mlir::ModuleOp module;
   std::map<std::string, mlir::func::FuncOp> functions;
 };
 
-/// `float`, `ivec2`, `vec3`, `float16`: how helper functions call a type.
+namespace detail {
+template <typename Body, std::size_t... I>
+auto invoke(const Body &body, const Library::Numbers &arguments, std::index_sequence<I...>) {
+  return body(arguments[I]...);
+}
+} // namespace detail
+
+/// `body(arguments...)`, a number or an array of them, by a call of a function.
+template <typename Body, typename... Arguments>
+auto outline(const char *name, const Body &body, Num first, Arguments... others) {
+  using Result = std::invoke_result_t<Body, Num, Arguments...>;
+  Library *library = first.at().library;
+  if (!library)
+    return body(first, others...);
+  const Library::Numbers results =
+      library->call(name, {first, others...}, [&](const Library::Numbers &parameters) {
+        constexpr std::make_index_sequence<1 + sizeof...(Arguments)> all;
+        const Result values = detail::invoke(body, parameters, all);
+        if constexpr (std::is_same_v<Result, Num>)
+          return Library::Numbers{values};
+        else
+          return Library::Numbers(values.begin(), values.end());
+      });
+  if constexpr (std::is_same_v<Result, Num>) {
+    return results.front();
+  } else {
+    Result values;
+    std::copy(results.begin(), results.end(), values.begin());
+    return values;
+  }
+}
+
+/// The same for a matrix; the result is a matrix of its shape or a float.
+template <typename Body>
+auto outline(const char *name, const Body &body, const Columns &m) {
+  Library *library = m.front().at().library;
+  if (!library)
+    return body(m);
+  if constexpr (std::is_same_v<std::invoke_result_t<Body, const Columns &>, Num>)
+    return library->callMatrixToScalar(name, m, body);
+  else
+    return library->callMatrix(name, m, body);
+}
+
+/// `float`, `ivec2`, `vec3`, `float16`: what names of such functions call a type.
 std::string typeWord(mlir::Type type);
 
-// Of two numbers; the operands' shapes may differ as for operators.
-Num minimum(Num x, Num y); // y < x ? y : x
-Num maximum(Num x, Num y); // x < y ? y : x
-Num minimumUnsigned(Num x, Num y);
-Num maximumUnsigned(Num x, Num y);
-Num clamp(Num x, Num low, Num high); // min(max(x, low), high)
-Num mix(Num a, Num b, Num t);        // a*(1-t) + b*t
-Num step(Num edge, Num x);           // x < edge ? 0 : 1
-Num smoothstep(Num edge0, Num edge1, Num x);
-Num sign(Num x);             // of zero: itself; of NaN: NaN
-Num fract(Num x);            // x - floor(x); 1 for a tiny negative x
-Num mod(Num x, Num y);       // x - y*floor(x/y)
-Num modf(Num x, Num &whole); // both have the sign of x; the fraction of an infinity is 0
-Num copySign(Num magnitude, Num sign);
-Num isNan(Num x);
-Num isInf(Num x);
+//===----------------------------------------------------------------------===//
+// Control
+//===----------------------------------------------------------------------===//
 
-/// `choose(c, a, b)`: evaluates only the one that is needed.
-Num choose(Num condition, mlir::Type type, const std::function<Num()> &whenTrue,
-           const std::function<Num()> &whenFalse);
+/// A variable of a type that values can have.
+class Num::Variable {
+public:
+  Variable(const char *name, Num shape)
+      : emitter(&shape.at()), address(emitter->variable(name, shape.type())) {}
+  void operator=(Num x) { emitter->store(x, address); }
+  Num value() const { return {*emitter, emitter->load(address)}; }
 
-Num minComponent(Num v); // from the first component on
-Num maxComponent(Num v);
-Num dominantAxis(Num v); // i32
-Num inside(Num x, Num low, Num high);
+private:
+  Emitter *emitter;
+  Value address;
+};
 
-Num dot(Num a, Num b); // ((x x' + y y') + z z') + w w', each operation rounded
-Num cross(Num a, Num b);
-Num faceforward(Num n, Num i, Num reference);
-Num reflect(Num i, Num n); // i - (2 dot(n, i)) n
-/// a b - c d within 1.5 ulp, and exactly 0 for a b == c d: Kahan's algorithm, analysed by
-/// Jeannerod, Louvet and Muller, "Further analysis of Kahan's algorithm for the accurate
-/// computation of 2 x 2 determinants" (2013).
-Num differenceOfProducts(Num a, Num b, Num c, Num d);
+template <typename Body>
+void ifThen(Num condition, const Body &body) {
+  condition.at().ifThen(condition, body);
+}
 
-Columns transpose(const Columns &m);
-Columns outerProduct(Num column, Num row);
-Num multiply(const Columns &m, Num v); // sums from the first column on
-Num multiply(Num v, const Columns &m); // dot(v, column)
-Columns multiply(const Columns &a, const Columns &b);
+/// `x` has the type of the result.
+template <typename First, typename Second>
+Num choose(Num condition, Num x, const First &whenTrue, const Second &whenFalse) {
+  Num::Variable result("result", x);
+  condition.at().ifThen(condition, [&] { result = whenTrue(); }, [&] { result = whenFalse(); });
+  return result.value();
+}
 
-Num bitfieldExtract(Num value, Num offset, Num bits, bool isSigned);
-Num bitfieldInsert(Num base, Num insert, Num offset, Num bits);
+/// `x` is any number.
+template <typename Condition, typename Body>
+void repeatWhile(Num x, const Condition &condition, const Body &body) {
+  x.at().loop(false, [&]() -> Value { return condition(); }, body, nullptr);
+}
+
+//===----------------------------------------------------------------------===//
+// Functions that are one operation of the IR
+//===----------------------------------------------------------------------===//
+
+/// A scalar stands for a vector beside one.
+Num elementary(formulas::Elementary function, Num x);
+Num elementary(formulas::Elementary function, Num x, Num y);
+Num refract(Num i, Num n, Num eta);
+void multiplyExtended(Num x, Num y, formulas::IntegerSign sign, Num &high, Num &low);
 
 } // namespace rtsl::lowering

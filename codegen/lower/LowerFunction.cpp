@@ -28,6 +28,7 @@ namespace rtsl::lowering {
 FunctionLowering::FunctionLowering(ModuleLowering &module, const FunctionKey &key,
                                    mlir::func::FuncOp function)
     : module(module), key(key), function(function), emitter(module.context()) {
+  emitter.library = &module.library;
   emitter.setLoc(function.getLoc());
   emitter.setInsertionPointToStart(function.addEntryBlock());
 }

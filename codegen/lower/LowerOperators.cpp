@@ -1,5 +1,6 @@
 //===- LowerOperators.cpp - unary and binary operators, conversions -------===//
 #include "codegen/lower/Lowering.h"
+#include "language/formulas/Matrices.h"
 
 namespace rtsl::lowering {
 
@@ -58,7 +59,7 @@ Num FunctionLowering::arithmetic(BinaryOp op, Num left, Num right, bool isSigned
                     : divide<ir::UDivOp>(emitter, left, right);
   case BinaryOp::Mod:
     if (left.isFloat())
-      return mod(left, right);
+      return formulas::mod(left, right);
     return isSigned ? divide<ir::SRemOp>(emitter, left, right)
                     : divide<ir::URemOp>(emitter, left, right);
   case BinaryOp::Shl:
@@ -79,9 +80,10 @@ Num FunctionLowering::arithmetic(BinaryOp op, Num left, Num right, bool isSigned
     bool swap = op == BinaryOp::Greater || op == BinaryOp::GreaterEqual;
     bool strict = op == BinaryOp::Less || op == BinaryOp::Greater;
     Num low = swap ? right : left, high = swap ? left : right;
-    if (low.isFloat() || isSigned)
-      return strict ? less(low, high) : lessEqual(low, high);
-    return strict ? lessUnsigned(low, high) : !lessUnsigned(high, low);
+    using formulas::IntegerSign;
+    const IntegerSign sign =
+        low.isFloat() || isSigned ? IntegerSign::Signed : IntegerSign::Unsigned;
+    return strict ? formulas::lessThan(low, high, sign) : formulas::lessThanEqual(low, high, sign);
   }
   case BinaryOp::Equal:
   case BinaryOp::NotEqual:
@@ -112,10 +114,10 @@ Parts FunctionLowering::binary(BinaryOp op, const Parts &left, const Type *leftT
 Parts FunctionLowering::multiplyMatrices(const Parts &left, const Type *leftType,
                                          const Parts &right, const Type *rightType) {
   if (!rightType->isMatrix())
-    return {multiply(columns(left), num(right.front()))};
+    return {formulas::multiply(columns(left), num(right.front()))};
   if (!leftType->isMatrix())
-    return {multiply(num(left.front()), columns(right))};
-  return parts(multiply(columns(left), columns(right)));
+    return {formulas::multiply(num(left.front()), columns(right))};
+  return parts(formulas::multiply(columns(left), columns(right)));
 }
 
 // Of whole values: all scalars are equal.

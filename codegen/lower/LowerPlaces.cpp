@@ -1,5 +1,6 @@
 //===- LowerPlaces.cpp - places in memory: what can be read and assigned --===//
 #include "codegen/lower/Lowering.h"
+#include "language/formulas/Common.h"
 #include "sema/typed/Analysis.h"
 
 #include "runtime/device/ray/Abi.h"
@@ -192,8 +193,8 @@ Value FunctionLowering::clampedIndex(const typed::Expr &index, Value count) {
                    [&] { emitter.make<ir::RaiseOp>(RTSL_EXCEPTION_INDEX); });
   Num last = num(count) - 1.0;
   if (index.type->is(TypeKind::UInt))
-    return minimumUnsigned(result, last);
-  return maximum(minimum(result, last), result.like(0));
+    return formulas::minimum(result, last, formulas::IntegerSign::Unsigned);
+  return formulas::maximum(formulas::minimum(result, last), result.like(0));
 }
 
 //===----------------------------------------------------------------------===//

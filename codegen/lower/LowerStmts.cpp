@@ -1,5 +1,7 @@
 //===- LowerStmts.cpp - statements ----------------------------------------===//
 #include "codegen/lower/Lowering.h"
+#include "language/formulas/Common.h"
+#include "language/formulas/Elementary.h"
 
 #include "sema/typed/Casting.h"
 
@@ -141,7 +143,7 @@ void FunctionLowering::lowerIlluminance(const typed::IlluminanceStmt &stmt) {
   if (stmt.normal && stmt.angle && !module.options.source) {
     Num angle = number(*stmt.angle);
     constexpr double pi = 3.14159265358979323846;
-    cosAngle = elementary(ir::Elementary::Cos, clamp(angle, angle.like(0), angle.like(pi)));
+    cosAngle = formulas::cos(formulas::clamp(angle, angle.like(0), angle.like(pi)));
   }
   emitter.setLoc(module.location(stmt.range));
   emitter.illuminance(point, normal, cosAngle, [&] { lower(stmt.body); });

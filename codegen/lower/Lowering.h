@@ -258,19 +258,14 @@ private:
                    std::size_t index) const;
   void copyOut(const std::vector<CopyOut> &outputs);
 
-  // LowerBuiltins.cpp, LowerBuiltinsInteger.cpp, LowerBuiltinsRay.cpp
+  // LowerBuiltins.cpp, LowerBuiltinsRay.cpp
   Parts lowerBuiltin(const typed::BuiltinExpr &expr);
-  std::optional<Parts> lowerNumericBuiltin(const typed::BuiltinExpr &expr);
-  std::optional<Parts> lowerGeometricBuiltin(const typed::BuiltinExpr &expr);
-  std::optional<Parts> lowerIntegerBuiltin(const typed::BuiltinExpr &expr);
-  std::optional<Parts> lowerPackingBuiltin(const typed::BuiltinExpr &expr);
   std::optional<Parts> lowerRayBuiltin(const typed::BuiltinExpr &expr);
   void lowerTracePayload(const typed::BuiltinExpr &expr);
   Parts lowerIlluminate(const typed::BuiltinExpr &expr);
   void lowerPrint(const typed::BuiltinExpr &expr);
   void answerHit(typed::Builtin builtin);
   void returnIfHitAnswered();
-  Num elementary(ir::Elementary function, llvm::ArrayRef<Num> operands);
 
   // Small helpers
   Num num(Value value) { return {emitter, value}; }

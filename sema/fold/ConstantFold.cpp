@@ -1,6 +1,8 @@
 //===- ConstantFold.cpp - the value of a constant expression --------------===//
 #include "sema/fold/ConstantFold.h"
 
+#include "language/formulas/Matrices.h"
+#include "sema/fold/Number.h"
 #include "sema/typed/Casting.h"
 #include "sema/typed/TypeProperties.h"
 
@@ -176,23 +178,15 @@ static bool equalValues(const Type *type, const Scalar *a, const Scalar *b) {
   return true;
 }
 
-/// The products of linear algebra; sums run from the first term to the last.
+/// The products of linear algebra.
 static Constant foldMatrixProduct(const Type *leftType, const Constant &left, const Type *rightType,
                                   const Constant &right) {
-  // A row vector on the left has one row; a column vector on the right has one column. Values are
-  // stored by column.
-  const std::uint32_t rows = leftType->isMatrix() ? leftType->rows() : 1;
-  const std::uint32_t inner = leftType->isMatrix() ? leftType->columns() : leftType->count;
-  const std::uint32_t columns = rightType->isMatrix() ? rightType->columns() : 1;
-  Constant result;
-  for (std::uint32_t c = 0; c != columns; ++c)
-    for (std::uint32_t r = 0; r != rows; ++r) {
-      float sum = left.scalars[r].f * right.scalars[c * inner].f;
-      for (std::uint32_t k = 1; k != inner; ++k)
-        sum = sum + left.scalars[k * rows + r].f * right.scalars[c * inner + k].f;
-      result.scalars.push_back(makeFloat(sum));
-    }
-  return result;
+  const fold::Columns a = fold::columnsOf(*leftType, left), b = fold::columnsOf(*rightType, right);
+  if (!rightType->isMatrix())
+    return fold::toConstant({formulas::multiply(a, b.front())});
+  if (!leftType->isMatrix())
+    return fold::toConstant({formulas::multiply(a.front(), b)});
+  return fold::toConstant(formulas::multiply(a, b));
 }
 
 static bool isLinearAlgebra(BinaryOp op, const Type *left, const Type *right) {

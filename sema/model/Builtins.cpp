@@ -25,7 +25,7 @@ static const std::vector<Row> &allRows() {
       for (const char *signature : signatures)
         all.push_back({builtin, signature});
     };
-#define RTSL_BUILTIN(id, name, effect, cost, ...) add(Builtin::id, {__VA_ARGS__});
+#define RTSL_BUILTIN(id, name, effect, cost, where, formula, ...) add(Builtin::id, {__VA_ARGS__});
 #include "language/Builtins.def"
     return all;
   }();

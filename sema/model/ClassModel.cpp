@@ -183,19 +183,13 @@ const RootModel *rootModel(const std::string &name) {
 
 std::optional<Ability> abilityNeeded(const std::string &builtin) {
   static const std::map<std::string, Ability> needed = {
-      {"trace", Ability::Trace},
-      {"hit", Ability::Hit},
-      {"ambient", Ability::Illuminance},
-      {"lightCount", Ability::Illuminance},
-      {"illuminate", Ability::Illuminance},
-      {"ignoreIntersection", Ability::AnyHit},
-      {"terminateRay", Ability::AnyHit},
-      {"visitChild", Ability::VisitChild},
-      {"rand", Ability::Random},
-      {"randOpen", Ability::Random},
+#define RTSL_BUILTIN(id, name, effect, cost, where, ...) {name, Ability::where},
+#include "language/Builtins.def"
   };
   const auto found = needed.find(builtin);
-  return found == needed.end() ? std::nullopt : std::optional(found->second);
+  if (found == needed.end() || found->second == Ability::Anywhere)
+    return std::nullopt;
+  return found->second;
 }
 
 std::string MethodModel::signature() const {

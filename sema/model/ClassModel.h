@@ -36,20 +36,21 @@ private:
   std::uint64_t bits = 0;
 };
 
-/// Uses that only some methods allow, beside reading and writing state.
+/// Uses that only some methods allow, beside reading and writing state. Builtins.def gives the
+/// ability that each built-in function requires.
 enum class Ability : std::uint8_t {
-  Trace,       // trace(...)
-  Illuminance, // the illuminance statement, illuminate(...), lightCount() and ambient()
-  Hit,         // hit(t)
-  AnyHit,      // ignoreIntersection() and terminateRay()
-  VisitChild,  // visitChild(i)
-  Lookup,      // texture.lookup(), texture.lookupFloat()
-  Random,      // rand()
+  Anywhere, // every method allows it
+  Trace,
+  Illuminance, // the illuminance statement too
+  Hit,
+  AnyHit,
+  VisitChild,
+  Lookup, // texture.lookup(), texture.lookupFloat()
+  Random,
   ReadScratch,
   WriteScratch,
   WriteMembers, // public and private members
 };
-constexpr unsigned numAbilities = 10;
 
 class AbilitySet {
 public:
@@ -72,7 +73,8 @@ private:
   std::uint16_t bits = 0;
 };
 
-/// The ability that a method must have to use the built-in function of this name.
+/// The ability that a method must have to use the built-in function of this name; none if all
+/// methods may, or if there is no such function.
 std::optional<Ability> abilityNeeded(const std::string &builtin);
 
 /// A method that the engine calls.

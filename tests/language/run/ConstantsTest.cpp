@@ -100,18 +100,51 @@ private:
   }
 
   Twin makeFloat(unsigned depth) {
-    static const std::vector<std::string> one = {
-        "-({})",           "abs({})",   "sign({})",
-        "floor({})",       "ceil({})",  "trunc({})",
-        "round({})",       "fract({})", "sqrt({})",
-        "inversesqrt({})", "sin({})",   "cos({})",
-        "tan({})",         "asin({})",  "acos({})",
-        "atan({})",        "exp({})",   "log({})",
-        "exp2({})",        "log2({})",  "sinh({})",
-        "cosh({})",        "tanh({})",  "asinh({})",
-        "acosh({})",       "atanh({})", "radians({})",
-        "degrees({})",     "sinpi({})", "cospi({})",
-        "expm1({})",       "log1p({})", "refract({}, 1.0, 0.75)"};
+    static const std::vector<std::string> one = {"-({})",
+                                                 "abs({})",
+                                                 "sign({})",
+                                                 "floor({})",
+                                                 "ceil({})",
+                                                 "trunc({})",
+                                                 "round({})",
+                                                 "fract({})",
+                                                 "sqrt({})",
+                                                 "inversesqrt({})",
+                                                 "sin({})",
+                                                 "cos({})",
+                                                 "tan({})",
+                                                 "asin({})",
+                                                 "acos({})",
+                                                 "atan({})",
+                                                 "exp({})",
+                                                 "log({})",
+                                                 "exp2({})",
+                                                 "log2({})",
+                                                 "sinh({})",
+                                                 "cosh({})",
+                                                 "tanh({})",
+                                                 "asinh({})",
+                                                 "acosh({})",
+                                                 "atanh({})",
+                                                 "radians({})",
+                                                 "degrees({})",
+                                                 "sinpi({})",
+                                                 "cospi({})",
+                                                 "expm1({})",
+                                                 "log1p({})",
+                                                 "refract({}, 1.0, 0.75)",
+                                                 "reflect({}, 0.75)",
+                                                 "normalize({})",
+                                                 "length({})",
+                                                 "ldexp({}, -30)",
+                                                 "pow({}, 5)",
+                                                 "pow({}, -7)",
+                                                 "pow({}, 100)",
+                                                 "unpackHalf2x16(packHalf2x16(vec2({}))).y",
+                                                 "unpackSnorm4x8(packSnorm4x8(vec4({}))).z",
+                                                 "unpackSnorm2x16(packSnorm2x16(vec2({}))).y",
+                                                 "unpackUnorm2x16(packUnorm2x16(vec2({}))).x",
+                                                 "unpackUnorm4x8(packUnorm4x8(vec4({}))).w"};
     static const std::vector<std::string> two = {"({} + {})",
                                                  "({} - {})",
                                                  "({} * {})",
@@ -124,14 +157,28 @@ private:
                                                  "atan({}, {})",
                                                  "dot(vec2({}), vec2(0.5, {}))",
                                                  "length(vec2({}, {}))",
-                                                 "distance({}, {})"};
-    static const std::vector<std::string> three = {"clamp({}, {}, {})",
-                                                   "mix({}, {}, {})",
-                                                   "fma({}, {}, {})",
-                                                   "smoothstep({}, {}, {})",
-                                                   "vec3({}, {}, {}).y",
-                                                   "normalize(vec3({}, {}, {})).z",
-                                                   "refract(vec2({}, {}), vec2(0.6, -0.8), {}).x"};
+                                                 "distance({}, {})",
+                                                 "reflect(vec2({}, 1.0), vec2(0.6, {})).x",
+                                                 "faceforward(1.0, {}, {})",
+                                                 "determinant(mat2({}, 0.5, {}, 3.0))",
+                                                 "inverse(mat2({}, 0.5, {}, 3.0))[0].y",
+                                                 "outerProduct(vec2({}, 2.0), vec2(3.0, {}))[1].x",
+                                                 "(mat2({}, 0.5, 2.0, {}) * vec2(0.7, -1.5)).x",
+                                                 "mix({}, {}, bvec2(true, false).x)"};
+    static const std::vector<std::string> three = {
+        "clamp({}, {}, {})",
+        "mix({}, {}, {})",
+        "fma({}, {}, {})",
+        "smoothstep({}, {}, {})",
+        "vec3({}, {}, {}).y",
+        "normalize(vec3({}, {}, {})).z",
+        "cross(vec3({}, {}, 1.0), vec3(0.5, {}, 2.0)).z",
+        "perpendicularTo(vec3({}, {}, {})).y",
+        "determinant(mat3({}, 1, 2, {}, 3, 5, 8, 1, {}))",
+        "inverse(mat3({}, 1, 2, {}, 3, 5, 8, 1, {}))[1].z",
+        "inverse(mat4({}, 1, 2, 3, 5, {}, 7, 1, 1, 0, {}, 2, 1, 1, 4, 1))[2].y",
+        "max(vec3({}, {}, {}))",
+        "refract(vec2({}, {}), vec2(0.6, -0.8), {}).x"};
     const Kind f = Kind::Float;
     switch (pick(8)) {
     case 0:
@@ -154,7 +201,10 @@ private:
     static const std::vector<std::string> two = {
         "({} + {})",  "({} - {})", "({} * {})", "({} / {})", "({} % {})",   "({} << {})",
         "({} >> {})", "({} & {})", "({} | {})", "({} ^ {})", "min({}, {})", "max({}, {})"};
-    static const std::vector<std::string> one = {"-({})", "~({})", "bitfieldReverse({})"};
+    const std::vector<std::string> one = {
+        "-({})", "~({})", "bitfieldReverse({})", "bitfieldExtract({}, 3, 17)",
+        "bitfieldInsert({}, " + std::string(kind == Kind::Int ? "42" : "42u") + ", 5, 9)"};
+    static constexpr const char *counts[] = {"bitCount", "findLSB", "findMSB"};
     const std::string keyword = keywords[static_cast<unsigned>(kind)];
     switch (pick(8)) {
     case 0:
@@ -166,6 +216,9 @@ private:
     case 3:
       return fill(one[pick(static_cast<unsigned>(one.size()))], {kind}, depth);
     case 4:
+      if (pick(2))
+        return fill(keyword + "(" + counts[pick(3)] + "({}))", {pick(2) ? Kind::Int : Kind::UInt},
+                    depth);
       return kind == Kind::Int ? fill("floatBitsToInt({})", {Kind::Float}, depth)
                                : fill("floatBitsToUint({})", {Kind::Float}, depth);
     default:
