@@ -220,8 +220,9 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
   isFine &= isAllocated(job.pixels, pixels * launch.colorComponents * sizeof(float));
   isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
             job.status->nextPixel == 0;
-  isFine &= isAllocated(launch.records, 16) &&
-            isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef));
+  isFine &=
+      isAllocated(launch.records, 16) &&
+      (launch.lightCount == 0 || isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef)));
   isFine &= isAllocated(launch.instances, launch.instanceCount * sizeof(RtslInstance));
   isFine &= isAllocated(launch.nodes, launch.nodeCount * sizeof(RtslBvhNode));
   for (std::uint32_t i = 0; i < launch.meshCount; ++i)
