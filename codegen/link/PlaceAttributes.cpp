@@ -74,9 +74,16 @@ struct Attribute {
   std::vector<ir::AttributeOp> uses;
 };
 
+/// Does `user` write all of the attribute, and nothing else with it?
+bool isStore(mlir::Operation *user, ir::AttributeOp op) {
+  if (auto copy = mlir::dyn_cast<ir::CopyOp>(user))
+    return copy.getTarget() == op && copy.getSource() != op;
+  return mlir::isa<ir::StoreOp, ir::ClearOp>(user);
+}
+
 bool isRead(ir::AttributeOp op) {
   return std::any_of(op->user_begin(), op->user_end(),
-                     [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
+                     [&](mlir::Operation *user) { return !isStore(user, op); });
 }
 
 /// Attributes of classes in the same group must not overlap.
@@ -154,7 +161,7 @@ std::uint32_t firstFit(const Attribute &attribute, const std::vector<const Attri
 void eraseStores(Attribute &attribute) {
   llvm::erase_if(attribute.uses, [](ir::AttributeOp op) {
     for (mlir::Operation *user : llvm::make_early_inc_range(op->getUsers()))
-      if (llvm::isa<ir::StoreOp>(user))
+      if (isStore(user, op))
         user->erase();
     if (!op->use_empty())
       return false;

@@ -7,7 +7,8 @@
 //===----------------------------------------------------------------------===//
 #include "Program.h"
 
-#include "codegen/driver/Stages.h"
+#include "codegen/driver/Steps.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/link/LinkModule.h"
 #include "codegen/link/LinkRequest.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
@@ -33,7 +34,7 @@ bool mayTrace(const typed::Module &module, const typed::Class &info, const std::
 
 TEST(Random, WhatTracesInTheIrMayTrace) {
   unsigned tracing = 0;
-  for (std::uint32_t seed = 0; seed != 60; ++seed) {
+  for (std::uint32_t seed = 0; seed != 150; ++seed) {
     SourceManager sources;
     Diagnostics diagnostics(sources);
     std::string text = generate(seed).text();
@@ -49,15 +50,17 @@ TEST(Random, WhatTracesInTheIrMayTrace) {
     const auto ir = driver::lowerModule(*module, options, {}, diagnostics, *context);
     ASSERT_TRUE(linkModule(*ir, *module, diagnostics, FloatingPoint::Strict)) << "seed " << seed;
     for (mlir::func::FuncOp function : continuation::tracingFunctions(*ir)) {
-      const auto owner = function->getAttrOfType<mlir::StringAttr>("rtsl.class");
-      const auto slot = function->getAttrOfType<mlir::StringAttr>("rtsl.method");
+      const auto owner = ir::attr::className.of(function);
+      const auto slot = ir::attr::methodName.of(function);
       if (!owner || !slot)
         continue;
       ++tracing;
-      for (const auto &info : module->classes)
-        if (info->name == owner.str())
-          EXPECT_TRUE(mayTrace(*module, *info, slot.str()))
-              << "seed " << seed << ": " << function.getSymName().str();
+      for (const auto &info : module->classes) {
+        if (info->name != owner.str())
+          continue;
+        EXPECT_TRUE(mayTrace(*module, *info, slot.str()))
+            << "seed " << seed << ": " << function.getSymName().str();
+      }
     }
   }
   EXPECT_GE(tracing, 60u);

@@ -210,7 +210,7 @@ TEST(Hints, ExpectedMethodsAreShown) {
   EXPECT_EQ(hints("class A : rt_Primitive { bool intersect() { return true; } };"),
             "expected `void intersect()`\n");
   EXPECT_EQ(hints("class S : rt_Miss { void miss(float x) { } };"),
-            "expected `void miss()` or `void miss(inout P)`, where P is a struct of yours, the "
+            "expected `void miss()` or `void miss(inout P)`, where P is a struct, the "
             "payload of the ray\n");
   EXPECT_EQ(hints("class L : rt_Light { void shade() { } };"), "an rt_Light has `illumination`\n");
 }

@@ -89,12 +89,12 @@ TEST(LinkModule, NothingIsLeftOut) {
 struct Glow { color light; };
 class Alone : rt_Material {
   public Alone other;
-  void closestHit(inout Glow g) { g.light = color(rt_LensCoord.x); }
+  void closestHit(inout Glow g) { g.light = color(rt_Time); }
   float height() { return rt_dPdu.x; }
 };
 class Below : Alone { float depth() { return other.height(); } };
 )");
-  EXPECT_EQ(linked.needsOf("Alone"), RTSL_NEEDS_LENS | RTSL_NEEDS_DERIVATIVES);
+  EXPECT_EQ(linked.needsOf("Alone"), RTSL_NEEDS_TIME | RTSL_NEEDS_DERIVATIVES);
   EXPECT_EQ(linked.rayTypes(), std::vector<std::string>{"Glow"});
 }
 
