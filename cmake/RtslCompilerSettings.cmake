@@ -49,7 +49,13 @@ function(rtsl_library name)
   rtsl_warnings(${name})
 endfunction()
 
-# For targets that read MLIR's headers: they are precompiled once, by rtslIr.
+# For targets that read MLIR's headers: they are precompiled once, by rtslIr. ccache reads a checksum of the result
+# (codegen/ir/CMakeLists.txt): hashing its 484 MB for each file would take as long as compiling the file.
 function(rtsl_precompiled_ir target)
   target_precompile_headers(${target} REUSE_FROM rtslIr)
+  if(TARGET rtslPrecompiledChecksum)
+    add_dependencies(${target} rtslPrecompiledChecksum)
+    set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER
+      "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;CCACHE_PCH_EXTSUM=true;${RTSL_CCACHE}")
+  endif()
 endfunction()
