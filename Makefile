@@ -58,7 +58,7 @@ numerics: build
 	tests/numerics/robustness/table $(BUILD)
 
 format:
-	git ls-files '*.cpp' '*.h' | xargs clang-format-22 -i
+	scripts/check-format --fix
 
 install: build
 	cmake --install $(BUILD)

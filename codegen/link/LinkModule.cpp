@@ -19,17 +19,15 @@ std::vector<RayTypeFacts> rayTypesOf(const LinkContext &context) {
 
 /// By scratch member, for the members that some method mentions.
 std::map<const typed::Member *, std::uint32_t> attributeWordsOf(const LinkContext &context) {
-  std::map<std::string, const typed::Class *> classes;
-  for (const LinkedClass &linked : context.classes)
-    classes[linked.info->name] = linked.info;
+  const ClassesByName classes = classesOf(context);
   std::map<const typed::Member *, std::uint32_t> words;
   mlir::ModuleOp(context.ir).walk([&](ir::AttributeOp attribute) {
     const auto function = attribute->getParentOfType<mlir::func::FuncOp>();
     const auto owner = ir::attr::className.of(function);
-    const auto found = owner ? classes.find(owner.str()) : classes.end();
-    if (found == classes.end() || !attribute.getOffset())
+    const typed::Class *info = owner ? findClass(classes, owner.str()) : nullptr;
+    if (!info || !attribute.getOffset())
       return;
-    if (const typed::Member *member = findScratch(*found->second, attribute.getName().str()))
+    if (const typed::Member *member = findScratch(*info, attribute.getName().str()))
       words[member] = *attribute.getOffset();
   });
   return words;

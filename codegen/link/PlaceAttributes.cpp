@@ -19,10 +19,6 @@
 
 namespace rtsl::linking {
 
-namespace {
-
-using ClassesByName = std::map<std::string, const typed::Class *>;
-
 ClassesByName classesOf(const LinkContext &context) {
   ClassesByName classes;
   for (const LinkedClass &linked : context.classes)
@@ -34,6 +30,8 @@ const typed::Class *findClass(const ClassesByName &classes, const std::string &n
   const auto found = classes.find(name);
   return found == classes.end() ? nullptr : found->second;
 }
+
+namespace {
 
 /// Every scratch member that the material declares must be one of the primitive's, of the same
 /// type.

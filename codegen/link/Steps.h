@@ -103,6 +103,12 @@ std::uint32_t needsLeftOut(const LinkContext &context);
 /// scene reads.
 void placeAttributes(LinkContext &context);
 
+/// The classes of the program.
+using ClassesByName = std::map<std::string, const typed::Class *>;
+ClassesByName classesOf(const LinkContext &context);
+/// Null if there is none of this name.
+const typed::Class *findClass(const ClassesByName &classes, const std::string &name);
+
 /// The scratch member of this name that objects of the class have; null if there is none.
 const typed::Member *findScratch(const typed::Class &info, const std::string &name);
 

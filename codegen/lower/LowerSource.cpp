@@ -6,8 +6,8 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/lower/Lowering.h"
+#include "language/Costs.h"
 #include "sema/typed/Analysis.h"
-
 #include "sema/typed/Casting.h"
 
 #include <algorithm>
@@ -110,41 +110,40 @@ bool FunctionLowering::collectLeaves(const typed::Expr &expr,
 }
 
 /// About how many instructions the expression takes.
-static std::int32_t costOf(const typed::Expr &expr,
-                           const std::vector<const typed::Expr *> &leaves) {
-  std::int32_t cost = 0;
+static unsigned costOf(const typed::Expr &expr, const std::vector<const typed::Expr *> &leaves) {
+  unsigned total = 0;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (std::find(leaves.begin(), leaves.end(), &inner) != leaves.end())
       return;
-    const auto width = static_cast<std::int32_t>(
+    const unsigned width =
         livesInMemory(inner.type) || inner.type->is(TypeKind::Void) ||
                 inner.type->is(TypeKind::Class)
             ? 1u
-            : std::max(1u, inner.type->is(TypeKind::Color) ? 3u : inner.type->componentCount()));
+            : std::max(1u, inner.type->is(TypeKind::Color) ? 3u : inner.type->componentCount());
     switch (inner.kind) {
     case ExprKind::Member:
-      cost += 2 * width;
+      total += cost::memberLoad * width;
       break;
     case ExprKind::Unary:
     case ExprKind::Binary:
     case ExprKind::Conditional:
     case ExprKind::Convert:
-      cost += width;
+      total += cost::arithmetic * width;
       break;
     case ExprKind::Index:
-      cost += 8;
+      total += cost::elementAddress + cost::load;
       break;
     case ExprKind::Builtin:
-      cost += 12 * width;
+      total += info(cast<typed::BuiltinExpr>(inner).builtin).cost * width;
       break;
     case ExprKind::Call:
-      cost += 50;
+      total += cost::functionCall;
       break;
     default:
       break;
     }
   });
-  return cost;
+  return total;
 }
 
 Value FunctionLowering::wholeExpression(SourceTable::Kind kind, const typed::Expr &expr,
@@ -152,11 +151,11 @@ Value FunctionLowering::wholeExpression(SourceTable::Kind kind, const typed::Exp
                                         llvm::ArrayRef<Value> operands, mlir::Type type) {
   SourceTable &table = *module.options.source;
   const auto number = static_cast<std::uint32_t>(table.entries.size());
-  const std::int32_t cost = kind == SourceTable::Kind::Value         ? costOf(expr, leaves)
-                            : kind == SourceTable::Kind::AngleCosine ? 50
-                                                                     : 2;
+  const unsigned cost = kind == SourceTable::Kind::Value         ? costOf(expr, leaves)
+                        : kind == SourceTable::Kind::AngleCosine ? cost::functionCall
+                                                                 : cost::sizeQuery;
   table.entries.push_back({kind, &expr, std::move(leaves)});
-  return emitter.make<ir::ExpressionOp>(type, number, static_cast<std::uint32_t>(cost), operands);
+  return emitter.make<ir::ExpressionOp>(type, number, cost, operands);
 }
 
 //===----------------------------------------------------------------------===//

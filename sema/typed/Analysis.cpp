@@ -1,6 +1,7 @@
 //===- Analysis.cpp - queries on typed trees ------------------------------===//
 #include "sema/typed/Analysis.h"
 
+#include "language/Costs.h"
 #include "sema/typed/Casting.h"
 #include "sema/typed/TypeProperties.h"
 
@@ -71,7 +72,7 @@ bool hasSideEffects(const Expr &expr) {
 }
 
 bool isCheap(const Expr &expr) {
-  constexpr unsigned limit = 12;
+  constexpr unsigned tooMuch = cost::withoutBranch + 1;
   unsigned cost = 0;
   forEachExpr(expr, [&](const Expr &inner) {
     switch (inner.kind) {
@@ -89,23 +90,23 @@ bool isCheap(const Expr &expr) {
       const auto &binary = cast<BinaryExpr>(inner);
       bool isDivision = binary.op == ast::BinaryOp::Div || binary.op == ast::BinaryOp::Mod;
       bool isLarge = binary.left->type->isMatrix() || binary.right->type->isMatrix();
-      cost += isDivision || isLarge ? limit + 1 : 2;
+      cost += isDivision || isLarge ? tooMuch : 2;
       break;
     }
     case ExprKind::Builtin:
       cost += info(cast<BuiltinExpr>(inner).builtin).cost;
       break;
     case ExprKind::Construct:
-      cost += inner.type->isScalar() || inner.type->isVector() ? 1 : limit + 1;
+      cost += inner.type->isScalar() || inner.type->isVector() ? 1 : tooMuch;
       break;
     default:
-      cost += limit + 1;
+      cost += tooMuch;
     }
     if (inner.type->isMatrix() || inner.type->is(TypeKind::Struct) ||
         inner.type->is(TypeKind::Array) || inner.type->is(TypeKind::Buffer))
-      cost += limit + 1;
+      cost += tooMuch;
   });
-  return cost <= limit;
+  return cost <= cost::withoutBranch;
 }
 
 bool isPlace(const Expr &expr) {

@@ -1,9 +1,12 @@
 //===- TypedAst.cpp - names of built-ins and state, lookup in classes -----===//
 #include "sema/typed/TypedAst.h"
 
+#include "language/Costs.h"
+
 namespace rtsl::typed {
 
 const BuiltinInfo &info(Builtin builtin) {
+  using namespace cost;
   static const BuiltinInfo table[] = {
 #define RTSL_BUILTIN(id, name, effect, cost, ...) {name, BuiltinEffect::effect, cost},
 #include "language/Builtins.def"

@@ -59,10 +59,8 @@ void checkScene(const std::string &file, const CheckOptions &options, SceneBuild
   CompileInput input;
   input.module = module.get();
   input.scene = &request;
-  input.makeObjects = [&](const auto &constructors) {
-    scene = buildScene(description, constructors);
-    return scene->facts();
-  };
+  input.makeObjects = storeScene(
+      [&](const auto &constructors) { return buildScene(description, constructors); }, scene);
   emit(stage("ir"), input, options.common.compile, messages.diagnostics);
   if (scene)
     for (const Warning &warning : scene->warnings())

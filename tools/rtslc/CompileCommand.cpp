@@ -45,10 +45,8 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options,
   CompileInput input;
   input.module = module.get();
   input.scene = &request;
-  input.makeObjects = [&](const auto &constructors) {
-    scene = buildScene(description, constructors);
-    return scene->facts();
-  };
+  input.makeObjects = storeScene(
+      [&](const auto &constructors) { return buildScene(description, constructors); }, scene);
   const std::optional<std::string> text =
       emit(*options.stage, input, compile, messages.diagnostics);
   if (scene)

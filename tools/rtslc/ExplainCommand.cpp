@@ -46,10 +46,11 @@ struct LoadedScene {
       : description(readScene(options.files.front(), options.overrides, messages, "explain")),
         module(loadShaders(description, options.common, messages, &filesRead)),
         request(linkRequest(description)), compile(options.common.compile),
-        makeObjects([this, buildScene](const auto &constructors) {
-          scene = buildScene(description, constructors);
-          return scene->facts();
-        }) {
+        makeObjects(storeScene(
+            [this, buildScene](const auto &constructors) {
+              return buildScene(description, constructors);
+            },
+            scene)) {
     keep(options.common.keep, request, compile);
     filesRead = withMeshes(description, filesRead);
   }

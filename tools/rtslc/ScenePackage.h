@@ -16,11 +16,7 @@ compileScenePackage(const typed::Module &module, const LinkRequest &request,
                     const CompileOptions &options, Diagnostics &diagnostics,
                     const BuildScene &build, runtime::Package &package) {
   std::optional<runtime::Scene> scene;
-  const auto makeObjects = [&](const std::shared_ptr<const runtime::Program> &constructors) {
-    scene = build(constructors);
-    return scene->facts();
-  };
-  if (!compilePackage(module, request, options, diagnostics, makeObjects, package))
+  if (!compilePackage(module, request, options, diagnostics, storeScene(build, scene), package))
     return std::nullopt;
   return scene;
 }

@@ -5,6 +5,7 @@
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/continuation/common/CostTable.h"
 #include "codegen/passes/continuation/suspend/CutJoins.h"
+#include "language/Costs.h"
 
 #include "llvm/ADT/StringSet.h"
 
@@ -35,7 +36,7 @@ StepReport stepBeforeSplit(const char *step, const SuspendPlan &plan) {
 
 /// Units of CostTable.h.
 std::int64_t costOf(const TraceTraffic &traffic) {
-  return traffic.stored.most / 4 * storeWordCost + traffic.restored.most / 4 * loadWordCost;
+  return traffic.stored.most / 4 * cost::frameStore + traffic.restored.most / 4 * cost::frameLoad;
 }
 
 } // namespace

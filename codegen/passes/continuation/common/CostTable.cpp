@@ -1,9 +1,10 @@
-//===- CostTable.cpp - what saving and recomputing cost -------------------===//
+//===- CostTable.cpp - the cost of saving and of recomputing -------------------===//
 #include "codegen/passes/continuation/common/CostTable.h"
 
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
+#include "language/Costs.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Math/IR/Math.h"
@@ -11,6 +12,7 @@
 #include "llvm/ADT/TypeSwitch.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace rtsl::continuation {
 
@@ -23,42 +25,53 @@ static std::int64_t components(mlir::Type type) {
   return shape ? shape.getNumElements() : 1;
 }
 
-/// What a load costs a word, by where it loads from.
+/// The cost of loading a word.
 static std::int64_t loadCost(mlir::Value address) {
   mlir::Operation *base = ir::baseOperation(address);
   if (llvm::isa_and_nonnull<ir::MemberOp, ir::TableOp>(base))
-    return 2;
-  return llvm::isa_and_nonnull<ir::BufferElementOp>(base) ? 16 : 4;
+    return cost::memberLoad;
+  return llvm::isa_and_nonnull<ir::BufferElementOp>(base) ? cost::bufferLoad : cost::load;
+}
+
+/// The cost for each component of the result; nothing: the operation computes no components.
+static std::optional<std::int64_t> componentCost(mlir::Operation *op) {
+  using Cost = std::optional<std::int64_t>;
+  return llvm::TypeSwitch<mlir::Operation *, Cost>(op)
+      .Case([](ir::LoadOp load) { return Cost(loadCost(load.getAddress())); })
+      .Case<ir::CallArgumentOp>([](auto) { return Cost(cost::load); })
+      .Case<ir::AmbientOp>([](auto) { return Cost(cost::memberLoad); })
+      .Case([](ir::ElementaryOp call) {
+        const ir::Elementary function = call.getFunction();
+        const bool isPower = function == ir::Elementary::Pow || function == ir::Elementary::Atan2;
+        return Cost(isPower ? cost::power : cost::elementary);
+      })
+      .Case<ir::ToSintOp, ir::ToUintOp>([](auto) { return Cost(cost::conversionToInt); })
+      .Case<ir::SDivOp, ir::UDivOp, ir::SRemOp, ir::URemOp>(
+          [](auto) { return Cost(cost::integerDivision); })
+      .Case<arith::DivFOp>([](auto) { return Cost(cost::division); })
+      .Case<math::SqrtOp>([](auto) { return Cost(cost::squareRoot); })
+      .Default([](mlir::Operation *) { return std::nullopt; });
 }
 
 std::int64_t recomputeCost(mlir::Operation *op) {
   if (op->hasTrait<mlir::OpTrait::ConstantLike>())
     return 0;
-  std::int64_t width = op->getNumResults() == 0 ? 1 : components(op->getResult(0).getType());
+  const std::int64_t width = op->getNumResults() == 0 ? 1 : components(op->getResult(0).getType());
+  if (auto each = componentCost(op))
+    return *each * width;
   return llvm::TypeSwitch<mlir::Operation *, std::int64_t>(op)
       .Case<ir::StateOp, ir::MemberOp, ir::AttributeOp, ir::FieldOp, ir::CastRefOp, ir::NullRefOp,
-            ir::FrameObjectOp, ir::PayloadOp, ir::TableOp>([](auto) { return 0; })
-      .Case([](ir::ElementOp element) { return element.constantIndex() ? 0 : 2; })
-      .Case<ir::CallArgumentOp>([&](auto) { return 4 * width; })
-      .Case([&](ir::LoadOp load) { return loadCost(load.getAddress()) * width; })
-      .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp>([](auto) { return 2; })
-      .Case([](ir::ExpressionOp expression) { return std::int64_t(expression.getCost()); })
-      .Case<ir::BufferElementOp>([](auto) { return 6; })
-      .Case<ir::AmbientOp>([&](auto) { return 2 * width; })
-      .Case([&](ir::ElementaryOp function) {
-        bool dear = function.getFunction() == ir::Elementary::Pow ||
-                    function.getFunction() == ir::Elementary::Atan2;
-        return (dear ? 100 : 40) * width;
-      })
-      .Case([](ir::HideOp) { return 0; })
-      .Case([](ir::RefractOp) { return 60; })
-      .Case<ir::ToSintOp, ir::ToUintOp>([&](auto) { return 4 * width; })
-      .Case<ir::SDivOp, ir::UDivOp, ir::SRemOp, ir::URemOp>([&](auto) { return 12 * width; })
-      .Case<arith::DivFOp, math::SqrtOp>([&](auto) { return 8 * width; })
-      .Case<vector::ExtractOp>([](auto extract) { return extract.hasDynamicPosition() ? 4 : 0; })
-      .Case<vector::BroadcastOp, vector::FromElementsOp, vector::ShuffleOp>(
-          [](auto) { return 0; }) // registers only
-      .Default([&](mlir::Operation *) { return width; });
+            ir::FrameObjectOp, ir::PayloadOp, ir::TableOp, ir::HideOp>([](auto) { return 0; })
+      .Case<vector::BroadcastOp, vector::FromElementsOp, vector::ShuffleOp>([](auto) { return 0; })
+      .Case([](ir::ElementOp op) { return op.constantIndex() ? 0 : cost::elementAddress; })
+      .Case<ir::BufferElementOp>([](auto) { return cost::bufferElementAddress; })
+      .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp>(
+          [](auto) { return cost::sizeQuery; })
+      .Case(
+          [](vector::ExtractOp op) { return op.hasDynamicPosition() ? cost::dynamicComponent : 0; })
+      .Case([](ir::ExpressionOp op) { return op.getCost(); })
+      .Case([](ir::RefractOp) { return cost::refraction; })
+      .Default([&](mlir::Operation *) { return cost::arithmetic * width; });
 }
 
 std::int64_t loopFrequency(unsigned depth) {
@@ -67,10 +80,10 @@ std::int64_t loopFrequency(unsigned depth) {
 
 std::int64_t saveCost(mlir::Type type, std::int64_t madeFrequency, std::int64_t traceFrequency) {
   if (type.isInteger(1))
-    return boolCost * traceFrequency;
+    return cost::frameBool * traceFrequency;
   std::int64_t words = ir::sizeInBytes(type) / 4;
-  return words * ((loadWordCost + frameWordCost) * traceFrequency +
-                  storeWordCost * std::min(madeFrequency, traceFrequency));
+  return words * ((cost::frameLoad + cost::frameWord) * traceFrequency +
+                  cost::frameStore * std::min(madeFrequency, traceFrequency));
 }
 
 } // namespace rtsl::continuation
