@@ -1,4 +1,4 @@
-//===- Compiler.cpp - the compiler as a library ---------------------------===//
+//===- CppOutput.cpp - C++ of a module -------------------------------------===//
 #include "codegen/driver/Compiler.h"
 
 #include "codegen/cpp/EmitCpp.h"
