@@ -15,9 +15,14 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 # correctly rounded functions ask for by name.
 add_compile_options(-ffp-contract=off -march=x86-64-v3 -ffunction-sections -fdata-sections)
 
-# g++ 12 vectorises {float(a), float(b)} in doubles and forgets to round one of them.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # g++ 12 vectorises {float(a), float(b)} in doubles and forgets to round one of them.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-tree-slp-vectorize>)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+  # A precompiled header out of ccache is older than the headers that it was made of; ccache has compared those.
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
+  # std::stable_sort of libstdc++ 12 uses std::get_temporary_buffer.
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-deprecated-declarations>)
 endif()
 
 # lld links the static LLVM components in seconds.
@@ -49,7 +54,7 @@ function(rtsl_library name)
   rtsl_warnings(${name})
 endfunction()
 
-# For targets that read MLIR's headers: they are precompiled once, by rtslIr. ccache reads a checksum of the result
+# For targets that read MLIR's headers: they are precompiled once, by rtslIr. Of g++'s result ccache reads a checksum
 # (codegen/ir/CMakeLists.txt): hashing its 484 MB for each file would take as long as compiling the file.
 function(rtsl_precompiled_ir target)
   target_precompile_headers(${target} REUSE_FROM rtslIr)

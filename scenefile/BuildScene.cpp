@@ -66,6 +66,8 @@ public:
         setColor(*description.ambient, [&](const auto &color) { scene.setAmbient(color); });
     });
     errors.throwIfAny();
+    for (const Warning &warning : description.warnings)
+      scene.addWarning(warning);
     return std::move(scene);
   }
 
@@ -150,6 +152,8 @@ private:
       return Value(std::move(list)).at(json.place());
     }
     case Kind::String:
+      if (type && type->kind == ValueType::Kind::Int)
+        return Value(numberOfRoot(json, what)).at(json.place());
       refuseUnlessReference(json, type, what);
       return Value::reference(named(json.string, json.place())).at(json.place());
     case Kind::Object: {
@@ -163,6 +167,20 @@ private:
       break;
     }
     throw Error(ErrorCode::WrongType, fmt::format("{} cannot be null", what), json.place());
+  }
+
+  /// A string that stands for an int is the name of a root.
+  double numberOfRoot(const JsonValue &json, const std::string &what) const {
+    const auto &roots = description.roots;
+    const auto found = std::find(roots.begin(), roots.end(), json.string);
+    if (found != roots.end())
+      return double(found - roots.begin());
+    Error error(ErrorCode::WrongType,
+                fmt::format("{} is an `int`, and no root is named `{}`", what, json.string),
+                json.place());
+    if (const std::string near = closestName(json.string, roots); !near.empty())
+      error.fix(near);
+    throw error;
   }
 
   static void refuseUnlessReference(const JsonValue &json, const ValueType *type,
@@ -238,6 +256,7 @@ private:
     return names;
   }
 
+  /// Adds all instances of a geometry. Instances of a primitive share its object.
   void addGeometry(const GeometryDescription &geometry, std::size_t index) {
     RtslRef material =
         geometry.material.object
@@ -249,10 +268,20 @@ private:
           geometry.name.text.empty()
               ? fmt::format("{} (objects.{})", geometry.primitive->className.text, index)
               : geometry.name.text;
-      scene.addPrimitive(add(*geometry.primitive, name), material, geometry.mask);
+      const RtslRef primitive = add(*geometry.primitive, name);
+      for (const runtime::Placement &placement : geometry.placements)
+        scene.addPrimitive(primitive, material, placement);
       return;
     }
-    scene.addMeshInstance(mesh(geometry), material, geometry.mask);
+    const std::uint32_t number = mesh(geometry);
+    for (const runtime::Placement &placement : geometry.placements)
+      try {
+        scene.addMeshInstance(number, material, placement);
+      } catch (Error &error) {
+        if (!error.place)
+          error.place = geometry.place;
+        throw;
+      }
   }
 
   /// The error is at the reference to the material.

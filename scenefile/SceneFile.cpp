@@ -1,6 +1,7 @@
 //===- SceneFile.cpp - from JSON to a description -------------------------===//
 #include "scenefile/SceneFile.h"
 
+#include "scenefile/Graph.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
 #include "support/AtomicFile.h"
@@ -31,7 +32,8 @@ public:
       refuseWhatComesLater();
       checkKeys(root,
                 {"$schema", "rtsl", "import", "camera", "rayGeneration", "helpers", "textures",
-                 "materials", "objects", "lights", "background", "ambient", "exception", "render"},
+                 "materials", "objects", "nodes", "root", "roots", "lights", "background",
+                 "ambient", "exception", "render"},
                 "a scene");
     });
     section("import", [&](const JsonValue &imports) { readImports(imports); });
@@ -41,7 +43,9 @@ public:
     readNamed("textures", scene.textures);
     readNamed("materials", scene.materials);
     readList("objects",
-             [&](const JsonValue &object) { scene.objects.push_back(readGeometry(object)); });
+             [&](const JsonValue &object) { scene.objects.push_back(readObjectOfList(object)); });
+    readGraph(
+        root, [&](const JsonValue &node) { return readGeometry(node, "a node"); }, scene, errors);
     readList("lights",
              [&](const JsonValue &light) { scene.lights.push_back(readObject(light, "a light")); });
     section("background", [&](const JsonValue &background) {
@@ -64,11 +68,10 @@ public:
 private:
   /// Rejects keys of the format that this version does not support.
   void refuseWhatComesLater() const {
-    for (const char *key : {"nodes", "variables"})
+    for (const char *key : {"variables"})
       for (const auto &member : root.members)
         if (member.first.text == key)
-          throw Error(ErrorCode::NotSupported,
-                      fmt::format("`{}` is not supported yet: list the geometry in `objects`", key),
+          throw Error(ErrorCode::NotSupported, fmt::format("`{}` is not supported yet", key),
                       member.second.fromOverride ? member.second.place()
                                                  : root.place(member.first));
   }
@@ -211,17 +214,29 @@ private:
     return reference;
   }
 
-  GeometryDescription readGeometry(const JsonValue &value) {
+  /// An element of `objects`: one instance. The vertices of a mesh are transformed.
+  GeometryDescription readObjectOfList(const JsonValue &value) {
     expect(value, Kind::Object, "an element of `objects`");
+    GeometryDescription geometry = readGeometry(value, "an object");
+    runtime::Placement placement;
+    placement.mask = geometry.mask;
     errors.attempt([&] {
-      checkKeys(value, {"name", "primitive", "mesh", "material", "transform", "mask"}, "an object");
+      if (const JsonValue *transform = value.find("transform"))
+        (geometry.primitive ? placement.transform : geometry.transform) = readTransform(*transform);
+    });
+    geometry.placements.push_back(placement);
+    return geometry;
+  }
+
+  GeometryDescription readGeometry(const JsonValue &value, const std::string &what) {
+    errors.attempt([&] {
+      checkKeys(value, {"name", "primitive", "mesh", "material", "transform", "mask"}, what);
     });
     GeometryDescription geometry;
     geometry.place = value.place();
-    errors.attempt([&] { readShape(value, geometry); });
-    errors.attempt([&] {
-      geometry.material = readReference(require(value, "material", "an object"), "`material`");
-    });
+    errors.attempt([&] { readShape(value, what, geometry); });
+    errors.attempt(
+        [&] { geometry.material = readReference(require(value, "material", what), "`material`"); });
     errors.attempt([&] {
       if (const JsonValue *name = value.find("name")) {
         expect(*name, Kind::String, "`name`");
@@ -233,13 +248,14 @@ private:
     return geometry;
   }
 
-  /// The geometry of an object, and its transform.
-  void readShape(const JsonValue &value, GeometryDescription &geometry) const {
+  void readShape(const JsonValue &value, const std::string &what,
+                 GeometryDescription &geometry) const {
     const JsonValue *primitive = value.find("primitive"), *mesh = value.find("mesh");
     if (!primitive == !mesh)
       throw Error(primitive ? ErrorCode::UnknownKey : ErrorCode::MissingKey,
-                  primitive ? "an object is a `primitive` or a `mesh`, not both"
-                            : "an object needs a `primitive` or a `mesh`",
+                  fmt::format(primitive ? "{} is a `primitive` or a `mesh`, not both"
+                                        : "{} needs a `primitive` or a `mesh`",
+                              what),
                   value.place());
     if (primitive)
       geometry.primitive = readObject(*primitive, "`primitive`");
@@ -247,14 +263,6 @@ private:
       expect(*mesh, Kind::String, "`mesh`");
       geometry.mesh = {mesh->string, mesh->place()};
       geometry.meshPath = resolve(*mesh);
-    }
-    if (const JsonValue *transform = value.find("transform")) {
-      if (primitive)
-        throw Error(
-            ErrorCode::NotSupported,
-            "the transform of a primitive is not supported yet: place it by its own members",
-            transform->place());
-      geometry.transform = readTransform(*transform);
     }
   }
 

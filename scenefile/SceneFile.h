@@ -49,14 +49,16 @@ struct ReferenceDescription {
   std::shared_ptr<ObjectDescription> object;
 };
 
+/// A mesh or a primitive with a material, and its instances.
 struct GeometryDescription {
   LocatedName name;                           // for messages; empty text: none
   std::optional<ObjectDescription> primitive; // or
   LocatedName mesh;                           // path as written
   std::string meshPath;                       // resolved
   ReferenceDescription material;
-  runtime::Transform transform;
-  std::uint32_t mask = ~0u; // visible to rays whose mask has a common bit
+  runtime::Transform transform; // of the vertices of a mesh in `objects`
+  std::uint32_t mask = ~0u;     // visible to rays whose mask has a common bit
+  std::vector<runtime::Placement> placements;
   Place place;
 };
 
@@ -83,13 +85,15 @@ struct SceneDescription {
   std::optional<ObjectDescription> camera;        // the classic engine needs it
   std::optional<ObjectDescription> rayGeneration; // the programs engine needs it
   std::map<std::string, ObjectDescription> helpers, textures, materials;
-  std::vector<GeometryDescription> objects;
+  std::vector<GeometryDescription> objects; // those of nodes come last
+  std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class
   std::optional<ObjectDescription> exception;  // an rt_Exception class
   const JsonValue *backgroundColor = nullptr;  // or a color
   const JsonValue *ambient = nullptr;
   RenderSettings render;
+  std::vector<Warning> warnings;
   std::shared_ptr<const JsonValue> root; // owns all of the above JSON
 };
 

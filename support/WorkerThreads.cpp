@@ -112,6 +112,8 @@ void runOnThreads(unsigned count, std::uint64_t stackBytes,
 
 void forEachOnThreads(unsigned threads, std::size_t count,
                       const std::function<void(std::size_t)> &work) {
+  if (count == 0) // no stack is needed
+    return;
   const std::size_t most = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
   std::atomic<std::size_t> next{0};
   runOnThreads(unsigned(std::min(count, most)), 0, [&](unsigned) {

@@ -42,8 +42,10 @@ static void bindToScene(Compilation &compilation) {
     request.keep.add(Item::Parameters);
     request.keep.add(Item::Lights);
   }
-  bindScene(*compilation.ir, compilation.facts ? *compilation.facts : makeObjects(compilation),
-            request, compilation.findings);
+  const runtime::SceneFacts facts =
+      compilation.facts ? *compilation.facts : makeObjects(compilation);
+  compilation.program->sceneNeeds = graphNeeds(facts, request, compilation.findings);
+  bindScene(*compilation.ir, facts, request, compilation.findings);
 }
 
 bool reachIr(Compilation &compilation) {

@@ -133,7 +133,7 @@ LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
 }
 
 void defineFacts(LlvmCode &code, const runtime::Program &program) {
-  codegen::defineConstant(*code.module, "rtsl_needs", program.needs);
+  codegen::defineConstant(*code.module, "rtsl_needs", program.needs | program.sceneNeeds);
   codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
 }
 

@@ -123,8 +123,9 @@ struct ConvertDivision : ConvertOpToLLVMPattern<Op> {
     Value isZero = equal(b, 0);
     Value isUnsafe = isZero;
     if (isSigned) {
-      Value overflows = LLVM::AndOp::create(rewriter, location, equal(b, -1),
-                                            equal(a, std::numeric_limits<int32_t>::min()));
+      Value isSmallest = equal(a, std::numeric_limits<int32_t>::min());
+      Value isMinusOne = equal(b, -1);
+      Value overflows = LLVM::AndOp::create(rewriter, location, isMinusOne, isSmallest);
       isUnsafe = LLVM::OrOp::create(rewriter, location, isZero, overflows);
     }
     Value safe = LLVM::SelectOp::create(rewriter, location, isUnsafe, constant(1), b);

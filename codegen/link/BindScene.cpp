@@ -185,7 +185,32 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
   findings.push_back(ambient);
 }
 
+/// One thing that a scene graph may have.
+struct GraphPart {
+  std::uint32_t need; // RTSL_HAS_*
+  const char *subject, *present, *absent;
+};
+constexpr GraphPart graphParts[] = {
+    {RTSL_HAS_TRANSFORMS, "transforms", "some instance has one",
+     "no instance has one: rays stay in world space"},
+    {RTSL_HAS_ROOTS, "roots", "the scene has several", "all instances are below root 0"},
+};
+
 } // namespace
+
+std::uint32_t graphNeeds(const runtime::SceneFacts &scene, const LinkRequest &request,
+                         Findings *findings) {
+  std::uint32_t needs = request.keep.has(Item::Graph) ? RTSL_HAS_ALL : scene.needs;
+  for (const GraphPart &part : graphParts) {
+    const bool isNeeded = scene.needs & part.need;
+    if (findings)
+      findings->push_back(
+          {Item::Graph, part.subject, isNeeded, isNeeded ? part.present : part.absent, {}});
+    if (request.without.count({Item::Graph, part.subject}))
+      needs &= ~part.need;
+  }
+  return needs;
+}
 
 void keepConstructors(mlir::ModuleOp ir) {
   for (auto function : ir.getOps<mlir::func::FuncOp>())

@@ -19,4 +19,8 @@ void keepConstructors(mlir::ModuleOp ir);
 void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request = {},
                Findings *findings = nullptr);
 
+/// Program::sceneNeeds of a program for this scene. Adds to `findings`, if given.
+std::uint32_t graphNeeds(const runtime::SceneFacts &scene, const LinkRequest &request,
+                         Findings *findings = nullptr);
+
 } // namespace rtsl

@@ -16,8 +16,8 @@ namespace rtsl {
 class Origins {
 public:
   Origins(const clang::SourceManager &locations, const clang::LangOptions &language,
-          const SourceFileSystem &files, SourceManager &sources)
-      : locations(locations), language(language), files(files), sources(sources) {}
+          const SourceFileSystem &files)
+      : locations(locations), language(language), files(files) {}
 
   /// Of the token of `size` bytes at a location, in a file or in the expansion of a macro.
   Origin of(clang::SourceLocation location, std::uint32_t size);
@@ -42,7 +42,6 @@ private:
   const clang::SourceManager &locations;
   const clang::LangOptions &language;
   const SourceFileSystem &files;
-  SourceManager &sources;
   llvm::DenseMap<clang::FileID, FileId> fileIds;
   // by clang's FileID: expansions and includes
   llvm::DenseMap<clang::FileID, std::uint32_t> known;

@@ -133,7 +133,7 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
   const std::string definitions = macroDefinitions(options);
   preprocessor.setPredefines(definitions);
 
-  Origins origins(locations, language, *files, sources);
+  Origins origins(locations, language, *files);
   origins.setFile(mainFile, file);
   TextBuilder builder(preprocessor, origins, sources, file);
   Session session{locations, preprocessor, origins, sources, options, diagnostics, builder};

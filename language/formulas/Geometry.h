@@ -29,13 +29,15 @@ Number differenceOfProducts(Number a, Number b, Number c, Number d) {
 
 template <typename Number>
 Number cross(Number a, Number b) {
-  return differenceOfProducts(a.shuffle({1, 2, 0}), b.shuffle({2, 0, 1}), a.shuffle({2, 0, 1}),
-                              b.shuffle({1, 2, 0}));
+  Number bNext = b.shuffle({1, 2, 0}), aLast = a.shuffle({2, 0, 1});
+  Number bLast = b.shuffle({2, 0, 1}), aNext = a.shuffle({1, 2, 0});
+  return differenceOfProducts(aNext, bLast, aLast, bNext);
 }
 
 template <typename Number>
 Number faceforward(Number n, Number i, Number reference) {
-  return select(less(dot(reference, i), 0.0), n, -n);
+  Number opposite = -n;
+  return select(less(dot(reference, i), 0.0), n, opposite);
 }
 
 template <typename Number>
@@ -53,18 +55,21 @@ Number reflect(Number i, Number n) {
 /// overflowed.
 template <typename Number>
 Number isGoodSquare(Number square) {
-  return lessEqual(0x1p-96, square) & lessEqual(square, static_cast<double>(FLT_MAX));
+  Number hasNotOverflowed = lessEqual(square, static_cast<double>(FLT_MAX));
+  return lessEqual(0x1p-96, square) & hasNotOverflowed;
 }
 
 /// For a square that is not good: 2^-70 for a vector that is too large, 2^100 for one that is too
 /// small.
 template <typename Number>
 Number scaleFor(Number square) {
-  return select(less(1.0, square), 0x1p-70, square.like(0x1p100));
+  Number up = square.like(0x1p100);
+  return select(less(1.0, square), 0x1p-70, up);
 }
 template <typename Number>
 Number scaleBackFor(Number square) {
-  return select(less(1.0, square), 0x1p70, square.like(0x1p-100));
+  Number down = square.like(0x1p-100);
+  return select(less(1.0, square), 0x1p70, down);
 }
 
 template <typename Number>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace rtsl::runtime {
 
@@ -112,6 +113,7 @@ public:
       inner(items.begin(), items.end(), allBounds(items.begin(), items.end()), 0);
     for (const BvhItem &item : items)
       bvh.items.push_back(item.item);
+    bvh.rootItems = bvh.rootIsLeaf ? std::uint32_t(items.size()) : 0;
     return std::move(bvh);
   }
 
@@ -193,8 +195,9 @@ private:
 void Bvh::install(RtslLaunch &launch) const {
   launch.nodes = nodes.data();
   launch.leafItems = items.data();
+  launch.meshTrees = meshTrees.empty() ? nullptr : meshTrees.data();
   launch.rootIsLeaf = rootIsLeaf;
-  launch.nodeCount = std::uint32_t(rootIsLeaf ? items.size() : nodes.size());
+  launch.nodeCount = rootIsLeaf ? rootItems : std::uint32_t(nodes.size());
 }
 
 unsigned Bvh::depth() const {
@@ -217,27 +220,51 @@ Bvh buildBvh(std::vector<BvhItem> items) {
   return Builder(std::move(items)).build();
 }
 
+void Bvh::addMeshTree(std::size_t mesh, std::size_t meshCount, const Bvh &tree) {
+  meshTrees.resize(meshCount);
+  const auto firstNode = std::int32_t(nodes.size()), firstItem = std::int32_t(items.size());
+  meshTrees[mesh] = tree.rootIsLeaf ? RtslMeshTree{~firstItem, std::uint32_t(tree.items.size())}
+                                    : RtslMeshTree{firstNode, 0};
+  for (RtslBvhNode node : tree.nodes) {
+    for (std::int32_t &child : node.child)
+      child = child >= 0 ? child + firstNode : ~(~child + firstItem);
+    nodes.push_back(node);
+  }
+  items.insert(items.end(), tree.items.begin(), tree.items.end());
+}
+
+static void addTriangles(const RtslMesh &mesh, std::uint32_t instance,
+                         std::vector<BvhItem> &items) {
+  for (std::uint32_t t = 0; t < mesh.triangleCount; ++t) {
+    Bounds bounds = emptyBounds();
+    for (int corner = 0; corner < 3; ++corner) {
+      const float *p = mesh.positions + 3 * std::size_t(mesh.indices[3 * std::size_t(t) + corner]);
+      extend(bounds, {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}});
+    }
+    items.push_back({bounds, {instance, t}});
+  }
+}
+
 Bvh buildBvh(const Scene &scene) {
   RtslLaunch launch = scene.launch();
   std::vector<BvhItem> items;
+  std::set<std::uint32_t> withTree; // meshes
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
     const RtslInstance &instance = launch.instances[i];
-    if (instance.primitive) {
-      items.push_back({scene.primitiveBounds(i), {i, 0}});
-      continue;
-    }
-    const RtslMesh &mesh = launch.meshes[instance.mesh];
-    for (std::uint32_t t = 0; t < mesh.triangleCount; ++t) {
-      Bounds bounds = emptyBounds();
-      for (int corner = 0; corner < 3; ++corner) {
-        const float *p =
-            mesh.positions + 3 * std::size_t(mesh.indices[3 * std::size_t(t) + corner]);
-        extend(bounds, {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}});
-      }
-      items.push_back({bounds, {i, t}});
-    }
+    if (instance.primitive != 0 || instance.transform != 0)
+      items.push_back({scene.instanceBounds(i), {i, 0}});
+    else
+      addTriangles(launch.meshes[instance.mesh], i, items);
+    if (instance.primitive == 0 && instance.transform != 0)
+      withTree.insert(instance.mesh);
   }
-  return buildBvh(std::move(items));
+  Bvh bvh = buildBvh(std::move(items));
+  for (std::uint32_t mesh : withTree) {
+    std::vector<BvhItem> triangles;
+    addTriangles(launch.meshes[mesh], RTSL_NO_HIT, triangles);
+    bvh.addMeshTree(mesh, launch.meshCount, buildBvh(std::move(triangles)));
+  }
+  return bvh;
 }
 
 } // namespace rtsl::runtime

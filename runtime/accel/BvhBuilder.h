@@ -16,10 +16,14 @@ namespace rtsl::runtime {
 struct Bvh {
   std::vector<RtslBvhNode> nodes; // the root is node 0, unless rootIsLeaf
   std::vector<RtslLeafItem> items;
-  bool rootIsLeaf = false; // there are so few items that there are no nodes
+  std::vector<RtslMeshTree> meshTrees; // by mesh; empty if no instance has a transform
+  bool rootIsLeaf = false;             // there are so few items that there are no nodes
+  std::uint32_t rootItems = 0;         // the number of these items, from the first on
 
   /// Installs the tree in a launch, which must not outlive it.
   void install(RtslLaunch &launch) const;
+  /// Appends the tree of a mesh.
+  void addMeshTree(std::size_t mesh, std::size_t meshCount, const Bvh &tree);
   /// The longest path from the root; at most device::maxBvhDepth.
   unsigned depth() const;
 };
@@ -32,7 +36,8 @@ struct BvhItem {
 
 Bvh buildBvh(std::vector<BvhItem> items);
 
-/// The tree of all primitives of a scene.
+/// The tree of a scene: of triangles and RTSL primitives, and of instances of meshes with
+/// transforms, for each of whose meshes there is another tree. Their items have no instance.
 Bvh buildBvh(const Scene &scene);
 
 } // namespace rtsl::runtime

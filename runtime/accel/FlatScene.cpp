@@ -58,9 +58,11 @@ FlatScene flatten(const Scene &scene) {
   flattener.addAt(offsetof(RtslLaunch, instances), launch.instances, launch.instanceCount);
   const std::uint64_t meshes =
       flattener.addAt(offsetof(RtslLaunch, meshes), launch.meshes, launch.meshCount);
+  flattener.addAt(offsetof(RtslLaunch, transforms), launch.transforms, launch.transformCount);
   flattener.addAt(offsetof(RtslLaunch, lights), launch.lights, launch.lightCount);
   flattener.addAt(offsetof(RtslLaunch, nodes), launch.nodes, bvh.nodes.size());
   flattener.addAt(offsetof(RtslLaunch, leafItems), launch.leafItems, bvh.items.size());
+  flattener.addAt(offsetof(RtslLaunch, meshTrees), launch.meshTrees, bvh.meshTrees.size());
   for (std::uint32_t i = 0; i < launch.meshCount; ++i) {
     const RtslMesh &mesh = launch.meshes[i];
     const std::uint64_t place = meshes + i * sizeof(RtslMesh);

@@ -20,7 +20,7 @@ struct alignas(32) TriangleBlock {
   static constexpr unsigned lanes = 8;
 
   float vertices[3][3][lanes];   // [vertex][axis]; an empty lane repeats another one
-  std::uint32_t instance[lanes]; // RTSL_NO_HIT: the lane is empty
+  std::uint32_t instance[lanes]; // RTSL_NO_HIT: the lane is empty; device::instanceOf
   std::uint32_t triangle[lanes];
 
   void setLane(unsigned lane, const device::TriangleVertices &p, std::uint32_t of,
@@ -171,16 +171,30 @@ struct LaneHits {
   return unsigned(_mm256_movemask_ps(isMet));
 }
 
+/// device::moveIntoInstance for all lanes.
+inline Lanes moveLanesIntoInstance(const device::TriangleRay &, Lanes t) {
+  return t;
+}
+inline Lanes moveLanesIntoInstance(const device::InstanceRay &ray, Lanes t) {
+  const Lanes near = all(ray.near), far = all(ray.far);
+  const Lanes notBehind = _mm256_blendv_ps(t, far, _mm256_cmp_ps(t, far, _CMP_GT_OQ));
+  return _mm256_blendv_ps(notBehind, near, _mm256_cmp_ps(t, near, _CMP_LT_OQ));
+}
+
 /// device::testTriangle for one lane.
-[[gnu::cold, gnu::noinline]] inline bool testLane(RtslState &state, const device::TriangleRay &ray,
-                                                  const TriangleBlock &block, unsigned i) {
+template <typename Ray>
+[[gnu::cold, gnu::noinline]] bool testLane(RtslState &state, const Ray &ray,
+                                           const TriangleBlock &block, unsigned i) {
   return block.instance[i] != RTSL_NO_HIT &&
-         device::testTriangle(state, ray, block.lane(i), block.instance[i], block.triangle[i]);
+         device::testTriangle(state, ray, block.lane(i), device::instanceOf(ray, block.instance[i]),
+                              block.triangle[i]);
 }
 
 /// Tests all triangles of the block and commits the one that wins. With `anyHit` any hit is
-/// sufficient.
-[[gnu::always_inline]] inline bool testBlock(RtslState &state, const device::TriangleRay &ray,
+/// sufficient. `Ray` is a device::TriangleRay, or a device::InstanceRay for the block of a mesh that
+/// instances share.
+template <typename Ray>
+[[gnu::always_inline]] inline bool testBlock(RtslState &state, const Ray &ray,
                                              const TriangleBlock &block, bool anyHit) {
   LaneHits hits = intersectLanes(ray, block);
   if ((hits.hit | hits.other) == 0)
@@ -192,6 +206,7 @@ struct LaneHits {
   bool found = false;
   if (hits.hit) {
     const unsigned met = moveLanesIntoBoxes(ray, block, hits.t);
+    hits.t = moveLanesIntoInstance(ray, hits.t);
     const Lanes mayWin = _mm256_and_ps(_mm256_cmp_ps(hits.t, all(state.Epsilon), _CMP_GT_OQ),
                                        _mm256_cmp_ps(hits.t, all(state.nearest), _CMP_LE_OQ));
     alignas(32) float t[TriangleBlock::lanes], u[TriangleBlock::lanes], v[TriangleBlock::lanes];
@@ -203,10 +218,11 @@ struct LaneHits {
     }
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned i = unsigned(__builtin_ctz(lanes));
+      const std::uint32_t instance = device::instanceOf(ray, block.instance[i]);
       if (block.instance[i] == RTSL_NO_HIT ||
-          !device::wins(state, t[i], block.instance[i], block.triangle[i]))
+          !device::wins(state, t[i], instance, block.triangle[i]))
         continue;
-      device::commit(state, t[i], t[i], block.instance[i], block.triangle[i]);
+      device::commit(state, t[i], t[i], instance, block.triangle[i]);
       state.u = u[i];
       state.v = v[i];
       found = true;

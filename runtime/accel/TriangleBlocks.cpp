@@ -10,21 +10,19 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// Triangles of one instance, and the destination of their boxes.
+/// Triangles of one mesh, and the destination of their boxes.
 struct Piece {
-  std::uint32_t instance, first, count;
+  std::uint32_t use, first, count;
   std::size_t to;
 };
 
-/// All triangles of the launch, in pieces that are distributed to threads.
-std::vector<Piece> cutIntoPieces(const RtslLaunch &launch) {
+/// All triangles, in pieces that are distributed to threads.
+std::vector<Piece> cutIntoPieces(const std::vector<MeshUse> &meshes) {
   constexpr std::uint32_t largest = 1 << 15;
   std::vector<Piece> pieces;
   std::size_t to = 0;
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
-    if (launch.instances[i].primitive != 0)
-      continue;
-    const std::uint32_t triangles = launch.meshes[launch.instances[i].mesh].triangleCount;
+  for (std::uint32_t i = 0; i < meshes.size(); ++i) {
+    const std::uint32_t triangles = meshes[i].mesh->triangleCount;
     for (std::uint32_t first = 0; first < triangles; first += largest) {
       const std::uint32_t count = std::min(largest, triangles - first);
       pieces.push_back({i, first, count, to});
@@ -34,22 +32,22 @@ std::vector<Piece> cutIntoPieces(const RtslLaunch &launch) {
   return pieces;
 }
 
-/// Every triangle with its box. geomID is the instance.
-LargeArray<RTCBuildPrimitive> triangleBoxes(const RtslLaunch &launch, unsigned threads) {
-  const std::vector<Piece> pieces = cutIntoPieces(launch);
+/// Every triangle with its box. geomID is the index of the mesh.
+LargeArray<RTCBuildPrimitive> triangleBoxes(const std::vector<MeshUse> &meshes, unsigned threads) {
+  const std::vector<Piece> pieces = cutIntoPieces(meshes);
   if (pieces.empty())
     return {};
   LargeArray<RTCBuildPrimitive> boxes(pieces.back().to + pieces.back().count);
   forEachOnThreads(threads, pieces.size(), [&](std::size_t number) {
     const Piece &piece = pieces[number];
-    const RtslMesh &mesh = launch.meshes[launch.instances[piece.instance].mesh];
+    const RtslMesh &mesh = *meshes[piece.use].mesh;
     for (std::uint32_t i = 0; i < piece.count; ++i) {
       const auto [a, b, c] = device::triangleVertices(mesh, piece.first + i);
       RTCBuildPrimitive &box = boxes[piece.to + i];
       box.lower_x = std::min({a.x, b.x, c.x}), box.upper_x = std::max({a.x, b.x, c.x});
       box.lower_y = std::min({a.y, b.y, c.y}), box.upper_y = std::max({a.y, b.y, c.y});
       box.lower_z = std::min({a.z, b.z, c.z}), box.upper_z = std::max({a.z, b.z, c.z});
-      box.geomID = piece.instance;
+      box.geomID = piece.use;
       box.primID = piece.first + i;
     }
   });
@@ -105,9 +103,9 @@ std::vector<Run> sortIntoRuns(RTCDevice device, LargeArray<RTCBuildPrimitive> &b
 
 } // namespace
 
-LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const RtslLaunch &launch,
+LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const std::vector<MeshUse> &meshes,
                                              unsigned threads) {
-  LargeArray<RTCBuildPrimitive> boxes = triangleBoxes(launch, threads);
+  LargeArray<RTCBuildPrimitive> boxes = triangleBoxes(meshes, threads);
   if (boxes.empty())
     return {};
   const std::vector<Run> runs = sortIntoRuns(device, boxes);
@@ -119,9 +117,9 @@ LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const RtslLaunch 
       for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
         const bool isEmpty = lane >= runs[i].length;
         const RTCBuildPrimitive &box = boxes[runs[i].first + (isEmpty ? 0 : lane)];
-        const RtslMesh &mesh = launch.meshes[launch.instances[box.geomID].mesh];
-        blocks[i].setLane(lane, device::triangleVertices(mesh, box.primID),
-                          isEmpty ? RTSL_NO_HIT : box.geomID, box.primID);
+        const MeshUse &use = meshes[box.geomID];
+        blocks[i].setLane(lane, device::triangleVertices(*use.mesh, box.primID),
+                          isEmpty ? RTSL_NO_HIT : use.instance, box.primID);
       }
   });
   return blocks;

@@ -6,11 +6,20 @@
 
 #include <embree3/rtcore.h>
 
+#include <cstdint>
+#include <vector>
+
 namespace rtsl::runtime {
 
-/// All triangles of the launch in blocks of neighbouring ones, by Embree's builder. Errors of
+/// A mesh with the number that blocks give its triangles as their instance.
+struct MeshUse {
+  std::uint32_t instance;
+  const RtslMesh *mesh;
+};
+
+/// All triangles of the meshes in blocks of neighbouring ones, by Embree's builder. Errors of
 /// Embree are reported through the device; throws std::bad_alloc.
-LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const RtslLaunch &launch,
+LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const std::vector<MeshUse> &meshes,
                                              unsigned threads);
 
 } // namespace rtsl::runtime

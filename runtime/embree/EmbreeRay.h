@@ -24,12 +24,14 @@
 
 namespace rtsl::runtime {
 
+struct EmbreeSpace;
+
 /// Embree's context of a ray, followed by the data for our callbacks.
 struct EmbreeContext {
   RTCIntersectContext embree;
   RtslState *state;
-  const device::TriangleRay *ray;
-  const EmbreeScene::Implementation *scene;
+  const device::TriangleRay *ray; // in `space`; an InstanceRay if that is not the world
+  const EmbreeSpace *space;
   const EmbreeVisitor *visitor; // null: candidates are tested, and committed if they win
   float toEmbree;               // a power of two that turns our t into Embree's
   // for a ray that needs any hit only: the block in which one was found
@@ -39,6 +41,8 @@ struct EmbreeContext {
 
   /// Where Embree's search may end, if hits beyond t do not matter.
   float end(float t) const { return t * toEmbree * device::cullSlack; }
+  /// Hits beyond it do not matter.
+  float limit() const { return visitor ? visitor->limit(visitor->self) : state->nearest; }
 };
 
 /// An RTSL primitive in Embree.
@@ -48,23 +52,46 @@ struct EmbreePrimitive {
   std::uint32_t instance;
 };
 
+/// An instance of a mesh with a transform in Embree.
+struct EmbreeMeshInstance {
+  std::uint32_t instance;
+  const EmbreeSpace *mesh;
+};
+
 /// A tree for rays with origins up to some distance.
 struct EmbreeLevel {
-  const EmbreeScene::Implementation *owner = nullptr;
+  const EmbreeSpace *owner = nullptr;
   float largestOrigin = 0; // the sum of its coordinates
   RTCScene scene = nullptr;
   std::once_flag built;
+};
+
+/// The contents of one space, with trees over them: the world, or a mesh that has instances with
+/// transforms.
+struct EmbreeSpace {
+  const EmbreeScene::Implementation *scene = nullptr;
+  bool isWorld = true;
+  LargeArray<TriangleBlock> blocks;
+  std::vector<EmbreePrimitive> primitives;       // of the world
+  std::vector<EmbreeMeshInstance> meshInstances; // of the world
+  // by largestOrigin; the first one is built
+  mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
+
+  /// The tree for rays from this origin.
+  RTCScene treeFor(device::Vec3 origin) const {
+    float size = __builtin_fabsf(origin.x) + __builtin_fabsf(origin.y) + __builtin_fabsf(origin.z);
+    return size <= levels[0]->largestOrigin ? levels[0]->scene : treeForFar(size);
+  }
+  RTCScene treeForFar(float origin) const;
 };
 
 struct EmbreeScene::Implementation {
   std::uint64_t number = 0; // unique in the process; from 1
   RTCDevice device = nullptr;
   const RtslInstance *instances = nullptr;
-  LargeArray<TriangleBlock> blocks;
-  std::vector<EmbreePrimitive> primitives;
+  EmbreeSpace world;
+  std::vector<std::unique_ptr<EmbreeSpace>> meshes;  // by mesh; null: no instance has a transform
   void (*intersect)(RtslState *, RtslRef) = nullptr; // of any class
-  // by largestOrigin; the first one is built
-  mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
   RTCError error = RTC_ERROR_NONE;
   std::string errorText;
 
@@ -72,31 +99,27 @@ struct EmbreeScene::Implementation {
   Implementation(const Implementation &) = delete;
   ~Implementation();
 
-  /// The tree for rays from this origin.
-  RTCScene treeFor(const float *origin) const {
-    float size =
-        __builtin_fabsf(origin[0]) + __builtin_fabsf(origin[1]) + __builtin_fabsf(origin[2]);
-    return size <= levels[0]->largestOrigin ? levels[0]->scene : treeForFar(size);
-  }
-  RTCScene treeForFar(float origin) const;
-
-  /// Fills Embree's ray from the state. With factors of 1 the values are copied.
-  static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree,
-                   float end) {
-    std::memcpy(&ray.org_x, state.RayOrigin, sizeof state.RayOrigin);
+  /// Fills Embree's ray. With factors of 1 the values are copied.
+  static void fill(RTCRay &ray, const float origin[3], const float direction[3], float epsilon,
+                   float toEmbree, float fromEmbree, float end) {
+    std::memcpy(&ray.org_x, origin, 3 * sizeof(float));
     if (fromEmbree == 1) {
-      std::memcpy(&ray.dir_x, state.RayDirection, sizeof state.RayDirection);
+      std::memcpy(&ray.dir_x, direction, 3 * sizeof(float));
     } else {
-      ray.dir_x = state.RayDirection[0] * fromEmbree;
-      ray.dir_y = state.RayDirection[1] * fromEmbree;
-      ray.dir_z = state.RayDirection[2] * fromEmbree;
+      ray.dir_x = direction[0] * fromEmbree;
+      ray.dir_y = direction[1] * fromEmbree;
+      ray.dir_z = direction[2] * fromEmbree;
     }
-    ray.tnear = device::maximum(state.Epsilon * toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
+    ray.tnear = device::maximum(epsilon * toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
     ray.tfar = end;
     ray.time = 0;
     ray.mask = ~0u;
     ray.id = 0;
     ray.flags = 0;
+  }
+  static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree,
+                   float end) {
+    fill(ray, state.RayOrigin, state.RayDirection, state.Epsilon, toEmbree, fromEmbree, end);
   }
 
   /// `toEmbree` and `fromEmbree` are powers of two that convert our t to Embree's, and back.
@@ -109,14 +132,14 @@ struct EmbreeScene::Implementation {
     rtcInitIntersectContext(&context.embree);
     context.state = &state;
     context.ray = &triangleRay;
-    context.scene = this;
+    context.space = &world;
     context.visitor = nullptr;
     context.toEmbree = toEmbree;
-    const RTCScene tree = treeFor(state.RayOrigin);
+    const RTCScene tree = world.treeFor(device::load(state.RayOrigin));
     if (anyHit) {
       LastOccluders &last = LastOccluders::towards(state.RayDirection);
       const auto meets = [&](std::uint32_t block) {
-        return testBlock(state, triangleRay, blocks[block], true);
+        return testBlock(state, triangleRay, world.blocks[block], true);
       };
       if (last.isMet(number, meets))
         return device::endSearch(state);

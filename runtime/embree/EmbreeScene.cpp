@@ -26,44 +26,59 @@ const EmbreeContext &contextOf(const Arguments *arguments) {
   return *reinterpret_cast<const EmbreeContext *>(arguments->context);
 }
 
+constexpr float isOver = -std::numeric_limits<float>::infinity(); // RTCRay::tfar
+
+template <typename Ray>
+const Ray &rayOf(const EmbreeContext &context) {
+  return static_cast<const Ray &>(*context.ray);
+}
+
+const device::InstanceRay *enteredInstance(const EmbreeContext &context) {
+  return context.space->isWorld ? nullptr : &rayOf<device::InstanceRay>(context);
+}
+
 /// Passes an item to the visitor of the ray. False if the search is over.
 bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &item) {
   const EmbreeVisitor &visitor = *context.visitor;
-  const bool isOver = visitor.visit(visitor.self, item);
-  ray.tfar =
-      isOver ? -std::numeric_limits<float>::infinity() : context.end(visitor.limit(visitor.self));
-  return !isOver;
+  const bool ends = visitor.visit(visitor.self, item, enteredInstance(context));
+  ray.tfar = ends ? isOver : context.end(context.limit());
+  return !ends;
 }
 
 [[gnu::cold, gnu::noinline]] void visitBlock(const EmbreeContext &context, RTCRay &ray,
                                              const TriangleBlock &block) {
+  const device::InstanceRay *entered = enteredInstance(context);
   for (unsigned i = 0; i < TriangleBlock::lanes && block.instance[i] != RTSL_NO_HIT; ++i)
-    if (!visitItem(context, ray, {block.instance[i], block.triangle[i]}))
+    if (!visitItem(context, ray,
+                   {entered ? entered->instance : block.instance[i], block.triangle[i]}))
       return;
 }
 
+template <typename Ray>
 void intersectBlock(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
-  const TriangleBlock &block = context.scene->blocks[arguments->primID];
+  const TriangleBlock &block = context.space->blocks[arguments->primID];
   RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
   if (context.visitor)
     visitBlock(context, ray, block);
-  else if (testBlock(*context.state, *context.ray, block, false))
+  else if (testBlock(*context.state, rayOf<Ray>(context), block, false))
     ray.tfar = context.end(context.state->nearest);
 }
 
+template <typename Ray>
 void occludedBlock(const RTCOccludedFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
-  if (!testBlock(*context.state, *context.ray, context.scene->blocks[arguments->primID], true))
+  if (!testBlock(*context.state, rayOf<Ray>(context), context.space->blocks[arguments->primID],
+                 true))
     return;
-  reinterpret_cast<RTCRay *>(arguments->ray)->tfar = -std::numeric_limits<float>::infinity();
+  reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
   context.occluder = arguments->primID;
 }
 
 bool testPrimitive(const EmbreeContext &context, unsigned number) {
-  const EmbreePrimitive &primitive = context.scene->primitives[number];
+  const EmbreePrimitive &primitive = context.space->primitives[number];
   return device::testPrimitive(*context.state, *context.ray,
-                               context.scene->instances[primitive.instance],
+                               context.space->scene->instances[primitive.instance],
                                {primitive.instance, 0}, primitive.intersect);
 }
 
@@ -71,14 +86,90 @@ void intersectPrimitive(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
   RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
   if (context.visitor)
-    visitItem(context, ray, {context.scene->primitives[arguments->primID].instance, 0});
+    visitItem(context, ray, {context.space->primitives[arguments->primID].instance, 0});
   else if (testPrimitive(context, arguments->primID))
     ray.tfar = context.end(context.state->nearest);
 }
 
 void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
   if (testPrimitive(contextOf(arguments), arguments->primID))
-    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = -std::numeric_limits<float>::infinity();
+    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
+}
+
+/// For a ray that Embree cannot trace: all triangles of a mesh. True if the search is over.
+[[gnu::cold, gnu::noinline]] bool testAllBlocks(const EmbreeContext &context,
+                                                const device::InstanceRay &ray, bool anyHit) {
+  for (const TriangleBlock &block : context.space->blocks) {
+    if (context.visitor) {
+      RTCRay unused{};
+      visitBlock(context, unused, block);
+      if (unused.tfar == isOver)
+        return true;
+    } else if (testBlock(*context.state, ray, block, anyHit) && anyHit) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Searches an instance of a mesh. True if the search is over.
+template <bool anyHit>
+bool searchInstance(const EmbreeContext &outer, unsigned number) {
+  const EmbreeMeshInstance &one = outer.space->meshInstances[number];
+  RtslState &state = *outer.state;
+  device::InstanceRay ray;
+  if (!device::isSeen(state, outer.space->scene->instances[one.instance]) ||
+      !device::enterInstance(*state.launch, *outer.ray, one.instance, state.Epsilon, outer.limit(),
+                             ray))
+    return false;
+  EmbreeContext context;
+  rtcInitIntersectContext(&context.embree);
+  context.state = &state;
+  context.ray = &ray;
+  context.space = one.mesh;
+  context.visitor = outer.visitor;
+  context.occluder = EmbreeContext::noBlock;
+  context.toEmbree = 1;
+  int exponent = 0;
+  if (!EmbreeScene::needsNoScaling(ray.origin, ray.direction)) {
+    if (!EmbreeScene::canFollow(ray.origin, ray.direction))
+      return testAllBlocks(context, ray, anyHit);
+    ++rayCounters().rescaledRays;
+    exponent = device::exponentOf(device::largest(ray.direction));
+  }
+  context.toEmbree = device::powerOfTwo(exponent);
+  const float origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+  const float direction[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+  const auto fill = [&](RTCRay &inner) {
+    Implementation::fill(inner, origin, direction, state.Epsilon, context.toEmbree,
+                         device::powerOfTwo(-exponent), context.end(outer.limit()));
+  };
+  const RTCScene tree = one.mesh->treeFor(ray.origin);
+  if constexpr (anyHit) {
+    RTCRay inner;
+    fill(inner);
+    rtcOccluded1(tree, &context.embree, &inner);
+    return inner.tfar == isOver;
+  } else {
+    RTCRayHit inner;
+    fill(inner.ray);
+    inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    inner.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(tree, &context.embree, &inner);
+    return inner.ray.tfar == isOver;
+  }
+}
+
+void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
+  ray.tfar =
+      searchInstance<false>(context, arguments->primID) ? isOver : context.end(context.limit());
+}
+
+void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {
+  if (searchInstance<true>(contextOf(arguments), arguments->primID))
+    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
 }
 
 //===----------------------------------------------------------------------===//
@@ -124,8 +215,16 @@ void boundBlock(const RTCBoundsFunctionArguments *arguments) {
 }
 
 void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
-  const Implementation &owner = *levelOf(arguments).owner;
-  const RtslInstance &instance = owner.instances[owner.primitives[arguments->primID].instance];
+  const EmbreeSpace &space = *levelOf(arguments).owner;
+  const RtslInstance &instance =
+      space.scene->instances[space.primitives[arguments->primID].instance];
+  setBounds(arguments, instance.lower, instance.upper);
+}
+
+void boundInstance(const RTCBoundsFunctionArguments *arguments) {
+  const EmbreeSpace &space = *levelOf(arguments).owner;
+  const RtslInstance &instance =
+      space.scene->instances[space.meshInstances[arguments->primID].instance];
   setBounds(arguments, instance.lower, instance.upper);
 }
 
@@ -148,12 +247,11 @@ void check(const Implementation &implementation) {
     throw Error(ErrorCode::Internal, fmt::format("Embree fails: {}", implementation.errorText));
 }
 
-void attach(const Implementation &owner, EmbreeLevel &level, std::size_t count,
-            RTCBoundsFunction bounds, RTCIntersectFunctionN intersect,
-            RTCOccludedFunctionN occluded) {
+void attach(EmbreeLevel &level, std::size_t count, RTCBoundsFunction bounds,
+            RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
   if (count == 0)
     return;
-  RTCGeometry geometry = rtcNewGeometry(owner.device, RTC_GEOMETRY_TYPE_USER);
+  RTCGeometry geometry = rtcNewGeometry(level.owner->scene->device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(count));
   rtcSetGeometryUserData(geometry, &level);
   rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
@@ -165,30 +263,40 @@ void attach(const Implementation &owner, EmbreeLevel &level, std::size_t count,
   rtcReleaseGeometry(geometry);
 }
 
-void buildLevel(const Implementation &owner, EmbreeLevel &level) {
-  level.scene = rtcNewScene(owner.device);
+void buildLevel(EmbreeLevel &level) {
+  const EmbreeSpace &space = *level.owner;
+  level.scene = rtcNewScene(space.scene->device);
   rtcSetSceneBuildQuality(level.scene, RTC_BUILD_QUALITY_MEDIUM);
-  attach(owner, level, owner.blocks.size(), boundBlock, intersectBlock, occludedBlock);
-  attach(owner, level, owner.primitives.size(), boundPrimitive, intersectPrimitive,
-         occludedPrimitive);
+  if (space.isWorld)
+    attach(level, space.blocks.size(), boundBlock, intersectBlock<device::TriangleRay>,
+           occludedBlock<device::TriangleRay>);
+  else
+    attach(level, space.blocks.size(), boundBlock, intersectBlock<device::InstanceRay>,
+           occludedBlock<device::InstanceRay>);
+  attach(level, space.primitives.size(), boundPrimitive, intersectPrimitive, occludedPrimitive);
+  attach(level, space.meshInstances.size(), boundInstance, intersectInstance, occludedInstance);
   rtcCommitScene(level.scene);
-  check(owner);
+  check(*space.scene);
 }
 
-/// Levels for origins up to 4 times the extent of half of the items in the scene, then 64 times as
+/// Levels for origins up to 4 times the extent of half of the items in the space, then 64 times as
 /// far each. An infinite plane must not enlarge all boxes.
-void addLevels(Implementation &self) {
+void addLevels(EmbreeSpace &self) {
   std::vector<float> reaches;
   for (const TriangleBlock &block : self.blocks)
     reaches.push_back(std::fabs(block.vertices[0][0][0]) + std::fabs(block.vertices[0][1][0]) +
                       std::fabs(block.vertices[0][2][0]));
-  for (const EmbreePrimitive &primitive : self.primitives) {
-    const RtslInstance &instance = self.instances[primitive.instance];
+  const auto addInstance = [&](std::uint32_t number) {
+    const RtslInstance &instance = self.scene->instances[number];
     float reach = 0;
     for (int i = 0; i < 3; ++i)
       reach += std::max(std::fabs(instance.lower[i]), std::fabs(instance.upper[i]));
     reaches.push_back(reach);
-  }
+  };
+  for (const EmbreePrimitive &primitive : self.primitives)
+    addInstance(primitive.instance);
+  for (const EmbreeMeshInstance &one : self.meshInstances)
+    addInstance(one.instance);
   float reach = 1;
   if (!reaches.empty()) {
     auto middle = reaches.begin() + std::ptrdiff_t(reaches.size() / 2);
@@ -206,22 +314,35 @@ void addLevels(Implementation &self) {
   }
 }
 
+void buildSpace(EmbreeSpace &space, const std::vector<MeshUse> &meshes, unsigned threads) {
+  space.blocks = makeTriangleBlocks(space.scene->device, meshes, threads);
+  check(*space.scene);
+  addLevels(space);
+  buildLevel(*space.levels[0]);
+}
+
 } // namespace
 
 EmbreeScene::Implementation::~Implementation() {
-  for (const auto &level : levels)
-    if (level->scene)
-      rtcReleaseScene(level->scene);
+  const auto release = [](const EmbreeSpace &space) {
+    for (const auto &level : space.levels)
+      if (level->scene)
+        rtcReleaseScene(level->scene);
+  };
+  release(world);
+  for (const auto &mesh : meshes)
+    if (mesh)
+      release(*mesh);
   if (device)
     rtcReleaseDevice(device);
 }
 
-RTCScene EmbreeScene::Implementation::treeForFar(float origin) const {
+RTCScene EmbreeSpace::treeForFar(float origin) const {
   std::size_t i = 1;
   while (i + 1 < levels.size() && !(origin <= levels[i]->largestOrigin))
     ++i;
   EmbreeLevel &level = *levels[i];
-  std::call_once(level.built, [&] { buildLevel(*this, level); });
+  std::call_once(level.built, [&] { buildLevel(level); });
   return level.scene;
 }
 
@@ -246,25 +367,42 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
   RtslLaunch launch = scene.launch();
   self->instances = launch.instances;
   self->intersect = slots.rt_Primitive_intersect;
-  self->blocks = makeTriangleBlocks(self->device, launch, threads);
-  check(*self);
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
-    if (RtslRef object = launch.instances[i].primitive) {
+  self->world.scene = self.get();
+  self->meshes.resize(launch.meshCount);
+  std::vector<MeshUse> inWorld;
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
+    const RtslInstance &instance = launch.instances[i];
+    if (RtslRef object = instance.primitive) {
       auto *intersect = scene.classOf(object).intersect;
-      self->primitives.push_back({intersect ? intersect : slots.rt_Primitive_intersect, object, i});
+      self->world.primitives.push_back(
+          {intersect ? intersect : slots.rt_Primitive_intersect, object, i});
+    } else if (instance.transform == 0) {
+      inWorld.push_back({i, &launch.meshes[instance.mesh]});
+    } else {
+      std::unique_ptr<EmbreeSpace> &mesh = self->meshes[instance.mesh];
+      if (!mesh) {
+        mesh = std::make_unique<EmbreeSpace>();
+        mesh->scene = self.get();
+        mesh->isWorld = false;
+        buildSpace(*mesh, {{0, &launch.meshes[instance.mesh]}}, threads);
+      }
+      self->world.meshInstances.push_back({i, mesh.get()});
     }
-  addLevels(*self);
-  buildLevel(*self, *self->levels[0]);
+  }
+  buildSpace(self->world, inWorld, threads);
 }
 
 EmbreeScene::~EmbreeScene() = default;
 
 bool EmbreeScene::canFollow(const RtslState &state) {
-  if (isEasy(state))
-    return true;
-  const int exponent = device::exponentOf(device::largest(device::load(state.RayDirection)));
-  return device::largest(device::load(state.RayOrigin)) < largestOrigin &&
-         exponent >= -largestExponent && exponent <= largestExponent;
+  return isEasy(state) ||
+         canFollow(device::load(state.RayOrigin), device::load(state.RayDirection));
+}
+
+bool EmbreeScene::canFollow(device::Vec3 origin, device::Vec3 direction) {
+  const int exponent = device::exponentOf(device::largest(direction));
+  return device::largest(origin) < largestOrigin && exponent >= -largestExponent &&
+         exponent <= largestExponent;
 }
 
 std::uint32_t EmbreeScene::traverse(RtslState &state, bool anyHit) const {
@@ -275,7 +413,7 @@ std::uint32_t EmbreeScene::traverse(RtslState &state, bool anyHit) const {
   return self->query(state, anyHit, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
 }
 
-void EmbreeScene::visit(const RtslState &state, const device::TriangleRay &ray,
+void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
                         const EmbreeVisitor &visitor) const {
   int exponent = 0;
   if (!isEasy(state)) {
@@ -284,17 +422,17 @@ void EmbreeScene::visit(const RtslState &state, const device::TriangleRay &ray,
   }
   EmbreeContext context;
   rtcInitIntersectContext(&context.embree);
-  context.state = nullptr;
+  context.state = &state;
   context.ray = &ray;
-  context.scene = self.get();
+  context.space = &self->world;
   context.visitor = &visitor;
   context.toEmbree = device::powerOfTwo(exponent);
   RTCRayHit rayHit;
   Implementation::fill(rayHit.ray, state, context.toEmbree, device::powerOfTwo(-exponent),
-                       context.end(visitor.limit(visitor.self)));
+                       context.end(context.limit()));
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(self->treeFor(state.RayOrigin), &context.embree, &rayHit);
+  rtcIntersect1(self->world.treeFor(device::load(state.RayOrigin)), &context.embree, &rayHit);
 }
 
 } // namespace rtsl::runtime

@@ -4,7 +4,8 @@
 // our own tree, so that both find the same hits, bit for bit. Embree's own triangles are not
 // suitable: near edges, between coincident triangles and for needles its test depends on its own
 // rounding. So triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower.
-// RTSL primitives are user geometry as well.
+// RTSL primitives are user geometry as well, and so are instances of meshes with transforms: such a
+// mesh has a tree of its own, which the ray in object space is traced through from a callback.
 //
 // Embree's box test has rounding errors that depend on the distance of a ray's origin. Boxes are
 // enlarged for origins up to some distance; for others there is another tree over the same blocks,
@@ -18,6 +19,7 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/traverse/Instance.h"
 #include "runtime/device/traverse/Triangle.h"
 #include "runtime/scene/Scene.h"
 
@@ -28,8 +30,9 @@ namespace rtsl::runtime {
 
 /// Processes all items that a ray may hit.
 struct EmbreeVisitor {
-  bool (*visit)(void *self, const RtslLeafItem &item); // true: the search is over
-  float (*limit)(void *self);                          // hits beyond it do not matter
+  // `entered`: the ray in the space of the item, if that is not the world. True: the search is over
+  bool (*visit)(void *self, const RtslLeafItem &item, const device::InstanceRay *entered);
+  float (*limit)(void *self); // hits beyond it do not matter
   void *self;
 };
 
@@ -43,6 +46,8 @@ public:
 
   /// Can Embree trace the ray of `state`, which must be good (device::isGoodRay)?
   static bool canFollow(const RtslState &state);
+  /// The same for any finite ray.
+  static bool canFollow(device::Vec3 origin, device::Vec3 direction);
 
   /// rtsl_traverse for a ray that canFollow accepts. It sees all instances, and they accept all
   /// hits.
@@ -52,24 +57,26 @@ public:
   std::uint32_t traverseEasy(RtslState &state, bool anyHit) const;
 
   /// Calls `visitor` for items that the ray may hit. canFollow must accept the ray.
-  void visit(const RtslState &state, const device::TriangleRay &ray,
-             const EmbreeVisitor &visitor) const;
+  void visit(RtslState &state, const device::TriangleRay &ray, const EmbreeVisitor &visitor) const;
 
   struct Implementation;
 
   /// Is the ray of `state` good, and can Embree trace it unscaled? Nearly always true, and fast
   /// then.
   static bool isEasy(const RtslState &state) {
-    if (state.isEasy)
-      return true;
-    const float *o = state.RayOrigin, *d = state.RayDirection;
-    auto sum = [](const float *v) {
-      return __builtin_fabsf(v[0]) + __builtin_fabsf(v[1]) + __builtin_fabsf(v[2]);
+    return state.isEasy ||
+           (needsNoScaling(device::load(state.RayOrigin), device::load(state.RayDirection)) &&
+            state.Epsilon >= 0 && state.HitDistance == state.HitDistance);
+  }
+
+  /// Can Embree trace the ray as it is?
+  static bool needsNoScaling(device::Vec3 origin, device::Vec3 direction) {
+    auto sum = [](device::Vec3 v) {
+      return __builtin_fabsf(v.x) + __builtin_fabsf(v.y) + __builtin_fabsf(v.z);
     };
     // Sums with NaN compare false, and infinite ones are too large.
-    float length = sum(d);
-    return sum(o) < largestOrigin && length < longest && length > 3 * shortest &&
-           state.Epsilon >= 0 && state.HitDistance == state.HitDistance;
+    float length = sum(direction);
+    return sum(origin) < largestOrigin && length < longest && length > 3 * shortest;
   }
 
 private:
@@ -88,15 +95,18 @@ struct EmbreeTree {
   const EmbreeScene &scene;
 
   template <typename Limit, typename Visit>
-  void forEach(const RtslState &state, const device::TriangleRay &ray, Limit limit,
-               Visit visit) const {
-    struct Both {
+  void forEach(RtslState &state, const device::TriangleRay &ray, Limit limit, Visit visit) const {
+    struct Search {
+      const device::TriangleRay &ray;
       Limit &limit;
       Visit &visit;
-    } both{limit, visit};
+    } search{ray, limit, visit};
     EmbreeVisitor visitor{
-        [](void *self, const RtslLeafItem &item) { return static_cast<Both *>(self)->visit(item); },
-        [](void *self) { return static_cast<Both *>(self)->limit(); }, &both};
+        [](void *self, const RtslLeafItem &item, const device::InstanceRay *entered) {
+          auto &search = *static_cast<Search *>(self);
+          return entered ? search.visit(item, *entered) : search.visit(item, search.ray);
+        },
+        [](void *self) { return static_cast<Search *>(self)->limit(); }, &search};
     scene.visit(state, ray, visitor);
   }
 };

@@ -44,6 +44,8 @@ private:
 
   const Scene &scene;
   std::unique_ptr<EmbreeScene> embree; // null: our own traversal
+  // the same, if rays with the usual mask and root see all instances
+  const EmbreeScene *seenByAll = nullptr;
   mutable std::once_flag built;
   mutable Bvh bvh;
   mutable RtslLaunch launch{};

@@ -13,10 +13,13 @@ RayCounters &rayCounters() {
 
 HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads)
     : ProgramHost{scene.program().slots}, scene(scene) {
-  if (useEmbree)
-    embree = std::make_unique<EmbreeScene>(scene, slots, threads);
-  else
+  if (!useEmbree) {
     deviceLaunch();
+    return;
+  }
+  embree = std::make_unique<EmbreeScene>(scene, slots, threads);
+  if (!(scene.launch().needs & RTSL_HAS_ROOTS))
+    seenByAll = embree.get();
 }
 
 const RtslLaunch &HostScene::deviceLaunch() const {
@@ -64,17 +67,17 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
     ++rayCounters().retracedRays;
     return searchOwnTree(state, how);
   }
-  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0)
+  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll)
     return search(state, how, EmbreeTree{*embree});
   return embree->traverse(state, how & RTSL_FIRST_HIT);
 }
 
 [[gnu::always_inline]] inline std::uint32_t HostScene::traverseFast(RtslState &state,
                                                                     std::uint32_t how) const {
-  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !embree ||
+  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll ||
       !EmbreeScene::isEasy(state))
     return traverseAny(state, how);
-  return embree->traverseEasy(state, how & RTSL_FIRST_HIT);
+  return seenByAll->traverseEasy(state, how & RTSL_FIRST_HIT);
 }
 
 std::uint32_t HostScene::traverse(RtslState &state, std::uint32_t how) const {

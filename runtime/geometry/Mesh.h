@@ -1,30 +1,14 @@
 //===- Mesh.h - triangle meshes and their files ---------------------------===//
 #pragma once
 
+#include "runtime/geometry/Transform.h"
 #include "support/Error.h"
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace rtsl::runtime {
-
-/// An affine map: four columns of three, the last one the translation. x' = c0 x + c1 y + c2 z +
-/// c3.
-struct Transform {
-  std::array<std::array<double, 3>, 4> columns{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
-
-  static Transform translate(double x, double y, double z);
-  static Transform scale(double x, double y, double z);
-  /// Rotates by `degrees` about `axis` (of any length but zero), counter-clockwise when the axis
-  /// points at the viewer.
-  static Transform rotate(const std::array<double, 3> &axis, double degrees);
-
-  /// First `*this`, then `next`.
-  Transform then(const Transform &next) const;
-  double determinant() const;
-};
 
 /// An indexed triangle mesh.
 struct Mesh {

@@ -83,6 +83,7 @@ struct SceneFacts {
   std::vector<Object> objects;
   std::uint32_t lightCount = 0;
   std::vector<float> ambient; // one number per component of a color
+  std::uint32_t needs = 0;    // RTSL_HAS_*
   /// The longest chain of references from object to object; the maximum value: not known.
   std::uint32_t referenceChain = ~0u;
 };
@@ -132,6 +133,8 @@ struct Program {
 
   /// RTSL_NEEDS_*: the state that the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
+  /// RTSL_HAS_*: what the scenes that it renders may have.
+  std::uint32_t sceneNeeds = RTSL_HAS_ALL;
   /// Keep normals and texture coordinates of meshes even if `needs` does not include them.
   bool keepsMeshes = true;
   /// The program's rtsl_sample, or rtsl_generate.

@@ -10,15 +10,6 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// A few units in the last place outwards, for the author's sums are rounded; and into the range in
-/// which boxes can be multiplied with each other. An infinite primitive stays in the largest box
-/// there is.
-float outwards(float side, float direction) {
-  constexpr float largest = 1e18f;
-  float moved = side + direction * (std::fabs(side) * 0x1p-21f + std::numeric_limits<float>::min());
-  return std::clamp(moved, -largest, largest);
-}
-
 /// The result of the primitive's `computeBounds`; NaN for sides that it does not set.
 Bounds computeBounds(const Objects &objects, RtslRef primitive, const RtslLaunch &launch) {
   Bounds given;
@@ -60,50 +51,57 @@ void checkBounds(const Bounds &given, const Objects::Object &info, std::vector<W
 
 } // namespace
 
-std::uint32_t Geometry::addInstance(const Objects &objects, RtslRef primitive, std::uint32_t mesh,
-                                    RtslRef material, std::string name, std::uint32_t primitives,
-                                    std::uint32_t mask) {
-  objects.requireRole(material, "rt_Material", ifClassic(objects.program(), "shade"));
+RtslInstance Geometry::place(const Placement &placement, const std::string &name,
+                             const std::optional<rtsl::Place> &where) {
+  RtslInstance instance{};
+  instance.mask = placement.mask;
+  instance.roots = placement.roots;
+  if (!placement.transform.isIdentity()) {
+    const RtslTransform transform = roundedTransform(placement.transform, name, where);
+    instance.transform = std::uint32_t(transforms.size());
+    transforms.push_back(transform);
+  }
+  return instance;
+}
+
+std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &instance,
+                                    std::string name, std::uint32_t primitives) {
+  objects.requireRole(instance.material, "rt_Material", ifClassic(objects.program(), "shade"));
   if (primitiveTotal + primitives > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
-  instances.push_back({primitive,
-                       material,
-                       mesh,
-                       std::uint32_t(primitiveTotal),
-                       objects.needsOf(material),
-                       mask,
-                       objects.at(material).classInfo->anyHit,
-                       {},
-                       {},
-                       {},
-                       {}});
+  instances.push_back(instance);
+  RtslInstance &added = instances.back();
+  added.firstPrimitive = std::uint32_t(primitiveTotal);
+  added.needs = objects.needsOf(instance.material);
+  added.anyHit = objects.at(instance.material).classInfo->anyHit;
   primitiveTotal += primitives;
   instanceNames.push_back(std::move(name));
+  needs |= (instance.transform != 0 ? RTSL_HAS_TRANSFORMS : 0) |
+           (instance.roots != 1 ? RTSL_HAS_ROOTS : 0);
   return std::uint32_t(instances.size() - 1);
 }
 
 std::uint32_t Geometry::addPrimitive(const Objects &objects, RtslRef primitive, RtslRef material,
-                                     std::uint32_t mask, const std::function<RtslLaunch()> &launch,
+                                     const Placement &placement,
+                                     const std::function<RtslLaunch()> &launch,
                                      std::vector<Warning> &warnings) {
   objects.requireRole(primitive, "rt_Primitive", {"intersect", "computeBounds"});
   const Objects::Object &info = objects.at(primitive);
   const Bounds given = computeBounds(objects, primitive, launch());
   checkBounds(given, info, warnings);
-  std::uint32_t instance = addInstance(objects, primitive, 0, material, info.name, 1, mask);
-  RtslInstance &added = instances.back();
-  std::copy_n(given.lower, 3, added.boundMin);
-  std::copy_n(given.upper, 3, added.boundMax);
-  for (int i = 0; i < 3; ++i) {
-    added.lower[i] = outwards(given.lower[i], -1);
-    added.upper[i] = outwards(given.upper[i], 1);
-  }
-  return instance;
+  RtslInstance instance = place(placement, info.name, info.place);
+  instance.primitive = primitive;
+  instance.material = material;
+  std::copy_n(given.lower, 3, instance.boundMin);
+  std::copy_n(given.upper, 3, instance.boundMax);
+  setWorldBounds(instance, given, transforms[instance.transform]);
+  return addInstance(objects, instance, info.name, 1);
 }
 
 std::uint32_t Geometry::addMesh(Mesh mesh, const std::string &name) {
   std::string shown = name.empty() ? fmt::format("mesh {}", meshes.size()) : name;
   validateMesh(mesh, shown);
-  auto storage = std::make_unique<NamedMesh>(NamedMesh{std::move(mesh), std::move(shown)});
+  auto storage = std::make_unique<NamedMesh>(NamedMesh{std::move(mesh), std::move(shown), {}});
   Mesh &kept = storage->mesh;
   RtslMesh table{};
   table.positions = kept.positions.data();
@@ -117,12 +115,23 @@ std::uint32_t Geometry::addMesh(Mesh mesh, const std::string &name) {
   return std::uint32_t(meshes.size() - 1);
 }
 
+const Bounds &Geometry::meshBounds(std::uint32_t mesh) {
+  NamedMesh &named = *meshes[mesh];
+  if (!named.bounds)
+    named.bounds = boundsOf(named.mesh);
+  return *named.bounds;
+}
+
 std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t mesh,
-                                        RtslRef material, std::uint32_t mask) {
+                                        RtslRef material, const Placement &placement) {
   if (mesh >= meshes.size())
     throw Error(ErrorCode::UnknownName, fmt::format("the scene has no mesh number {}", mesh));
-  return addInstance(objects, 0, mesh, material, meshes[mesh]->name, meshTable[mesh].triangleCount,
-                     mask);
+  RtslInstance instance = place(placement, meshes[mesh]->name, std::nullopt);
+  instance.material = material;
+  instance.mesh = mesh;
+  if (instance.transform != 0)
+    setWorldBounds(instance, meshBounds(mesh), transforms[instance.transform]);
+  return addInstance(objects, instance, meshes[mesh]->name, meshTable[mesh].triangleCount);
 }
 
 void Geometry::useProgram(const Objects &objects) {
@@ -172,8 +181,11 @@ std::uint32_t Geometry::primitiveCount(std::uint32_t instance) const {
 void Geometry::fill(RtslLaunch &launch) const {
   launch.instances = instances.data();
   launch.meshes = meshTable.data();
+  launch.transforms = transforms.data();
   launch.instanceCount = std::uint32_t(instances.size());
   launch.meshCount = std::uint32_t(meshTable.size());
+  launch.transformCount = std::uint32_t(transforms.size());
+  launch.needs |= needs;
 }
 
 } // namespace rtsl::runtime

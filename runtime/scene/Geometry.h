@@ -1,18 +1,20 @@
 //===- Geometry.h - the meshes and instances of a scene -------------------===//
 //
 // Rays hit instances. An instance is a primitive, an object of the program, or a mesh, with a
-// material.
+// material and a transform.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/geometry/Mesh.h"
+#include "runtime/scene/InstanceTransform.h"
 #include "runtime/scene/Objects.h"
 #include "runtime/scene/SceneData.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,13 +24,13 @@ class Geometry {
 public:
   /// Scene::addPrimitive. `launch` returns the scene's current launch, for `computeBounds`.
   std::uint32_t addPrimitive(const Objects &objects, RtslRef primitive, RtslRef material,
-                             std::uint32_t mask, const std::function<RtslLaunch()> &launch,
+                             const Placement &placement, const std::function<RtslLaunch()> &launch,
                              std::vector<Warning> &warnings);
   /// Scene::addMesh.
   std::uint32_t addMesh(Mesh mesh, const std::string &name);
   /// Scene::addMeshInstance.
   std::uint32_t addMeshInstance(const Objects &objects, std::uint32_t mesh, RtslRef material,
-                                std::uint32_t mask);
+                                const Placement &placement);
 
   /// Called after Objects::useProgram: updates RtslInstance::needs, and drops mesh attributes that no
   /// material reads, unless the program keeps them.
@@ -37,7 +39,9 @@ public:
   const std::vector<MeshAttribute> &meshAttributes() const { return attributes; }
 
   const std::vector<RtslInstance> &all() const { return instances; }
-  /// Scene::primitiveBounds, primitiveCount and instanceName.
+  /// RTSL_HAS_* of RtslLaunch::needs.
+  std::uint32_t sceneNeeds() const { return needs; }
+  /// Scene::instanceBounds, primitiveCount and instanceName.
   Bounds bounds(std::uint32_t instance) const;
   std::uint32_t primitiveCount(std::uint32_t instance) const;
   const std::string &name(std::uint32_t instance) const { return instanceNames.at(instance); }
@@ -49,18 +53,23 @@ private:
   struct NamedMesh {
     Mesh mesh;
     std::string name;
+    std::optional<Bounds> bounds; // computed on first use
   };
 
-  std::uint32_t addInstance(const Objects &objects, RtslRef primitive, std::uint32_t mesh,
-                            RtslRef material, std::string name, std::uint32_t primitives,
-                            std::uint32_t mask);
+  std::uint32_t addInstance(const Objects &objects, const RtslInstance &instance, std::string name,
+                            std::uint32_t primitives);
+  RtslInstance place(const Placement &placement, const std::string &name,
+                     const std::optional<rtsl::Place> &where);
+  const Bounds &meshBounds(std::uint32_t mesh);
   void dropUnusedAttributes(const Program &program);
 
   std::vector<std::unique_ptr<NamedMesh>> meshes;
   std::vector<RtslMesh> meshTable; // as long
+  std::vector<RtslTransform> transforms{identityTransform()};
   std::vector<RtslInstance> instances;
   std::vector<std::string> instanceNames; // as long
   std::uint64_t primitiveTotal = 0;
+  std::uint32_t needs = 0;
   std::vector<MeshAttribute> attributes;
 };
 

@@ -44,6 +44,9 @@ void Scene::useProgram(std::shared_ptr<const Program> program) {
 const std::vector<Warning> &Scene::warnings() const {
   return self->warnings;
 }
+void Scene::addWarning(Warning warning) {
+  self->warnings.push_back(std::move(warning));
+}
 
 //===----------------------------------------------------------------------===//
 // Objects
@@ -83,23 +86,25 @@ std::vector<BufferPlace> Scene::buffers() const {
 // Geometry
 //===----------------------------------------------------------------------===//
 
-std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, std::uint32_t mask) {
+std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement) {
   return self->geometry.addPrimitive(
-      self->objects, primitive, material, mask, [this] { return self->launch(); }, self->warnings);
+      self->objects, primitive, material, placement, [this] { return self->launch(); },
+      self->warnings);
 }
 
 std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name) {
   return self->geometry.addMesh(std::move(mesh), name);
 }
 
-std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material, std::uint32_t mask) {
-  return self->geometry.addMeshInstance(self->objects, mesh, material, mask);
+std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material,
+                                     const Placement &placement) {
+  return self->geometry.addMeshInstance(self->objects, mesh, material, placement);
 }
 
 const std::vector<MeshAttribute> &Scene::meshAttributes() const {
   return self->geometry.meshAttributes();
 }
-Bounds Scene::primitiveBounds(std::uint32_t instance) const {
+Bounds Scene::instanceBounds(std::uint32_t instance) const {
   return self->geometry.bounds(instance);
 }
 std::uint32_t Scene::primitiveCount(std::uint32_t instance) const {
@@ -154,6 +159,7 @@ SceneFacts Scene::facts() const {
   facts.lightCount = self->cameraAndLights.lightCount();
   const float *const ambient = self->cameraAndLights.ambientLight();
   facts.ambient.assign(ambient, ambient + program().colorComponents);
+  facts.needs = self->geometry.sceneNeeds();
   facts.referenceChain = self->objects.referenceChain();
   return facts;
 }

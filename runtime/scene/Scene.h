@@ -45,17 +45,20 @@ public:
   RtslRef addObject(const std::string &className, std::vector<Value> arguments,
                     const std::string &name = {});
 
-  /// Adds an RTSL primitive to what rays can hit. Its bounds are asked for at once: not a number or
-  /// inverted ones throw DegenerateGeometry; a box without any extent gives a warning, for no ray
-  /// will hit it. Returns the instance's index.
-  /// Rays see it whose mask has a bit of its own.
-  std::uint32_t addPrimitive(RtslRef primitive, RtslRef material, std::uint32_t mask = ~0u);
+  /// Adds an instance of an RTSL primitive to what rays can hit. Its bounds are computed at once:
+  /// if they are inverted or not numbers, DegenerateGeometry is thrown; a box without any extent
+  /// gives a warning, because no ray can hit it. A transform that is not finite, or so close to
+  /// singular that it cannot be inverted exactly enough, throws DegenerateGeometry. Returns the
+  /// instance's index.
+  std::uint32_t addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement = {});
 
   /// Adds a mesh; returns its index for addMeshInstance. Throws BadMesh.
   std::uint32_t addMesh(Mesh mesh, const std::string &name = {});
 
-  /// Adds a mesh to what rays can hit. Returns the instance's index.
-  std::uint32_t addMeshInstance(std::uint32_t mesh, RtslRef material, std::uint32_t mask = ~0u);
+  /// Adds an instance of a mesh to what rays can hit. Returns the instance's index. Instances share
+  /// the mesh and, if they have transforms, its tree. Throws DegenerateGeometry.
+  std::uint32_t addMeshInstance(std::uint32_t mesh, RtslRef material,
+                                const Placement &placement = {});
 
   void addLight(RtslRef light);
   void setCamera(RtslRef camera);
@@ -77,6 +80,7 @@ public:
   const std::string &nameOf(RtslRef object) const;
 
   const std::vector<Warning> &warnings() const;
+  void addWarning(Warning warning);
 
   /// The launch that describes this scene, with width, height, seed, depth and the traversal left
   /// at 0. It stays valid until the scene changes. Throws IncompleteScene if there is no camera, or
@@ -89,9 +93,9 @@ public:
   using BufferPlace = runtime::BufferPlace;
   std::vector<BufferPlace> buffers() const;
 
-  /// World bounds of an RTSL primitive's instance, as computeBounds gave them, a few units in the
-  /// last place larger.
-  Bounds primitiveBounds(std::uint32_t instance) const;
+  /// World bounds of an instance of an RTSL primitive, or of a mesh with a transform, slightly
+  /// enlarged.
+  Bounds instanceBounds(std::uint32_t instance) const;
   /// Number of primitives that the instance holds: 1, or the triangles of its mesh.
   std::uint32_t primitiveCount(std::uint32_t instance) const;
   /// The name of an instance for messages: that of its primitive or mesh.

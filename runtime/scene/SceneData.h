@@ -1,6 +1,7 @@
 //===- SceneData.h - plain structs in the interface of scenes -------------===//
 #pragma once
 
+#include "runtime/geometry/Transform.h"
 #include "runtime/scene/Value.h"
 
 #include <cstddef>
@@ -17,6 +18,13 @@ struct ObjectValues {
   std::variant<std::monostate, std::vector<Value>, std::vector<NamedValue>> constructor;
   std::vector<NamedValue> members;
   std::optional<Place> place; // of the object, for messages
+};
+
+/// Where an instance is, and for which rays.
+struct Placement {
+  Transform transform;      // from its object space to world space
+  std::uint32_t mask = ~0u; // rays see it whose mask has a common bit
+  std::uint32_t roots = 1;  // bit r: rays that enter at root r can see it
 };
 
 /// A box. A side may be infinite.

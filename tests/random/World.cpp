@@ -255,6 +255,7 @@ void World::describeMaterial(RtslInstance &instance, const ClassInfo &material) 
 /// One in three is not there for some rays. Its bounds are what the primitive says, and never used
 /// to cull it.
 void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
+  instance.roots = 1;
   if (instance.primitive != 0 && code.slots.rt_Primitive_computeBounds) {
     RtslState state{};
     state.launch = &launch;

@@ -3,6 +3,7 @@
 #include "Messages.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
+#include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
 

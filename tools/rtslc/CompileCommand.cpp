@@ -4,6 +4,7 @@
 #include "SceneShaders.h"
 #include "Shaders.h"
 #include "codegen/cpp/EmitCpp.h"
+#include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"

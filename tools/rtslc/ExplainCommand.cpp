@@ -5,6 +5,7 @@
 #include "Messages.h"
 #include "SceneShaders.h"
 #include "Shaders.h"
+#include "codegen/driver/SceneProgram.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"

@@ -177,13 +177,13 @@ static void collectFrame(Machine &machine, StateWriter &writer,
         {slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
-  for (auto [number, state] : llvm::enumerate(machine.states))
+  for (mlir::func::FuncOp state : machine.states)
     state.walk([&](ir::FrameObjectOp object) {
       FrameField &saved = field(object.getName(), /*isObject=*/true);
       saved.type = writer.typeOf(object.getResult());
       saved.madeIn = lineOf(object.getLoc(), machine.file);
       const unsigned line = lineOfAccess(object, machine.file);
-      if (number != 0 && line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
+      if (state != machine.states.front() && line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
         saved.neededBy = line;
     });
   for (mlir::func::FuncOp state : machine.states) {

@@ -35,11 +35,21 @@ typedef struct RtslInstance {
   uint32_t needs;          // RTSL_NEEDS_* of its material
   uint32_t mask;           // visible to rays whose mask has a common bit
   uint32_t anyHit;         // rtslRayTypeBit of the payloads for which its material has `anyHit`
-  float boundMin[3], boundMax[3]; // of an RTSL primitive, from `computeBounds`
-  float lower[3], upper[3];       // the box for traversal, slightly larger
+  uint32_t transform;      // index into RtslLaunch::transforms; 0: object space is world space
+  uint32_t roots;          // bit r: rays that enter at root r can see it
+  float boundMin[3], boundMax[3]; // of an RTSL primitive, from `computeBounds`, in object space
+  // the box for traversal in world space, slightly larger; not of a mesh without a transform
+  float lower[3], upper[3];
 } RtslInstance;
 
-/// An indexed triangle mesh in world space. `normals` and `uvs` may be null.
+/// The transform of an instance: p -> linear p + translation, from object to world space. Matrices
+/// are stored as columns. `inverse` is the inverse of exactly these floats, rounded to double.
+typedef struct RtslTransform {
+  float linear[9], translation[3];
+  double inverse[9]; // of `linear`
+} RtslTransform;
+
+/// An indexed triangle mesh in object space. `normals` and `uvs` may be null.
 typedef struct RtslMesh {
   const float *positions;  // 3 a vertex
   const float *normals;    // 3 a vertex
@@ -61,11 +71,18 @@ typedef struct RtslLeafItem {
   uint32_t instance, primitive;
 } RtslLeafItem;
 
+/// The root of a tree of triangles: a node, or leaf items, as RtslBvhNode::child and count.
+typedef struct RtslMeshTree {
+  int32_t child;
+  uint32_t count;
+} RtslMeshTree;
+
 /// What all rays of a launch share.
 typedef struct RtslLaunch {
   uint8_t *records; // object records; the first 4 bytes of each are its class id
   const RtslInstance *instances;
   const RtslMesh *meshes;
+  const RtslTransform *transforms; // the first is the identity
   const RtslRef *lights;
   RtslRef camera;        // of the classic engine
   RtslRef rayGeneration; // of the programs engine
@@ -73,7 +90,7 @@ typedef struct RtslLaunch {
   RtslRef exception;     // an rt_Exception object; 0: exceptionColor (Events.h) is used
   float backgroundColor[RTSL_MAX_COLOR];
   float ambient[RTSL_MAX_COLOR];
-  uint32_t instanceCount, meshCount, lightCount;
+  uint32_t instanceCount, meshCount, transformCount, lightCount;
   uint32_t colorComponents;
   uint32_t maxDepth; // 0: camera rays only
   // the maximum number of references from one object to the next, in a chain
@@ -82,6 +99,8 @@ typedef struct RtslLaunch {
   uint32_t seed;
   const RtslBvhNode *nodes; // device traversal; null if the host's own is used
   const RtslLeafItem *leafItems;
+  // by mesh: the tree of a mesh that has instances with transforms, in its object space
+  const RtslMeshTree *meshTrees;
   uint32_t rootIsLeaf,
       nodeCount;  // rootIsLeaf: there are no nodes, and nodeCount leaf items are tested one by one
   uint32_t needs; // RTSL_NEEDS_*: what the classes of the scene read
@@ -157,7 +176,7 @@ typedef struct RtslState {
   // 0: the built-in payload of `shade`; others are numbered when a program is linked
   uint32_t rayType;
   uint32_t rayMask; // instances that have no common bit with it are invisible
-  int32_t rayRoot;  // the root of the scene where it enters; so far there is only root 0
+  int32_t rayRoot;  // the root of the scene where it enters: RtslInstance::roots
   // RTSL_ACCEPT...: the answer of `anyHit` for the candidate; outside of it RTSL_ACCEPT
   uint32_t hitAnswer;
 
@@ -220,6 +239,10 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
   1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
 #define RTSL_NEEDS_HIT_ERRORS 2048u // no state: rays leave hits, so the error of t matters
 #define RTSL_NEEDS_ALL 4095u
+// RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
+#define RTSL_HAS_TRANSFORMS 4096u // some instance has a transform
+#define RTSL_HAS_ROOTS 8192u      // some instance is not below root 0, or below another one
+#define RTSL_HAS_ALL (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u
@@ -254,7 +277,8 @@ extern "C" {
 /// A set of RTSL_FEATURE_*; a constant.
 uint32_t rtsl_features(RtslState *state);
 
-/// What all launches of a program share: RtslLaunch::needs and RtslLaunch::colorComponents.
+/// What all launches of a program share: RtslLaunch::needs, or a superset, and
+/// RtslLaunch::colorComponents.
 /// runtime/device defines both weakly, from the launch. A compiled program defines them as
 /// constants, so that what it does not need is folded away.
 uint32_t rtsl_needs(const RtslLaunch *launch);

@@ -93,20 +93,31 @@ public:
     return state.launch->instances[item.instance];
   }
 
-  /// Tests one leaf item and commits it if it wins. It must not be the hit so far.
-  bool test(const RtslLeafItem &item) const {
-    const RtslInstance &instance = instanceOf(item);
-    if (instance.primitive == 0)
-      return testTriangle(state, triangleRay, state.launch->meshes[instance.mesh], item.instance,
-                          item.primitive);
-    return testPrimitive(state, triangleRay, instance, item, intersect());
+  /// Tests one leaf item, in its space, and commits it if it wins. It must not be the hit so far.
+  template <typename Ray>
+  bool test(const RtslLeafItem &item, const Ray &ray) const {
+    return testItem(state, ray, item, intersect());
   }
 
-  /// Calls visit(item) for items that may be hit before limit() until it returns true.
+  /// The same for an item that was found before.
+  void testAgain(const RtslLeafItem &item) const {
+    const RtslInstance &instance = instanceOf(item);
+    if (instance.primitive != 0 || !isTransformed(*state.launch, instance)) {
+      test(item, triangleRay);
+      return;
+    }
+    InstanceRay entered;
+    if (enterInstance(*state.launch, triangleRay, item.instance, state.Epsilon, state.nearest,
+                      entered))
+      test(item, entered);
+  }
+
+  /// Calls visit(item, ray in its space) for items that may be hit before limit() until it returns
+  /// true.
   template <typename Limit, typename Visit>
   void forEach(Limit limit, Visit visit) const {
-    tree.forEach(state, triangleRay, limit, [&](const RtslLeafItem &item) {
-      return isSeen(state, instanceOf(item)) && visit(item);
+    tree.forEach(state, triangleRay, limit, [&](const RtslLeafItem &item, const auto &ray) {
+      return isSeen(state, instanceOf(item)) && visit(item, ray);
     });
   }
 
@@ -160,9 +171,9 @@ uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
   for (;;) {
     NearestCandidates nearest;
     search.forEach([&] { return nearest.limit(state.HitDistance); },
-                   [&](const RtslLeafItem &item) {
+                   [&](const RtslLeafItem &item, const auto &ray) {
                      search.forgetHit();
-                     if (search.test(item)) {
+                     if (search.test(item, ray)) {
                        Candidate candidate = {state.nearest, item.instance, item.primitive};
                        if (isFirst || isBefore(last, candidate))
                          nearest.insert(candidate, !search.hasAnyHit(item));
@@ -172,7 +183,7 @@ uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
     for (uint32_t i = 0; i < nearest.count; ++i) {
       const RtslLeafItem item = {nearest.found[i].instance, nearest.found[i].primitive};
       search.forgetHit();
-      search.test(item);
+      search.testAgain(item);
       if (!search.hasAnyHit(item) || search.ask() != RTSL_IGNORE)
         return search.end();
     }
@@ -214,11 +225,11 @@ template <typename Slots, typename Tree>
 uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const Tree &tree) {
   const Search<Slots, Tree> search(state, slots, tree);
   search.forEach([&] { return state.nearest; },
-                 [&](const RtslLeafItem &item) {
+                 [&](const RtslLeafItem &item, const auto &ray) {
                    if (!search.hasAnyHit(item))
-                     return search.test(item) && first;
+                     return search.test(item, ray) && first;
                    const CommittedHit before(state);
-                   if (!search.test(item))
+                   if (!search.test(item, ray))
                      return false;
                    uint32_t answer = search.ask();
                    if (answer == RTSL_IGNORE) {

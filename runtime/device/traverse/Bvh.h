@@ -3,6 +3,7 @@
 
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/traverse/Triangle.h"
 
 namespace rtsl::device {
 
@@ -59,12 +60,12 @@ inline float enterBox(const float lower[3], const float upper[3], Vec3 origin, V
   return range.isEmpty() ? infinity : range.near;
 }
 
-/// Calls test(item) for every leaf item that may have hits between tMin and tMax(), nearer boxes
-/// first. tMax() may shrink meanwhile. test returns true to stop; then so does this.
-/// `inverse` is 1 / direction by component.
+/// Calls test(item) for every leaf item below `root` that may have hits between tMin and tMax(),
+/// nearer boxes first. tMax() may shrink meanwhile. test returns true to stop; then so does this.
 template <typename Limit, typename Test>
-bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin, Limit tMax,
-                 Test test) {
+bool traverseBvh(const RtslLaunch &launch, RtslMeshTree root, const TriangleRay &ray, float tMin,
+                 Limit tMax, Test test) {
+  const Vec3 origin = ray.origin, inverse = ray.inverse;
   tMin *= 1.0f - 2 * rangeShare;
   struct Entry {
     int32_t child;
@@ -73,9 +74,7 @@ bool traverseBvh(const RtslLaunch &launch, Vec3 origin, Vec3 inverse, float tMin
   };
   Entry stack[maxBvhDepth];
   int top = 0;
-  Entry current = {0, 0, tMin};
-  if (launch.rootIsLeaf)
-    current = {~0, launch.nodeCount, tMin}; // all items; `test` is inlined once
+  Entry current = {root.child, root.count, tMin};
   for (;;) {
     if (current.child >= 0) {
       const RtslBvhNode &node = launch.nodes[current.child];

@@ -3,13 +3,9 @@
 
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/traverse/Instance.h"
 
 namespace rtsl::device {
-
-inline void setIdentity(float m[16]) {
-  for (int i = 0; i < 16; ++i)
-    m[i] = i % 5 == 0 ? 1.0f : 0.0f;
-}
 
 /// The bounds of an RTSL primitive's instance, from `computeBounds`.
 inline void describeBounds(RtslState &state, const RtslInstance &instance) {
@@ -19,11 +15,11 @@ inline void describeBounds(RtslState &state, const RtslInstance &instance) {
 
 /// State of the tested primitive and its transforms that `intersect` may read.
 inline void describeCandidate(RtslState &state) {
-  describeBounds(state, state.launch->instances[state.candidateInstance]);
+  const RtslInstance &instance = state.launch->instances[state.candidateInstance];
+  describeBounds(state, instance);
   state.PrimitiveIndex = int32_t(state.candidatePrimitive);
   state.InstanceIndex = int32_t(state.candidateInstance);
-  setIdentity(state.ObjectToWorld); // geometry is in world space so far
-  setIdentity(state.WorldToObject);
+  describeTransforms(state, instance);
 }
 
 /// Sets the primitive whose `intersect` is to run.

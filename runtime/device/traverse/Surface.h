@@ -6,6 +6,7 @@
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/traverse/Instance.h"
 #include "runtime/device/traverse/Traverse.h"
 
 namespace rtsl::device {
@@ -63,7 +64,43 @@ inline void triangleNormals(RtslState &state, const RtslMesh &mesh, const Triang
   store(state.ShadingNormal, shading);
 }
 
-/// Point, normals and texture coordinates of a mesh at state's hit.
+/// Largest magnitudes of the coordinates, by axis.
+inline Vec3 extents(const TriangleVertices &p) {
+  const auto along = [&](int axis) {
+    return maximum(maximum(absolute(p.v0[axis]), absolute(p.v1[axis])), absolute(p.v2[axis]));
+  };
+  return {along(0), along(1), along(2)};
+}
+
+/// Converts what was computed of a hit in the object space of its instance to world space.
+/// Coordinates in its computation were at most `size`, by axis; the point is within `offSurface` of
+/// the surface, not counting its own rounding.
+inline void surfaceToWorld(RtslState &state, const RtslTransform &transform, uint32_t needs,
+                           Vec3 size, float offSurface) {
+  const Vec3 point = pointToWorld(transform, load(state.HitPoint));
+  store(state.HitPoint, point);
+  state.hitPointError = transformedPointError(transform, size, point);
+  if (needs & RTSL_NEEDS_NORMALS) {
+    const Vec3 geometric = load(state.GeometricNormal), shading = load(state.ShadingNormal);
+    if (offSurface > 0) {
+      // Parallel planes at a distance d have the distance d / |inverse transpose of n|.
+      const Vec3 cover = coverToWorld(transform, normalized(geometric));
+      const float length = squareRoot(dot(cover, cover));
+      state.hitPointError +=
+          length > 0 && length < infinity
+              ? offSurface / length
+              : 3 * errorToWorld(transform, {offSurface, offSurface, offSurface});
+    }
+    store(state.GeometricNormal, normalToWorld(transform, geometric));
+    store(state.ShadingNormal, normalToWorld(transform, shading));
+  }
+  if (needs & RTSL_NEEDS_DERIVATIVES) {
+    store(state.dPdu, vectorToWorld(transform, load(state.dPdu)));
+    store(state.dPdv, vectorToWorld(transform, load(state.dPdv)));
+  }
+}
+
+/// Point, normals and texture coordinates of a mesh at state's hit, in object space.
 inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t needs) {
   const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
   TriangleVertices p = triangleVertices(mesh, state.primitive);
@@ -92,7 +129,7 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t ne
   }
 }
 
-/// The same for an RTSL primitive, using its methods.
+/// The same for an RTSL primitive, using its methods. The ray of the state is in object space.
 template <typename Slots>
 void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t needs,
                        const Slots &slots) {
@@ -158,14 +195,25 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   state.PrimitiveIndex = int32_t(state.primitive);
   state.InstanceIndex = int32_t(state.instance);
   clearCoordinates(state, needs);
-  if (needs & RTSL_NEEDS_TRANSFORMS) { // geometry is in world space so far
-    setIdentity(state.ObjectToWorld);
-    setIdentity(state.WorldToObject);
+  if (needs & RTSL_NEEDS_TRANSFORMS)
+    describeTransforms(state, instance);
+  if (instance.primitive == 0) {
+    const RtslMesh &mesh = launch.meshes[instance.mesh];
+    describeTriangle(state, mesh, needs);
+    if (isTransformed(launch, instance))
+      surfaceToWorld(state, transformOf(launch, instance), needs,
+                     extents(triangleVertices(mesh, state.primitive)), 0);
+    return;
   }
-  if (instance.primitive == 0)
-    describeTriangle(state, launch.meshes[instance.mesh], needs);
-  else
+  {
+    const InObjectSpace space(state, instance);
     describePrimitive(state, instance, needs, slots);
+  }
+  if (isTransformed(launch, instance)) {
+    const Vec3 point = load(state.HitPoint);
+    surfaceToWorld(state, transformOf(launch, instance), needs,
+                   {absolute(point.x), absolute(point.y), absolute(point.z)}, state.hitPointError);
+  }
 }
 
 inline void describeHit(RtslState &state) {

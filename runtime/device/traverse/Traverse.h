@@ -21,7 +21,11 @@ inline bool isGoodRay(const RtslState &state) {
 
 /// Is the instance visible to the ray?
 inline bool isSeen(const RtslState &state, const RtslInstance &instance) {
-  return state.rayRoot == 0 && (instance.mask & state.rayMask);
+  const bool isBelowRoot = rtsl_needs(state.launch) & RTSL_HAS_ROOTS
+                               ? uint32_t(state.rayRoot) < 32 &&
+                                     (instance.roots >> (uint32_t(state.rayRoot) & 31) & 1) != 0
+                               : state.rayRoot == 0;
+  return isBelowRoot && (instance.mask & state.rayMask);
 }
 
 struct TriangleVertices {
@@ -51,13 +55,17 @@ inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float
   return true;
 }
 
-/// Tests one triangle and commits it if it wins.
-inline bool testTriangle(RtslState &state, const TriangleRay &ray, const TriangleVertices &vertices,
-                         uint32_t instance, uint32_t triangle) {
+/// Tests one triangle and commits it if it wins. `Ray` is a TriangleRay in world space or an
+/// InstanceRay.
+template <typename Ray>
+bool testTriangle(RtslState &state, const Ray &ray, const TriangleVertices &vertices,
+                  uint32_t instance, uint32_t triangle) {
   TriangleHit hit;
   if (!intersectTriangle(ray, vertices.v0, vertices.v1, vertices.v2, hit) ||
-      !moveIntoBox(ray, vertices, hit.t) || !(hit.t > state.Epsilon) ||
-      !wins(state, hit.t, instance, triangle))
+      !moveIntoBox(ray, vertices, hit.t))
+    return false;
+  hit.t = moveIntoInstance(ray, hit.t);
+  if (!(hit.t > state.Epsilon) || !wins(state, hit.t, instance, triangle))
     return false;
   commit(state, hit.t, hit.t, instance, triangle);
   state.u = hit.u;
@@ -65,8 +73,9 @@ inline bool testTriangle(RtslState &state, const TriangleRay &ray, const Triangl
   return true;
 }
 
-inline bool testTriangle(RtslState &state, const TriangleRay &ray, const RtslMesh &mesh,
-                         uint32_t instance, uint32_t triangle) {
+template <typename Ray>
+bool testTriangle(RtslState &state, const Ray &ray, const RtslMesh &mesh, uint32_t instance,
+                  uint32_t triangle) {
   return testTriangle(state, ray, triangleVertices(mesh, triangle), instance, triangle);
 }
 
@@ -92,7 +101,10 @@ bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance 
   state.candidateNear = near;
   state.candidateFar = far;
   state.dimension = dimensionOf(item.instance, item.primitive);
-  intersect(&state, instance.primitive);
+  {
+    const InObjectSpace space(state, instance);
+    intersect(&state, instance.primitive);
+  }
   const bool hasHit = state.HitDistance < end;
   const bool hasWon = state.instance == item.instance && state.primitive == item.primitive;
   state.dimension = dimension;
@@ -117,12 +129,41 @@ void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect inte
   testPrimitive(state, ray, instance, item, intersect);
 }
 
-/// The tree of the launch. A tree calls visit(item) for each leaf item that may have hits before
-/// limit(), nearer ones first on the whole, until it returns true.
+/// Tests one leaf item, in the space of a ray that has entered the item's instance if that is a
+/// mesh with a transform, and commits it if it wins.
+template <typename Ray, typename Intersect>
+bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Intersect intersect) {
+  const RtslInstance &instance = state.launch->instances[item.instance];
+  return instance.primitive == 0 ? testTriangle(state, ray, state.launch->meshes[instance.mesh],
+                                                item.instance, item.primitive)
+                                 : testPrimitive(state, ray, instance, item, intersect);
+}
+
+/// The tree of the launch. A tree calls visit(item, ray) for each leaf item that may have hits
+/// before limit(), nearer ones first on the whole, until it returns true. `ray` is the ray in world
+/// space, or the InstanceRay for items of meshes with transforms.
 struct LaunchTree {
   template <typename Limit, typename Visit>
   void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Visit visit) const {
-    traverseBvh(*state.launch, ray.origin, ray.inverse, maximum(state.Epsilon, 0.0f), limit, visit);
+    const RtslLaunch &launch = *state.launch;
+    const float tMin = maximum(state.Epsilon, 0.0f);
+    const RtslMeshTree world =
+        launch.rootIsLeaf ? RtslMeshTree{~0, launch.nodeCount} : RtslMeshTree{0, 0};
+    traverseBvh(launch, world, ray, tMin, limit, [&](const RtslLeafItem &item) {
+      if (!hasTransforms(launch))
+        return visit(item, ray);
+      const RtslInstance &instance = launch.instances[item.instance];
+      if (instance.primitive != 0 || instance.transform == 0)
+        return visit(item, ray);
+      InstanceRay entered;
+      if (!isSeen(state, instance) ||
+          !enterInstance(launch, ray, item.instance, state.Epsilon, limit(), entered))
+        return false;
+      return traverseBvh(launch, launch.meshTrees[instance.mesh], entered, tMin, limit,
+                         [&](const RtslLeafItem &triangle) {
+                           return visit(RtslLeafItem{item.instance, triangle.primitive}, entered);
+                         });
+    });
   }
 };
 
@@ -130,20 +171,13 @@ struct LaunchTree {
 /// rt_Primitive.
 template <typename Intersect, typename Tree>
 uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree &tree) {
-  const RtslLaunch &launch = *state.launch;
   TriangleRay ray = makeTriangleRay(load(state.RayOrigin), load(state.RayDirection));
   beginSearch(state);
   tree.forEach(
       state, ray, [&] { return state.nearest; },
-      [&](const RtslLeafItem &item) {
-        const RtslInstance &instance = launch.instances[item.instance];
-        if (!isSeen(state, instance))
-          return false;
-        bool found = instance.primitive == 0
-                         ? testTriangle(state, ray, launch.meshes[instance.mesh], item.instance,
-                                        item.primitive)
-                         : testPrimitive(state, ray, instance, item, intersect);
-        return found && anyHit;
+      [&](const RtslLeafItem &item, const auto &inItsSpace) {
+        return isSeen(state, state.launch->instances[item.instance]) &&
+               testItem(state, inItsSpace, item, intersect) && anyHit;
       });
   if (!anyHit)
     findLostAttributes(state, ray, intersect);

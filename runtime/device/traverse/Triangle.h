@@ -18,7 +18,7 @@ namespace rtsl::device {
 
 /// Precomputed values of a ray for the test.
 struct TriangleRay {
-  Vec3 origin;
+  Vec3 origin, direction;
   Vec3 inverse;     // 1 / direction by component, for boxes
   int kx, ky, kz;   // kz: the axis along which the direction is longest
   Vec3 turned;      // the origin along these axes
@@ -34,6 +34,7 @@ struct TriangleHit {
 inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
   TriangleRay ray;
   ray.origin = origin;
+  ray.direction = direction;
   ray.inverse = {1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z};
   float x = absolute(direction.x), y = absolute(direction.y), z = absolute(direction.z);
   ray.kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);

@@ -45,7 +45,7 @@ public:
       instance = i == number ? added : instance;
     }
     shaders.finish();
-    const runtime::Bounds bounds = shaders.scene().primitiveBounds(instance);
+    const runtime::Bounds bounds = shaders.scene().instanceBounds(instance);
     return {device::load(bounds.lower), device::load(bounds.upper)};
   }
 

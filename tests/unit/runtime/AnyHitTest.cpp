@@ -232,8 +232,8 @@ TEST(AnyHit, MasksHideInstancesFromEveryTraversal) {
       "Camera",
       members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
   RtslRef material = scene.addObject("Mirror", members({}));
-  scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 5), 1.0}), material, 1);
-  scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 9), 1.0}), material, 6);
+  scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 5), 1.0}), material, {{}, 1});
+  scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 9), 1.0}), material, {{}, 6});
   for (bool useEmbree : {false, true}) {
     HostScene host(scene, useEmbree, 1);
     auto seen = [&](std::uint32_t mask, std::int32_t root = 0) {

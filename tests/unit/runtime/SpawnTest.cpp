@@ -135,6 +135,61 @@ TEST(SpawnEpsilon, RaysThatLeaveAPlaneDoNotMeetItAgain) {
     }
 }
 
+/// A tilted square in object space, of size 1.
+static Mesh tiltedSquare() {
+  Mesh mesh;
+  mesh.positions = {-0.9f, -0.7f, 0.31f,  0.8f,   -0.77f, -0.42f,
+                    0.71f, 0.93f, -0.37f, -0.83f, 0.69f,  0.28f};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+TEST(SpawnEpsilon, RaysThatLeaveAnInstanceDoNotMeetItAgain) {
+  const auto turned = [](double size, double distance) {
+    return Transform::scale(size, size, size)
+        .then(Transform::rotate({1, 2, -0.5}, 77))
+        .then(Transform::translate(distance, -0.7 * distance, 0.3 * distance));
+  };
+  Transform levels = turned(1.5, 3); // eight of them
+  for (int i = 1; i < 8; ++i)
+    levels = levels.then(turned(i % 2 ? 0.6 : 1.5, 3));
+  struct Case {
+    const char *name;
+    Transform transform;
+  };
+  for (const Case &c : {Case{"tiny", turned(1e-6, 0)}, Case{"tiny, far", turned(1e-6, 1e-3)},
+                        Case{"huge", turned(1e6, 0)}, Case{"far", turned(1, 1e5)},
+                        Case{"huge, very far", turned(1e6, 1e7)}, Case{"eight levels", levels},
+                        Case{"mirrored", Transform::scale(1, 1, -1).then(turned(1, 20))},
+                        Case{"sheared", Transform::scale(1, 1000, 1).then(turned(1, 5))},
+                        Case{"flat", Transform::scale(1, 1e-4, 1).then(turned(1, 5))}})
+    for (bool isMesh : {true, false}) {
+      Scene scene(fakeProgram());
+      scene.setCamera(scene.addObject(
+          "Camera",
+          members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+      const RtslRef material = scene.addObject("Normal", members({}));
+      Placement placement;
+      placement.transform = c.transform;
+      if (isMesh)
+        scene.addMeshInstance(scene.addMesh(tiltedSquare()), material, placement);
+      else
+        scene.addPrimitive(scene.addObject("Sphere", {vector(0.2, -0.1, 0.3), 0.8}), material,
+                           placement);
+      const auto &columns = c.transform.columns;
+      const Vec3 centre = {float(columns[3][0]), float(columns[3][1]), float(columns[3][2])};
+      double size = 0;
+      for (int i = 0; i < 3; ++i)
+        for (double x : columns[i])
+          size = std::max(size, std::fabs(x));
+      const Counts counts = leaveSurface(scene, centre, float(size), 1,
+                                         [&](Vec3 d, Vec3 n) { return isMesh || dot(d, n) > 0; });
+      EXPECT_GT(counts.spawned, 1000) << c.name;
+      EXPECT_EQ(counts.selfHits, 0)
+          << c.name << (isMesh ? ", mesh" : ", sphere") << " of " << counts.spawned;
+    }
+}
+
 TEST(SpawnEpsilon, StaysSmall) {
   Scene scene = sphereScene(0, 0, 0, 1);
   HostScene host(scene, false, 1);

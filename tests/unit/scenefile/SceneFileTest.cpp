@@ -112,13 +112,18 @@ TEST(SceneFile, WrongTypesAndRanges) {
 }
 
 TEST(SceneFile, WhatComesLaterIsRefusedClearly) {
-  EXPECT_EQ(parseError(withCamera("\"nodes\": []")),
-            "dir/s.json:2:2+5: notSupported: `nodes` is not supported yet: list the geometry in "
-            "`objects`");
-  EXPECT_EQ(parseError(withCamera("\"objects\": [{\"primitive\": {\"class\": \"S\"}, \"material\": "
-                                  "\"m\", \"transform\": {}}]")),
-            "dir/s.json:2:73+1: notSupported: the transform of a primitive is not supported yet: "
-            "place it by its own members");
+  EXPECT_EQ(parseError(withCamera("\"variables\": []")),
+            "dir/s.json:2:2+9: notSupported: `variables` is not supported yet");
+}
+
+TEST(SceneFile, TransformsOfPrimitivesPlaceThem) {
+  const SceneDescription scene = parseScene(
+      withCamera("\"objects\": [{\"primitive\": {\"class\": \"S\"}, \"material\": \"m\", "
+                 "\"transform\": {\"translate\": [1, 2, 3]}}]"),
+      "s.json");
+  ASSERT_EQ(scene.objects[0].placements.size(), 1u);
+  EXPECT_EQ(scene.objects[0].placements[0].transform.columns[3][2], 3);
+  EXPECT_TRUE(scene.objects[0].transform.isIdentity());
 }
 
 TEST(SceneFile, NamesAreUniqueAcrossTexturesAndMaterials) {

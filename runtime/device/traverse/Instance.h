@@ -1,0 +1,197 @@
+//===- Instance.h - rays, points and normals between two spaces -----------===//
+//
+// An instance with a transform is tested in its object space: the ray is transformed, not the
+// geometry. Distances along a ray are the same in both spaces, because its direction keeps the
+// length that the inverse transform gives it.
+//
+// Far from the origin, or in a scaled space, rounding in world space may exceed the size of the
+// whole object. So a ray's origin is transformed in double, relative to the translation, and
+// rounded once, in object space. That rounding is part of the error of a hit point
+// (transformedPointError), which the rays that leave it allow for.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Spawn.h"
+#include "runtime/device/ray/Vector.h"
+#include "runtime/device/traverse/Bvh.h"
+#include "runtime/device/traverse/Triangle.h"
+
+namespace rtsl::device {
+
+/// Has the scene instances with transforms? Folds to a constant in a compiled program.
+inline bool hasTransforms(const RtslLaunch &launch) {
+  return (rtsl_needs(&launch) & RTSL_HAS_TRANSFORMS) != 0;
+}
+inline bool isTransformed(const RtslLaunch &launch, const RtslInstance &instance) {
+  return hasTransforms(launch) && instance.transform != 0;
+}
+inline const RtslTransform &transformOf(const RtslLaunch &launch, const RtslInstance &instance) {
+  return launch.transforms[instance.transform];
+}
+
+/// A 3x3 matrix of doubles, stored as columns, times a vector.
+inline Vec3 product(const double m[9], double x, double y, double z) {
+  return {float(__builtin_fma(m[6], z, __builtin_fma(m[3], y, m[0] * x))),
+          float(__builtin_fma(m[7], z, __builtin_fma(m[4], y, m[1] * x))),
+          float(__builtin_fma(m[8], z, __builtin_fma(m[5], y, m[2] * x)))};
+}
+
+inline Vec3 pointToObject(const RtslTransform &transform, Vec3 p) {
+  return product(transform.inverse, double(p.x) - double(transform.translation[0]),
+                 double(p.y) - double(transform.translation[1]),
+                 double(p.z) - double(transform.translation[2]));
+}
+inline Vec3 vectorToObject(const RtslTransform &transform, Vec3 v) {
+  return product(transform.inverse, double(v.x), double(v.y), double(v.z));
+}
+
+/// Component `row` of the linear part times a vector, plus `offset`, rounded once.
+inline float rowToWorld(const RtslTransform &transform, int row, Vec3 v, double offset) {
+  const float *m = transform.linear;
+  return float(
+      __builtin_fma(double(m[row]), double(v.x),
+                    __builtin_fma(double(m[3 + row]), double(v.y),
+                                  __builtin_fma(double(m[6 + row]), double(v.z), offset))));
+}
+inline Vec3 pointToWorld(const RtslTransform &transform, Vec3 p) {
+  const float *t = transform.translation;
+  return {rowToWorld(transform, 0, p, double(t[0])), rowToWorld(transform, 1, p, double(t[1])),
+          rowToWorld(transform, 2, p, double(t[2]))};
+}
+inline Vec3 vectorToWorld(const RtslTransform &transform, Vec3 v) {
+  return {rowToWorld(transform, 0, v, 0), rowToWorld(transform, 1, v, 0),
+          rowToWorld(transform, 2, v, 0)};
+}
+
+/// The inverse transpose times a vector: not normalised.
+inline Vec3 coverToWorld(const RtslTransform &transform, Vec3 n) {
+  const double *m = transform.inverse;
+  const double x = double(n.x), y = double(n.y), z = double(n.z);
+  return {float(__builtin_fma(m[2], z, __builtin_fma(m[1], y, m[0] * x))),
+          float(__builtin_fma(m[5], z, __builtin_fma(m[4], y, m[3] * x))),
+          float(__builtin_fma(m[8], z, __builtin_fma(m[7], y, m[6] * x)))};
+}
+/// A normal: of length 1, and on the same side of the surface.
+inline Vec3 normalToWorld(const RtslTransform &transform, Vec3 n) {
+  return normalized(coverToWorld(transform, n));
+}
+
+/// Bound of the error, in any component in world space, of a vector whose components in object
+/// space have these errors.
+inline float errorToWorld(const RtslTransform &transform, Vec3 error) {
+  const float *m = transform.linear;
+  const auto row = [&](int i) {
+    return absolute(m[i]) * error.x + absolute(m[3 + i]) * error.y + absolute(m[6 + i]) * error.z;
+  };
+  return maximum(maximum(row(0), row(1)), row(2));
+}
+
+/// Bound of |p - surface| in world space for a point of an instance with a transform. In object
+/// space, components of the point and of the surface it was computed from are at most `size`;
+/// `world` is the point. A component is rounded once when the point is computed, and once more when
+/// the origin of a ray that leaves it is transformed back.
+inline float transformedPointError(const RtslTransform &transform, Vec3 size, Vec3 world) {
+  return trianglePointUnits * roundingUnit * (2 * errorToWorld(transform, size) + largest(world));
+}
+
+/// A ray in the space of an instance that it has entered.
+struct InstanceRay : TriangleRay {
+  uint32_t instance;
+  float near, far; // hits are moved into the ray's range in the instance's box, as in moveIntoBox
+};
+
+/// The ray in the object space of an instance with a transform. False if it cannot hit anything
+/// there before `limit`: its direction vanishes in object space, or it misses the instance's box,
+/// as it then does in every traversal.
+inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, uint32_t number,
+                          float epsilon, float limit, InstanceRay &entered) {
+  const RtslInstance &instance = launch.instances[number];
+  const Range range =
+      rangeInBox(instance.lower, instance.upper, world.origin, world.inverse, 0, infinity);
+  if (range.isEmpty())
+    return false;
+  const float near = range.near * (1.0f - rangeShare), far = range.far * (1.0f + rangeShare);
+  if (near > limit || far < epsilon)
+    return false;
+  const RtslTransform &transform = transformOf(launch, instance);
+  const Vec3 origin = pointToObject(transform, world.origin);
+  const Vec3 direction = vectorToObject(transform, world.direction);
+  if (!isFinite(origin) || !isFinite(direction) || isZero(direction))
+    return false;
+  static_cast<TriangleRay &>(entered) = makeTriangleRay(origin, direction);
+  entered.instance = number;
+  entered.near = near;
+  entered.far = far;
+  return true;
+}
+
+/// The number of the instance that a triangle belongs to, in a ray's space.
+inline uint32_t instanceOf(const TriangleRay &, uint32_t ofTriangle) {
+  return ofTriangle;
+}
+inline uint32_t instanceOf(const InstanceRay &ray, uint32_t) {
+  return ray.instance;
+}
+
+/// Moves t into the range of the ray in its instance's box.
+inline float moveIntoInstance(const TriangleRay &, float t) {
+  return t;
+}
+inline float moveIntoInstance(const InstanceRay &ray, float t) {
+  return t < ray.near ? ray.near : t > ray.far ? ray.far : t;
+}
+
+/// The state's ray in object space while code of an RTSL primitive runs; world space again when it
+/// goes out of scope. Without a transform it does nothing.
+class InObjectSpace {
+public:
+  InObjectSpace(RtslState &state, const RtslInstance &instance)
+      : state(state), isActive(isTransformed(*state.launch, instance)) {
+    if (!isActive)
+      return;
+    const RtslTransform &transform = transformOf(*state.launch, instance);
+    origin = load(state.RayOrigin);
+    direction = load(state.RayDirection);
+    setRay(pointToObject(transform, origin), vectorToObject(transform, direction));
+  }
+  InObjectSpace(const InObjectSpace &) = delete;
+  ~InObjectSpace() {
+    if (isActive)
+      setRay(origin, direction);
+  }
+
+private:
+  void setRay(Vec3 from, Vec3 towards) {
+    store(state.RayOrigin, from);
+    store(state.RayDirection, towards);
+    if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
+      store(state.InverseRayDirection, {1.0f / towards.x, 1.0f / towards.y, 1.0f / towards.z});
+  }
+
+  RtslState &state;
+  const bool isActive;
+  Vec3 origin = {}, direction = {};
+};
+
+/// The matrices of the instance, for RTSL_NEEDS_TRANSFORMS.
+inline void describeTransforms(RtslState &state, const RtslInstance &instance) {
+  for (int i = 0; i < 16; ++i)
+    state.ObjectToWorld[i] = state.WorldToObject[i] = i % 5 == 0 ? 1.0f : 0.0f;
+  if (!isTransformed(*state.launch, instance))
+    return;
+  const RtslTransform &transform = transformOf(*state.launch, instance);
+  const Vec3 origin = pointToObject(transform, {0, 0, 0});
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) {
+      state.ObjectToWorld[4 * column + row] = transform.linear[3 * column + row];
+      state.WorldToObject[4 * column + row] = float(transform.inverse[3 * column + row]);
+    }
+  for (int row = 0; row < 3; ++row) {
+    state.ObjectToWorld[12 + row] = transform.translation[row];
+    state.WorldToObject[12 + row] = origin[row];
+  }
+}
+
+} // namespace rtsl::device

@@ -1,0 +1,331 @@
+#include "scenefile/Graph.h"
+
+#include "scenefile/Reader.h"
+#include "scenefile/TransformReader.h"
+#include "support/ClosestName.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <unordered_map>
+#include <utility>
+
+namespace rtsl::scene {
+
+namespace {
+
+using Kind = JsonValue::Kind;
+using runtime::Placement;
+using runtime::Transform;
+
+/// An instance takes about 250 bytes of memory.
+constexpr std::uint64_t mostInstances = std::uint64_t(1) << 26;
+constexpr std::size_t mostRoots = 32; // bits of Placement::roots
+
+constexpr std::size_t noNode = ~std::size_t(0);
+
+struct Node;
+
+/// A mention of a node.
+struct Edge {
+  std::size_t node = noNode; // noNode: there is none of this name, which was reported
+  Place place;
+};
+
+struct Node {
+  std::string name; // for messages
+  Place place;
+  Transform transform;
+  std::vector<Edge> children;
+  std::optional<GeometryDescription> geometry;
+  std::uint64_t instances = 0; // ways down from here to geometries; at most mostInstances + 1
+};
+
+class GraphReader {
+public:
+  GraphReader(const JsonValue &root, const ReadGeometry &readGeometry, SceneDescription &scene,
+              ErrorCollector &errors)
+      : root(root), readGeometry(readGeometry), scene(scene), errors(errors) {}
+
+  void read() {
+    const JsonValue *named = root.find("nodes");
+    if (named)
+      errors.attempt([&] { readNodes(*named); });
+    errors.attempt([&] { readRoots(); });
+    if (named && roots.empty() && !root.find("root") && !root.find("roots"))
+      errors.add(Error(ErrorCode::MissingKey,
+                       "a scene with `nodes` needs a `root`, the node that rays enter",
+                       named->place()));
+    if (hasMistakes || !findOrder())
+      return;
+    errors.attempt([&] { countInstances(); });
+    if (hasMistakes)
+      return;
+    for (std::size_t number = 0; number < roots.size(); ++number)
+      placeInstances(number);
+    for (Node &node : nodes)
+      if (node.geometry && !node.geometry->placements.empty())
+        scene.objects.push_back(std::move(*node.geometry));
+    warnOfUnused(named);
+  }
+
+private:
+  template <typename Step>
+  void attempt(Step step) {
+    errors.attempt([&] {
+      try {
+        step();
+      } catch (...) {
+        hasMistakes = true;
+        throw;
+      }
+    });
+  }
+
+  void readNodes(const JsonValue &value) {
+    attempt([&] { expect(value, Kind::Object, "`nodes`"); });
+    // All names first: nodes may mention each other in any order.
+    for (const auto &[key, member] : value.members) {
+      numbers.emplace(key.text, nodes.size());
+      nodes.push_back({key.text, value.place(key), {}, {}, std::nullopt, 0});
+    }
+    for (std::size_t i = 0; i < value.members.size(); ++i)
+      attempt([&] { readNode(value.members[i].second, i, "a node"); });
+  }
+
+  /// Reads the node `value`, which is number `number`.
+  void readNode(const JsonValue &value, std::size_t number, const char *what) {
+    expect(value, Kind::Object, what);
+    const JsonValue *children = value.find("children"), *child = value.find("child");
+    const bool isGeometry = value.find("mesh") || value.find("primitive");
+    if (int(isGeometry) + int(children != nullptr) + int(child != nullptr) != 1)
+      throw Error(ErrorCode::MissingKey,
+                  fmt::format("{} has either a `mesh` or a `primitive`, or a `child`, or a list of "
+                              "`children`",
+                              what),
+                  value.place());
+    if (isGeometry) {
+      GeometryDescription geometry = readGeometry(value);
+      if (geometry.name.text.empty())
+        geometry.name = {nodes[number].name, nodes[number].place};
+      nodes[number].geometry = std::move(geometry);
+    } else {
+      checkKeys(value, {"child", "children", "transform"}, what);
+    }
+    if (const JsonValue *transform = value.find("transform"))
+      nodes[number].transform = readTransform(*transform);
+    std::vector<Edge> edges; // reading a node in place may move `nodes`
+    if (child)
+      edges.push_back(readEdge(*child));
+    if (children) {
+      expect(*children, Kind::Array, "`children`");
+      if (children->elements.empty())
+        throw Error(ErrorCode::OutOfRange, "a node needs at least one child", children->place());
+      edges.reserve(children->elements.size());
+      for (const JsonValue &element : children->elements)
+        attempt([&] { edges.push_back(readEdge(element)); });
+    }
+    nodes[number].children = std::move(edges);
+  }
+
+  /// A name, or a node in place.
+  Edge readEdge(const JsonValue &value) {
+    if (value.kind == Kind::Object) {
+      const std::size_t number = nodes.size();
+      nodes.push_back({std::string(), value.place(), {}, {}, std::nullopt, 0});
+      readNode(value, number, "a node");
+      return {number, value.place()};
+    }
+    if (value.kind != Kind::String)
+      throw Error(ErrorCode::WrongType,
+                  fmt::format("a child is the name of a node or a node in its place, not {}",
+                              describe(value.kind)),
+                  value.place());
+    const auto found = numbers.find(value.string);
+    if (found == numbers.end()) {
+      Error error(ErrorCode::UnknownName, fmt::format("no node is named `{}`", value.string),
+                  value.place());
+      std::vector<std::string> names;
+      for (const auto &known : numbers)
+        names.push_back(known.first);
+      std::sort(names.begin(), names.end());
+      if (const std::string near = closestName(value.string, names); !near.empty())
+        error.fix(near);
+      throw error;
+    }
+    return {found->second, value.place()};
+  }
+
+  void readRoots() {
+    const JsonValue *one = root.find("root"), *several = root.find("roots");
+    if (one && several)
+      throw Error(ErrorCode::UnknownKey, "a scene has one `root` or several `roots`, not both",
+                  one->place());
+    if (one)
+      attempt([&] { addRoot("root", *one); });
+    if (!several)
+      return;
+    attempt([&] { expect(*several, Kind::Object, "`roots`"); });
+    for (const auto &[key, member] : several->members)
+      attempt([&, &key = key, &member = member] {
+        if (roots.size() == mostRoots)
+          throw Error(ErrorCode::OutOfRange, fmt::format("a scene has at most {} roots", mostRoots),
+                      several->place(key));
+        addRoot(key.text, member);
+      });
+  }
+
+  void addRoot(const std::string &name, const JsonValue &value) {
+    const Edge edge = readEdge(value);
+    scene.roots.push_back(name);
+    roots.push_back(edge);
+  }
+
+  /// Orders the nodes so that children come first. False if there is a cycle, which is reported.
+  bool findOrder() {
+    enum class Mark : std::uint8_t { New, Open, Done };
+    std::vector<Mark> marks(nodes.size(), Mark::New);
+    struct Step {
+      std::size_t node, next; // the child to be looked at
+    };
+    for (std::size_t first = 0; first < nodes.size(); ++first) {
+      if (marks[first] != Mark::New)
+        continue;
+      std::vector<Step> path{{first, 0}};
+      marks[first] = Mark::Open;
+      while (!path.empty()) {
+        Step &step = path.back();
+        const std::vector<Edge> &children = nodes[step.node].children;
+        if (step.next == children.size()) {
+          marks[step.node] = Mark::Done;
+          order.push_back(step.node);
+          path.pop_back();
+          continue;
+        }
+        const Edge &edge = children[step.next++];
+        if (marks[edge.node] == Mark::Open) {
+          std::vector<std::string> names;
+          for (const Step &above : path)
+            if (!nodes[above.node].name.empty())
+              names.push_back(nodes[above.node].name);
+          reportCycle(nodes[edge.node].name, std::move(names), edge.place);
+          return false;
+        }
+        if (marks[edge.node] == Mark::New) {
+          marks[edge.node] = Mark::Open;
+          path.push_back({edge.node, 0});
+        }
+      }
+    }
+    return true;
+  }
+
+  void reportCycle(const std::string &name, std::vector<std::string> path, const Place &place) {
+    path.erase(path.begin(), std::find(path.begin(), path.end(), name));
+    constexpr std::size_t shown = 6;
+    std::string way;
+    for (std::size_t i = 0; i < std::min(path.size(), shown); ++i)
+      way += path[i] + " > ";
+    if (path.size() > shown)
+      way += "... > ";
+    errors.add(Error(ErrorCode::ReferenceCycle,
+                     fmt::format("the node `{}` is below itself: {}{}", name, way, name), place));
+  }
+
+  void countInstances() {
+    for (std::size_t number : order) {
+      Node &node = nodes[number];
+      node.instances = node.geometry ? 1 : 0;
+      for (const Edge &child : node.children)
+        node.instances = std::min(node.instances + nodes[child.node].instances, mostInstances + 1);
+    }
+    std::uint64_t total = 0;
+    for (const Edge &edge : roots) {
+      total += nodes[edge.node].instances;
+      if (total > mostInstances) {
+        hasMistakes = true;
+        throw Error(ErrorCode::OutOfRange,
+                    fmt::format("the graph has more than {} instances", mostInstances), edge.place);
+      }
+    }
+  }
+
+  /// Adds an instance to the geometry at the end of each way down from a root.
+  void placeInstances(std::size_t number) {
+    struct Step {
+      std::size_t node, next;
+      Transform toWorld;
+    };
+    std::vector<Step> path;
+    const auto enter = [&](std::size_t node, const Transform &above) {
+      path.push_back({node, 0, nodes[node].transform.then(above)});
+      if (nodes[node].geometry)
+        place(*nodes[node].geometry, path.back().toWorld, number);
+    };
+    enter(roots[number].node, {});
+    while (!path.empty()) {
+      Step &step = path.back();
+      if (step.next == nodes[step.node].children.size())
+        path.pop_back();
+      else
+        enter(nodes[step.node].children[step.next++].node, Transform(step.toWorld));
+    }
+  }
+
+  /// What two roots lead to in the same place is one instance.
+  void place(GeometryDescription &geometry, const Transform &transform, std::size_t number) {
+    if (number > 0) {
+      auto &known = placed[&geometry];
+      if (known.size() != geometry.placements.size())
+        for (std::size_t i = known.size(); i < geometry.placements.size(); ++i)
+          known.emplace(geometry.placements[i].transform.columns, i);
+      if (const auto same = known.find(transform.columns); same != known.end()) {
+        geometry.placements[same->second].roots |= 1u << number;
+        return;
+      }
+    }
+    geometry.placements.push_back({transform, geometry.mask, 1u << number});
+  }
+
+  void warnOfUnused(const JsonValue *named) {
+    if (!named)
+      return;
+    std::vector<bool> isUsed(nodes.size(), false);
+    for (const Edge &edge : roots)
+      isUsed[edge.node] = true;
+    for (auto number = order.rbegin(); number != order.rend(); ++number)
+      if (isUsed[*number])
+        for (const Edge &child : nodes[*number].children)
+          isUsed[child.node] = true;
+    for (std::size_t i = 0; i < named->members.size(); ++i)
+      if (!isUsed[i])
+        scene.warnings.push_back(
+            {fmt::format("the node `{}` is not part of the scene: no root leads to it",
+                         nodes[i].name),
+             nodes[i].place});
+  }
+
+  const JsonValue &root;
+  const ReadGeometry &readGeometry;
+  SceneDescription &scene;
+  ErrorCollector &errors;
+  std::vector<Node> nodes;
+  std::unordered_map<std::string, std::size_t> numbers; // of named nodes
+  std::vector<Edge> roots;
+  std::vector<std::size_t> order; // of nodes, children first
+  std::map<const GeometryDescription *, std::map<std::array<std::array<double, 3>, 4>, std::size_t>>
+      placed; // indices of placements by transform, of geometries below several roots
+  bool hasMistakes = false;
+};
+
+} // namespace
+
+void readGraph(const JsonValue &root, const ReadGeometry &readGeometry, SceneDescription &scene,
+               ErrorCollector &errors) {
+  if (root.find("nodes") || root.find("root") || root.find("roots"))
+    GraphReader(root, readGeometry, scene, errors).read();
+}
+
+} // namespace rtsl::scene

@@ -1,0 +1,233 @@
+#include "FakeProgram.h"
+#include "TraversalRays.h"
+
+#include "runtime/device/traverse/AnyHit.h"
+#include "runtime/device/traverse/Instance.h"
+#include "runtime/device/traverse/Surface.h"
+#include "runtime/embree/HostScene.h"
+#include "runtime/scene/InstanceTransform.h"
+
+#include <gtest/gtest.h>
+
+using namespace rtsl;
+using namespace rtsl::runtime;
+using namespace rtsl::runtime::test;
+using device::Vec3;
+
+namespace {
+
+/// Rotated, and scaled up to a thousandfold, differently along the axes; some mirror.
+Transform randomTransform(std::mt19937 &random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto draw = [&] { return unit(random); };
+  const double size = std::pow(10.0, 1.5 * draw()), x = std::exp(draw()), y = std::exp(draw()),
+               z = (random() % 3 == 0 ? -1 : 1) * std::exp(draw());
+  const double axisX = draw(), axisY = draw(), angle = 180 * draw();
+  const double moveX = 10 * draw(), moveY = 10 * draw(), moveZ = 10 * draw();
+  return Transform::scale(size * x, size * y, size * z)
+      .then(Transform::rotate({axisX, axisY, 0.5}, angle))
+      .then(Transform::translate(moveX, moveY, moveZ));
+}
+
+Mesh clump(std::mt19937 &random, int triangles) {
+  std::uniform_real_distribution<float> unit(-1, 1);
+  Mesh mesh;
+  for (int i = 0; i < triangles; ++i) {
+    const float centre[3] = {unit(random), unit(random), unit(random)};
+    for (unsigned corner = 0; corner < 3; ++corner) {
+      for (float x : centre)
+        mesh.positions.push_back(x + 0.4f * unit(random));
+      mesh.indices.push_back(3 * unsigned(i) + corner);
+    }
+  }
+  return mesh;
+}
+
+/// Instances of two meshes, one of which is in world space too, and of spheres.
+Scene randomScene(unsigned seed, int instances) {
+  std::mt19937 random(seed);
+  Scene scene(fakeProgram());
+  scene.setCamera(scene.addObject(
+      "Camera",
+      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  const RtslRef material = scene.addObject("Normal", members({}));
+  const std::uint32_t meshes[] = {scene.addMesh(clump(random, 40)),
+                                  scene.addMesh(clump(random, 3))};
+  const RtslRef sphere = scene.addObject("Sphere", {vector(0.25, 0, 0), 0.75});
+  scene.addMeshInstance(meshes[0], material);
+  for (int i = 0; i < instances; ++i) {
+    Placement placement;
+    placement.transform = randomTransform(random);
+    placement.mask = i % 4 == 0 ? 1 : 3;
+    placement.roots = i % 3 == 0 ? 2 : i % 3 == 1 ? 3 : 1;
+    if (i % 3 == 2)
+      scene.addPrimitive(sphere, material, placement);
+    else
+      scene.addMeshInstance(meshes[i % 2], material, placement);
+  }
+  return scene;
+}
+
+/// Every triangle and sphere, one after the other, last ones first.
+void bruteForce(RtslState &state) {
+  const RtslLaunch &launch = *state.launch;
+  const device::TriangleRay world =
+      device::makeTriangleRay(device::load(state.RayOrigin), device::load(state.RayDirection));
+  device::beginSearch(state);
+  for (std::uint32_t i = launch.instanceCount; i-- > 0;) {
+    const RtslInstance &instance = launch.instances[i];
+    if (!device::isSeen(state, instance))
+      continue;
+    if (instance.primitive) {
+      device::testPrimitive(state, world, instance, {i, 0}, rtsl_rt_Primitive_intersect);
+      continue;
+    }
+    const RtslMesh &mesh = launch.meshes[instance.mesh];
+    device::InstanceRay entered;
+    if (instance.transform != 0 &&
+        !device::enterInstance(launch, world, i, state.Epsilon, state.nearest, entered))
+      continue;
+    for (std::uint32_t t = mesh.triangleCount; t-- > 0;)
+      if (instance.transform != 0)
+        device::testTriangle(state, entered, mesh, i, t);
+      else
+        device::testTriangle(state, world, mesh, i, t);
+  }
+  device::endSearch(state);
+}
+
+/// In long double: a component of the linear part times a vector, plus `offset`.
+long double exact(const RtslTransform &transform, int row, Vec3 v, long double offset) {
+  return offset + static_cast<long double>(transform.linear[row]) * v.x +
+         static_cast<long double>(transform.linear[3 + row]) * v.y +
+         static_cast<long double>(transform.linear[6 + row]) * v.z;
+}
+
+} // namespace
+
+TEST(Instances, AreFoundAlikeByEveryTraversal) {
+  const Scene scene = randomScene(3, 60);
+  const HostScene embree(scene, true, 1), own(scene, false, 1);
+  RtslLaunch launch = scene.launch();
+  launch.host = &embree;
+  EXPECT_EQ(launch.needs & RTSL_HAS_ALL, RTSL_HAS_ALL);
+  std::mt19937 random(5);
+  int hits = 0, hitsOfInstances = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const Ray ray = randomRay(random, 1);
+    const float epsilon = i % 3 ? 0 : 0.25f, distance = i % 5 ? INFINITY : 4;
+    RtslState brute = makeState(own.deviceLaunch(), ray.o, ray.d, epsilon, distance);
+    brute.rayMask = i % 2 ? ~0u : 2;
+    brute.rayRoot = i % 7 == 0 ? 1 : 0;
+    RtslState ofOwn = brute, ofEmbree = brute, any = brute;
+    ofEmbree.launch = any.launch = &launch;
+    bruteForce(brute);
+    const bool isHit = brute.instance != RTSL_NO_HIT;
+    EXPECT_EQ(own.traverse(ofOwn, 0), isHit ? RTSL_HIT : RTSL_MISS);
+    EXPECT_EQ(embree.traverse(ofEmbree, 0), isHit ? RTSL_HIT : RTSL_MISS);
+    EXPECT_EQ(embree.traverse(any, RTSL_FIRST_HIT), isHit ? RTSL_HIT : RTSL_MISS);
+    ASSERT_NO_FATAL_FAILURE(expectSame(ofOwn, brute, i));
+    ASSERT_NO_FATAL_FAILURE(expectSame(ofEmbree, brute, i));
+    hits += isHit;
+    hitsOfInstances += isHit && launch.instances[brute.instance].transform != 0;
+  }
+  EXPECT_GT(hits, 3000);
+  EXPECT_GT(hitsOfInstances, 2000);
+}
+
+TEST(Instances, AreDescribedInWorldSpace) {
+  const Scene scene = randomScene(4, 60);
+  const HostScene own(scene, false, 1);
+  const RtslLaunch &launch = own.deviceLaunch();
+  std::mt19937 random(6);
+  int described = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Ray ray = randomRay(random, 1);
+    RtslState state = makeState(launch, ray.o, ray.d);
+    if (own.traverse(state, 0) != RTSL_HIT || launch.instances[state.instance].transform == 0)
+      continue;
+    ++described;
+    const RtslInstance &instance = launch.instances[state.instance];
+    const RtslTransform &transform = launch.transforms[instance.transform];
+    describeHit(state, RTSL_NEEDS_ALL & ~RTSL_NEEDS_HIT_ERRORS, device::LinkedSlots());
+    const Vec3 normal = device::load(state.GeometricNormal);
+    EXPECT_NEAR(device::dot(normal, normal), 1, 1e-6f);
+    // The ray is in world space again.
+    EXPECT_EQ(std::memcmp(state.RayOrigin, &ray.o, sizeof ray.o), 0);
+    EXPECT_EQ(std::memcmp(state.RayDirection, &ray.d, sizeof ray.d), 0);
+    // The matrices are each other's inverse.
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 4; ++row) {
+        double sum = 0, size = 0;
+        for (int k = 0; k < 4; ++k) {
+          const double product = double(state.ObjectToWorld[4 * k + row]) *
+                                 double(state.WorldToObject[4 * column + k]);
+          sum += product;
+          size += std::fabs(product);
+        }
+        EXPECT_NEAR(sum, row == column, 4e-7 * size + 1e-12);
+      }
+    if (instance.primitive != 0)
+      continue;
+    // The point is as close to the exact plane as its error says, and the normal that of the plane.
+    const device::TriangleVertices p =
+        device::triangleVertices(launch.meshes[instance.mesh], state.primitive);
+    long double v[3][3];
+    for (int row = 0; row < 3; ++row) {
+      v[0][row] = exact(transform, row, p.v0, transform.translation[row]);
+      v[1][row] = exact(transform, row, p.v1, transform.translation[row]);
+      v[2][row] = exact(transform, row, p.v2, transform.translation[row]);
+    }
+    long double n[3], length = 0, distance = 0, along = 0;
+    for (int k = 0; k < 3; ++k) {
+      const int a = (k + 1) % 3, b = (k + 2) % 3;
+      n[k] = (v[1][a] - v[0][a]) * (v[2][b] - v[0][b]) - (v[1][b] - v[0][b]) * (v[2][a] - v[0][a]);
+      length += n[k] * n[k];
+      distance += n[k] * (state.HitPoint[k] - v[0][k]);
+      along += n[k] * normal[k];
+    }
+    length = std::sqrt(length);
+    EXPECT_LE(std::fabs(distance / length), static_cast<long double>(state.hitPointError));
+    EXPECT_NEAR(double(std::fabs(along / length)), 1, 1e-5);
+  }
+  EXPECT_GT(described, 1000);
+}
+
+TEST(Instances, RefuseTransformsThatFlatten) {
+  const auto message = [](const Transform &transform) {
+    try {
+      roundedTransform(transform, "ball", Place{"s.json", 3, 7, 1});
+    } catch (const Error &error) {
+      EXPECT_EQ(error.place->line, 3u);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(Transform::scale(1e-6, 1e-6, 1e-6)), "");
+  EXPECT_EQ(message(Transform::scale(1e6, 1e6, -1e6)), "");
+  EXPECT_EQ(message(Transform::scale(1e-7, 1, 1)), "");
+  EXPECT_EQ(message(Transform::scale(1e-9, 1, 1)),
+            "the transform of `ball` nearly flattens it: its condition number is 1.4e+09, more "
+            "than 1e+08");
+  EXPECT_EQ(message(Transform::scale(0, 1, 1)), "the transform of `ball` flattens it");
+  EXPECT_EQ(message(Transform::scale(1e-60, 1e-60, 1e-60)), "the transform of `ball` flattens it");
+  EXPECT_EQ(message(Transform::translate(0, 1e30, 0)),
+            "the transform of `ball` is out of range: row 1 of column 3 is 1e+30");
+  EXPECT_EQ(message(Transform::scale(NAN, 1, 1)),
+            "the transform of `ball` is out of range: row 0 of column 0 is nan");
+}
+
+TEST(Instances, HaveExactInverses) {
+  std::mt19937 random(9);
+  for (int i = 0; i < 1000; ++i) {
+    const RtslTransform transform = roundedTransform(randomTransform(random), "x", std::nullopt);
+    for (int column = 0; column < 3; ++column)
+      for (int row = 0; row < 3; ++row) {
+        long double sum = 0;
+        for (int k = 0; k < 3; ++k)
+          sum += static_cast<long double>(transform.linear[3 * k + row]) *
+                 static_cast<long double>(transform.inverse[3 * column + k]);
+        EXPECT_NEAR(double(sum), row == column, 1e-13);
+      }
+  }
+}
