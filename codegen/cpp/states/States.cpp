@@ -183,7 +183,8 @@ static void collectFrame(Machine &machine, StateWriter &writer,
       saved.type = writer.typeOf(object.getResult());
       saved.madeIn = lineOf(object.getLoc(), machine.file);
       const unsigned line = lineOfAccess(object, machine.file);
-      if (state != machine.states.front() && line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
+      if (state != machine.states.front() && line != 0 &&
+          (saved.neededBy == 0 || line < saved.neededBy))
         saved.neededBy = line;
     });
   for (mlir::func::FuncOp state : machine.states) {
