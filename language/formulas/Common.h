@@ -131,7 +131,8 @@ Number dominantAxis(Number v) {
 
 template <typename Number>
 Number inside(Number x, Number low, Number high, IntegerSign sign) {
-  return all(lessThanEqual(low, x, sign)) & all(lessThanEqual(x, high, sign));
+  Number isNotAbove = all(lessThanEqual(x, high, sign));
+  return all(lessThanEqual(low, x, sign)) & isNotAbove;
 }
 
 //===----------------------------------------------------------------------===//

@@ -83,8 +83,8 @@ Number length(Number v) {
         return choose(
             isGoodSquare(square), square, [&] { return sqrt(square); },
             [&] {
-              Number scaled = v * scaleFor(square);
-              return sqrt(dot(scaled, scaled)) * scaleBackFor(square);
+              Number scaled = v * scaleFor(square), scaleBack = scaleBackFor(square);
+              return sqrt(dot(scaled, scaled)) * scaleBack;
             });
       },
       v);
@@ -109,7 +109,8 @@ Number normalize(Number v) {
             [&] {
               Number scaled = v * scaleFor(square);
               Number scaledSquare = dot(scaled, scaled);
-              return select(equal(scaledSquare, 0.0), scaled, scaled / sqrt(scaledSquare));
+              Number unit = scaled / sqrt(scaledSquare);
+              return select(equal(scaledSquare, 0.0), scaled, unit);
             });
       },
       v);

@@ -84,12 +84,12 @@ TEST(SceneGraph, TellsAllMistakes) {
 "root": "f")"),
             "s.json:2:16+1: missingKey: a node needs a `material`\n"
             "s.json:3:19+1: outOfRange: a node needs at least one child\n"
-            "s.json:4:21+3: unknownName: no node is named `bee` (fix `e`)\n"
+            "s.json:4:21+3: unknownName: no node is named `bee`\n"
             "s.json:4:27+1: wrongType: a child is the name of a node or a node in its place, not a "
             "number\n"
             "s.json:5:6+1: missingKey: a node has either a `mesh` or a `primitive`, or a `child`, "
             "or a list of `children`\n"
-            "s.json:6:48+4: unknownKey: a node has no key `mask`\n"
+            "s.json:6:49+4: unknownKey: a node has no key `mask`\n"
             "s.json:7:10+1: unknownName: no node is named `f`");
 }
 
@@ -112,7 +112,7 @@ TEST(SceneGraph, RefusesCyclesAndTooManyInstances) {
             "s.json:2:10+1: missingKey: a scene with `nodes` needs a `root`, the node that rays "
             "enter");
   EXPECT_EQ(parseError("\"nodes\": {" + leaf + "}, \"root\": \"a\", \"roots\": {}"),
-            "s.json:2:61+1: unknownKey: a scene has one `root` or several `roots`, not both");
+            "s.json:2:62+1: unknownKey: a scene has one `root` or several `roots`, not both");
 }
 
 TEST(SceneGraph, WarnsOfNodesOutsideOfTheScene) {
