@@ -65,16 +65,15 @@ RtslInstance Geometry::place(const Placement &placement, const std::string &name
 }
 
 std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &instance,
-                                    std::string name, std::uint32_t primitives) {
+                                    std::string name, std::uint32_t items) {
   objects.requireRole(instance.material, "rt_Material", ifClassic(objects.program(), "shade"));
-  if (primitiveTotal + primitives > 0x7fffffffu)
+  if (treeItems + items > 0x7fffffffu)
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
   instances.push_back(instance);
   RtslInstance &added = instances.back();
-  added.firstPrimitive = std::uint32_t(primitiveTotal);
   added.needs = objects.needsOf(instance.material);
   added.anyHit = objects.at(instance.material).classInfo->anyHit;
-  primitiveTotal += primitives;
+  treeItems += items;
   instanceNames.push_back(std::move(name));
   needs |= (instance.transform != 0 ? RTSL_HAS_TRANSFORMS : 0) |
            (instance.roots != 1 ? RTSL_HAS_ROOTS : 0);
@@ -131,7 +130,8 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
   instance.mesh = mesh;
   if (instance.transform != 0)
     setWorldBounds(instance, meshBounds(mesh), transforms[instance.transform]);
-  return addInstance(objects, instance, meshes[mesh]->name, meshTable[mesh].triangleCount);
+  return addInstance(objects, instance, meshes[mesh]->name,
+                     instance.transform != 0 ? 1 : meshTable[mesh].triangleCount);
 }
 
 void Geometry::useProgram(const Objects &objects) {

@@ -56,8 +56,9 @@ private:
     std::optional<Bounds> bounds; // computed on first use
   };
 
+  /// `items`: of the tree in world space.
   std::uint32_t addInstance(const Objects &objects, const RtslInstance &instance, std::string name,
-                            std::uint32_t primitives);
+                            std::uint32_t items);
   RtslInstance place(const Placement &placement, const std::string &name,
                      const std::optional<rtsl::Place> &where);
   const Bounds &meshBounds(std::uint32_t mesh);
@@ -68,7 +69,7 @@ private:
   std::vector<RtslTransform> transforms{identityTransform()};
   std::vector<RtslInstance> instances;
   std::vector<std::string> instanceNames; // as long
-  std::uint64_t primitiveTotal = 0;
+  std::uint64_t treeItems = 0;
   std::uint32_t needs = 0;
   std::vector<MeshAttribute> attributes;
 };

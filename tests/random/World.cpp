@@ -318,7 +318,6 @@ World::World(const runtime::Program &code, const Program &program)
       RtslInstance instance{};
       instance.primitive = primitives[i % primitives.size()];
       instance.material = materials[i % materials.size()];
-      instance.firstPrimitive = static_cast<std::uint32_t>(2 * i);
       addInstance(instance, 1 + static_cast<std::uint32_t>(i) % 2);
     }
     for (const Object &object : objects)
@@ -326,7 +325,6 @@ World::World(const runtime::Program &code, const Program &program)
                     object.info->name) != program.meshMaterials.end()) {
         RtslInstance instance{};
         instance.material = object.reference;
-        instance.firstPrimitive = static_cast<std::uint32_t>(2 * count);
         addInstance(instance, mesh.triangleCount);
         break;
       }

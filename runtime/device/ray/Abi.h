@@ -31,7 +31,6 @@ typedef struct RtslInstance {
   RtslRef primitive;
   RtslRef material;
   uint32_t mesh;           // index into RtslLaunch::meshes when primitive is 0
-  uint32_t firstPrimitive; // global id of its first primitive, for stable ordering
   uint32_t needs;          // RTSL_NEEDS_* of its material
   uint32_t mask;           // visible to rays whose mask has a common bit
   uint32_t anyHit;         // rtslRayTypeBit of the payloads for which its material has `anyHit`

@@ -138,7 +138,6 @@ public:
     for (uint32_t i = 0; i < 2; ++i) {
       instances[i].primitive = 40;
       instances[i].material = 16 + 8 * i;
-      instances[i].firstPrimitive = i;
       instances[i].needs = RTSL_NEEDS_NORMALS; // rays leave from hits
     }
     RtslLaunch launch = {};
