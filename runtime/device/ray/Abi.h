@@ -30,12 +30,12 @@ typedef struct RtslBuffer {
 typedef struct RtslInstance {
   RtslRef primitive;
   RtslRef material;
-  uint32_t mesh;           // index into RtslLaunch::meshes when primitive is 0
-  uint32_t needs;          // RTSL_NEEDS_* of its material
-  uint32_t mask;           // visible to rays whose mask has a common bit
-  uint32_t anyHit;         // rtslRayTypeBit of the payloads for which its material has `anyHit`
-  uint32_t transform;      // index into RtslLaunch::transforms; 0: object space is world space
-  uint32_t roots;          // bit r: rays that enter at root r can see it
+  uint32_t mesh;      // index into RtslLaunch::meshes when primitive is 0
+  uint32_t needs;     // RTSL_NEEDS_* of its material
+  uint32_t mask;      // visible to rays whose mask has a common bit
+  uint32_t anyHit;    // rtslRayTypeBit of the payloads for which its material has `anyHit`
+  uint32_t transform; // index into RtslLaunch::transforms; 0: object space is world space
+  uint32_t roots;     // bit r: rays that enter at root r can see it
   float boundMin[3], boundMax[3]; // of an RTSL primitive, from `computeBounds`, in object space
   // the box for traversal in world space, slightly larger; not of a mesh without a transform
   float lower[3], upper[3];
