@@ -1,4 +1,4 @@
-//===- CostTable.cpp - what saving and recomputing cost -------------------===//
+//===- CostTable.cpp - costs of saving and recomputing --------------------===//
 #include "codegen/passes/continuation/common/CostTable.h"
 
 #include "codegen/ir/BaseAddress.h"
@@ -23,7 +23,7 @@ static std::int64_t components(mlir::Type type) {
   return shape ? shape.getNumElements() : 1;
 }
 
-/// What a load costs a word, by where it loads from.
+/// Cost of a load for each word, by the memory it loads from.
 static std::int64_t loadCost(mlir::Value address) {
   mlir::Operation *base = ir::baseOperation(address);
   if (llvm::isa_and_nonnull<ir::MemberOp, ir::TableOp>(base))
@@ -57,7 +57,7 @@ std::int64_t recomputeCost(mlir::Operation *op) {
       .Case<arith::DivFOp, math::SqrtOp>([&](auto) { return 8 * width; })
       .Case<vector::ExtractOp>([](auto extract) { return extract.hasDynamicPosition() ? 4 : 0; })
       .Case<vector::BroadcastOp, vector::FromElementsOp, vector::ShuffleOp>(
-          [](auto) { return 0; }) // registers only
+          [](auto) { return 0; }) // in registers
       .Default([&](mlir::Operation *) { return width; });
 }
 
