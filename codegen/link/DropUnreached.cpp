@@ -72,7 +72,7 @@ private:
     for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
       if (ir::attr::constructor.isOn(function))
         add(function, {"makes the object", {}});
-    addMethods("rt_Primitive", "computeBounds", {"bounds it for the acceleration structure", {}});
+    addMethods("rt_Primitive", "computeBounds", {"computes the bounds of the object", {}});
   }
 
   void addRoots() {
