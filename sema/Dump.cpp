@@ -29,6 +29,7 @@ private:
   void function(const Function &function);
   void variable(const Variable &variable);
   void stmt(const Stmt &stmt);
+  void loop(const Stmt &stmt);
   void optional(const char *label, const Stmt *stmt);
   void optional(const char *label, const Expr *expr);
   void expr(const Expr &expr);
@@ -224,32 +225,11 @@ void Dumper::stmt(const Stmt &node) {
     optional("else", branch.elseStmt.get());
     return;
   }
-  case ast::StmtKind::For: {
-    const auto &loop = cast<ForStmt>(node);
-    line("for");
-    Indent indent(*this);
-    optional("init", loop.init.get());
-    optional("condition", loop.condition.get());
-    optional("step", loop.step.get());
-    optional("body", loop.body.get());
-    return;
-  }
-  case ast::StmtKind::While: {
-    const auto &loop = cast<WhileStmt>(node);
-    line("while");
-    Indent indent(*this);
-    expr(*loop.condition);
-    optional("body", loop.body.get());
-    return;
-  }
-  case ast::StmtKind::DoWhile: {
-    const auto &loop = cast<DoWhileStmt>(node);
-    line("do");
-    Indent indent(*this);
-    optional("body", loop.body.get());
-    optional("condition", loop.condition.get());
-    return;
-  }
+  case ast::StmtKind::For:
+  case ast::StmtKind::While:
+  case ast::StmtKind::DoWhile:
+  case ast::StmtKind::Illuminance:
+    return loop(node);
   case ast::StmtKind::Switch: {
     const auto &choice = cast<SwitchStmt>(node);
     line("switch");
@@ -274,14 +254,47 @@ void Dumper::stmt(const Stmt &node) {
       expr(*value);
     return;
   }
+  default:
+    return;
+  }
+}
+
+void Dumper::loop(const Stmt &node) {
+  switch (node.kind) {
+  case ast::StmtKind::For: {
+    const auto &of = cast<ForStmt>(node);
+    line("for");
+    Indent indent(*this);
+    optional("init", of.init.get());
+    optional("condition", of.condition.get());
+    optional("step", of.step.get());
+    optional("body", of.body.get());
+    return;
+  }
+  case ast::StmtKind::While: {
+    const auto &of = cast<WhileStmt>(node);
+    line("while");
+    Indent indent(*this);
+    expr(*of.condition);
+    optional("body", of.body.get());
+    return;
+  }
+  case ast::StmtKind::DoWhile: {
+    const auto &of = cast<DoWhileStmt>(node);
+    line("do");
+    Indent indent(*this);
+    optional("body", of.body.get());
+    optional("condition", of.condition.get());
+    return;
+  }
   case ast::StmtKind::Illuminance: {
-    const auto &loop = cast<IlluminanceStmt>(node);
+    const auto &of = cast<IlluminanceStmt>(node);
     line("illuminance");
     Indent indent(*this);
-    optional("point", loop.point.get());
-    optional("normal", loop.normal.get());
-    optional("angle", loop.angle.get());
-    optional("body", loop.body.get());
+    optional("point", of.point.get());
+    optional("normal", of.normal.get());
+    optional("angle", of.angle.get());
+    optional("body", of.body.get());
     return;
   }
   default:

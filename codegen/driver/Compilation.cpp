@@ -1,4 +1,4 @@
-//===- Compilation.cpp - from a checked module to the program of a scene --===//
+//===- Compilation.cpp - a compilation in progress ------------------------===//
 #include "codegen/driver/Compilation.h"
 
 #include "codegen/driver/HostCode.h"
@@ -20,7 +20,7 @@ static bool linkForScene(Compilation &compilation) {
               options.floatingPoint);
 }
 
-/// Makes the objects of a scene, with a program that can do nothing else.
+/// Makes the objects of a scene, with a program that contains only what this needs.
 static runtime::SceneFacts makeObjects(const Compilation &compilation) {
   const mlir::OwningOpRef<mlir::ModuleOp> copy = mlir::ModuleOp(*compilation.ir).clone();
   keepConstructors(*copy);
@@ -33,11 +33,11 @@ static runtime::SceneFacts makeObjects(const Compilation &compilation) {
   return facts;
 }
 
-/// Leaves what renders that scene alone.
+/// Keeps only the code that renders this scene.
 static void bindToScene(Compilation &compilation) {
   LinkRequest request = *compilation.input.scene;
-  // With arithmetic in double what a scene sets stays a variable, for a bound index would change
-  // what lies in memory, and so where a number is rounded.
+  // With arithmetic in double, members of the scene stay variables: a constant index would change
+  // which values are in memory, and so where a number is rounded.
   if (compilation.options.floatingPoint == FloatingPoint::Double) {
     request.keep.add(Item::Parameters);
     request.keep.add(Item::Lights);

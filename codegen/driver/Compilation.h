@@ -1,4 +1,4 @@
-//===- Compilation.h - a program on its way through the stages ------------===//
+//===- Compilation.h - a compilation in progress --------------------------===//
 #pragma once
 
 #include "codegen/driver/Stages.h"
@@ -14,8 +14,8 @@
 
 namespace rtsl::driver {
 
-/// What a compilation begins with, how it goes on, and what has been made so far: each stage adds
-/// to it, or changes the IR.
+/// The input of a compilation, its options, and its results so far: each stage adds to it, or
+/// changes the IR.
 struct Compilation {
   Compilation(const CompileInput &input, const CompileOptions &options, Diagnostics &diagnostics)
       : input(input), options(options), diagnostics(diagnostics) {}
@@ -24,11 +24,11 @@ struct Compilation {
   const CompileOptions &options;
   Diagnostics &diagnostics;
 
-  /// The objects of the scene, if they have been made before: none are made.
+  /// The objects of the scene, if they have been made before.
   const runtime::SceneFacts *facts = nullptr;
-  Findings *findings = nullptr; // gets what linking and binding leave out
+  Findings *findings = nullptr; // receives the items that linking and binding omit
   bool usesThreads = false;     // as many as CompileOptions::threads allows, if the scene is large
-  bool explains = false;        // splitting notes what each of its steps saves
+  bool explains = false;        // splitting reports the savings of each step
 
   std::unique_ptr<mlir::MLIRContext> context;
   mlir::OwningOpRef<mlir::ModuleOp> ir;
@@ -40,22 +40,22 @@ struct Compilation {
   bool isBound() const { return input.makeObjects || facts; }
 };
 
-// Each of these takes a compilation to its stage, by way of those before it. They return false if
-// something is wrong, which was reported; mistakes of ours throw std::logic_error.
+// Each of these takes a compilation to its stage, through the previous ones. They return false if
+// an error was reported; internal errors throw std::logic_error.
 
-/// `ir`: level 1, of a scene linked, and bound if it is to be. May be called again.
+/// `ir`: level 1; for a scene it is linked, and bound if requested. May be called again.
 bool reachIr(Compilation &compilation);
 /// `ssa`: level 2. `trace` is a call.
 bool reachSsa(Compilation &compilation);
-/// `split`: level 2, with `report`. The states of what traces have names.
+/// `split`: level 2, with `report`. The states of functions that trace have names.
 bool reachStates(Compilation &compilation);
-/// The same with numbers in place of names, and what the machine calls.
+/// The same with numbers in place of names, and the functions that the machine calls.
 bool reachMachine(Compilation &compilation);
-/// `llvm`: optimised, of a scene for Target::HostMegakernel.
+/// `llvm`: optimised; for a scene, for Target::HostMegakernel.
 bool reachLlvm(Compilation &compilation);
 
-/// Level 1 of a bound program. A GPU has no stack for recursion, which such a program has only if
-/// it is deep: false, with a message, if there is some.
+/// Level 1 of a bound program. A GPU has no stack for recursion, which remains in such a program
+/// only if it is deep: then returns false, with a message.
 bool requireNoRecursion(Compilation &compilation);
 
 } // namespace rtsl::driver

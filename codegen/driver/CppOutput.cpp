@@ -21,7 +21,7 @@ using namespace driver;
 
 namespace {
 
-/// C++ with the states of what traces.
+/// Prints C++ with the states of methods that trace.
 std::optional<std::string> printSplitCpp(const typed::Module &module, const ModuleFacts &facts,
                                          const cpp::Options &printing,
                                          const CompileOptions &options, mlir::MLIRContext &context,
@@ -30,7 +30,7 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const Modu
   LowerOptions lowering;
   lowering.diagnostics = &diagnostics;
   lowering.colorComponents = options.colorComponents;
-  lowering.checkIndices = false; // C++ looks at an index where it takes it
+  lowering.checkIndices = false; // the C++ code checks indices itself
   lowering.prints = printing.prints;
   lowering.source = &source;
   const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, context);
@@ -49,7 +49,7 @@ std::optional<std::string> printSplitCpp(const typed::Module &module, const Modu
   return cpp::print(module, facts, printing, diagnostics, &states);
 }
 
-/// Leaves the bounds of t of a linked module's primitives, as C++ shows them.
+/// Keeps the error bounds of t of a linked module's primitives as functions, for C++ output.
 void keepHitErrors(mlir::ModuleOp module) {
   for (auto function : llvm::make_early_inc_range(module.getOps<mlir::func::FuncOp>()))
     if (!ir::attr::hitError.isOn(function))

@@ -1,4 +1,4 @@
-//===- ExplainScene.cpp - what a scene's program has and leaves out -------===//
+//===- ExplainScene.cpp - what a scene's program contains and omits -------===//
 #include "codegen/driver/Compilation.h"
 #include "frontend/source/Expansion.h"
 #include "sema/typed/Casting.h"
@@ -24,7 +24,7 @@ void keep(ItemSet items, LinkRequest &request, CompileOptions &options) {
 
 namespace {
 
-/// The first `print` of the classes that the scene uses.
+/// The first `print` in the classes that the scene uses.
 SourceRange firstPrint(const typed::Module &module, const LinkRequest &request) {
   SourceRange range;
   for (const auto &one : module.classes)
@@ -38,21 +38,20 @@ SourceRange firstPrint(const typed::Module &module, const LinkRequest &request) 
   return range;
 }
 
-/// `hasChecks`: whether an index of the program is kept in range that could be out of it.
+/// `hasChecks`: whether an index in the program could be out of range and is checked.
 void describeEvents(const typed::Module &module, const LinkRequest &request,
                     const CompileOptions &options, bool hasChecks, const runtime::Program &program,
                     const SourceManager &sources, Findings &findings) {
   const bool hasExceptions =
       (request.features & RTSL_FEATURE_EXCEPTIONS) && !(request.features & RTSL_FEATURE_UNHEEDED);
   Finding exceptions = {Item::Events, "exceptions", hasExceptions, {}, {}};
-  exceptions.reason = hasExceptions ? "asked for, by the scene's `exception` or --exceptions"
+  exceptions.reason = hasExceptions ? "enabled by the scene's `exception` or --exceptions"
                                     : "the scene has no `exception`, and --exceptions is not given";
   findings.push_back(std::move(exceptions));
 
   const bool prints = !program.prints.empty();
   const SourceRange print = firstPrint(module, request);
-  Finding printing = {
-      Item::Events, "print", prints, prints ? "--print" : "no shader that runs prints", {}};
+  Finding printing = {Item::Events, "print", prints, prints ? "--print" : "no `print` runs", {}};
   if (print.isValid()) {
     const ShownPlace place = shownBegin(sources, print);
     printing.place = {std::string(place.file), place.at.line, place.at.column};
@@ -65,13 +64,13 @@ void describeEvents(const typed::Module &module, const LinkRequest &request,
                       "index checks",
                       hasChecks,
                       !options.checkIndices ? "--unchecked"
-                      : hasChecks           ? "an index is kept in range that is not known to be"
+                      : hasChecks           ? "an index is not known to be in range"
                                             : "every index is known to be in range",
                       {}});
 }
 
-/// What tells two programs apart: the structure of what a GPU runs, or of what this machine does in
-/// double.
+/// A hash that distinguishes programs: of the structure of the GPU's program, or, in double, of the
+/// program for this host.
 llvm::stable_hash fingerprint(Compilation &compilation) {
   if (compilation.options.floatingPoint == FloatingPoint::Double) {
     reachLlvm(compilation);
@@ -84,7 +83,7 @@ llvm::stable_hash fingerprint(Compilation &compilation) {
   return llvm::StructuralHash(*compilation.llvm->module, /*DetailedHash=*/true);
 }
 
-/// Whether checks of indices change the program of a scene with these objects.
+/// Whether index checks change the program of a scene with these objects.
 bool hasIndexChecks(const CompileInput &input, const CompileOptions &options,
                     const SourceManager &sources, const runtime::SceneFacts &facts) {
   if (!options.checkIndices)
@@ -100,7 +99,7 @@ bool hasIndexChecks(const CompileInput &input, const CompileOptions &options,
   return compiled(true) != compiled(false);
 }
 
-/// What the bound program of a scene takes on a GPU. Nothing if it cannot be linked.
+/// The size of a scene's bound program on a GPU. Nothing if it cannot be linked.
 std::optional<ProgramSize> measure(Compilation &compilation) {
   if (!reachLlvm(compilation))
     return std::nullopt;
@@ -116,7 +115,7 @@ std::optional<ProgramSize> measure(Compilation &compilation) {
   return size;
 }
 
-/// What it takes with `item` kept. Nothing if that cannot be: a class that the scene does not use
+/// The size with `item` kept. Nothing if that is not possible: a class that the scene does not use
 /// may be incomplete.
 std::optional<ProgramSize> measureKeeping(Item item, const CompileInput &input,
                                           const CompileOptions &options,
@@ -146,7 +145,7 @@ explainScene(const typed::Module &module, const LinkRequest &request, const Comp
              Diagnostics &diagnostics, const MakeObjects &makeObjects) {
   const SourceManager &sources = diagnostics.sources();
   SceneExplanation explanation;
-  runtime::SceneFacts facts; // made once: what a program leaves out changes no object
+  runtime::SceneFacts facts; // made once: omitting items from a program changes no object
   CompileInput input;
   input.module = &module;
   input.scene = &request;
@@ -165,7 +164,7 @@ explainScene(const typed::Module &module, const LinkRequest &request, const Comp
     if (request.keep.has(item))
       continue;
     if (item == Item::Meshes || !leavesOut(item, explanation.findings))
-      explanation.sizeKeeping[item] = explanation.size; // nothing changes in the program
+      explanation.sizeKeeping[item] = explanation.size; // the program is the same
     else if (const auto size = measureKeeping(item, input, options, sources, facts))
       explanation.sizeKeeping[item] = *size;
   }

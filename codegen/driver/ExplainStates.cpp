@@ -21,7 +21,7 @@ static std::string write(const SplitReport &report, ReportFormat format) {
   return toText(report);
 }
 
-/// `maxDepth`: of the scene, if there is one.
+/// `maxDepth`: the depth limit of the scene, if there is one.
 static std::optional<std::string> explain(const CompileInput &input,
                                           std::optional<std::uint32_t> maxDepth,
                                           const CompileOptions &options, ReportFormat format,

@@ -27,10 +27,10 @@ namespace driver {
 namespace {
 
 //===----------------------------------------------------------------------===//
-// What the runtime calls
+// Functions that the runtime calls
 //===----------------------------------------------------------------------===//
 
-/// What samples of a linked program come from.
+/// The functions of a linked program that samples start with.
 std::vector<std::string> sampleSymbols(const runtime::Program &program,
                                        const CompileOptions &options) {
   if (options.target == Target::HostMegakernel)
@@ -40,7 +40,7 @@ std::vector<std::string> sampleSymbols(const runtime::Program &program,
   return {program.engine == runtime::Engine::Classic ? "rtsl_sample" : "rtsl_generate"};
 }
 
-/// The functions of a linked program that the runtime asks for.
+/// The functions of a linked program that the runtime looks up.
 std::vector<std::string> entries(const runtime::Program &program, const CompileOptions &options) {
   std::vector<std::string> names = sampleSymbols(program, options);
   names.push_back("rtsl_rt_Material_anyHit_payload");
@@ -90,8 +90,8 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit,
   }
 }
 
-/// Puts machine code into this process, where it finds `print` and `symbols`, and its entries into
-/// the program.
+/// Loads machine code into this process, linked with `print` and `symbols`, and sets the entry
+/// points of the program.
 void load(std::vector<codegen::ObjectCode> parts, std::vector<codegen::HostSymbol> symbols,
           const CompileOptions &options, runtime::Program &program) {
   symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
@@ -113,8 +113,8 @@ codegen::ObjectCode toObject(LlvmCode code) {
   return take(codegen::makeObjectCode(*code.module, *code.machine));
 }
 
-/// Calls `work(0)` ... `work(count - 1)`, on several threads if the context may have them. What one
-/// of them throws comes out.
+/// Calls `work(0)` ... `work(count - 1)`, on several threads if the context allows it. Rethrows an
+/// exception of one of them.
 template <typename Work>
 void forEach(mlir::MLIRContext &context, std::size_t count, Work work) {
   std::exception_ptr thrown;
@@ -122,7 +122,7 @@ void forEach(mlir::MLIRContext &context, std::size_t count, Work work) {
   mlir::parallelFor(&context, 0, count, [&](std::size_t index) {
     try {
       work(index);
-    } catch (...) { // which must not leave a thread of LLVM's
+    } catch (...) { // which must not reach a thread of LLVM
       const std::lock_guard<std::mutex> lock(mutex);
       thrown = std::current_exception();
     }
@@ -131,7 +131,7 @@ void forEach(mlir::MLIRContext &context, std::size_t count, Work work) {
     std::rethrow_exception(thrown);
 }
 
-/// Level 2 with its device code, in as many parts as it has.
+/// Compiles level 2 with its device code, in one or more parts.
 class PartCompiler {
 public:
   PartCompiler(mlir::ModuleOp ir, const CompileOptions &options,
@@ -153,7 +153,7 @@ private:
   runtime::Program &program;
 };
 
-/// What is in no part of its own: all of a small program.
+/// The code that is in no separate part: all of a small program.
 LlvmCode PartCompiler::rest() {
   LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true),
                             options.checksNumbers ? &program.numberPlaces : nullptr);
@@ -163,8 +163,8 @@ LlvmCode PartCompiler::rest() {
   return code;
 }
 
-/// A part has many functions of which each runs seldom, and they have been simplified before: most
-/// of what LLVM's level 2 adds is time.
+/// Each function of a part runs rarely, and has been simplified before: LLVM's level 2 would mostly
+/// take more time.
 LlvmCode PartCompiler::part(mlir::ModuleOp functions, std::vector<std::string> &missing) {
   codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
   if (machine.optimization < 3)
@@ -178,8 +178,9 @@ LlvmCode PartCompiler::part(mlir::ModuleOp functions, std::vector<std::string> &
 }
 
 std::vector<codegen::ObjectCode> PartCompiler::run() {
-  const bool isWhole = options.checksNumbers ||
-                       options.floatingPoint == FloatingPoint::Double; // both look at all of it
+  const bool isWhole =
+      options.checksNumbers ||
+      options.floatingPoint == FloatingPoint::Double; // both process the whole program
   std::vector<mlir::OwningOpRef<mlir::ModuleOp>> parts;
   if (!isWhole)
     parts = codegen::takeParts(ir);
@@ -192,7 +193,7 @@ std::vector<codegen::ObjectCode> PartCompiler::run() {
     exports.insert(exports.end(), names.begin(), names.end());
 
   std::vector<std::optional<codegen::ObjectCode>> objects(
-      parts.size() + 1); // the rest takes longest, so it comes first
+      parts.size() + 1); // the rest takes longest, so it is started first
   forEach(context, objects.size(), [&](std::size_t index) {
     objects[index].emplace(toObject(index == 0 ? rest() : std::move(*codes[index - 1])));
   });
@@ -204,7 +205,7 @@ std::vector<codegen::ObjectCode> PartCompiler::run() {
 
 } // namespace
 
-/// Constructors run once: those of so many classes take longer to optimise than to run.
+/// Constructors run once: with this many classes, optimising them takes longer than running them.
 constexpr std::size_t manyClasses = 100;
 
 void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
@@ -215,7 +216,7 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
     names.push_back(constructSymbol(info.name));
   }
   run(ir, [](mlir::OpPassManager &passes) {
-    passes.addPass(mlir::createSymbolDCEPass()); // what renders
+    passes.addPass(mlir::createSymbolDCEPass()); // keeps only the code that renders
     codegen::buildSsaPipeline(passes);
   });
   codegen::MachineOptions machine = machineOptions(options, /*hostCpu=*/true);
@@ -236,7 +237,7 @@ static void restructureAndBack(mlir::ModuleOp ir) {
   run(ir, codegen::buildSsaPipeline);
 }
 
-/// The linked IR of a scene as machine code, with the entries of its program.
+/// Compiles the linked IR of a scene to machine code and sets the entry points of its program.
 static void compileLinked(Compilation &compilation) {
   const CompileOptions &options = compilation.options;
   runtime::Program &program = *compilation.program;

@@ -7,8 +7,8 @@
 
 namespace rtsl::driver {
 
-/// Fills in those entries of `program`, whose classes are known, that make the objects of a scene.
-/// They run once, so they are compiled lightly. `ir` is used up.
+/// Compiles the functions of a linked program that make the objects of a scene, and sets these
+/// entry points of `program`. They run once, so they are hardly optimised. `ir` is consumed.
 void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
                          runtime::Program &program);
 

@@ -8,8 +8,7 @@
 
 namespace rtsl {
 
-/// Warns of a trace over which much is alive: values that are saved, and variables that lie in the
-/// frame all the time.
+/// Warns of a trace across which much is live: values that are saved, and variables in the frame.
 static void warnOfLiveState(const TraceReport &trace, const continuation::FrameLayout &frame,
                             std::uint32_t largeLiveState, Diagnostics &diagnostics) {
   struct Part {
@@ -35,9 +34,9 @@ static void warnOfLiveState(const TraceReport &trace, const continuation::FrameL
                          largeLiveState, parts.front().name, parts.front().bytes);
   std::string others;
   for (std::size_t i = 1; i < parts.size(); ++i)
-    others += fmt::format("{}{} {}", i == 1 ? "" : ", ", parts[i].name, parts[i].bytes);
+    others += fmt::format("{}{} ({})", i == 1 ? "" : ", ", parts[i].name, parts[i].bytes);
   if (!others.empty())
-    diagnostic.note("and then: " + others);
+    diagnostic.note("also saved: " + others);
 }
 
 void checkLiveState(const typed::Module &module, const CompileOptions &options,
@@ -46,7 +45,7 @@ void checkLiveState(const typed::Module &module, const CompileOptions &options,
     return;
   CompileInput input;
   input.module = &module;
-  Diagnostics refusals(diagnostics.sources()); // whoever asks for more than a warning hears them
+  Diagnostics refusals(diagnostics.sources()); // discarded: other commands report them
   driver::Compilation compilation(input, options, refusals);
   if (!driver::reachIr(compilation) || refusals.hasErrors())
     return;

@@ -1,4 +1,4 @@
-//===- LlvmErrors.cpp - what becomes of LLVM's own failures ----------------===//
+//===- LlvmErrors.cpp - handling of LLVM's own failures -------------------===//
 #include "codegen/driver/LlvmErrors.h"
 
 #include "llvm/Support/ErrorHandling.h"

@@ -1,9 +1,9 @@
-//===- LlvmErrors.h - what becomes of LLVM's own failures ------------------===//
+//===- LlvmErrors.h - handling of LLVM's own failures ---------------------===//
 #pragma once
 
 namespace rtsl {
 
-/// Where LLVM has no memory it calls `end`, which must not return, in place of aborting.
+/// If LLVM runs out of memory it calls `end`, which must not return, instead of aborting.
 void onLlvmOutOfMemory(void (*end)());
 
 } // namespace rtsl

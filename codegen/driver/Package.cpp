@@ -7,7 +7,7 @@ namespace rtsl {
 
 using namespace driver;
 
-/// Machine code of this processor that needs no library: it has its own `memcpy`.
+/// Machine code for this processor without library calls: it has its own `memcpy`.
 static runtime::NativeImage hostImage(const Compilation &compilation) {
   const CompileOptions &options = compilation.options;
   LlvmCode code = translate(*compilation.ir, machineOptions(options, /*hostCpu=*/false));

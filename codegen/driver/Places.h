@@ -1,4 +1,4 @@
-//===- Places.h - from places in the IR to those in the author's files ----===//
+//===- Places.h - from locations in the IR to ranges in source files ------===//
 #pragma once
 
 #include "codegen/ir/SourcePlace.h"
@@ -8,7 +8,7 @@
 
 namespace rtsl::driver {
 
-/// Where `word` stands, which begins at a place in the IR; an empty range if its file is not known.
+/// The range of `word` at a location in the IR; an empty range if its file is not known.
 inline SourceRange rangeAt(const ir::SourcePlace &place, std::string_view word,
                            const Diagnostics &diagnostics) {
   const FileId file = diagnostics.sources().find(place.file);

@@ -1,4 +1,4 @@
-//===- Reflection.cpp - what a module says of itself ----------------------===//
+//===- Reflection.cpp - the description of a module as JSON ---------------===//
 #include "codegen/driver/Reflection.h"
 
 #include "codegen/cpp/Effects.h"
@@ -49,7 +49,7 @@ public:
   }
 
 private:
-  /// Without the markers.
+  /// The text of a comment, without the markers.
   static std::string plain(const std::string &comment) {
     std::string text;
     std::size_t at = 0;
@@ -78,7 +78,7 @@ private:
   Json describe(const typed::Struct &structure) {
     Json json = {{"name", structure.name}};
     addComment(json, structure.comment);
-    // Asking for a type that is there changes nothing.
+    // For an existing type this has no side effect.
     const Type *type = const_cast<TypeContext &>(module.types).structure(&structure);
     const auto layout = mlir::cast<ir::StructType>(types.type(type));
     json["size"] = ir::sizeInBytes(layout);
@@ -131,7 +131,8 @@ private:
       json["offset"] = *offset;
       json["size"] = ir::sizeInBytes(types.type(member.type));
     }
-    // A color is what the target makes of one number, or of red, green and blue.
+    // The components of a color depend on the target, so defaults are given as one number or as
+    // RGB.
     if (member.init && (member.type->scalar() || member.type->is(TypeKind::Color)))
       if (const std::optional<typed::Constant> known = evaluate(*member.init))
         json[member.isConst ? "value" : "default"] = value(member.type, *known);
@@ -212,7 +213,7 @@ private:
 
 std::optional<std::string> emitReflection(const typed::Module &module,
                                           const CompileOptions &options, Diagnostics &diagnostics) {
-  // How traces cut functions into states, and the frames of those.
+  // The states and frames of functions that trace.
   CompileInput input;
   input.module = &module;
   driver::Compilation split(input, options, diagnostics);

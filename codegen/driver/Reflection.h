@@ -1,4 +1,4 @@
-//===- Reflection.h - what a module says of itself ------------------------===//
+//===- Reflection.h - the description of a module as JSON -----------------===//
 #pragma once
 
 #include "codegen/driver/Compiler.h"
@@ -8,9 +8,10 @@
 
 namespace rtsl {
 
-/// The classes, structs and functions of a module as JSON: types, defaults, comments, what methods
-/// read and write, the layouts of records, payloads and frames, and what printed C++ calls
-/// differently. docs/reflection-schema.json is its schema. Nothing if there were errors.
+/// The classes, structs and functions of a module as JSON: types, defaults, comments, the state
+/// that methods read and write, the layouts of records, payloads and frames, and the names in
+/// printed C++ that differ. docs/reflection-schema.json is its schema. Nothing if there were
+/// errors.
 std::optional<std::string> emitReflection(const typed::Module &module,
                                           const CompileOptions &options, Diagnostics &diagnostics);
 

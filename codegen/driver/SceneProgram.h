@@ -1,7 +1,6 @@
 //===- SceneProgram.h - a scene, and the program that renders it ----------===//
 //
-// For programs that have scenes: the compiler itself knows of them only what
-// runtime/program/Program.h says.
+// For programs that use scenes: the compiler itself only uses runtime/program/Program.h.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -27,8 +26,8 @@ inline MakeObjects storeScene(BuildScene build, std::optional<runtime::Scene> &s
   };
 }
 
-/// Compiles the module for the scene that `build` makes, which comes back with its program. Nothing
-/// if there were errors.
+/// Compiles the module for the scene that `build` makes, and returns the scene with its program.
+/// Nothing if there were errors.
 inline std::optional<runtime::Scene>
 compileScene(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
              Diagnostics &diagnostics, const BuildScene &build) {

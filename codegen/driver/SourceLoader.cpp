@@ -18,7 +18,7 @@ const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRa
   if (auto known = units.find(key); known != units.end())
     return known->second.get();
 
-  // Remembered even when it fails, so that a missing file is reported once.
+  // Recorded even if loading fails, so that a missing file is reported once.
   std::unique_ptr<ast::TranslationUnit> &unit = units[key];
   if (const std::optional<PreprocessedFile> preprocessed = preprocessFile(path, importer)) {
     if (preprocessed->isUsable) {
@@ -53,7 +53,7 @@ const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import,
             "this version has no installed modules; a file is imported as `import \"name.rtsl\";`");
     return nullptr;
   }
-  // An import in an included file means what lies beside that file.
+  // An import in an included file is relative to that file.
   const FileId file = import.range.isValid() ? sources.written(import.range).range.file : importer;
   std::vector<std::string> folders{folderOf(sources.name(file))};
   folders.insert(folders.end(), options.includeFolders.begin(), options.includeFolders.end());

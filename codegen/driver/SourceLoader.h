@@ -1,6 +1,6 @@
 //===- SourceLoader.h - files and their imports ---------------------------===//
 //
-// Reads RTSL files, each once however often it is imported, and finds what an import names
+// Reads RTSL files, each once however often it is imported, and resolves imports
 // (frontend/preprocessor/FileSearch.h).
 //
 //===----------------------------------------------------------------------===//
@@ -27,19 +27,19 @@ public:
   /// at `importer`, which is invalid for a file that was named on the command line.
   const ast::TranslationUnit *load(const std::string &path, SourceRange importer = {});
 
-  /// Reads a file and runs the preprocessor alone; nothing if it cannot be read.
+  /// Reads a file and runs only the preprocessor; nothing if it cannot be read.
   std::optional<PreprocessedFile> preprocessFile(const std::string &path,
                                                  SourceRange importer = {});
 
-  /// What `import` means in the file `importer`; null if there is no such file, which is reported.
+  /// The file that an `import` in the file `importer` names; null if there is none, which is
+  /// reported.
   const ast::TranslationUnit *resolve(const ast::ImportDecl &import, FileId importer);
 
-  /// Loads what the loaded files import, and so on. (Checking does so as well, where it comes to
-  /// that.)
+  /// Loads the imports of the loaded files, transitively. (Checking also loads them on demand.)
   void loadImports();
 
-  /// All files that were read, imported and included ones too, each once, in the order in which
-  /// they were met.
+  /// All files that were read, including imported and included ones, each once, in the order of
+  /// reading.
   const std::vector<std::string> &files() const { return read; }
 
 private:

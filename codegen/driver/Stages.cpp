@@ -1,4 +1,4 @@
-//===- Stages.cpp - the pipeline, stage by stage --------------------------===//
+//===- Stages.cpp - the stages of the pipeline ----------------------------===//
 #include "codegen/driver/Stages.h"
 
 #include "codegen/driver/Compilation.h"
@@ -33,7 +33,7 @@ static std::string showLlvm(Compilation &compilation) {
 }
 
 //===----------------------------------------------------------------------===//
-// What the author wrote
+// Stages of the source
 //===----------------------------------------------------------------------===//
 
 static bool reachPreprocessed(Compilation &compilation) {
@@ -111,8 +111,8 @@ bool reachLlvm(Compilation &compilation) {
   return true;
 }
 
-/// The PTX of a module without a scene: a function a method, or a state where it traces. What
-/// others supply is declared: slots, and the functions of runtime/device.
+/// The PTX of a module without a scene: one function for each method, or for each state if it
+/// traces. Slots and functions of runtime/device are only declared.
 static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   declareSlots(ir);
   for (auto function : ir.getOps<mlir::func::FuncOp>())
@@ -126,7 +126,7 @@ static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   return toPtx(std::move(code));
 }
 
-/// Of a scene: one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h).
+/// For a scene: one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h).
 static bool reachPtx(Compilation &compilation) {
   if (!reachIr(compilation) || !requireNoRecursion(compilation) || !reachMachine(compilation))
     return false;
@@ -139,7 +139,7 @@ static bool reachPtx(Compilation &compilation) {
 }
 
 //===----------------------------------------------------------------------===//
-// What is said of a checked module by other means
+// Other outputs for a checked module
 //===----------------------------------------------------------------------===//
 
 static bool give(std::optional<std::string> text, Compilation &compilation) {

@@ -1,7 +1,7 @@
-//===- Stages.h - what can be looked at on the way ------------------------===//
+//===- Stages.h - the stages of the pipeline ------------------------------===//
 //
-// `rtslc compile --emit=NAME`, and what the other commands are made of. The table is in Stages.cpp:
-// a new stage is a function and a row there.
+// The outputs of `rtslc compile --emit=NAME`, which other commands use too. The table is in
+// Stages.cpp: a new stage is a function and a row there.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,33 +18,32 @@ namespace driver {
 struct Compilation;
 }
 
-/// What a compilation begins with.
+/// The input of a compilation.
 struct CompileInput {
   // One of these, as Stage::needs says:
   std::vector<PreprocessedFile> texts;
   std::vector<const ast::TranslationUnit *> units;
   const typed::Module *module = nullptr; // without errors
 
-  /// Link the module for a scene. Null: a file alone, in which what is called through references
-  /// stays a declared slot.
+  /// Link the module for a scene. Null: a single file, in which slots remain declared functions.
   const LinkRequest *scene = nullptr;
-  /// Of a scene: bind the program to these objects, as a package is. Null: to none.
+  /// For a scene: bind the program to these objects, as for a package. Null: do not bind it.
   MakeObjects makeObjects = nullptr;
   CppRequest cpp = {};
 };
 
-/// One of the texts that rtslc can write.
+/// One of the outputs of rtslc.
 struct Stage {
   enum class Needs : std::uint8_t { Text, SyntaxTree, Module };
 
   std::string_view name; // of --emit
   Needs needs;
-  /// Null: there is one of a scene's linked program too. From `split` on it is what GPUs run:
-  /// without recursion, with the traversal of runtime/device.
+  /// Null: the stage is also available for a scene's linked program. From `split` on that is the
+  /// program for GPUs: without recursion, with the traversal of runtime/device.
   const char *whyNoScene;
-  bool keepsEvents; // prints and raises exceptions without a scene, too
+  bool keepsEvents; // supports prints and exceptions without a scene, too
   bool hasDouble;   // arithmetic may be in double
-  /// Takes the compilation to this stage. False: something is wrong, which was reported.
+  /// Takes the compilation to this stage. False if an error was reported.
   bool (*reach)(driver::Compilation &);
   std::string (*show)(driver::Compilation &);
 };

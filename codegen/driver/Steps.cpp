@@ -1,4 +1,4 @@
-//===- Steps.cpp - what the stages are made of ----------------------------===//
+//===- Steps.cpp - the steps that stages consist of -----------------------===//
 #include "codegen/driver/Steps.h"
 
 #include "codegen/emit/CheckNumbers.h"
@@ -37,7 +37,7 @@ std::unique_ptr<mlir::MLIRContext> makeContext() {
   return context;
 }
 
-/// With fewer functions threads take longer to start than they save.
+/// With fewer functions, starting threads takes longer than they save.
 constexpr std::ptrdiff_t fewestFunctionsForThreads = 100;
 
 void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
@@ -46,7 +46,7 @@ void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
       std::distance(functions.begin(), functions.end()) < fewestFunctionsForThreads)
     return;
   mlir::MLIRContext &context = *ir.getContext();
-  // Pipelines load their dialects when they run, and several that run at once must not.
+  // Pipelines load their dialects when they run, which must not happen in parallel.
   for (const auto build : {codegen::buildSsaPipeline, codegen::buildLlvmPipeline}) {
     mlir::PassManager passes(&context);
     build(passes);

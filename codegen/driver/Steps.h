@@ -1,8 +1,8 @@
-//===- Steps.h - what the stages are made of ------------------------------===//
+//===- Steps.h - the steps that stages consist of -------------------------===//
 //
-// From a checked module to IR, states, LLVM IR and PTX; Stages.cpp puts these steps in order. A
-// step that fails is a mistake of ours, for the program was checked before: it throws
-// std::logic_error, which ends `rtslc` with a status of its own.
+// From a checked module to IR, states, LLVM IR and PTX; Stages.cpp calls these steps in order. A
+// step that fails is an internal error, because the program was checked before: it throws
+// std::logic_error, for which `rtslc` has its own exit status.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -28,7 +28,7 @@
 
 namespace rtsl::driver {
 
-/// Throws std::logic_error, or std::bad_alloc if the message is that of a system without memory.
+/// Throws std::logic_error, or std::bad_alloc if the message reports a lack of memory.
 [[noreturn]] void fail(const std::string &message);
 
 template <typename T>
@@ -40,8 +40,7 @@ T take(llvm::Expected<T> expected) {
 
 std::unique_ptr<mlir::MLIRContext> makeContext();
 
-/// Passes and what else works on functions alone may use several threads from now on, if the module
-/// is large.
+/// From now on, passes and other work on functions may use several threads, if the module is large.
 void allowThreads(mlir::ModuleOp ir, const CompileOptions &options);
 
 /// Null if something is not supported, which is reported.
@@ -62,7 +61,7 @@ SplitReport runToStates(mlir::ModuleOp ir, const SplitOptions &options);
 
 std::string print(mlir::ModuleOp ir);
 
-/// LLVM IR on its way to code.
+/// LLVM IR before code generation.
 struct LlvmCode {
   LlvmCode() = default;
   LlvmCode(LlvmCode &&) = default;
@@ -70,26 +69,26 @@ struct LlvmCode {
   std::unique_ptr<llvm::TargetMachine> machine;
   std::unique_ptr<llvm::Module> module;
   codegen::MachineOptions options;
-  std::vector<std::string> kept; // functions that nothing calls and that stay
+  std::vector<std::string> kept; // functions that are kept although nothing calls them
 };
 
-/// Level 2 as LLVM IR that is not linked with device code yet.
-/// With `numberPlaces`, numbers are checked, and their places are added there (CheckNumbers.h).
+/// Level 2 as LLVM IR, not linked with device code yet. With `numberPlaces`, numbers are checked,
+/// and their source locations are added there (CheckNumbers.h).
 LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
                    std::vector<Place> *numberPlaces = nullptr);
 
-/// Tells the device code what it may leave out.
+/// Defines constants with which the device code omits unused parts.
 void defineFacts(LlvmCode &code, const runtime::Program &program);
 
-/// What a GPU's program needs of runtime/device, for one or for the CPU.
+/// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
-/// The states of a linked program as one that refers to nothing outside
-/// (runtime/device/engines/Megakernel.h), before it is optimised: for a GPU, or for the CPU.
+/// The states of a linked program as a self-contained program
+/// (runtime/device/engines/Megakernel.h), before optimisation: for a GPU, or for the CPU.
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
 
-/// What such a program exports on the CPU.
+/// The functions that such a program exports on the CPU.
 const std::vector<std::string> &hostEntries();
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,

@@ -1,4 +1,4 @@
-//===- Versions.h - what the compiler was built with ----------------------===//
+//===- Versions.h - versions of the libraries -----------------------------===//
 #pragma once
 
 #include <string>

@@ -21,8 +21,8 @@ bool isFloat(mlir::Type type) {
   return mlir::getElementTypeOrSelf(type).isF32();
 }
 
-/// Whether an operation computes a number, rather than moving it. What shaders call of each other
-/// is looked at inside.
+/// Whether an operation computes a number, rather than moving it. Functions of shaders are checked
+/// inside.
 bool computes(mlir::Operation *op) {
   if (op->getNumResults() != 1 || !isFloat(op->getResult(0).getType()))
     return false;
@@ -82,7 +82,7 @@ private:
     return LLVM::ExtractElementOp::create(builder, location, value, at);
   }
 
-  /// The value after its check, where `sources` are what it was computed from.
+  /// The value after its check, where `sources` are the operands that it was computed from.
   mlir::Value checked(mlir::Location location, mlir::Value value,
                       llvm::ArrayRef<mlir::Value> sources) {
     const mlir::Value place = placeNumber(location);
@@ -113,7 +113,7 @@ private:
     return result;
   }
 
-  /// A constant that is not finite, or a number from elsewhere, shows where it is stored.
+  /// Stores check constants that are not finite, and numbers from other sources.
   void checkStore(LLVM::StoreOp store) {
     builder.setInsertionPoint(store);
     mlir::Value value = store.getValue();

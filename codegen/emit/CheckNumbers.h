@@ -1,9 +1,8 @@
 //===- CheckNumbers.h - where a number stops being finite ------------------===//
 //
-// For programs that find out why a sample is infinite or not a number
-// (runtime/program/NumberCheck.h): every number that a shader computes or stores goes through a
-// call of rtsl_check_number, with what it was computed from and the number of its place in the
-// source. The bits are the same.
+// For finding out why a sample is infinite or not a number (runtime/program/NumberCheck.h): every
+// number that a shader computes or stores is passed to rtsl_check_number, with its operands and the
+// number of its source location. The bits do not change.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,7 +17,7 @@ class ModuleOp;
 
 namespace rtsl::codegen {
 
-/// On a module of the LLVM dialect. Adds the places, by number, to `places`.
+/// Runs on a module of the LLVM dialect. Adds the source locations, by number, to `places`.
 void checkNumbers(mlir::ModuleOp module, std::vector<Place> &places);
 
 } // namespace rtsl::codegen

@@ -36,7 +36,7 @@ using mlir::func::FuncOp;
 namespace {
 
 //===----------------------------------------------------------------------===//
-// 1. What linking was to supply
+// 1. Checks for attributes that linking sets
 //===----------------------------------------------------------------------===//
 
 LogicalResult checkLinked(mlir::ModuleOp module) {
@@ -44,12 +44,12 @@ LogicalResult checkLinked(mlir::ModuleOp module) {
   module.walk([&](mlir::Operation *op) {
     if (auto call = llvm::dyn_cast<ir::CallMethodOp>(op)) {
       call.emitError() << "`" << call.getMethod()
-                       << "` is a dispatch slot that no linking has resolved";
+                       << "` is a dispatch slot that linking has not resolved";
       isComplete = false;
     } else if (auto attribute = llvm::dyn_cast<ir::AttributeOp>(op);
                attribute && !attribute.getOffset()) {
       attribute.emitError() << "attribute `" << attribute.getName()
-                            << "` has no `offset`: linking has not given it a place";
+                            << "` has no `offset`: linking has not set it";
       isComplete = false;
     } else if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op);
                trace && (!trace.getRayType() || !trace.getHow())) {
@@ -64,10 +64,10 @@ LogicalResult checkLinked(mlir::ModuleOp module) {
 }
 
 //===----------------------------------------------------------------------===//
-// 2. What only the whole program says
+// 2. Facts about the whole program
 //===----------------------------------------------------------------------===//
 
-/// Marks constructors and everything that they call, directly or not.
+/// Marks constructors and all functions that they call, directly or indirectly.
 void markWriters(mlir::ModuleOp module) {
   llvm::SmallVector<FuncOp> worklist;
   auto mark = [&](FuncOp function) {
@@ -91,7 +91,7 @@ void notePayloads(mlir::ModuleOp module) {
     ir::attr::holdsPayloads.set(module);
 }
 
-/// While the classes can be found.
+/// Before the class declarations are erased.
 void noteMemberOffsets(mlir::ModuleOp module) {
   const ir::ClassTable classes(module);
   mlir::Builder builder(module.getContext());
@@ -127,14 +127,14 @@ void renameFunctions(mlir::ModuleOp module) {
 // 4. The state as a parameter
 //===----------------------------------------------------------------------===//
 
-/// What else may point to where a parameter does.
+/// Which other pointers may point to the same memory as a parameter.
 enum class Sharing : uint8_t {
-  None,     // nothing does, while the function runs and afterwards
-  Captured, // nothing does while the function runs
-  Shared,   // something may
+  None,     // none, while the function runs and afterwards
+  Captured, // none while the function runs
+  Shared,   // any
 };
 
-/// Says that a pointer parameter is valid for `size` bytes.
+/// Declares that a pointer parameter is valid for `size` bytes.
 void describePointer(FuncOp function, unsigned index, uint64_t size, unsigned alignment,
                      Sharing sharing) {
   mlir::Builder builder(function.getContext());
@@ -157,11 +157,11 @@ void addStateParameter(mlir::ModuleOp module) {
     bool isState = ir::attr::state.isOn(function) || function.getSymName() == "rtsl_run_state";
     for (auto [index, type] : llvm::enumerate(function.getArgumentTypes()))
       if (auto address = llvm::dyn_cast<ir::PtrType>(type))
-        // Arguments in memory are copies of the caller's (in) or temporaries (out, inout, results),
-        // or a frame.
+        // Arguments in memory are copies by the caller (in), temporaries (out, inout, results), or
+        // a frame.
         describePointer(function, index, ir::sizeInBytes(address.getPointee()), ir::memoryAlignment,
                         isState && pointsToFrames ? Sharing::Shared : Sharing::None);
-    // The runtime may keep the state: a child ray could know its parent.
+    // The runtime may store the pointer: a child ray could refer to its parent.
     (void)function.insertArgument(0, pointer, {}, function.getLoc());
     describePointer(function, 0, sizeof(RtslState), alignof(RtslState), Sharing::Captured);
   }
@@ -199,11 +199,11 @@ void returnBoolsAsNumbers(mlir::ModuleOp module) {
     mlir::OpBuilder builder(call->getContext());
     builder.setInsertionPointAfter(call);
     for (mlir::Value result : call.getResults()) {
-      const mlir::Type wanted = result.getType();
-      result.setType(returnedType(wanted));
-      if (result.getType() == wanted)
+      const mlir::Type original = result.getType();
+      result.setType(returnedType(original));
+      if (result.getType() == original)
         continue;
-      auto bools = mlir::arith::TruncIOp::create(builder, call.getLoc(), wanted, result);
+      auto bools = mlir::arith::TruncIOp::create(builder, call.getLoc(), original, result);
       result.replaceAllUsesExcept(bools, bools);
     }
   });
@@ -221,20 +221,20 @@ void declareNullRecord(mlir::ModuleOp module) {
                          LLVM::Linkage::Internal, nullRecord, builder.getI32IntegerAttr(0));
 }
 
-/// One global for all tables with the same words. The second of a name has `.1` behind it, and so
-/// on.
+/// One global for all tables with the same words. Later ones with the same name are numbered, `.1`
+/// and so on.
 void declareTables(mlir::ModuleOp module) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
   llvm::DenseMap<mlir::Attribute, mlir::StringAttr> symbols; // by words
   mlir::SymbolTable taken(module);
-  llvm::StringMap<unsigned> last; // number behind a name
+  llvm::StringMap<unsigned> last; // the last number of a name
   module.walk([&](ir::TableOp table) {
     mlir::StringAttr &symbol = symbols[table.getWordsAttr()];
     if (!symbol) {
-      const std::string wanted = "constant." + table.getName().str();
-      std::string name = wanted;
+      const std::string prefix = "constant." + table.getName().str();
+      std::string name = prefix;
       while (taken.lookup(name))
-        name = wanted + "." + std::to_string(++last[wanted]);
+        name = prefix + "." + std::to_string(++last[prefix]);
       symbol = builder.getStringAttr(name);
       const auto count = static_cast<int64_t>(table.getWords().size());
       auto words = mlir::DenseIntElementsAttr::get(
@@ -276,13 +276,13 @@ LogicalResult convertOperations(mlir::ModuleOp module) {
 }
 
 //===----------------------------------------------------------------------===//
-// The whole
+// The pass
 //===----------------------------------------------------------------------===//
 
 struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir::ModuleOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(ConvertToLlvm)
   llvm::StringRef getArgument() const override { return "rtsl-to-llvm"; }
-  llvm::StringRef getDescription() const override { return "level 2 becomes the LLVM dialect"; }
+  llvm::StringRef getDescription() const override { return "converts level 2 to the LLVM dialect"; }
   void getDependentDialects(mlir::DialectRegistry &registry) const override {
     registry.insert<LLVM::LLVMDialect, mlir::arith::ArithDialect, mlir::ub::UBDialect>();
   }
@@ -310,7 +310,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     ir::attr::holdsPayloads.removeFrom(module);
   }
 
-  /// What holds for every function: it throws nothing. Our own attributes have done their work.
+  /// Attributes of every function: it throws nothing. Our own attributes are removed.
   static void finish(LLVM::LLVMFuncOp function) {
     function.setNoUnwind(true);
     if (ir::attr::separate.isOn(function))

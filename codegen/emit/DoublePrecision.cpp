@@ -1,4 +1,4 @@
-//===- DoublePrecision.cpp - what --fp=double changes ---------------------===//
+//===- DoublePrecision.cpp - arithmetic for --fp=double -------------------===//
 #include "codegen/emit/DoublePrecision.h"
 
 #include "math/Refraction.h"
@@ -22,7 +22,7 @@ double inverseSquareRoot(double x) {
   return 1.0 / std::sqrt(x);
 }
 
-/// Sine and cosine of pi x. All but the product with pi and what follows it is exact.
+/// Sine and cosine of pi x. All operations up to the product with pi are exact.
 double sineOfPi(double x) {
   double turn = std::remainder(x, 2.0);
   if (std::fabs(turn) > 0.5)
@@ -107,7 +107,7 @@ llvm::Type *doubled(llvm::Type *type) {
   return vector ? llvm::VectorType::get(scalar, vector->getElementCount()) : scalar;
 }
 
-/// Intrinsics that exist for double as for float, all of whose operands are of their own type.
+/// Intrinsics that exist for double and float, with all operands of the same type.
 bool isArithmetic(llvm::Intrinsic::ID intrinsic) {
   switch (intrinsic) {
   case llvm::Intrinsic::ceil:
@@ -130,19 +130,19 @@ bool isArithmetic(llvm::Intrinsic::ID intrinsic) {
   }
 }
 
-/// The function that is called, whatever type the call takes it for.
+/// The called function, regardless of the type in the call.
 llvm::Function *calleeOf(const llvm::CallInst &call) {
   return llvm::dyn_cast<llvm::Function>(call.getCalledOperand());
 }
 
-/// Whether a call is of a shader's function, whose numbers are passed on as double.
+/// Whether the callee is a function of a shader, whose numbers are passed as double.
 bool isWidenedCall(const llvm::CallInst &call) {
   const llvm::Function *callee = calleeOf(call);
   return callee && callee->getFunctionType() != call.getFunctionType();
 }
 
-/// A function whose parameters and results of single precision, if it has any, are double. What
-/// runtime and shaders call of one another passes no numbers in this direction.
+/// The function with double in place of single precision in its signature; the function itself if
+/// it has none. No numbers of functions between runtime and shaders are affected.
 llvm::Function *withDoubleSignature(llvm::Function &function) {
   llvm::FunctionType *type = function.getFunctionType();
   auto widened = [](llvm::Type *part) { return isSingle(part) ? doubled(part) : part; };
@@ -167,7 +167,8 @@ llvm::Function *withDoubleSignature(llvm::Function &function) {
   return result;
 }
 
-/// One function: its values that become double, and the same values single for whom else uses them.
+/// Widens one function: the values that become double, and the same values rounded to single for
+/// other uses.
 class Widening {
 public:
   explicit Widening(llvm::Function &function) : function(function) {}
@@ -192,7 +193,7 @@ public:
   }
 
 private:
-  /// Whether the result is arithmetic, or chosen, taken apart or joined without being touched.
+  /// Whether the operation is arithmetic, or selects, extracts or combines values.
   static bool computes(const llvm::Instruction &instruction) {
     if (!isSingle(instruction.getType()))
       return false;
@@ -205,14 +206,14 @@ private:
                      llvm::FPTruncInst>(instruction);
   }
 
-  /// What hid a value, and conversions between what is double on both sides by now.
+  /// A hidden value, or a conversion between types that are both double by now.
   static bool isIdentity(const llvm::Instruction &instruction) {
     return llvm::isa<llvm::FreezeInst>(instruction) ||
            (llvm::isa<llvm::FPExtInst, llvm::FPTruncInst>(instruction) &&
             instruction.getType() == instruction.getOperand(0)->getType());
   }
 
-  /// Whether a user takes double operands though its own result is none.
+  /// Whether a user takes double operands though its own result is not widened.
   static bool takesDouble(const llvm::Instruction &user) {
     if (const auto *call = llvm::dyn_cast<llvm::CallInst>(&user))
       return call->getIntrinsicID() == llvm::Intrinsic::fptosi_sat ||
@@ -241,7 +242,7 @@ private:
     llvm::Type *type = call->getArgOperand(0)->getType();
     if (const std::string name = doubleNameOf(*call); !name.empty()) {
       llvm::SmallVector<llvm::Type *> operands;
-      for (const llvm::Use &argument : call->args()) // wide by now, but for integers
+      for (const llvm::Use &argument : call->args()) // widened by now, except integers
         operands.push_back(argument->getType());
       llvm::FunctionCallee callee =
           module.getOrInsertFunction(name, llvm::FunctionType::get(type, operands, false),
@@ -256,7 +257,7 @@ private:
     }
   }
 
-  /// Whether a value was single before: a result that is computed, or a parameter.
+  /// Whether a value was single before: an arithmetic result or a parameter.
   bool isWide(llvm::Value &value) const {
     if (auto *instruction = llvm::dyn_cast<llvm::Instruction>(&value))
       return computed.contains(instruction);
@@ -272,7 +273,7 @@ private:
     llvm::Value *&result = widened[value];
     if (!result) {
       llvm::IRBuilder<> builder(function.getContext());
-      moveBehind(builder, *value);
+      moveAfter(builder, *value);
       result = builder.CreateFPExt(value, doubled(value->getType()));
     }
     return result;
@@ -286,13 +287,13 @@ private:
       if (auto *vector = llvm::dyn_cast<llvm::VectorType>(value.getType()))
         type = llvm::VectorType::get(type, vector->getElementCount());
       llvm::IRBuilder<> builder(function.getContext());
-      moveBehind(builder, value);
+      moveAfter(builder, value);
       result = builder.CreateFPTrunc(&value, type);
     }
     return result;
   }
 
-  void moveBehind(llvm::IRBuilder<> &builder, llvm::Value &value) {
+  void moveAfter(llvm::IRBuilder<> &builder, llvm::Value &value) {
     if (auto *instruction = llvm::dyn_cast<llvm::Instruction>(&value))
       builder.SetInsertPoint(instruction->getParent(), *instruction->getInsertionPointAfterDef());
     else

@@ -1,4 +1,4 @@
-//===- FastMath.cpp - what --fp=fast changes ------------------------------===//
+//===- FastMath.cpp - arithmetic for --fp=fast ----------------------------===//
 #include "codegen/emit/FastMath.h"
 
 #include "llvm/IR/InstIterator.h"

@@ -1,4 +1,4 @@
-//===- FastMath.h - what --fp=fast changes --------------------------------===//
+//===- FastMath.h - arithmetic for --fp=fast ------------------------------===//
 #pragma once
 
 namespace llvm {
@@ -7,10 +7,10 @@ class Module;
 
 namespace rtsl::codegen {
 
-/// Lets LLVM reassociate and fuse the arithmetic of what the module defines, take a quotient for a
-/// product with a reciprocal and forget the sign of a zero; elementary functions become those of
-/// math/Fast.h. Infinities and NaNs keep their meaning. Call it while shader code is
-/// alone in the module: device code that is linked later stays strict, traversal above all.
+/// Lets LLVM reassociate and fuse the arithmetic of the functions that the module defines, replace
+/// a quotient by a product with a reciprocal and ignore the sign of a zero; elementary functions
+/// become those of math/Fast.h. Infinities and NaNs keep their meaning. Must run while the module
+/// contains only shader code: device code that is linked later, above all traversal, stays strict.
 void relaxArithmetic(llvm::Module &module);
 
 } // namespace rtsl::codegen

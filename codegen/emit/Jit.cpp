@@ -21,20 +21,20 @@ struct Jit::Implementation {
   std::unique_ptr<orc::ExecutionSession> session;
   std::unique_ptr<orc::ObjectLinkingLayer> linker;
   std::map<std::string, void *> addresses;
-  std::string messages; // what went wrong on the way, beside what is returned
+  std::string messages; // errors that are reported beside the returned one
   std::shared_ptr<StackUse> stackUse;
 
   llvm::Error findAddresses(orc::JITDylib &library, const orc::SymbolNameSet &exports);
   ~Implementation() {
     if (session)
-      llvm::consumeError(session->endSession()); // nothing is left to say it to
+      llvm::consumeError(session->endSession()); // no session is left to report it to
   }
 };
 
 Jit::Jit() : implementation(std::make_unique<Implementation>()) {}
 Jit::~Jit() = default;
 
-/// What code generation calls of its own accord.
+/// Functions that generated code calls implicitly.
 static const HostSymbol compilerSymbols[] = {
     {"memcpy", reinterpret_cast<void *>(&std::memcpy)},
     {"memmove", reinterpret_cast<void *>(&std::memmove)},
@@ -59,7 +59,7 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::unique_ptr<llvm::LLVMConte
   return create(std::move(parts), symbols);
 }
 
-/// All symbols at once: a search for each alone takes longer than its function.
+/// All symbols at once: a separate lookup of each takes longer than compiling its function.
 llvm::Error Jit::Implementation::findAddresses(orc::JITDylib &library,
                                                const orc::SymbolNameSet &exports) {
   auto found =
@@ -81,7 +81,7 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::vector<ObjectCode> parts,
   Implementation &self = *result->implementation;
 
   // No threads, no platform with its own run-time modules, no search in the process: a small
-  // program is up in milliseconds, and calls only what it is given.
+  // program is loaded in milliseconds, and calls only the given functions.
   auto process = orc::SelfExecutorProcessControl::Create(
       nullptr, std::make_unique<orc::InPlaceTaskDispatcher>());
   if (!process)
@@ -99,7 +99,7 @@ llvm::Expected<std::unique_ptr<Jit>> Jit::create(std::vector<ObjectCode> parts,
   orc::SymbolMap defined;
   const auto define = [&](const HostSymbol &symbol) {
     const orc::SymbolStringPtr name = self.session->intern(symbol.name);
-    if (!exports.contains(name)) // what the program defines itself is its own
+    if (!exports.contains(name)) // symbols that the program does not define itself
       defined[name] = {orc::ExecutorAddr::fromPtr(symbol.address),
                        llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
   };

@@ -16,12 +16,11 @@ struct HostSymbol {
   void *address = nullptr;
 };
 
-/// Machine code in this process; the code lives as long as the object. Beside `symbols` the code
-/// may call what compilers take for granted (memcpy, memset, ...) and nothing else.
+/// Machine code in this process; it exists as long as the object. Besides `symbols`, the code may
+/// call only functions that compilers use implicitly (memcpy, memset, ...).
 class Jit {
 public:
-  /// Links parts of a program, which may call one another. An error names the symbols that nobody
-  /// defines.
+  /// Links parts of a program, which may call one another. An error names the undefined symbols.
   static llvm::Expected<std::unique_ptr<Jit>> create(std::vector<ObjectCode> parts,
                                                      const std::vector<HostSymbol> &symbols);
 
@@ -35,7 +34,7 @@ public:
   /// Address of an exported function; null if there is none of that name.
   void *lookup(const std::string &name) const;
 
-  /// Of all that is linked.
+  /// The stack use of all linked parts.
   std::shared_ptr<const StackUse> stackUse() const;
 
 private:

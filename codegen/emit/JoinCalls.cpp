@@ -15,7 +15,7 @@ namespace rtsl::codegen {
 
 namespace {
 
-/// Instructions before anything is simplified. The examples have 5,000 to 40,000.
+/// Instructions before optimisation. The examples have 5,000 to 40,000.
 constexpr std::uint64_t mostInstructions = 150'000;
 
 bool takesAddress(const llvm::Function &function) {
@@ -25,8 +25,8 @@ bool takesAddress(const llvm::Function &function) {
   });
 }
 
-/// Functions of the device code that are left out of line because they seldom run; a program's own
-/// are marked so because there are many of them.
+/// Functions of the device code that rarely run are left out of line; those of a program that are,
+/// because there are many of them.
 bool mayBeJoined(const llvm::Function &function) {
   return !function.hasFnAttribute(llvm::Attribute::NoInline) ||
          function.hasFnAttribute(llvm::Attribute::Cold);
@@ -34,9 +34,9 @@ bool mayBeJoined(const llvm::Function &function) {
 
 class Sizes {
 public:
-  /// Instructions of a function with all that becomes part of it, or more than mostInstructions.
+  /// Instructions of a function with all callees that are inlined, or more than mostInstructions.
   std::uint64_t of(const llvm::Function &function) {
-    // of a function that calls itself
+    // for a recursive function
     const auto [known, isNew] = sizes.try_emplace(&function, tooMany);
     if (!isNew)
       return known->second;
@@ -71,7 +71,7 @@ bool joinCalls(llvm::Module &module) {
   Sizes sizes;
   for (llvm::Function &function : module) {
     if (function.isDeclaration()) {
-      // What is compiled elsewhere takes the address, so the variable stays in memory anyway.
+      // Code outside of the module takes the address, so the variable stays in memory anyway.
       if (!function.isIntrinsic() && takesAddress(function) && !function.use_empty())
         return false;
       continue;

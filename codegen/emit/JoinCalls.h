@@ -1,8 +1,9 @@
 //===- JoinCalls.h - a program as one function ----------------------------===//
 //
-// A megakernel has the state of its current ray in a local variable, and hands its address to every
-// function that a state calls. LLVM makes values of such a variable, which registers can hold, only
-// where no call is left that takes the address. So these calls are inlined, whatever they cost.
+// A megakernel has the state of its current ray in a local variable, and passes its address to
+// every function that a state calls. LLVM promotes such a variable to values, which can be in
+// registers, only if no call that takes the address remains. So these calls are inlined, regardless
+// of cost.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,14 +14,14 @@ class Module;
 
 namespace rtsl::codegen {
 
-/// Functions read the launch from their ray's state as what never changes. Of one ray that is so;
-/// in the variable of a machine, which one ray after the other uses, the load must not move in
-/// front of the store.
+/// The launch pointer in a ray's state is normally loaded as invariant. That holds for one ray; in
+/// the state variable of a machine, which is reused for one ray after the other, the load must not
+/// move before the store.
 void readLaunchAsVariable(llvm::Module &module);
 
-/// Marks the functions that take addresses so that LLVM inlines all calls of them, before anything
-/// else. Not in programs with functions that stay functions (codegen/ir/Separate.h), and not in
-/// those that would become larger than LLVM handles in reasonable time. Returns whether anything is
+/// Marks the functions that take addresses so that LLVM inlines all calls of them, before any other
+/// pass. Does nothing in programs with separate functions (codegen/ir/Separate.h), and in those
+/// that would become larger than LLVM handles in reasonable time. Returns whether any function is
 /// to be inlined.
 bool joinCalls(llvm::Module &module);
 

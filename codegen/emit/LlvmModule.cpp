@@ -1,4 +1,4 @@
-//===- LlvmModule.cpp - LLVM IR and what is done with it ------------------===//
+//===- LlvmModule.cpp - LLVM IR: translation, linking, optimisation -------===//
 #include "codegen/emit/LlvmModule.h"
 
 #include "codegen/emit/JoinCalls.h"
@@ -40,7 +40,7 @@ void registerLlvmTranslation(mlir::DialectRegistry &registry) {
 }
 
 //===----------------------------------------------------------------------===//
-// The machine
+// The target
 //===----------------------------------------------------------------------===//
 
 static llvm::CodeGenOptLevel codeGenLevel(unsigned optimization) {
@@ -56,7 +56,7 @@ static llvm::CodeGenOptLevel codeGenLevel(unsigned optimization) {
   }
 }
 
-/// "+avx2,-avx512f,..." for the processor that this runs on.
+/// "+avx2,-avx512f,..." for the host processor.
 static std::string hostFeatures() {
   llvm::SubtargetFeatures features;
   for (const auto &feature : llvm::sys::getHostCPUFeatures())
@@ -79,7 +79,7 @@ createTargetMachine(const llvm::Triple &triple, const std::string &cpu, const st
       triple, cpu, features, targetOptions, llvm::Reloc::PIC_, llvm::CodeModel::Small,
       codeGenLevel(optimization), /*JIT=*/true));
   if (!machine)
-    return llvm::createStringError("no machine for `%s`", triple.str().c_str());
+    return llvm::createStringError("no target machine for `%s`", triple.str().c_str());
   return machine;
 }
 
@@ -109,9 +109,9 @@ createTargetMachine(const MachineOptions &options) {
                              options.hostCpu ? hostFeatures() : "", options.optimization);
 }
 
-/// Functions are inlined only where their features allow it, so all of them say the same; also that
-/// there is no C library whose functions could be recognised, as is said of the device code.
-/// Estimates of reciprocals would make a NaN of 1 / 0, with FloatingPoint::Fast too.
+/// Functions are inlined only if their features allow it, so all of them get the same; likewise the
+/// attribute, as in the device code, that there is no C library whose functions could be
+/// recognised. Estimates of reciprocals would make a NaN of 1 / 0, with FloatingPoint::Fast too.
 static void setProcessor(llvm::Module &module, llvm::StringRef cpu, llvm::StringRef features) {
   for (llvm::Function &function : module) {
     if (function.isDeclaration())
@@ -137,7 +137,7 @@ llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp mod
   std::unique_ptr<llvm::Module> result =
       mlir::translateModuleToLLVMIR(module, context, module.getName().value_or("shaders"));
   if (!result)
-    return llvm::createStringError("the module has no translation to LLVM IR");
+    return llvm::createStringError("the module cannot be translated to LLVM IR");
   result->setDataLayout(machine.createDataLayout());
   result->setTargetTriple(machine.getTargetTriple());
   setProcessor(*result, machine.getTargetCPU(), machine.getTargetFeatureString());
@@ -146,7 +146,7 @@ llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp mod
 
 namespace {
 
-/// Keeps what the linker has to say, for it reports through the context and returns a mere bool.
+/// Collects the messages of the linker, which reports through the context and returns only a bool.
 struct CollectMessages : llvm::DiagnosticHandler {
   explicit CollectMessages(std::string &messages) : messages(messages) {}
   bool handleDiagnostics(const llvm::DiagnosticInfo &info) override {
@@ -171,7 +171,7 @@ void defineConstant(llvm::Module &module, const std::string &name, uint32_t valu
   builder.CreateRet(builder.getInt32(value));
 }
 
-/// Read lazily: a function that nobody calls is never looked at.
+/// Loaded lazily: functions that are never called are never parsed.
 static llvm::Error linkBitcode(llvm::Module &module, std::string_view bitcode,
                                llvm::ArrayRef<std::string> exports) {
   llvm::LLVMContext &context = module.getContext();
@@ -185,7 +185,7 @@ static llvm::Error linkBitcode(llvm::Module &module, std::string_view bitcode,
   std::string messages;
   std::unique_ptr<llvm::DiagnosticHandler> previous = context.getDiagnosticHandler();
   context.setDiagnosticHandler(std::make_unique<CollectMessages>(messages));
-  // An exported function of the device code is needed though the module does not call it.
+  // Exported functions of the device code are needed even if the module does not call them.
   for (const std::string &name : exports)
     if (llvm::Function *function = (*device)->getFunction(name);
         function && !function->isDeclaration() && !module.getFunction(name))
@@ -194,7 +194,7 @@ static llvm::Error linkBitcode(llvm::Module &module, std::string_view bitcode,
   bool failed = llvm::Linker::linkModules(module, std::move(*device), llvm::Linker::LinkOnlyNeeded);
   context.setDiagnosticHandler(std::move(previous));
   if (failed)
-    return llvm::createStringError("device code does not fit: %s", messages.c_str());
+    return llvm::createStringError("device code cannot be linked: %s", messages.c_str());
   return llvm::Error::success();
 }
 
@@ -220,10 +220,10 @@ llvm::Error linkDeviceCode(llvm::Module &module, llvm::ArrayRef<std::string_view
   return llvm::Error::success();
 }
 
-/// Takes vectors apart, memory included. A vec3 in a register of four lanes would drag along a lane
-/// with whatever lay behind it in memory, and where that is a denormal number each product costs
-/// over a hundred cycles; its load would be 16 bytes wide and wait for the three stores of 4 that
-/// wrote it. LLVM's SLP pass joins again what fills a register.
+/// Splits vectors, also in memory. A vec3 in a register of four lanes would compute on a lane with
+/// whatever follows it in memory, and if that is a denormal number each product costs over a
+/// hundred cycles; its load would be 16 bytes wide and wait for the three stores of 4 that wrote
+/// it. LLVM's SLP pass combines scalars that fill a register.
 static void addScalarization(llvm::PassBuilder &builder) {
   builder.registerPipelineStartEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level) {
@@ -235,16 +235,17 @@ static void addScalarization(llvm::PassBuilder &builder) {
       });
 }
 
-/// Leaves out the pass that loads 16 bytes where it knows that so many are there, to use one or two
-/// lanes of them: that load, too, waits for the narrow stores that wrote them, and meets denormals.
+/// Disables the pass that widens a load to 16 bytes if that many are known to be valid, to use one
+/// or two lanes of them: that load, too, waits for the narrow stores that wrote them, and may load
+/// denormals.
 static void keepLoadsNarrow(llvm::PassInstrumentationCallbacks &callbacks) {
   callbacks.registerShouldRunOptionalPassCallback(
       [](llvm::StringRef pass, llvm::Any) { return pass != "VectorCombinePass"; });
 }
 
-/// Calls that take addresses disappear, and the variables whose addresses they took become values.
-/// Twice, for functions that are passed to others are called directly once these are inlined, and
-/// addresses lie in variables themselves.
+/// Inlines calls that take addresses, and promotes the variables whose addresses they took. Twice,
+/// because functions that are passed to others are called directly once these are inlined, and
+/// addresses are in variables themselves.
 static void addJoining(llvm::PassBuilder &builder) {
   builder.registerPipelineStartEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel) {

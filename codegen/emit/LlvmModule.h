@@ -1,4 +1,4 @@
-//===- LlvmModule.h - LLVM IR and what is done with it --------------------===//
+//===- LlvmModule.h - LLVM IR: translation, linking, optimisation ---------===//
 //
 // The steps from the LLVM dialect to optimised LLVM IR, each a function:
 //
@@ -7,7 +7,7 @@
 //   linkDeviceCode(*module, runtime::deviceBitcode(), exports);
 //   optimize(*module, *machine, options);
 //
-// Then printLlvm shows it, Jit.h runs it, and Ptx.h makes it PTX.
+// Afterwards printLlvm prints it, Jit.h runs it, and Ptx.h prints it as PTX.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -35,8 +35,7 @@ namespace rtsl::codegen {
 
 struct MachineOptions {
   unsigned optimization = 2; // 0 to 3, as clang's -O
-  /// Code for the processor that this runs on, rather than for every x86-64-v3. Results are the
-  /// same.
+  /// Code for the host processor, rather than for every x86-64-v3. Results are the same.
   bool hostCpu = false;
   /// Code for an NVIDIA GPU, rather than for the host: "sm_75" and the like. Empty: the host.
   std::string gpu;
@@ -47,26 +46,26 @@ struct MachineOptions {
   FloatingPoint floatingPoint = FloatingPoint::Strict;
 };
 
-/// What MLIR needs to be translated; call before the context is made, or append the registry to it.
+/// Registers the translation from MLIR; call before the context is made, or append the registry to
+/// it.
 void registerLlvmTranslation(mlir::DialectRegistry &registry);
 
-/// Nothing is fused that the program does not fuse, or allow to be fused.
+/// No operations are fused unless the program fuses them, or allows it.
 llvm::Expected<std::unique_ptr<llvm::TargetMachine>>
 createTargetMachine(const MachineOptions &options);
 
-/// Translates a module of the LLVM dialect; every function gets the attributes of the machine's
+/// Translates a module of the LLVM dialect; every function gets the attributes of the target
 /// processor.
 llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp module,
                                                               llvm::LLVMContext &context,
                                                               const llvm::TargetMachine &machine);
 
-/// Defines `uint32_t name(const RtslLaunch *)`, which gives `value` whatever the launch is. Before
-/// linkDeviceCode, it takes the place of a weak definition there.
+/// Defines `uint32_t name(const RtslLaunch *)`, which always returns `value`. If called before
+/// linkDeviceCode, it replaces a weak definition there.
 void defineConstant(llvm::Module &module, const std::string &name, uint32_t value);
 
-/// Links those functions of `bitcodes`, one after the other, that are called by what is there
-/// already. After that everything is internal but `exports`: names of functions that stay visible.
-/// A name that is not defined is no error.
+/// Links the functions of `bitcodes`, one after the other, that the module calls. Afterwards all
+/// functions except `exports` are internal. A name in `exports` may be undefined.
 llvm::Error linkDeviceCode(llvm::Module &module, llvm::ArrayRef<std::string_view> bitcodes,
                            llvm::ArrayRef<std::string> exports);
 

@@ -28,13 +28,13 @@ bool isBool(mlir::Type type) {
   return mlir::getElementTypeOrSelf(type).isInteger(1);
 }
 
-/// How a value type lies in memory: bools as i32.
+/// The type of a value in memory: bools are i32.
 mlir::Type memoryType(const mlir::TypeConverter &converter, mlir::Type type) {
   return isBool(type) ? ir::intLike(type) : converter.convertType(type);
 }
 
-/// Whether what lies at `address` stays as it is while the program runs: it is part of a constant,
-/// or of a member or of a buffer, and the code does not belong to a constructor.
+/// Whether the memory at `address` does not change while the program runs: it is part of a
+/// constant, a member or a buffer, and the code does not belong to a constructor.
 bool isInvariant(Value address) {
   while (mlir::Operation *op = address.getDefiningOp()) {
     if (llvm::isa<ir::TableOp>(op))
@@ -72,8 +72,7 @@ void fillWithZeros(mlir::OpBuilder &builder, Location location, Value address, u
 // Variables, loads, stores
 //===----------------------------------------------------------------------===//
 
-/// A variable that was not promoted takes room on the stack, and is zero each time that control
-/// comes to it.
+/// A variable that was not promoted is a stack slot, and is zero each time that control reaches it.
 struct ConvertVar : ConvertOpToLLVMPattern<ir::VarOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::VarOp op, OpAdaptor,
@@ -189,7 +188,7 @@ uint32_t stateOffset(llvm::StringRef name) {
 #include "language/StateVariables.def"
   if (name == "hitError")
     return offsetof(RtslState, hitError);
-  llvm_unreachable("the verifier knows the names");
+  llvm_unreachable("the verifier checks the names");
 }
 
 struct ConvertTable : ConvertOpToLLVMPattern<ir::TableOp> {
@@ -272,7 +271,7 @@ struct ConvertBufferElement : ConvertOpToLLVMPattern<ir::BufferElementOp> {
     bool invariant = isInvariant(op.getBuffer());
     Value buffer = adaptor.getBuffer();
 
-    // The two halves of the address lie in order, so one load gets both.
+    // The two halves of the address are adjacent, so one load reads both.
     static_assert(offsetof(RtslBuffer, addressHigh) == offsetof(RtslBuffer, addressLow) + 4);
     Value base = loadFrom(
         rewriter, location, buffer.getType(),
@@ -333,8 +332,8 @@ struct ConvertEqualRef : ConvertOpToLLVMPattern<ir::EqualRefOp> {
   }
 };
 
-/// The first word of the record. The null reference has a record of its own with 0 there: no branch
-/// is needed.
+/// The first word of the record. The null reference has a record of its own, where it is 0: no
+/// branch is needed.
 struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::ClassIdOp op, OpAdaptor adaptor,
@@ -344,7 +343,7 @@ struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
     Value field = launchAddress(rewriter, location, offsetof(RtslLaunch, records));
     Value records = LLVM::LoadOp::create(rewriter, location, field.getType(), field,
                                          alignof(void *), false, false, /*isInvariant=*/true);
-    // Not `inbounds`: there need be no records at all where the reference is null.
+    // Not `inbounds`: if the reference is null there may be no records at all.
     Value record = LLVM::GEPOp::create(
         rewriter, location, records.getType(), rewriter.getI8Type(), records,
         llvm::ArrayRef<LLVM::GEPArg>{widen(rewriter, location, adaptor.getObject())});

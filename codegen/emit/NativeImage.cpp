@@ -1,7 +1,7 @@
-//===- NativeImage.cpp - machine code that runs wherever it lies ----------===//
+//===- NativeImage.cpp - position-independent machine code ----------------===//
 //
-// An object file goes through LLVM's JITLink, which lays it out, takes away what no entry reaches
-// and fills in distances; but the memory is a vector of ours and never runs here.
+// JITLink lays out an object file, removes code that no entry point reaches and fills in relative
+// addresses; but the memory is our own vector and is never executed here.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/emit/NativeImage.h"
@@ -26,12 +26,12 @@ namespace {
 
 LLVM_ENABLE_BITMASK_ENUMS_IN_NAMESPACE();
 
-/// Where the linker believes the code to lie: beyond 4 GiB, so that it does not shorten a distance
-/// to an absolute address.
+/// The address that the linker assumes for the code: above 4 GiB, so that it does not replace a
+/// relative address by an absolute one.
 constexpr std::uint64_t linkAddress = 0x100000000000;
 constexpr std::uint64_t segmentAlignment = 64;
 
-/// What is linked, and what went wrong on the way.
+/// The linked code, or the error.
 struct Result {
   NativeImage image;
   llvm::Error error = llvm::Error::success();
@@ -49,7 +49,7 @@ public:
     for (auto &[group, segment] : layout.segments()) {
       const std::uint64_t size = segment.ContentSize + segment.ZeroFillSize;
       if (size != 0 && (group.getMemProt() & orc::MemProt::Write) != orc::MemProt::None)
-        return whenDone(llvm::createStringError("the program has data that it writes"));
+        return whenDone(llvm::createStringError("the program has writable data"));
       const std::uint64_t alignment = std::max(segment.Alignment.value(), segmentAlignment);
       const std::uint64_t start = (end + alignment - 1) / alignment * alignment;
       segment.Addr = orc::ExecutorAddr(linkAddress + start);
@@ -72,7 +72,7 @@ public:
   }
 
 private:
-  /// The bytes stay where they are.
+  /// The memory is not moved or protected.
   struct Kept : InFlightAlloc {
     void abandon(OnAbandonedFunction whenDone) override { whenDone(llvm::Error::success()); }
     void finalize(OnFinalizedFunction whenDone) override {
@@ -102,7 +102,7 @@ public:
     std::string list;
     for (const std::string &name : names)
       list += " " + name;
-    then->run(llvm::createStringError("nobody defines%s", list.c_str()));
+    then->run(llvm::createStringError("undefined symbols:%s", list.c_str()));
   }
 
   llvm::Error notifyResolved(jitlink::LinkGraph &graph) override {
@@ -115,7 +115,7 @@ public:
     return llvm::Error::success();
   }
 
-  /// Only what entries reach is kept.
+  /// Keeps only code that entry points reach.
   jitlink::LinkGraphPassFunction getMarkLivePass(const llvm::Triple &) const override {
     return [this](jitlink::LinkGraph &graph) {
       for (const std::string &entry : entries)
@@ -138,7 +138,7 @@ private:
     return nullptr;
   }
 
-  /// Only differences of places inside of the image do not depend on where it lies.
+  /// Only differences of addresses inside of the code do not depend on where it is loaded.
   static llvm::Error refuseAbsoluteAddresses(jitlink::LinkGraph &graph) {
     namespace x86 = jitlink::x86_64;
     for (jitlink::Block *block : graph.blocks())

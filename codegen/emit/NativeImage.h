@@ -1,7 +1,7 @@
-//===- NativeImage.h - machine code that runs wherever it lies ------------===//
+//===- NativeImage.h - position-independent machine code ------------------===//
 //
-// Code that was compiled ahead, as one block of bytes: linked, so that nothing is left to be done
-// but to make it executable. It refers to nothing outside, and to itself by distances alone.
+// Code that was compiled ahead of time, as one block of bytes: already linked, so that it only has
+// to be made executable. It refers to nothing outside, and to itself only by relative addresses.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -22,12 +22,12 @@ namespace rtsl::codegen {
 
 struct NativeImage {
   std::vector<std::uint8_t> bytes;
-  std::vector<std::uint64_t> entries; // where the functions that were asked for begin
+  std::vector<std::uint64_t> entries; // offsets of the requested functions
   std::uint64_t stackBytes = 0;       // of the calling thread, at most
 };
 
-/// Compiles an optimised module for the host. An error if it calls what it does not define, has
-/// data that it writes, or lacks an entry.
+/// Compiles an optimised module for the host. It is an error if the module calls undefined
+/// functions, has writable data, or lacks an entry point.
 llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMachine &machine,
                                             llvm::ArrayRef<std::string> entries);
 

@@ -1,4 +1,4 @@
-//===- NumberPatterns.cpp - arithmetic of our own, to LLVM ----------------===//
+//===- NumberPatterns.cpp - arithmetic of the dialect to LLVM -------------===//
 #include "codegen/emit/Patterns.h"
 #include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/ir/Attributes.h"
@@ -17,7 +17,7 @@ using mlir::Value;
 
 namespace {
 
-/// One call a component.
+/// One call for each component.
 struct ConvertElementary : ConvertOpToLLVMPattern<ir::ElementaryOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::ElementaryOp op, OpAdaptor adaptor,
@@ -48,8 +48,8 @@ struct ConvertElementary : ConvertOpToLLVMPattern<ir::ElementaryOp> {
   }
 };
 
-/// Vectors go through memory. The function is of single precision or, where arithmetic is widened,
-/// of double: then its operands are widened here, which widening the rest makes the identity.
+/// Vectors are passed in memory. The function is in single precision or, if arithmetic is widened,
+/// in double: then its operands are converted here, and widening makes the conversions identities.
 struct ConvertRefract : ConvertOpToLLVMPattern<ir::RefractOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::RefractOp op, OpAdaptor adaptor,
@@ -82,7 +82,7 @@ struct ConvertRefract : ConvertOpToLLVMPattern<ir::RefractOp> {
   }
 };
 
-/// What nothing was to know of it stays hidden until arithmetic has been widened.
+/// A hidden value stays hidden until arithmetic has been widened.
 struct ConvertHide : ConvertOpToLLVMPattern<ir::HideOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::HideOp op, OpAdaptor adaptor,
@@ -92,7 +92,7 @@ struct ConvertHide : ConvertOpToLLVMPattern<ir::HideOp> {
   }
 };
 
-/// LLVM's saturating conversions give 0 for NaN, as ours do.
+/// LLVM's saturating conversions give 0 for NaN, like the ops.
 template <typename Op>
 struct ConvertToInt : ConvertOpToLLVMPattern<Op> {
   using ConvertOpToLLVMPattern<Op>::ConvertOpToLLVMPattern;

@@ -1,4 +1,4 @@
-//===- ObjectCode.cpp - LLVM IR as machine code that is not linked yet ----===//
+//===- ObjectCode.cpp - LLVM IR as machine code before linking ------------===//
 #include "codegen/emit/ObjectCode.h"
 
 #include "llvm/IR/LegacyPassManager.h"

@@ -1,4 +1,4 @@
-//===- ObjectCode.h - LLVM IR as machine code that is not linked yet ------===//
+//===- ObjectCode.h - LLVM IR as machine code before linking --------------===//
 #pragma once
 
 #include "codegen/emit/StackUse.h"
@@ -18,12 +18,12 @@ namespace rtsl::codegen {
 
 struct ObjectCode {
   llvm::SmallVector<char, 0> bytes; // an ELF object
-  std::vector<std::string> exports; // the functions that are visible outside
+  std::vector<std::string> exports; // the externally visible functions
   StackUse stackUse;
 };
 
-/// Compiles an optimised module. Several threads may do so at once, each with a module in a context
-/// of its own.
+/// Compiles an optimised module. Several threads may do so in parallel, each with a module in its
+/// own context.
 llvm::Expected<ObjectCode> makeObjectCode(llvm::Module &module, llvm::TargetMachine &machine);
 
 } // namespace rtsl::codegen

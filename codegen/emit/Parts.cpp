@@ -1,4 +1,4 @@
-//===- Parts.cpp - large programs in parts that are compiled side by side -===//
+//===- Parts.cpp - large programs in parts that are compiled in parallel --===//
 #include "codegen/emit/Parts.h"
 
 #include "codegen/emit/ConvertToLlvm.h"
@@ -17,10 +17,10 @@ using mlir::func::FuncOp;
 
 namespace {
 
-/// Of level 2: many, compared with the device code that each part has a copy of.
+/// Operations of level 2 in a part: many, because each part has a copy of the device code.
 constexpr std::size_t operationsOfPart = 10000;
 
-/// Instructions. LLVM inlines larger functions only where a constant makes most of them go away.
+/// Instructions. LLVM inlines larger functions only if a constant eliminates most of them.
 constexpr unsigned largestInlined = 100;
 
 std::size_t operationCount(FuncOp function) {
@@ -29,7 +29,7 @@ std::size_t operationCount(FuncOp function) {
   return count;
 }
 
-/// Leaves a declaration where the function stood.
+/// Moves a function and leaves a declaration.
 void move(FuncOp function, mlir::ModuleOp part) {
   mlir::OpBuilder builder(function);
   auto declaration = llvm::cast<FuncOp>(builder.insert(function->cloneWithoutRegions()));
@@ -37,7 +37,7 @@ void move(FuncOp function, mlir::ModuleOp part) {
   function->moveBefore(part.getBody(), part.getBody()->end());
 }
 
-/// What is called by name and is not there.
+/// Declares the functions that the part calls but does not contain.
 void declareCallees(mlir::ModuleOp part, const mlir::SymbolTable &program) {
   llvm::SetVector<mlir::StringAttr> called;
   part.walk([&](mlir::func::CallOp call) { called.insert(call.getCalleeAttr().getAttr()); });
@@ -64,7 +64,7 @@ std::vector<mlir::OwningOpRef<mlir::ModuleOp>> takeParts(mlir::ModuleOp program)
   if (operations < 2 * operationsOfPart)
     return parts;
   noteWholeProgram(program);
-  const std::size_t count = operations / operationsOfPart; // all about equal
+  const std::size_t count = operations / operationsOfPart; // parts of about equal size
   std::size_t before = 0, last = count;
   for (const auto &[function, size] : separate) {
     const std::size_t index = before * count / operations;
@@ -90,8 +90,8 @@ std::vector<std::string> visibleFunctions(const llvm::Module &module) {
   return names;
 }
 
-/// Of the function and all that comes with it, which has names of its own in each module. Counted
-/// no further than is needed.
+/// Instructions of the function and of the functions that it is linked with, whose names are local
+/// to a module. The count stops when it is large enough.
 static unsigned instructionCount(const llvm::Function &function) {
   unsigned count = 0;
   llvm::SetVector<const llvm::Function *> pending;
@@ -111,7 +111,7 @@ std::vector<std::string> shareLargeFunctions(llvm::Module &part) {
   std::vector<llvm::Function *> large;
   for (llvm::Function &function : part)
     if (function.hasLocalLinkage() &&
-        function.getName().starts_with("rtsl_") && // others have no name outside
+        function.getName().starts_with("rtsl_") && // others have no external name
         !function.hasFnAttribute(llvm::Attribute::AlwaysInline) &&
         instructionCount(function) > largestInlined)
       large.push_back(&function);
@@ -119,7 +119,7 @@ std::vector<std::string> shareLargeFunctions(llvm::Module &part) {
     function->deleteBody(); // its linkage is external after that
     function->setDSOLocal(false);
   }
-  for (bool changed = true; changed;) { // what only those have called
+  for (bool changed = true; changed;) { // functions that only erased ones called
     changed = false;
     for (llvm::Function &function : llvm::make_early_inc_range(part))
       if (function.use_empty() && (function.hasLocalLinkage() || function.isDeclaration())) {

@@ -1,4 +1,4 @@
-//===- Patterns.cpp - what the patterns share -----------------------------===//
+//===- Patterns.cpp - helpers of the patterns -----------------------------===//
 #include "codegen/emit/Patterns.h"
 
 #include "codegen/ir/Layout.h"

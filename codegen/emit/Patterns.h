@@ -19,17 +19,17 @@ void addNumberPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternS
 constexpr llvm::StringLiteral nullRecord = "rtsl.null_record";
 
 //===----------------------------------------------------------------------===//
-// What the patterns share
+// Helpers of the patterns
 //===----------------------------------------------------------------------===//
 
 /// The state of the ray: the first parameter of the function around the insertion point.
 mlir::Value rayState(mlir::OpBuilder &builder);
 
-/// `base` + `bytes`, inside of the same object.
+/// `base` + `bytes`, within the same object.
 mlir::Value offsetAddress(mlir::OpBuilder &builder, mlir::Location location, mlir::Value base,
                           uint32_t bytes);
 
-/// A load with the alignment of all our memory.
+/// A load with the alignment of all memory.
 mlir::Value loadFrom(mlir::OpBuilder &builder, mlir::Location location, mlir::Type type,
                      mlir::Value address, bool isInvariant);
 
@@ -40,8 +40,8 @@ mlir::Value launchAddress(mlir::OpBuilder &builder, mlir::Location location, uin
 mlir::Value constantLike(mlir::OpBuilder &builder, mlir::Location location, mlir::Type type,
                          int64_t value);
 
-/// A slot on the stack of `size` bytes, made at the entry of the function around the insertion
-/// point, with the alignment of all our memory if none is given.
+/// A stack slot of `size` bytes, at the entry of the function around the insertion point, with the
+/// alignment of all memory if none is given.
 mlir::Value stackSlot(mlir::OpBuilder &builder, mlir::Location location, uint32_t size,
                       uint32_t alignment = 0);
 

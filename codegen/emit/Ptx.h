@@ -12,12 +12,12 @@ class TargetMachine;
 
 namespace rtsl::codegen {
 
-/// Makes the source's names show in PTX, whose identifiers have no dots: `Glass.shade` becomes
-/// `Glass_shade`. The first block of a function is named after it, so that a comment tells where
-/// its code begins even when it was inlined. Call before optimising.
+/// Adapts names to PTX, whose identifiers have no dots: `Glass.shade` becomes `Glass_shade`. The
+/// first block of a function is named after it, so that a comment marks the beginning of its code
+/// even if it was inlined. Call before optimising.
 void nameForPtx(llvm::Module &module);
 
-/// The PTX of an optimised module, which is changed on the way. `machine` is one for a GPU.
+/// The PTX of an optimised module, which is modified. `machine` is one for a GPU.
 llvm::Expected<std::string> printPtx(llvm::Module &module, llvm::TargetMachine &machine);
 
 } // namespace rtsl::codegen

@@ -1,4 +1,4 @@
-//===- RayPatterns.cpp - what rays do, to LLVM ----------------------------===//
+//===- RayPatterns.cpp - operations of rays to LLVM -----------------------===//
 #include "codegen/emit/Patterns.h"
 #include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/ir/RtslOps.h"
@@ -21,7 +21,7 @@ struct ConvertTrace : ConvertOpToLLVMPattern<ir::TraceOp> {
   LogicalResult matchAndRewrite(ir::TraceOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
     mlir::Location location = op.getLoc();
-    // Room for the largest color: what a launch's is, the program that it runs need not know.
+    // Space for the largest color: the number of components of the launch is not known here.
     Value color = stackSlot(rewriter, location, sizeof(float) * RTSL_MAX_COLOR);
     llvm::SmallVector<Value> arguments = {rayState(rewriter)};
     llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getOrigin()));
@@ -90,7 +90,7 @@ struct ConvertIlluminate : ConvertOpToLLVMPattern<ir::IlluminateOp> {
       llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getNormal()));
       arguments.push_back(adaptor.getCosAngle());
     } else {
-      // -2 is no cosine: there is no cone (Abi.h).
+      // -2 is not a cosine: there is no cone (Abi.h).
       arguments.append(3, constantLike(rewriter, location, f32, 0));
       arguments.push_back(constantLike(rewriter, location, f32, -2));
     }
@@ -115,7 +115,7 @@ Value loadStateField(mlir::OpBuilder &builder, mlir::Location location, mlir::Ty
   return loadFrom(builder, location, type, stateField(builder, location, bytes), false);
 }
 
-/// `rtsl.trace_payload`, or its first half.
+/// `rtsl.trace_payload`, or the first half of a split one.
 template <typename Op>
 struct ConvertPayloadRay : ConvertOpToLLVMPattern<Op> {
   using ConvertOpToLLVMPattern<Op>::ConvertOpToLLVMPattern;
@@ -204,7 +204,7 @@ struct ConvertRaise : ConvertOpToLLVMPattern<ir::RaiseOp> {
   }
 };
 
-/// The words of the values go to memory.
+/// The words of the values are stored to memory.
 struct ConvertPrint : ConvertOpToLLVMPattern<ir::PrintOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::PrintOp op, OpAdaptor adaptor,
@@ -229,10 +229,10 @@ struct ConvertPrint : ConvertOpToLLVMPattern<ir::PrintOp> {
 };
 
 //===----------------------------------------------------------------------===//
-// Rays that were cut
+// Split traces
 //===----------------------------------------------------------------------===//
 
-/// The two halves of a trace in a function that was split there.
+/// The two halves of a split trace.
 struct ConvertSpawn : ConvertOpToLLVMPattern<ir::SpawnOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::SpawnOp op, OpAdaptor adaptor,

@@ -1,4 +1,4 @@
-//===- RuntimeFunctions.cpp - what compiled code calls --------------------===//
+//===- RuntimeFunctions.cpp - runtime functions that compiled code calls --===//
 #include "codegen/emit/RuntimeFunctions.h"
 
 #include "codegen/ir/Attributes.h"
@@ -87,7 +87,7 @@ void declareRuntimeFunctions(mlir::ModuleOp module) {
     auto function = LLVM::LLVMFuncOp::create(builder, module.getLoc(), name, signature(op));
     function.setNoUnwind(true);
     if (llvm::isa<ir::ElementaryOp, ir::RefractOp>(op)) {
-      // A function of its arguments, or of what they point to, and nothing else.
+      // Reads only its arguments and the memory that they point to.
       llvm::SmallVector<LLVM::ModRefInfo> effects(6, LLVM::ModRefInfo::NoModRef);
       if (llvm::isa<ir::RefractOp>(op))
         effects[1] = LLVM::ModRefInfo::ModRef; // the arguments' memory

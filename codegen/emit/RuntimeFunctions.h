@@ -1,7 +1,7 @@
-//===- RuntimeFunctions.h - what compiled code calls ----------------------===//
+//===- RuntimeFunctions.h - runtime functions that compiled code calls ----===//
 //
-// Declarations, in MLIR's LLVM dialect, of the functions of runtime/device that ops become. Private
-// to codegen/emit.
+// Declarations, in MLIR's LLVM dialect, of the functions of runtime/device that ops are lowered to.
+// Private to codegen/emit.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -11,12 +11,12 @@
 
 namespace rtsl::codegen {
 
-/// Name of the function that a component of `rtsl.elementary`, or another op, is a call of; empty
-/// if it is none.
+/// Name of the function that a component of `rtsl.elementary`, or another op, calls; empty if it
+/// calls none.
 std::string runtimeFunction(mlir::Operation *op);
 
 /// Declares, once and in the order of first use, every runtime function that an op of the module
-/// becomes a call of.
+/// calls.
 void declareRuntimeFunctions(mlir::ModuleOp module);
 
 } // namespace rtsl::codegen

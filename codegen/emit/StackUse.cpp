@@ -1,4 +1,4 @@
-//===- StackUse.cpp - how much stack machine code takes --------------------===//
+//===- StackUse.cpp - the stack size of machine code ----------------------===//
 #include "codegen/emit/StackUse.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
@@ -30,8 +30,8 @@ struct Node {
   std::uint64_t frame = 0;
   std::vector<Index> callees; // each once
 
-  /// Functions of runtime/device and the switches over classes, of which a ray passes through each
-  /// once: trace, and the slots of methods. Functions of shaders have a dot in their names.
+  /// Functions of runtime/device and the switches over classes, which each ray passes once: trace,
+  /// and the slots of methods. Functions of shaders have a dot in their names.
   bool isRuntime() const {
     return name.compare(0, 5, "rtsl_") == 0 && name.find('.') == std::string::npos;
   }
@@ -53,7 +53,7 @@ struct CollectFrames : llvm::DiagnosticHandler {
 };
 
 /// Tarjan's strongly connected components of the nodes in `chosen`, callees before callers. Chains
-/// of calls may be long, so the walk keeps a stack of its own.
+/// of calls may be long, so the walk uses an explicit stack.
 std::vector<std::vector<Index>> componentsOf(const Graph &graph, const std::vector<bool> &chosen) {
   constexpr Index none = ~Index(0);
   struct Step {
@@ -117,17 +117,16 @@ std::uint64_t sumOf(const Graph &graph, const std::vector<Index> &nodes) {
   return sum;
 }
 
-/// The longest way down through the chosen nodes, where `weigh(component)` is what a component
-/// takes by itself.
+/// The heaviest path through the chosen nodes, where `weigh(component)` is the size of a component.
 template <typename Weigh>
 std::uint64_t longestPath(const Graph &graph, const std::vector<bool> &chosen, Weigh weigh) {
-  std::vector<std::uint64_t> below(graph.size(), 0); // from a node on, itself included
+  std::vector<std::uint64_t> below(graph.size(), 0); // from a node on, including itself
   std::uint64_t longest = 0;
   for (const std::vector<Index> &component : componentsOf(graph, chosen)) {
     std::uint64_t deepest = 0;
     for (Index node : component)
       for (Index callee : graph[node].callees)
-        if (chosen[callee]) // those of the component itself are 0 still
+        if (chosen[callee]) // those of the component itself are still 0
           deepest = std::max(deepest, below[callee]);
     const std::uint64_t bytes = deepest + weigh(component);
     for (Index node : component)
@@ -151,9 +150,9 @@ struct StackUse::Implementation {
     return at->second;
   }
 
-  /// One ray's frames in functions that call one another in a circle. Without the runtime's part,
-  /// which leads from one ray to the next, there is no circle left, or one of methods that go from
-  /// object to object, or `trace` was inlined.
+  /// The frames of one ray in a cycle of functions. Without the functions of the runtime, which
+  /// lead from one ray to the next, there is no cycle left, or one of methods that go from object
+  /// to object, or `trace` was inlined.
   std::uint64_t perRay(const Graph &known, const std::vector<Index> &cycle,
                        std::uint64_t referenceChain) const {
     std::uint64_t runtime = 0;
@@ -164,8 +163,8 @@ struct StackUse::Implementation {
       else
         shaders[node] = true;
     return runtime + longestPath(known, shaders, [&](const std::vector<Index> &part) {
-             // Between two calls through the same reference a member has led on; other functions of
-             // the circle may have called meanwhile.
+             // Between two calls through the same reference, a member leads to the next object;
+             // other functions of the cycle may be called in between.
              return sumOf(known, part) *
                     (isCycle(known, part) ? (referenceChain + 1) * part.size() : 1);
            });
@@ -224,7 +223,7 @@ std::uint64_t StackUse::bytes(std::uint64_t rays, std::uint64_t referenceChain) 
   });
   if (!isRecursive)
     return path;
-  // At the end of the last ray's traversal the runtime calls back: `intersect`, `anyHit`.
+  // At the end of the last ray's traversal the runtime calls methods: `intersect`, `anyHit`.
   std::vector<bool> leaves(known.size(), false);
   std::vector<bool> recurses(known.size(), false);
   for (const std::vector<Index> &component : componentsOf(known, all)) {

@@ -1,8 +1,8 @@
-//===- StackUse.h - how much stack machine code takes ----------------------===//
+//===- StackUse.h - the stack size of machine code ------------------------===//
 //
-// The code generator says how large each function's frame is; who calls whom stands in the LLVM IR
-// that it was made of. Shaders recurse by `trace`, once for each ray that another one sends, and by
-// methods that call themselves on what their members refer to: both have a limit, so the stack has
+// The code generator reports the size of each function's frame; the call graph is taken from the
+// LLVM IR. Shaders recurse by `trace`, once for each ray that another one sends, and by methods
+// that call themselves on objects that their members refer to: both have a limit, so the stack has
 // one.
 //
 //===----------------------------------------------------------------------===//
@@ -19,18 +19,18 @@ namespace rtsl::codegen {
 
 class StackUse {
 public:
-  /// Notes the calls in a module that is about to become machine code, and frames as they are laid
-  /// out. This object must live until the code is made.
+  /// Records the calls in a module that is about to be compiled, and the frames when they are laid
+  /// out. This object must exist until the code is generated.
   explicit StackUse(llvm::Module &module);
   StackUse(StackUse &&) noexcept;
   ~StackUse();
 
-  /// Adds what another module of the same program has. Functions of one name are copies of one
-  /// another.
+  /// Adds another module of the same program. Functions with the same name are copies.
   void add(const StackUse &other);
 
-  /// Bytes of stack that functions of the module take at most, their callees in it included, where
-  /// so many rays are under way and objects refer to one another in chains of `referenceChain`.
+  /// The most bytes of stack that functions of the module use, including their callees in it, with
+  /// this number of rays in flight and objects that refer to one another in chains of
+  /// `referenceChain`.
   std::uint64_t bytes(std::uint64_t rays, std::uint64_t referenceChain) const;
 
 private:

@@ -14,24 +14,25 @@ namespace rtsl::codegen {
 
 namespace {
 
-/// A place in a local variable.
-struct Place {
+/// An offset in a local variable.
+struct VariableOffset {
   llvm::AllocaInst *variable = nullptr;
   std::int64_t offset = 0;
 };
 
-std::optional<Place> placeOf(llvm::Value *address, const llvm::DataLayout &layout) {
-  llvm::APInt offset(layout.getIndexTypeSizeInBits(address->getType()), 0);
+std::optional<VariableOffset> offsetInVariable(llvm::Value *pointer,
+                                               const llvm::DataLayout &layout) {
+  llvm::APInt offset(layout.getIndexTypeSizeInBits(pointer->getType()), 0);
   auto *variable = llvm::dyn_cast<llvm::AllocaInst>(
-      address->stripAndAccumulateConstantOffsets(layout, offset, /*AllowNonInbounds=*/true));
+      pointer->stripAndAccumulateConstantOffsets(layout, offset, /*AllowNonInbounds=*/true));
   if (!variable || !variable->isStaticAlloca())
     return std::nullopt;
-  return Place{variable, offset.getSExtValue()};
+  return VariableOffset{variable, offset.getSExtValue()};
 }
 
-/// The one place that a phi node may bring, through whatever other phi nodes and selects.
-std::optional<Place> onlyPlace(llvm::PHINode &phi, const llvm::DataLayout &layout) {
-  std::optional<Place> place;
+/// The one address that a phi node may have, through other phi nodes and selects.
+std::optional<VariableOffset> onlyAddress(llvm::PHINode &phi, const llvm::DataLayout &layout) {
+  std::optional<VariableOffset> address;
   llvm::SmallPtrSet<llvm::Value *, 16> seen;
   llvm::SmallVector<llvm::Value *> pending = {&phi};
   while (!pending.empty()) {
@@ -44,14 +45,14 @@ std::optional<Place> onlyPlace(llvm::PHINode &phi, const llvm::DataLayout &layou
       pending.push_back(select->getTrueValue());
       pending.push_back(select->getFalseValue());
     } else {
-      const auto found = placeOf(value, layout);
+      const auto found = offsetInVariable(value, layout);
       if (!found ||
-          (place && (place->variable != found->variable || place->offset != found->offset)))
+          (address && (address->variable != found->variable || address->offset != found->offset)))
         return std::nullopt;
-      place = found;
+      address = found;
     }
   }
-  return place;
+  return address;
 }
 
 } // namespace
@@ -66,10 +67,10 @@ llvm::PreservedAnalyses UniteAddressesPass::run(llvm::Function &function,
       phis.push_back(phi);
   bool changed = false;
   for (llvm::PHINode *phi : phis)
-    if (const auto place = onlyPlace(*phi, layout)) {
-      llvm::IRBuilder<> builder(place->variable->getNextNode());
+    if (const auto address = onlyAddress(*phi, layout)) {
+      llvm::IRBuilder<> builder(address->variable->getNextNode());
       phi->replaceAllUsesWith(
-          builder.CreatePtrAdd(place->variable, builder.getInt64(place->offset)));
+          builder.CreatePtrAdd(address->variable, builder.getInt64(address->offset)));
       phi->eraseFromParent();
       changed = true;
     }

@@ -1,9 +1,9 @@
 //===- UniteAddresses.h - the same address on all paths -------------------===//
 //
-// The current ray has the address of its payload, and none before it was sent. Where all paths
-// bring the same place in one variable, or nothing, LLVM leaves phi nodes of it in a loop, and the
-// variable in memory. This pass puts the place there instead, so that SROA can make values of what
-// lies in it.
+// The current ray has the address of its payload; before it was sent, it has none. If all paths
+// have the same address in one variable, or none, LLVM leaves phi nodes of it in a loop, and the
+// variable in memory. This pass replaces the phi nodes by the address, so that SROA can promote the
+// variable.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,4 +1,4 @@
-//===- Graphviz.cpp - graphs as pictures ----------------------------------===//
+//===- Graphviz.cpp - drawing graphs --------------------------------------===//
 #include "codegen/explain/Graphviz.h"
 
 #include "support/Error.h"
@@ -17,7 +17,7 @@ namespace rtsl {
 
 namespace {
 
-/// A file for one of the streams of `dot`; removed by the destructor.
+/// A temporary file for a stream of `dot`; removed by the destructor.
 struct TemporaryFile {
   TemporaryFile() {
     if (const std::error_code error = llvm::sys::fs::createTemporaryFile("rtslc-graph", "", path))
@@ -59,8 +59,7 @@ struct TemporaryFile {
 static std::string runDot(const std::string &graph) {
   const llvm::ErrorOr<std::string> program = llvm::sys::findProgramByName("dot");
   if (!program)
-    throw Error(ErrorCode::FileNotFound,
-                "cannot find `dot` of Graphviz, which lays out the picture")
+    throw Error(ErrorCode::FileNotFound, "cannot find `dot` of Graphviz, which draws the graph")
         .note("install Graphviz (on Debian: `apt-get install graphviz`), or use `--format=dot`");
 
   TemporaryFile in, out, messages;
@@ -77,7 +76,7 @@ static std::string runDot(const std::string &graph) {
   return out.read();
 }
 
-/// Rules of a style sheet come before the attributes that `dot` writes.
+/// Rules of a style sheet precede the attributes that `dot` writes.
 static constexpr char style[] =
     "<style>\n"
     "svg{background:#fff}\n"
@@ -94,11 +93,11 @@ static constexpr char style[] =
 
 std::string drawGraph(const std::string &graph, const std::string &title) {
   const std::string document = runDot(graph);
-  // What precedes the root element declares a DTD, and a place in a page has none.
+  // The part before the root element declares a DTD, which is not allowed within a page.
   const std::size_t root = document.find("<svg");
   const std::size_t content = root == std::string::npos ? root : document.find('>', root);
   if (content == std::string::npos)
-    throw Error(ErrorCode::FileUnreadable, "`dot` has not printed a picture in SVG");
+    throw Error(ErrorCode::FileUnreadable, "`dot` has not printed an SVG document");
   return document.substr(root, content + 1 - root) + "\n<title>" + title + "</title>\n" + style +
          document.substr(document.find_first_not_of('\n', content + 1));
 }

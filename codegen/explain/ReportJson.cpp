@@ -1,4 +1,4 @@
-//===- ReportJson.cpp - what splitting cost and saved, as JSON ------------===//
+//===- ReportJson.cpp - costs and savings of splitting, as JSON -----------===//
 #include "codegen/explain/ReportJson.h"
 
 #include <nlohmann/json.hpp>
@@ -65,7 +65,7 @@ static Json describe(const FunctionReport &function) {
                {"lastTraces", Json::array()},
                {"traces", Json::array()},
                {"slots", Json::array()}};
-  for (const TracePlace &last : function.lastTraces)
+  for (const TracePlace &last : function.tailTraces)
     json["lastTraces"].push_back(last.text());
   for (const TraceReport &trace : function.traces)
     json["traces"].push_back(describe(trace));

@@ -1,4 +1,4 @@
-//===- ReportJson.h - what splitting cost and saved, as JSON --------------===//
+//===- ReportJson.h - costs and savings of splitting, as JSON -------------===//
 #pragma once
 
 #include "codegen/passes/continuation/Report.h"
@@ -7,7 +7,7 @@
 
 namespace rtsl {
 
-/// For programs: {"version": 1, "frameSize": ..., "functions": [...]}.
+/// The report for other programs: {"version": 1, "frameSize": ..., "functions": [...]}.
 nlohmann::ordered_json describe(const SplitReport &report);
 
 /// That as text.

@@ -1,4 +1,4 @@
-//===- ReportText.cpp - what splitting cost and saved, as text ------------===//
+//===- ReportText.cpp - costs and savings of splitting, as text -----------===//
 #include "codegen/explain/ReportText.h"
 
 #include "llvm/ADT/StringExtras.h"
@@ -6,7 +6,8 @@
 
 namespace rtsl {
 
-/// "rays: P waits for P, Shadow" and the like, and how large a stack follows from it.
+/// Writes "rays: P waits for P, Shadow" and the like, and the size of the stack that follows from
+/// it.
 static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
   for (const RayGraph::Kind &kind : report.rays.kinds) {
     if (kind.sent == 0 && kind.sentLast == 0)
@@ -15,13 +16,13 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
     if (kind.sent != 0)
       out << " waits for " << llvm::join(report.rays.names(kind.sent), ", ");
     if (kind.sentLast != 0)
-      out << (kind.sent != 0 ? ", and" : "") << " gives its place to "
+      out << (kind.sent != 0 ? ", and" : "") << " is replaced by "
           << llvm::join(report.rays.names(kind.sentLast), ", ");
     out << "\n";
   }
   for (const continuation::TrimmedPayload &trimmed : report.trimmed)
     out << "payload " << trimmed.payload << ": " << trimmed.bytes << " bytes of "
-        << trimmed.bytesBefore << "; not passed, for nobody there reads it, "
+        << trimmed.bytesBefore << "; not passed, because the methods for the ray do not use it: "
         << llvm::join(trimmed.fields, ", ") << "\n";
   const std::uint32_t levels = report.rays.levels(report.maxDepth);
   out << "stack: " << levels << (levels == 1 ? " level" : " levels") << " of "
@@ -29,11 +30,11 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
       << (report.rays.grows() ? "more if that is larger" : "and no more if that is larger") << "\n";
   if (const std::uint32_t growth = report.frameGrowth())
     out << "stack: " << growth
-        << " bytes more a level for each object in the scene's longest chain of references, "
-        << "for methods call themselves through them\n";
+        << " more bytes for each level and each object in the scene's longest chain of references, "
+        << "because methods call themselves through them\n";
 }
 
-/// "constant", or "constant.2": one that the author has not named.
+/// "constant", or "constant.2": a constant without a name in the source.
 static bool isConstant(llvm::StringRef name) {
   return name == "constant" || name.starts_with("constant.");
 }
@@ -63,7 +64,7 @@ static std::string describe(const ExtraReport &extra) {
          std::to_string(extra.cost);
 }
 
-/// What is live, and how much of it is left after each optimisation.
+/// Writes which values are live, and how many remain to be saved after each optimisation.
 static void writeTrace(llvm::raw_ostream &out, const TraceReport &trace) {
   out << "    live           " << trace.liveBytes << " bytes" << listOf(trace.live) << "\n";
   for (const StepReport &step : trace.steps)
@@ -88,9 +89,9 @@ std::string toText(const SplitReport &report) {
     out << function.name << ": " << function.states.size()
         << (function.states.size() == 1 ? " state" : " states") << ", frame of "
         << function.frame.size << " bytes\n";
-    for (const TracePlace &last : function.lastTraces)
+    for (const TracePlace &last : function.tailTraces)
       out << "  trace" << (last.text().empty() ? "" : " at " + last.text())
-          << ", the last: its ray takes the place of this one, so recursion runs as a loop\n";
+          << ", a tail trace: its ray replaces this one, so recursion runs as a loop\n";
     for (const TraceReport &trace : function.traces) {
       const std::string place = trace.place.text();
       out << (trace.isJoin           ? "  join"
@@ -99,7 +100,7 @@ std::string toText(const SplitReport &report) {
           << (place.empty() ? "" : " at " + place) << ", resumes at " << trace.resumesAt << "\n";
       writeTrace(out, trace);
       if (trace.onlyScalesAndAdds)
-        out << "    then           sums and products alone\n";
+        out << "    then           only sums and products\n";
     }
     if (function.frame.unshared != function.frame.size)
       out << "  frame: " << function.frame.unshared << " bytes if nothing shared words, at least "
@@ -112,11 +113,11 @@ std::string toText(const SplitReport &report) {
         out << " to " << slot.offset + slot.size << ": ";
       out << slot.name << (slot.isObject ? " (an object)" : "") << "\n";
     }
-    if (!function.traces.empty() || !function.lastTraces.empty()) {
+    if (!function.traces.empty() || !function.tailTraces.empty()) {
       if (function.endings.alwaysTraces)
-        out << "  traces on every way: the limit of depth ends it, or what its rays meet\n";
+        out << "  traces on every path: ends at the depth limit, or by what its rays hit\n";
       else if (!function.endings.by.empty())
-        out << "  traces or not by " << llvm::join(function.endings.by, " and ") << "\n";
+        out << "  traces depending on " << llvm::join(function.endings.by, " and ") << "\n";
     }
   }
   if (!report.functions.empty())

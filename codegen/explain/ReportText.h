@@ -1,11 +1,11 @@
-//===- ReportText.h - what splitting cost and saved, as text --------------===//
+//===- ReportText.h - costs and savings of splitting, as text -------------===//
 #pragma once
 
 #include "codegen/passes/continuation/Report.h"
 
 namespace rtsl {
 
-/// For people: a block of lines a function.
+/// For users: a block of lines for each function.
 std::string toText(const SplitReport &report);
 
 /// "4 bytes", "0 to 4 bytes".

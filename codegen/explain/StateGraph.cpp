@@ -1,4 +1,4 @@
-//===- StateGraph.cpp - the states of a program as a picture --------------===//
+//===- StateGraph.cpp - the states of a program as a graph ----------------===//
 #include "codegen/explain/StateGraph.h"
 
 #include "codegen/explain/ReportText.h"
@@ -21,7 +21,7 @@ bool isOwn(const FunctionReport &function, const std::string &state) {
   return std::find(function.states.begin(), function.states.end(), state) != function.states.end();
 }
 
-/// What a box says: the state, and for one behind a trace where that is and what it took along.
+/// The text of a node: the state, and for one after a trace its location and the values saved.
 std::vector<std::string> linesOf(const FunctionReport &function, const std::string &state) {
   std::vector<std::string> lines = {shortName(function, state)};
   for (const TraceReport &trace : function.traces) {
@@ -31,11 +31,11 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
     const std::string what = trace.isJoin           ? "join"
                              : trace.callee.empty() ? "trace"
                                                     : "call of " + trace.callee;
-    lines.push_back(place.empty() ? "behind a " + what : "behind the " + what + " at " + place);
+    lines.push_back(place.empty() ? "after a " + what : "after the " + what + " at " + place);
     lines.push_back(std::to_string(trace.savedBytes) + " of " + std::to_string(trace.liveBytes) +
                     " bytes saved" + listOf(trace.saved));
     if (!trace.rematerialised.empty())
-      lines.push_back("computed again" + listOf(trace.rematerialised));
+      lines.push_back("recomputed" + listOf(trace.rematerialised));
     if (trace.liveBytes != 0) {
       const TraceTraffic &traffic = trace.steps.back().traffic;
       lines.push_back(toText(traffic.stored) + " stored, " + toText(traffic.restored) +
@@ -43,15 +43,15 @@ std::vector<std::string> linesOf(const FunctionReport &function, const std::stri
                       std::to_string(trace.plainly.cost));
     }
   }
-  for (const TransitionReport &way : function.transitions) {
-    if (way.from != state)
+  for (const TransitionReport &transition : function.transitions) {
+    if (transition.from != state)
       continue;
-    if (way.kind == TransitionReport::Last)
-      lines.push_back("the last trace takes this ray's place");
-    if (way.kind == TransitionReport::Return)
+    if (transition.kind == TransitionReport::Last)
+      lines.push_back("tail trace: its ray replaces this one");
+    if (transition.kind == TransitionReport::Return)
       lines.push_back("returns to the caller");
-    if (!way.to.empty() && !isOwn(function, way.to))
-      lines.push_back("or goes on in " + way.to);
+    if (!transition.to.empty() && !isOwn(function, transition.to))
+      lines.push_back("or continues in " + transition.to);
   }
   return lines;
 }
@@ -81,7 +81,7 @@ std::string quoted(const std::string &text) {
 
 } // namespace
 
-/// How an edge is drawn: a trace or a call continues elsewhere first, a jump does not.
+/// The style of an edge: a trace or a call continues elsewhere first, a jump does not.
 static const char *attributesOf(TransitionReport::Kind kind) {
   switch (kind) {
   case TransitionReport::Trace:

@@ -1,7 +1,7 @@
-//===- StateGraph.h - the states of a program as a picture ----------------===//
+//===- StateGraph.h - the states of a program as a graph ------------------===//
 //
-// For each function that traces a cluster: its states, and edges for what leads from one to the
-// next, which is a trace with what it saves, a call, a jump, or the end of the function.
+// A cluster for each function that traces: its states, and edges for the transitions between them:
+// a trace with the values that it saves, a call, a jump, or the end of the function.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace rtsl {
 
-/// In the language of Graphviz, which lays it out (codegen/explain/Graphviz.h).
+/// A graph in the language of Graphviz, which draws it (codegen/explain/Graphviz.h).
 std::string toDot(const SplitReport &report);
 
 } // namespace rtsl

@@ -1,4 +1,4 @@
-//===- Emitter.cpp - building IR in few words -----------------------------===//
+//===- Emitter.cpp - concise construction of IR ---------------------------===//
 #include "codegen/formulas/Emitter.h"
 
 #include "codegen/ir/Attributes.h"
@@ -34,7 +34,7 @@ mlir::Type withScalar(mlir::Type shape, mlir::Type scalar) {
 
 void eraseUnused(mlir::Region &region) {
   for (mlir::Block &block : region)
-    // From the end, so that what an operation used is unused by the time it is reached.
+    // Backwards, so that operands of an erased operation are unused when they are reached.
     for (mlir::Operation &op : llvm::make_early_inc_range(llvm::reverse(block))) {
       for (mlir::Region &inner : op.getRegions())
         eraseUnused(inner);
@@ -94,7 +94,7 @@ Value Emitter::extract(Value vector, unsigned component) {
   return fold<mlir::vector::ExtractOp>(vector, static_cast<std::int64_t>(component));
 }
 
-// The vector dialect counts in `index`; ours is an i32 that is known to be in range.
+// The vector dialect indexes with `index`; our indices are i32 and known to be in range.
 static Value position(Emitter &emitter, Value component) {
   return emitter.fold<arith::IndexCastUIOp>(emitter.getIndexType(), component);
 }
@@ -213,7 +213,7 @@ void Emitter::returnValues(mlir::ValueRange values) {
 // Numbers
 //===----------------------------------------------------------------------===//
 
-// Gives both the shape of the wider one.
+// Extends both to the shape of the wider one.
 static void unify(Num &a, Num &b) {
   if (a.width() == b.width())
     return;

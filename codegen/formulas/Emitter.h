@@ -1,7 +1,7 @@
-//===- Emitter.h - building IR in few words -------------------------------===//
+//===- Emitter.h - concise construction of IR -----------------------------===//
 //
 // `Emitter` is a builder with a current location. `Num` is a value with operators, so that a
-// formula in the compiler reads like the formula in the book: each operator makes one operation, in
+// formula in the compiler reads like the formula in a book: each operator makes one operation, in
 // the order of the C++ expression, and constants fold.
 //
 //===----------------------------------------------------------------------===//
@@ -37,7 +37,7 @@ public:
   Value boolConstant(bool value);
   /// `value` in every component of a scalar or vector type, float or integer.
   Value constant(mlir::Type type, double value);
-  /// Zero, false or null of a type that values can have.
+  /// Zero, false or null of a value type.
   Value zero(mlir::Type type);
 
   // Vectors
@@ -50,7 +50,7 @@ public:
   Value shuffle(Value vector, llvm::ArrayRef<std::int64_t> components); // at least two
 
   // Memory
-  Value variable(llvm::StringRef name, mlir::Type type); // at the current place
+  Value variable(llvm::StringRef name, mlir::Type type); // at the insertion point
   Value load(Value address);
   void store(Value value, Value address);
   void copy(Value from, Value to);
@@ -61,7 +61,7 @@ public:
   // Control. A region that does not end by itself is closed with rtsl.yield.
   using Block = llvm::function_ref<void()>;
   void ifThen(Value condition, Block then, Block otherwise = nullptr);
-  /// The condition's block gives the condition, or null for an endless loop.
+  /// The condition's block returns the condition, or null for an endless loop.
   void loop(bool testAfter, llvm::function_ref<Value()> condition, Block body, Block step);
   struct Arm {
     std::vector<std::int64_t> values;
@@ -72,7 +72,7 @@ public:
   void illuminance(Value point, Value normal, Value cosAngle,
                    Block body); // normal and cosAngle may be null
   void returnValues(mlir::ValueRange values);
-  /// The current block has its terminator: nothing may follow.
+  /// The current block has its terminator: no operation may follow.
   bool isTerminated() const;
 
   template <typename Op, typename... Args>
@@ -87,10 +87,10 @@ public:
     return createOrFold<Op>(std::forward<Args>(args)...);
   }
 
-  /// Where long formulas become functions; null: they are emitted in place.
+  /// Owns the functions of long formulas; null: these are emitted in place.
   Library *library = nullptr;
 
-  /// Whether arithmetic will be done in double, so that none may be done in single now
+  /// Whether arithmetic will be done in double, so that it must not be folded in single precision
   /// (HideConstants.h).
   bool isWidenedLater() const;
 
@@ -105,20 +105,20 @@ private:
   void fill(mlir::Region &region, Block body);
 };
 
-/// Erases what was emitted in vain: constants that have been folded away, loads of a statement that
-/// asks for nothing. Variables stay, with their names.
+/// Erases unused operations: constants that have been folded, loads of a discarded expression.
+/// Variables and their names remain.
 void eraseUnused(mlir::Region &region);
 
-/// f32 of vector<3xf32>; a scalar is its own.
+/// f32 for vector<3xf32>; a scalar type itself.
 mlir::Type scalarType(mlir::Type type);
 /// Components of a vector type; 0 for a scalar.
 unsigned vectorWidth(mlir::Type type);
-/// Scalar, or vector of `scalar` as wide as `shape`.
+/// A scalar, or a vector of `scalar` as wide as `shape`.
 mlir::Type withScalar(mlir::Type shape, mlir::Type scalar);
 
-/// A scalar or vector of f32, i32 or i1 with operators. Beside a vector, a scalar or a C++ number
+/// A scalar or vector of f32, i32 or i1 with operators. Next to a vector, a scalar or a C++ number
 /// stands for a vector that has it in each component. Comparisons of integers are signed unless
-/// they say otherwise. The operations are those of which formulas are made
+/// their name says otherwise. The operations are those that formulas use
 /// (language/formulas/Operations.h); Library.h has the rest of them.
 class Num {
 public:
@@ -140,9 +140,9 @@ public:
   Num integer(std::int32_t constant) const { return {*emitter, emitter->intConstant(constant)}; }
   /// A vector of floats.
   Num constants(const std::vector<double> &values) const;
-  /// Of scalars, at least one.
+  /// A vector of scalars, at least one.
   static Num vector(const std::vector<Num> &components);
-  /// Component; a scalar is its own component 0.
+  /// A component; a scalar is its own component 0.
   Num operator[](unsigned component) const;
   Num splat(unsigned count) const { return {*emitter, emitter->splat(value, count)}; }
   Num shuffle(std::initializer_list<std::int64_t> components) const;
@@ -213,7 +213,7 @@ inline Num shiftRightSigned(Num a, int count) {
   return shiftRightSigned(a, a.like(count));
 }
 
-// Comparisons: false if an operand is NaN, but `notEqual`, which is then true.
+// Comparisons: false if an operand is NaN, except `notEqual`, which is then true.
 Num less(Num a, Num b);
 Num lessEqual(Num a, Num b);
 Num equal(Num a, Num b);
@@ -238,7 +238,7 @@ inline Num notEqual(Num a, double b) {
   return notEqual(a, a.like(b));
 }
 
-/// `condition ? a : b`, by component where the condition is a vector.
+/// `condition ? a : b`, for each component if the condition is a vector.
 Num select(Num condition, Num a, Num b);
 inline Num select(Num condition, Num a, double b) {
   return select(condition, a, a.like(b));

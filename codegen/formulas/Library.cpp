@@ -1,4 +1,4 @@
-//===- Library.cpp - functions of the module that formulas become ---------===//
+//===- Library.cpp - functions for formulas, and operations on numbers ----===//
 #include "codegen/formulas/Library.h"
 
 #include "codegen/ir/Rtsl.h"
@@ -16,7 +16,7 @@ std::string typeWord(mlir::Type type) {
   return (scalar.isF32() ? "float" : prefix + "vec") + std::to_string(width); // a color
 }
 
-// The body may change the type of what the function returns.
+// The body may change the result type of the function.
 mlir::func::FuncOp Library::define(const std::string &symbol, mlir::FunctionType type, Body body) {
   auto [place, isNew] = functions.try_emplace(symbol);
   if (!isNew)
@@ -69,7 +69,7 @@ Library::Numbers Library::call(const std::string &name, const Numbers &arguments
 }
 
 //===----------------------------------------------------------------------===//
-// Matrices live in memory where a function begins or ends
+// Matrices are passed and returned in memory
 //===----------------------------------------------------------------------===//
 
 static ir::ArrayType matrixType(const Columns &m) {
@@ -133,7 +133,7 @@ Num Library::callMatrixToScalar(const std::string &name, const Columns &m,
 }
 
 //===----------------------------------------------------------------------===//
-// Functions that are one operation of the IR
+// Functions that are a single operation of the IR
 //===----------------------------------------------------------------------===//
 
 static ir::Elementary operationOf(formulas::Elementary function) {
@@ -144,7 +144,7 @@ static ir::Elementary operationOf(formulas::Elementary function) {
 #define RTSL_ELEMENTARY_BINARY RTSL_ELEMENTARY_UNARY
 #include "math/ElementaryFunctions.def"
   }
-  llvm_unreachable("not an elementary function");
+  llvm_unreachable("no elementary function of this number of operands");
 }
 
 Num elementary(formulas::Elementary function, Num x) {
@@ -152,7 +152,7 @@ Num elementary(formulas::Elementary function, Num x) {
   return {x.at(), x.at().make<ir::ElementaryOp>(x.type(), operationOf(function), operand)};
 }
 
-// `pow(color, float)`: a scalar operand goes to every component.
+// `pow(color, float)`: a scalar operand applies to every component.
 Num elementary(formulas::Elementary function, Num x, Num y) {
   if (y.width() == 0 && x.width() != 0)
     y = y.splat(x.width());

@@ -1,8 +1,9 @@
-//===- Library.h - functions of the module, and other parts of formulas ---===//
+//===- Library.h - functions for formulas, and operations on numbers ------===//
 //
-// What the formulas of built-in functions (language/formulas) are made of, beside the operators of
-// Emitter.h. What is short is emitted in place. What is long, or has a rare path, `outline` makes a
-// private function of the module, `@rtsl.normalize.vec3`, when it is first needed.
+// The building blocks of formulas of built-in functions (language/formulas), in addition to the
+// operators of Emitter.h. Short formulas are emitted in place. For long ones, and rare paths,
+// `outline` makes a private function of the module, `@rtsl.normalize.vec3`, when it is first
+// needed.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -27,14 +28,14 @@ using Columns = formulas::Columns<Num>;
 // Functions of the module
 //===----------------------------------------------------------------------===//
 
-/// The private functions that a module has for long formulas. An emitter that refers to it makes
-/// them.
+/// The private functions of a module for long formulas. Emitters that refer to it make them.
 class Library {
 public:
   explicit Library(mlir::ModuleOp module) : module(module) {}
 
   using Numbers = llvm::SmallVector<Num, 4>;
-  /// Calls `@rtsl.<name>.<type of the first argument>`, made with `body` if it is not there yet.
+  /// Calls `@rtsl.<name>.<type of the first argument>`; defines it with `body` if it does not exist
+  /// yet.
   Numbers call(const std::string &name, const Numbers &arguments,
                llvm::function_ref<Numbers(const Numbers &)> body);
   /// The same for a function of a matrix, to a matrix of its shape or to a float.
@@ -58,7 +59,7 @@ auto invoke(const Body &body, const Library::Numbers &arguments, std::index_sequ
 }
 } // namespace detail
 
-/// `body(arguments...)`, a number or an array of them, by a call of a function.
+/// `body(arguments...)`, a number or an array of them, as a function call.
 template <typename Body, typename... Arguments>
 auto outline(const char *name, const Body &body, Num first, Arguments... others) {
   using Result = std::invoke_result_t<Body, Num, Arguments...>;
@@ -95,14 +96,14 @@ auto outline(const char *name, const Body &body, const Columns &m) {
     return library->callMatrix(name, m, body);
 }
 
-/// `float`, `ivec2`, `vec3`, `float16`: what names of such functions call a type.
+/// `float`, `ivec2`, `vec3`, `float16`: the type in the names of such functions.
 std::string typeWord(mlir::Type type);
 
 //===----------------------------------------------------------------------===//
 // Control
 //===----------------------------------------------------------------------===//
 
-/// A variable of a type that values can have.
+/// A variable of a value type.
 class Num::Variable {
 public:
   Variable(const char *name, Num shape)
@@ -135,10 +136,10 @@ void repeatWhile(Num x, const Condition &condition, const Body &body) {
 }
 
 //===----------------------------------------------------------------------===//
-// Functions that are one operation of the IR
+// Functions that are a single operation of the IR
 //===----------------------------------------------------------------------===//
 
-/// A scalar stands for a vector beside one.
+/// A scalar next to a vector stands for a vector.
 Num elementary(formulas::Elementary function, Num x);
 Num elementary(formulas::Elementary function, Num x, Num y);
 Num refract(Num i, Num n, Num eta);

@@ -3,8 +3,8 @@
 //   ir::attr::frameSize.set(function, builder.getI32IntegerAttr(bytes));
 //   if (mlir::IntegerAttr size = ir::attr::frameSize.of(state)) ...
 //
-// Attributes.def says what each of them means. (TableGen's `discardableAttrs` would give classes
-// like these, but neither documentation nor a verifier.)
+// Attributes.def explains each of them. (TableGen's `discardableAttrs` would generate classes like
+// these, but neither documentation nor a verifier.)
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CODEGEN_IR_ATTRIBUTES_H // not `#pragma once`: see Precompiled.h
@@ -26,7 +26,7 @@ struct DiscardableAttribute {
   /// Its value; null if the operation does not have it.
   Value of(mlir::Operation *op) const { return op->getAttrOfType<Value>(name); }
   void set(mlir::Operation *op, Value value) const { op->setAttr(name, value); }
-  /// Of one that takes no value.
+  /// For an attribute that takes no value.
   template <typename Unit = Value>
   std::enable_if_t<std::is_same_v<Unit, mlir::UnitAttr>> set(mlir::Operation *op) const {
     op->setAttr(name, mlir::UnitAttr::get(op->getContext()));

@@ -10,15 +10,15 @@
 
 namespace rtsl::ir {
 
-/// Finds members of classes in constant time. Made for a pass in which declarations of classes
-/// neither come nor go.
+/// Finds members of classes in constant time. Invalid once class declarations have been added or
+/// erased.
 class ClassTable {
 public:
   explicit ClassTable(mlir::ModuleOp module);
 
   struct Member {
     MemberDeclOp declaration;
-    // bytes from the start of the record; none of a scratch member
+    // bytes from the start of the record; none for a scratch member
     std::optional<std::uint32_t> offset;
   };
   /// Null if the class is not declared or does not have the member.

@@ -1,13 +1,13 @@
-//===- FloatingPoint.h - how compiled code computes -----------------------===//
+//===- FloatingPoint.h - the modes of floating-point arithmetic -----------===//
 #pragma once
 
 #include <cstdint>
 
 namespace rtsl {
 
-/// Strict: IEEE single, each operation as it is written, with the same bits everywhere. Fast:
-/// approximations and reassociation (docs/fast.md). Double: for references, on the host alone
-/// (docs/report.md).
+/// Strict: IEEE single precision, each operation as written, with the same bits everywhere. Fast:
+/// approximations and reassociation (docs/fast.md). Double: for reference renderings, on the host
+/// only (docs/report.md).
 enum class FloatingPoint : std::uint8_t { Strict, Fast, Double };
 
 } // namespace rtsl

@@ -1,7 +1,7 @@
-//===- IncomingEdges.h - what predecessors pass to a block ----------------===//
+//===- IncomingEdges.h - the operands that predecessors pass to a block ---===//
 //
-// A block with arguments gets their values from its predecessors, once for each edge: a branch on a
-// condition may lead to the same block twice, with different values.
+// A block with arguments gets their values from its predecessors, once for each edge: a conditional
+// branch may have two edges to the same block, with different values.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -21,21 +21,22 @@ struct Edge {
   mlir::Block *from() const { return terminator->getBlock(); }
   mlir::Block *to() const { return terminator->getSuccessor(successor); }
 
-  /// What is passed along, to read and to change. The terminator must be a branch.
+  /// The operands that are passed along the edge, to read and to change. The terminator must be a
+  /// branch.
   mlir::SuccessorOperands operands() const {
     return llvm::cast<mlir::BranchOpInterface>(terminator).getSuccessorOperands(successor);
   }
 
-  /// What is passed for this argument of the block that the edge leads to. Null if the terminator
-  /// makes the value itself, or does not say what it passes.
+  /// The operand passed for this argument of the edge's target block. Null if the terminator
+  /// produces the value itself, or does not say what it passes.
   mlir::Value passedTo(mlir::BlockArgument argument) const {
     return llvm::isa<mlir::BranchOpInterface>(terminator) ? operands()[argument.getArgNumber()]
                                                           : mlir::Value();
   }
 };
 
-/// Calls `visit(Edge)` for each edge into `block`, those of a predecessor one after the other in the
-/// order of its successors. `visit` may change what the edges pass and where they lead.
+/// Calls `visit(Edge)` for each edge into `block`. Edges from the same predecessor come together,
+/// in the order of its successors. `visit` may change the operands and the targets of edges.
 template <typename Visit>
 void forEachEdgeInto(mlir::Block &block, Visit visit) {
   llvm::SmallVector<Edge> edges;

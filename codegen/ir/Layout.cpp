@@ -1,4 +1,4 @@
-//===- Layout.cpp - where things lie in memory ----------------------------===//
+//===- Layout.cpp - sizes and offsets in memory ---------------------------===//
 #include "codegen/ir/Layout.h"
 
 #include "codegen/ir/RtslOps.h"

@@ -1,9 +1,9 @@
-//===- Layout.h - where things lie in memory ------------------------------===//
+//===- Layout.h - sizes and offsets in memory -----------------------------===//
 //
-// The one place that computes layouts; code generation, linking and the description of classes for
-// the runtime all ask here. Everything is aligned to 4 bytes: a bool and an integer take 4, a
-// vector of N scalars 4 N (a color as many as it has components), a matrix its columns, a struct
-// its fields in order, a reference 4, a buffer an RtslBuffer.
+// The only computation of layouts: code generation, linking and the class descriptions for the
+// runtime all use it. Everything is aligned to 4 bytes: a bool and an integer take 4, a vector of N
+// scalars 4 N (a color as many as it has components), a matrix its columns, a struct its fields in
+// order, a reference 4, a buffer an RtslBuffer.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -28,10 +28,10 @@ std::uint32_t sizeInBytes(mlir::Type type);
 std::uint32_t fieldOffset(StructType type, unsigned index);
 
 /// Bytes of an object's record: the class id, then the members in order (scratch members take no
-/// room).
+/// space).
 std::uint32_t recordSize(ClassOp classOp);
 
-/// Bytes from the start of the record to a member; nothing for a scratch or an unknown member.
+/// Bytes from the start of the record to a member; none for a scratch or an unknown member.
 std::optional<std::uint32_t> memberOffset(ClassOp classOp, llvm::StringRef member);
 
 } // namespace rtsl::ir

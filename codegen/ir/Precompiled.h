@@ -1,10 +1,11 @@
-//===- Precompiled.h - the headers that every part of codegen reads -------===//
+//===- Precompiled.h - the headers that all of codegen includes -----------===//
 //
-// MLIR's headers take longer to read than most of our files take to compile, so they are read once.
-// A file still includes what it uses; nothing may rely on this one.
+// Parsing MLIR's headers takes longer than compiling most of our files, so they are parsed once.
+// Every file still includes what it uses; none may rely on this header.
 //
-// The headers of ours below have include guards: GCC compares what `#pragma once` marks by its time
-// of change, and a precompiled header out of ccache may be older than the files of this folder.
+// Our own headers below have include guards: GCC identifies files with `#pragma once` by their
+// modification time, and a precompiled header from ccache may be older than the files of this
+// folder.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,6 +1,6 @@
 //===- Rtsl.h - the whole of the `rtsl` dialect ---------------------------===//
 //
-// For code that builds or reads IR. RtslTypes.h alone is enough for code that looks at types.
+// For code that builds or reads IR. RtslTypes.h alone is enough for code that only examines types.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CODEGEN_IR_RTSL_H // not `#pragma once`: see Precompiled.h

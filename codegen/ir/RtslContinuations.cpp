@@ -16,7 +16,7 @@ LogicalResult SuspendOp::verify() {
   if (resume->getSinglePredecessor() != getOperation()->getBlock())
     return emitOpError() << "resumes at a block that has other predecessors";
   if (!getOrigin() != !getDirection())
-    return emitOpError() << "names half a ray";
+    return emitOpError() << "has only one of origin and direction";
   if (getOrigin() && (resume->empty() || !llvm::isa<TraceResultOp>(resume->front())))
     return emitOpError() << "resumes at a block that does not begin with `rtsl.trace_result`";
   if (!getOrigin() &&
@@ -38,7 +38,7 @@ static LogicalResult verifySlot(mlir::Operation *op, mlir::Type type, std::uint3
   if (offset % 4 != 0)
     return op->emitOpError() << "accesses byte " << offset << ", which is not a multiple of 4";
   if (bit.has_value() != type.isInteger(1))
-    return op->emitOpError() << "names a bit for a bool, and for a bool only";
+    return op->emitOpError() << "has a bit exactly if the value is a bool";
   if (bit && *bit > 31)
     return op->emitOpError() << "names bit " << *bit << " of a word of 32";
   return mlir::success();
@@ -65,10 +65,10 @@ void FrameObjectOp::getAsmResultNames(mlir::OpAsmSetValueNameFn setName) {
 }
 
 LogicalResult NextOp::verify() {
-  const bool wantsState =
+  const bool needsState =
       getTransition() == Transition::Trace || getTransition() == Transition::Jump;
-  if (getState().has_value() != wantsState)
-    return emitOpError() << "names a state for `trace` and `jump`, and none otherwise";
+  if (getState().has_value() != needsState)
+    return emitOpError() << "names a state exactly if it is a `trace` or a `jump`";
   return mlir::success();
 }
 

@@ -27,14 +27,14 @@ llvm::ArrayRef<int32_t> SwitchOp::armValues(unsigned index) {
 
 LogicalResult SwitchOp::verify() {
   if (getValues().size() != getArms().size())
-    return emitOpError() << "has " << getArms().size() << " arms and values for "
+    return emitOpError() << "has " << getArms().size() << " arms, but values for "
                          << getValues().size();
   if (getDefaultArm() && *getDefaultArm() >= getArms().size())
-    return emitOpError() << "has no arm " << *getDefaultArm() << " to be the default";
+    return emitOpError() << "has no arm " << *getDefaultArm() << ", which is to be the default";
   llvm::SmallVector<int32_t> seen;
   for (unsigned arm = 0; arm < getArms().size(); ++arm) {
     if (!llvm::isa<mlir::DenseI32ArrayAttr>(getValues()[arm]))
-      return emitOpError() << "lists the values of an arm as array<i32: ...>";
+      return emitOpError() << "must list the values of an arm as array<i32: ...>";
     for (int32_t value : armValues(arm)) {
       if (llvm::is_contained(seen, value))
         return emitOpError() << "lists the value " << value << " twice";
@@ -45,7 +45,7 @@ LogicalResult SwitchOp::verify() {
 }
 
 //===----------------------------------------------------------------------===//
-// Regions and what ends them
+// Regions and their terminators
 //===----------------------------------------------------------------------===//
 
 LogicalResult LoopOp::verifyRegions() {
@@ -54,7 +54,7 @@ LogicalResult LoopOp::verifyRegions() {
   if (!getStep().empty() && !llvm::isa<YieldOp>(getStep().front().back()))
     return emitOpError() << "has a `step` that does not end in `rtsl.yield`";
   if (llvm::isa<ConditionOp>(getBody().front().back()))
-    return emitOpError() << "has a body that ends in `rtsl.condition`, which ends `cond` alone";
+    return emitOpError() << "has a body that ends in `rtsl.condition`, which is only for `cond`";
   return mlir::success();
 }
 
@@ -64,19 +64,20 @@ LogicalResult IlluminanceOp::verify() {
   return mlir::success();
 }
 
-/// Whether a jump out of `region`, directly or from a structured op inside, belongs to `loop`.
+/// Whether a `rtsl.break` or `rtsl.continue` in `region`, directly or in a nested structured op,
+/// may belong to `loop`.
 static bool mayJump(LoopOp loop, mlir::Region *region) {
   return region == &loop.getBody();
 }
 
-/// Looks for the op that a `rtsl.break` or `rtsl.continue` belongs to.
+/// Finds the op that a `rtsl.break` or `rtsl.continue` belongs to.
 static LogicalResult verifyJump(mlir::Operation *op, bool switchCounts) {
   mlir::Region *region = op->getParentRegion();
   while (mlir::Operation *parent = region->getParentOp()) {
     if (auto loop = llvm::dyn_cast<LoopOp>(parent)) {
       if (mayJump(loop, region))
         return mlir::success();
-      return op->emitOpError() << "stands in a loop's `cond` or `step`; it belongs into the body";
+      return op->emitOpError() << "is in a loop's `cond` or `step`; it is only for the body";
     }
     if (llvm::isa<IlluminanceOp>(parent) || (switchCounts && llvm::isa<SwitchOp>(parent)))
       return mlir::success();
@@ -84,7 +85,7 @@ static LogicalResult verifyJump(mlir::Operation *op, bool switchCounts) {
       break;
     region = parent->getParentRegion();
   }
-  return op->emitOpError() << "stands in no loop"
+  return op->emitOpError() << "is in no loop"
                            << (switchCounts ? ", illuminance or switch" : " or illuminance");
 }
 
@@ -98,14 +99,14 @@ LogicalResult ContinueOp::verify() {
 LogicalResult ReturnOp::verify() {
   auto function = (*this)->getParentOfType<mlir::FunctionOpInterface>();
   if (!function)
-    return emitOpError() << "stands in no function";
+    return emitOpError() << "is in no function";
   for (mlir::Region *region = (*this)->getParentRegion(); region->getParentOp() != function;
        region = region->getParentOp()->getParentRegion()) {
     auto loop = llvm::dyn_cast<LoopOp>(region->getParentOp());
     if (loop && !mayJump(loop, region))
-      return emitOpError() << "stands in a loop's `cond` or `step`; it belongs into the body";
+      return emitOpError() << "is in a loop's `cond` or `step`; it is only for the body";
     if (!llvm::isa<IfOp, LoopOp, SwitchOp, IlluminanceOp>(region->getParentOp()))
-      return emitOpError() << "stands in `" << region->getParentOp()->getName()
+      return emitOpError() << "is in `" << region->getParentOp()->getName()
                            << "`, which it cannot leave";
   }
   if (llvm::ArrayRef<mlir::Type> expected = function.getResultTypes();

@@ -26,8 +26,8 @@ namespace rtsl::ir {
 
 namespace {
 
-/// Calls are inlined on level 2, where every op may go anywhere. The structured ops of level 1 may
-/// not: their `rtsl.return` belongs to the function that they stand in.
+/// Calls are inlined on level 2, where every op may be moved to any function. The structured ops of
+/// level 1 may not: their `rtsl.return` returns from the enclosing function.
 struct RtslInliner : mlir::DialectInlinerInterface {
   using DialectInlinerInterface::DialectInlinerInterface;
 
@@ -80,7 +80,7 @@ const llvm::StringMap<DeclaredAttribute> &declaredAttributes() {
 
 } // namespace
 
-/// A name that is misspelled would be one that nobody reads.
+/// Rejects undeclared names: a misspelled one would be silently ignored.
 mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
                                                           mlir::NamedAttribute attribute) {
   const llvm::StringRef name = attribute.getName();
@@ -99,7 +99,7 @@ mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
                                     .Case("Array", "an array")
                                     .Case("DenseI32Array", "an array of i32")
                                     .Case("DenseF32Array", "an array of f32");
-  return op->emitOpError() << "`" << name << "` is to be " << shown;
+  return op->emitOpError() << "`" << name << "` must be " << shown;
 }
 
 } // namespace rtsl::ir

@@ -1,7 +1,7 @@
-//===- RtslFolds.cpp - what the operations are of constants ---------------===//
+//===- RtslFolds.cpp - folding of operations on constants -----------------===//
 //
-// Elementary functions are computed by math, the same code that a shader calls: the
-// value does not depend on whether, or on which machine, it was folded.
+// Elementary functions are computed by math, the code that shaders run too: the value does not
+// depend on whether it was folded, or on which host.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/RtslOps.h"
@@ -88,7 +88,7 @@ OpFoldResult ElementaryOp::fold(FoldAdaptor adaptor) {
       });
 }
 
-/// The numbers of a constant, and how many there are; 0 if it is none.
+/// The components of a float constant and their number; 0 if it is not one.
 static unsigned floatsOf(mlir::Attribute constant, float (&numbers)[4]) {
   if (auto scalar = llvm::dyn_cast_or_null<FloatAttr>(constant)) {
     numbers[0] = scalar.getValue().convertToFloat();
@@ -133,7 +133,7 @@ OpFoldResult RefractOp::fold(FoldAdaptor adaptor) {
 static mlir::Attribute foldToInt(mlir::Attribute input, mlir::Type type, bool isSigned) {
   return mlir::constFoldCastOp<FloatAttr, IntegerAttr, APFloat, APInt, void>(
       input, type, [&](const APFloat &value, bool &) {
-        // Saturates, and gives 0 for NaN, exactly as the op does.
+        // Saturates, and gives 0 for NaN, exactly like the op.
         llvm::APSInt result(32, !isSigned);
         bool isExact;
         value.convertToInteger(result, APFloat::rmTowardZero, &isExact);
@@ -148,7 +148,7 @@ OpFoldResult ToUintOp::fold(FoldAdaptor adaptor) {
   return foldToInt(adaptor.getInput(), getType(), /*isSigned=*/false);
 }
 
-/// Folds constants by `compute`, whose divisor is never zero.
+/// Folds constants with `compute`, whose divisor is never zero.
 template <typename Compute>
 static mlir::Attribute foldDivision(llvm::ArrayRef<mlir::Attribute> operands, Compute compute) {
   return mlir::constFoldBinaryOp<IntegerAttr, APInt, void>(
@@ -157,7 +157,8 @@ static mlir::Attribute foldDivision(llvm::ArrayRef<mlir::Attribute> operands, Co
       });
 }
 
-// APInt::sdiv gives the smallest number again when it is divided by -1, and srem gives 0.
+// Dividing the smallest number by -1, APInt::sdiv gives the smallest number again, and srem gives
+// 0.
 OpFoldResult SDivOp::fold(FoldAdaptor adaptor) {
   if (mlir::matchPattern(adaptor.getRhs(), mlir::m_One()))
     return getLhs();
@@ -183,7 +184,7 @@ OpFoldResult URemOp::fold(FoldAdaptor adaptor) {
 // References
 //===----------------------------------------------------------------------===//
 
-/// What a chain of casts starts from.
+/// The reference that a chain of casts begins with.
 static mlir::Value withoutCasts(mlir::Value object) {
   while (auto cast = object.getDefiningOp<CastRefOp>())
     object = cast.getObject();

@@ -1,8 +1,8 @@
-//===- RtslMemorySlots.cpp - variables that become values -----------------===//
+//===- RtslMemorySlots.cpp - promotion of variables to values -------------===//
 //
-// The interfaces through which MLIR's `sroa` takes a variable apart and `mem2reg` turns what is
-// left into SSA values. Wherever parts are visited, it is in the order of the type: sets of
-// attributes are ordered by address, and output must be the same on every run.
+// The interfaces with which MLIR's `sroa` splits a variable into parts and `mem2reg` promotes the
+// parts to SSA values. Parts are always visited in the order of the type: sets of attributes are
+// ordered by address, and output must be the same on every run.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/RtslOps.h"
@@ -67,7 +67,7 @@ Value VarOp::getDefaultValue(const MemorySlot &slot, OpBuilder &builder) {
   return createZero(builder, getLoc(), slot.elemType);
 }
 
-/// Where values are shown to the author they go by the name of the variable that they were.
+/// Values are shown to the author under the name of the variable that they were promoted from.
 static mlir::Location withName(mlir::Location location, VarOp variable) {
   if (!variable || llvm::isa<mlir::NameLoc>(location))
     return location;
@@ -129,13 +129,13 @@ VarOp::handleDestructuringComplete(const DestructurableMemorySlot &, OpBuilder &
 // rtsl.load, rtsl.store, rtsl.clear
 //===----------------------------------------------------------------------===//
 
-/// Whether the one use that blocks promotion is the address of `op`.
+/// Whether the only use that blocks promotion is as the address of `op`.
 static bool blocksByAddress(Value address, const MemorySlot &slot, Blocking blockingUses) {
   return blockingUses.size() == 1 && (*blockingUses.begin())->get() == slot.ptr &&
          address == slot.ptr && pointee(address) == slot.elemType;
 }
 
-/// An access of the whole slot stays inside of it.
+/// An access of the whole slot does not reach beyond it.
 static LogicalResult isInside(Value address, const MemorySlot &slot) {
   return mlir::success(address == slot.ptr && pointee(address) == slot.elemType);
 }
@@ -178,7 +178,7 @@ bool StoreOp::canUsesBeRemoved(const MemorySlot &slot, Blocking blockingUses, Ne
 }
 DeletionKind StoreOp::removeBlockingUses(const MemorySlot &slot, Blocking, OpBuilder &, Value,
                                          const mlir::DataLayout &) {
-  // A constant has many uses and is nobody's.
+  // A constant has many uses, so it does not get the variable's name.
   mlir::Operation *op = getValue().getDefiningOp();
   if (op && !op->hasTrait<mlir::OpTrait::ConstantLike>())
     op->setLoc(withName(op->getLoc(), slot.ptr.getDefiningOp<VarOp>()));
@@ -240,8 +240,8 @@ bool CopyOp::canRewire(const DestructurableMemorySlot &slot, UsedIndices usedInd
   return true;
 }
 
-/// One copy a part. The other side is reached by its address: if it is a variable too, its turn
-/// comes.
+/// One copy for each part. The other side is accessed through its address; if it is a variable too,
+/// it is split later.
 DeletionKind CopyOp::rewire(const DestructurableMemorySlot &slot, Subslots &subslots,
                             OpBuilder &builder, const mlir::DataLayout &) {
   if (getSource() == getTarget())
@@ -287,7 +287,7 @@ DeletionKind FieldOp::rewire(const DestructurableMemorySlot &, Subslots &subslot
 
 LogicalResult ElementOp::ensureOnlySafeAccesses(const MemorySlot &slot, SafeSlots mustBeSafelyUsed,
                                                 const mlir::DataLayout &) {
-  // The index is in range: that is what the op means.
+  // The op itself requires that the index is in range.
   mustBeSafelyUsed.push_back({getResult(), pointee(getResult())});
   return isInside(getBase(), slot);
 }

@@ -95,7 +95,7 @@ static mlir::Type pointee(Value address) {
   return llvm::cast<PtrType>(address.getType()).getPointee();
 }
 
-/// `emitOpError` if the result is not the address of a `part`.
+/// `emitOpError` unless the result is the address of a `part`.
 static LogicalResult verifyPart(mlir::Operation *op, mlir::Type part) {
   mlir::Type expected = PtrType::get(part);
   if (op->getResult(0).getType() == expected)
@@ -119,7 +119,7 @@ void ClassOp::build(mlir::OpBuilder &builder, mlir::OperationState &state, llvm:
 
 LogicalResult ClassOp::verify() {
   if (!getRoot().starts_with("rt_") && getRoot() != helperRoot)
-    return emitOpError() << "has root \"" << getRoot() << "\", which is no `rt_` class";
+    return emitOpError() << "has root \"" << getRoot() << "\", which is not an `rt_` class";
   return mlir::success();
 }
 
@@ -127,7 +127,7 @@ LogicalResult ClassOp::verifyRegions() {
   for (mlir::Operation &op : getBody().front())
     if (!llvm::isa<MemberDeclOp>(op))
       return op.emitOpError()
-             << "cannot stand in `rtsl.class`, which holds `rtsl.member_decl` only";
+             << "is not allowed in `rtsl.class`, which holds `rtsl.member_decl` only";
   return mlir::success();
 }
 
@@ -140,7 +140,7 @@ LogicalResult MemberDeclOp::verify() {
     return emitOpError() << "has access \"" << getAccess()
                          << "\"; expected \"public\", \"private\" or \"scratch\"";
   if (!isStorable(getType()))
-    return emitOpError() << "has type " << getType() << ", which memory does not hold";
+    return emitOpError() << "has type " << getType() << ", which cannot be stored in memory";
   return mlir::success();
 }
 
@@ -205,7 +205,7 @@ std::optional<int32_t> ElementOp::constantIndex() {
 }
 
 LogicalResult ElementOp::verify() {
-  // An index that a pass found to be constant and out of range stands in code that never runs.
+  // A pass may have found the index to be a constant out of range; such code never runs.
   return verifyPart(*this, llvm::cast<ArrayType>(pointee(getBase())).getElement());
 }
 
@@ -214,7 +214,7 @@ void MemberOp::getAsmResultNames(NameSetter setName) {
 }
 
 LogicalResult MemberOp::verifySymbolUses(mlir::SymbolTableCollection &symbols) {
-  if (attr::offset.isOn(*this)) // the class has done its work
+  if (attr::offset.isOn(*this)) // after conversion to LLVM the class may be gone
     return mlir::success();
   llvm::StringRef className = llvm::cast<RefType>(getObject().getType()).getClassName();
   auto classOp = symbols.lookupNearestSymbolFrom<ClassOp>(
@@ -226,8 +226,8 @@ LogicalResult MemberOp::verifySymbolUses(mlir::SymbolTableCollection &symbols) {
     return emitOpError() << "names member \"" << getMember() << "\", which class `" << className
                          << "` does not have";
   if (member.isScratch())
-    return emitOpError() << "names scratch member \"" << getMember()
-                         << "\", which lies in no record; use `rtsl.attribute`";
+    return emitOpError() << "names the scratch member \"" << getMember()
+                         << "\", which is not in the record; use `rtsl.attribute`";
   return verifyPart(*this, member.getType());
 }
 
@@ -254,8 +254,8 @@ void StateOp::getAsmResultNames(NameSetter setName) {
   setName(getResult(), getName());
 }
 
-/// How a state variable's type is called in StateVariables.def; empty if there is none of that
-/// name. `hitError` is RtslState's, and no variable of the author's.
+/// The type of a state variable in StateVariables.def; empty if there is none of that name.
+/// `hitError` is a field of RtslState that shaders cannot name.
 static llvm::StringRef stateVariableType(llvm::StringRef name) {
   return llvm::StringSwitch<llvm::StringRef>(name)
 #define RTSL_STATE_VARIABLE(name, type) .Case(#name, #type)
@@ -267,12 +267,12 @@ static llvm::StringRef stateVariableType(llvm::StringRef name) {
 LogicalResult StateOp::verify() {
   llvm::StringRef kind = stateVariableType(getName());
   if (kind.empty())
-    return emitOpError() << "names \"" << getName() << "\", which is no state variable"
+    return emitOpError() << "names \"" << getName() << "\", which is not a state variable"
                          << (getName().starts_with("rt_") ? "; leave out `rt_`" : "");
   mlir::Type type = pointee(getResult());
   if (kind == "color") {
     if (!isColor(type))
-      return emitOpError() << "gives a color for \"" << getName() << "\", not " << type;
+      return emitOpError() << "must give a color for \"" << getName() << "\", not " << type;
     return mlir::success();
   }
   mlir::Builder b(getContext());
@@ -321,7 +321,7 @@ LogicalResult BufferElementOp::verify() {
 LogicalResult BufferLengthOp::verify() {
   auto type = llvm::cast<BufferType>(pointee(getBuffer()));
   if (getDim() >= type.getRank())
-    return emitOpError() << "asks for dimension " << getDim() << " of " << type.getRank();
+    return emitOpError() << "queries dimension " << getDim() << " of " << type.getRank();
   return mlir::success();
 }
 

@@ -22,7 +22,7 @@
 namespace rtsl::ir {
 class MemberDeclOp;
 
-/// The frame, in which values survive a trace, as what memory effects are on.
+/// The frame, in which values survive a trace, as a resource of memory effects.
 struct FrameResource : mlir::SideEffects::Resource::Base<FrameResource> {
   llvm::StringRef getName() final { return "Frame"; }
 };

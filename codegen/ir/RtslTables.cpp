@@ -1,6 +1,6 @@
-//===- RtslTables.cpp - constants that lie in memory ----------------------===//
+//===- RtslTables.cpp - constants in memory -------------------------------===//
 //
-// What is read of a table at an index that is known is a constant.
+// A load from a table at a known index is a constant.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
@@ -35,7 +35,7 @@ void TableOp::getAsmResultNames(llvm::function_ref<void(mlir::Value, llvm::Strin
 mlir::LogicalResult TableOp::verify() {
   const mlir::Type type = pointee(getResult());
   if (!isNumbers(type))
-    return emitOpError() << "holds numbers, and " << type << " does not";
+    return emitOpError() << "may hold only numbers, not " << type;
   if (getWords().size() * sizeof(std::int32_t) != sizeInBytes(type))
     return emitOpError() << "has " << getWords().size() << " words, and " << type << " has "
                          << sizeInBytes(type) / sizeof(std::int32_t);
@@ -44,19 +44,20 @@ mlir::LogicalResult TableOp::verify() {
 
 namespace {
 
-struct PlaceInTable {
+struct TableWord {
   TableOp table;
   std::size_t word = 0;
 };
 
 } // namespace
 
-/// Where in a table an address points to; nothing if it is none or not known.
-static std::optional<PlaceInTable> placeInTable(mlir::Value address) {
+/// The table and the word that an address points to; none if it is not in a table or its index is
+/// not known.
+static std::optional<TableWord> findTableWord(mlir::Value address) {
   std::size_t bytes = 0;
   while (mlir::Operation *op = address.getDefiningOp()) {
     if (auto table = llvm::dyn_cast<TableOp>(op))
-      return PlaceInTable{table, bytes / sizeof(std::int32_t)};
+      return TableWord{table, bytes / sizeof(std::int32_t)};
     if (auto field = llvm::dyn_cast<FieldOp>(op)) {
       auto type = llvm::cast<StructType>(pointee(field.getBase()));
       bytes += fieldOffset(type, *type.fieldIndex(field.getField()));
@@ -64,7 +65,7 @@ static std::optional<PlaceInTable> placeInTable(mlir::Value address) {
       const std::optional<std::int32_t> index = element.constantIndex();
       const auto type = llvm::cast<ArrayType>(pointee(element.getBase()));
       if (!index || *index < 0 || static_cast<unsigned>(*index) >= type.getLength())
-        return std::nullopt; // the latter in code that never runs
+        return std::nullopt; // out of range: code that never runs
       bytes += static_cast<std::size_t>(*index) * sizeInBytes(type.getElement());
     } else {
       break;
@@ -74,7 +75,7 @@ static std::optional<PlaceInTable> placeInTable(mlir::Value address) {
   return std::nullopt;
 }
 
-/// A word of memory as a constant; a bool is true unless all of its bits are zero.
+/// A word of memory as a constant; a bool is true unless all bits are zero.
 static mlir::Attribute scalar(mlir::Type type, std::int32_t word) {
   if (type.isF32())
     return mlir::FloatAttr::get(type, llvm::APFloat(llvm::bit_cast<float>(word)));
@@ -82,10 +83,10 @@ static mlir::Attribute scalar(mlir::Type type, std::int32_t word) {
 }
 
 mlir::OpFoldResult LoadOp::fold(FoldAdaptor) {
-  std::optional<PlaceInTable> place = placeInTable(getAddress());
-  if (!place)
+  std::optional<TableWord> found = findTableWord(getAddress());
+  if (!found)
     return nullptr;
-  const llvm::ArrayRef<std::int32_t> words = place->table.getWords().drop_front(place->word);
+  const llvm::ArrayRef<std::int32_t> words = found->table.getWords().drop_front(found->word);
   auto vector = llvm::dyn_cast<mlir::VectorType>(getType());
   if (!vector)
     return scalar(getType(), words.front());

@@ -25,7 +25,7 @@ void RtslDialect::registerTypes() {
 }
 
 //===----------------------------------------------------------------------===//
-// Questions
+// Predicates
 //===----------------------------------------------------------------------===//
 
 bool isScalar(mlir::Type type) {
@@ -51,7 +51,7 @@ bool isValueType(mlir::Type type) {
 }
 
 bool isStorable(mlir::Type type) {
-  // The parts of an aggregate were checked when it was made.
+  // The parts of an aggregate were verified when it was made.
   return isValueType(type) || llvm::isa<StructType, ArrayType, BufferType>(type);
 }
 
@@ -114,7 +114,7 @@ LogicalResult RefType::verify(function_ref<InFlightDiagnostic()> emitError,
 }
 
 LogicalResult PtrType::verify(function_ref<InFlightDiagnostic()> emitError, mlir::Type pointee) {
-  return verifyStorable(emitError, pointee, "what a pointer points to");
+  return verifyStorable(emitError, pointee, "the pointee");
 }
 
 LogicalResult ArrayType::verify(function_ref<InFlightDiagnostic()> emitError, unsigned length,
@@ -187,7 +187,8 @@ void StructType::print(mlir::AsmPrinter &printer) const {
 }
 
 //===----------------------------------------------------------------------===//
-// Parts, for the destructuring of variables: a struct's are indexed by name, an array's by number
+// Parts, for splitting variables: those of a struct are indexed by name, those of an array by
+// number
 //===----------------------------------------------------------------------===//
 
 std::optional<unsigned> StructType::fieldIndex(llvm::StringRef name) const {
@@ -213,7 +214,7 @@ mlir::Type StructType::getTypeAtIndex(mlir::Attribute index) const {
 
 std::optional<llvm::DenseMap<mlir::Attribute, mlir::Type>>
 ArrayType::getSubelementIndexMap() const {
-  // A long array stays in memory: as many variables cost more than they save.
+  // A long array stays in memory: that many variables cost more than they save.
   constexpr unsigned longest = 64;
   if (getLength() > longest)
     return std::nullopt;

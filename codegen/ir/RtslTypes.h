@@ -1,6 +1,6 @@
 //===- RtslTypes.h - types of the `rtsl` dialect --------------------------===//
 //
-// And the questions about types that the ops, the lowering and the passes ask.
+// Also the predicates on types that the ops, the lowering and the passes use.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CODEGEN_IR_RTSL_TYPES_H // not `#pragma once`: see Precompiled.h
@@ -19,13 +19,12 @@ namespace rtsl::ir {
 
 /// f32, i32 or i1.
 bool isScalar(mlir::Type type);
-/// A scalar, a vector of 1 to 16 scalars or a reference: what an SSA value that goes to memory may
-/// be.
+/// A scalar, a vector of 1 to 16 scalars or a reference: the SSA values that can be stored.
 bool isValueType(mlir::Type type);
-/// Numbers, and structs and arrays of them: nothing that has a meaning in one process or one scene
-/// only.
+/// Numbers, and structs and arrays of them: excludes values that are valid in one process or one
+/// scene only.
 bool isNumbers(mlir::Type type);
-/// What may stand behind a `!rtsl.ptr`: a value type or an aggregate of such.
+/// Whether a `!rtsl.ptr` may point to it: a value type or an aggregate of such.
 bool isStorable(mlir::Type type);
 inline bool isRef(mlir::Type type) {
   return llvm::isa<RefType>(type);

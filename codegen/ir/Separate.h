@@ -1,8 +1,8 @@
-//===- Separate.h - functions that stay functions -------------------------===//
+//===- Separate.h - functions that are not inlined ------------------------===//
 //
-// A switch that chooses between a few functions becomes one function with them, which is faster.
-// With hundreds it would become a function so large that passes take longer than in proportion to
-// its size.
+// A switch that chooses between a few functions becomes one function together with them, which is
+// faster. With hundreds of functions the result would be so large that the time of passes grows
+// faster than its size.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,4 +1,4 @@
-//===- SourcePlace.h - where in the author's files something stands -------===//
+//===- SourcePlace.h - locations in source files --------------------------===//
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SourcePlace {
   std::string text() const;
 };
 
-/// Of what was inlined the place where it was written, not the call.
+/// Of inlined code: the location where it was written, not that of the call.
 SourcePlace placeOf(mlir::Location location);
 
 } // namespace rtsl::ir

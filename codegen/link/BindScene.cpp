@@ -1,9 +1,9 @@
-//===- BindScene.cpp - what the objects of a scene say of a program -------===//
+//===- BindScene.cpp - facts about the objects of a scene -----------------===//
 //
-// A program that renders is made after the constructors of its scene have run. By then members no
-// longer change, and where all objects of a class agree on one it is a constant: what is computed
-// from it folds. Objects that a reference of a class may lead to are those of the class and of all
-// classes below it.
+// A program that renders is made after the constructors of its scene have run. From then on members
+// do not change, and a member that has the same value in all objects of a class is a constant:
+// computations on it fold. A reference to a class may refer to objects of the class and of all
+// classes derived from it.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/BindScene.h"
@@ -34,14 +34,14 @@ namespace {
 
 constexpr llvm::StringLiteral boundsEntry = "rtsl_rt_Primitive_computeBounds";
 
-/// Whether the runtime calls the function while a scene is built, and never again.
+/// Whether the runtime calls the function only while a scene is built.
 bool isForBuilding(mlir::func::FuncOp function) {
   const llvm::StringRef name = function.getSymName();
   return ir::attr::constructor.isOn(function) || name == boundsEntry ||
          (ir::attr::exported.isOn(function) && name.ends_with(".initialize"));
 }
 
-/// Makes an entry what nobody calls from outside.
+/// Makes an entry point private that is no longer called from outside.
 void hide(mlir::func::FuncOp function) {
   ir::attr::exported.removeFrom(function);
   function.setPrivate();
@@ -49,7 +49,7 @@ void hide(mlir::func::FuncOp function) {
 
 using Objects = std::vector<const runtime::SceneFacts::Object *>;
 
-/// The objects of each class and of the classes below it.
+/// The objects of each class and of the classes derived from it.
 std::map<mlir::Operation *, Objects> objectsByClass(const mlir::SymbolTable &symbols,
                                                     const runtime::SceneFacts &scene) {
   std::map<mlir::Operation *, Objects> byClass;
@@ -63,7 +63,7 @@ std::map<mlir::Operation *, Objects> objectsByClass(const mlir::SymbolTable &sym
   return byClass;
 }
 
-/// The words of a member if they are the same in all objects; or else nothing.
+/// The words of a member if they are the same in all objects; nothing otherwise.
 std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberDeclOp member,
                                       llvm::ArrayRef<Objects::value_type> objects) {
   std::vector<std::int32_t> common;
@@ -79,12 +79,12 @@ std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberD
   return common;
 }
 
-/// The first place that reads a member, by class and name.
+/// The first location that reads a member, by class and name.
 using Readers =
     std::map<std::pair<std::string, std::string>, std::pair<std::string, ir::SourcePlace>>;
 
-/// The functions that the runtime calls, and those that they call: what only constructors and
-/// bounds need is not read when a picture is made.
+/// The functions that the runtime calls, and their callees: members that only constructors and
+/// bounds read are not read while rendering.
 std::vector<mlir::func::FuncOp> reachedFunctions(mlir::ModuleOp ir,
                                                  const mlir::SymbolTable &symbols) {
   llvm::SetVector<mlir::Operation *> reached;
@@ -114,7 +114,7 @@ Readers findReaders(mlir::ModuleOp ir, const mlir::SymbolTable &symbols) {
   return readers;
 }
 
-/// "1.5" or "(0, 1, 0)"; empty if it is long or means nothing to a person.
+/// "1.5" or "(0, 1, 0)"; empty if it is long or not meaningful to readers.
 std::string valueText(mlir::Type type, const std::vector<std::int32_t> &words) {
   const mlir::Type scalar = mlir::getElementTypeOrSelf(type);
   if (words.size() > 4 || !(scalar.isF32() || scalar.isInteger(32) || scalar.isInteger(1)))
@@ -139,7 +139,7 @@ Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t object
   if (reader == readers.end()) {
     const bool isEmpty =
         llvm::isa<ir::RefType>(member.getType()) && !words.empty() && words.front() == 0;
-    finding.reason = isEmpty ? "no object has anything there" : "no code that renders reads it";
+    finding.reason = isEmpty ? "it is empty in all objects" : "no code that renders reads it";
     return finding;
   }
   finding.place = reader->second.second;
@@ -166,13 +166,13 @@ Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t object
 }
 
 void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Findings &findings) {
-  Finding loops = {Item::Lights, "illuminance", false, "no shader asks for lights", {}};
-  Finding ambient = {Item::Lights, "ambient light", false, "no shader asks for it", {}};
+  Finding loops = {Item::Lights, "illuminance", false, "no shader uses lights", {}};
+  Finding ambient = {Item::Lights, "ambient light", false, "no shader reads it", {}};
   ir.walk([&](mlir::Operation *op) {
     if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op) && !loops.place.isKnown()) {
       loops.isNeeded = scene.lightCount != 0;
       loops.reason = scene.lightCount == 0
-                         ? "the scene has no lights: the loop is gone"
+                         ? "the scene has no lights: the loop is removed"
                          : fmt::format("{} light{}, a number in the code", scene.lightCount,
                                        scene.lightCount == 1 ? "" : "s");
       loops.place = ir::placeOf(op->getLoc());
@@ -224,7 +224,7 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
   const ItemSet keep = request.keep;
   for (auto function : llvm::make_early_inc_range(ir.getOps<mlir::func::FuncOp>()))
     if (isForBuilding(function))
-      function.erase(); // nobody calls them but the runtime
+      function.erase(); // only the runtime calls them
 
   if (scene.referenceChain != ~0u)
     unrollRecursion(ir, scene.referenceChain);

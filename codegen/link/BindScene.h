@@ -1,4 +1,4 @@
-//===- BindScene.h - what the objects of a scene say of a program ---------===//
+//===- BindScene.h - facts about the objects of a scene -------------------===//
 #pragma once
 
 #include "codegen/link/LinkRequest.h"
@@ -7,15 +7,15 @@
 
 namespace rtsl {
 
-/// Keeps of a linked program what makes the objects of a scene: constructors, member defaults and
-/// bounds.
+/// Keeps only the functions of a linked program that make the objects of a scene: constructors,
+/// member defaults and bounds.
 void keepConstructors(mlir::ModuleOp ir);
 
-/// Notes in a linked program what is the same in all objects of its scene, and takes out what made
-/// them. The pass `rtsl-bind-members` makes constants of the notes. The objects must have been made
-/// with a program that was linked from the same classes; those that no ray comes to are left out.
-/// What LinkRequest::keep names is noted as if nothing were known of it. Adds to `findings`, if
-/// given.
+/// Records in a linked program which members are the same in all objects of its scene, and removes
+/// the functions that made the objects. The pass `rtsl-bind-members` turns the records into
+/// constants. The objects must have been made with a program that was linked from the same classes;
+/// objects that no ray can reach are ignored. Items in LinkRequest::keep are treated as unknown.
+/// Adds to `findings`, if given.
 void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request = {},
                Findings *findings = nullptr);
 

@@ -1,8 +1,8 @@
 //===- DeclareSlots.cpp - a unit without a scene --------------------------===//
 //
-// A file that is compiled alone calls through references what it does not know: each slot becomes
-// the declaration of a function, `@dispatch.rt_Texture.lookup`, that a linker fills. Attributes get
-// places of their own, and ray types numbers, in the order in which they are mentioned.
+// A file that is compiled alone calls unknown methods through references: each slot becomes the
+// declaration of a function, `@dispatch.rt_Texture.lookup`, which a linker supplies. Attributes get
+// separate offsets, and ray types numbers, in the order of first use.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"

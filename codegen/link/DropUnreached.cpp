@@ -1,9 +1,9 @@
-//===- DropUnreached.cpp - keep the methods that something runs -----------===//
+//===- DropUnreached.cpp - erase methods that are never run ---------------===//
 //
-// What runs a method is another one that calls it, a ray that some method sends, the engine, or
-// somebody who reads what it computes of a hit. Beginning with what every sample runs, this follows
-// all of these; the rest is erased. What is computed of a program after this (types of rays,
-// attributes, needs) rests on what is left.
+// A method runs if another one calls it, if some method sends a ray that runs it, if the engine
+// calls it, or if the output that it computes of a hit is read. From the methods that every sample
+// runs, this follows all of these; the rest is erased. Later steps (types of rays, attributes,
+// outputs required) consider only the methods that remain.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -22,7 +22,7 @@ namespace {
 
 using mlir::func::FuncOp;
 
-/// What runs a method.
+/// The reason why a method runs.
 struct Cause {
   std::string reason;
   ir::SourcePlace place;
@@ -32,8 +32,8 @@ class Reach {
 public:
   explicit Reach(const LinkContext &context) : context(context) {}
 
-  /// All functions that are reached, with the first cause that was found: first those that
-  /// rendering reaches, and then those that run only while the scene is built.
+  /// All functions that are reached, with the first cause found: first those reached by rendering,
+  /// then those that run only while the scene is built.
   const llvm::MapVector<mlir::Operation *, Cause> &run() {
     addRoots();
     follow();
@@ -59,7 +59,7 @@ private:
       reached.insert({function, std::move(cause)});
   }
 
-  /// The methods of this name that classes below `root` have.
+  /// Adds the methods of this name of classes derived from `root`.
   void addMethods(llvm::StringRef root, const std::string &method, const Cause &cause) {
     if (!added.insert((root + " " + method).str()).second)
       return; // a function keeps its first cause
@@ -72,13 +72,13 @@ private:
     for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
       if (ir::attr::constructor.isOn(function))
         add(function, {"makes the object", {}});
-    addMethods("rt_Primitive", "computeBounds", {"says where the tree has it", {}});
+    addMethods("rt_Primitive", "computeBounds", {"computes the bounds of the object", {}});
   }
 
   void addRoots() {
     for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
-      if (ir::attr::hitError.isOn(function)) // there are those alone that are needed
-        add(function, {"says how exact a hit is", {}});
+      if (ir::attr::hitError.isOn(function)) // only those that are needed have been derived
+        add(function, {"bounds the error of a hit", {}});
     if (context.request.engine == runtime::Engine::Classic) {
       addMethods("rt_Camera", "generateRay", {"begins every sample", {}});
       addClassicRays({"for the camera's rays", {}});
@@ -87,7 +87,7 @@ private:
     }
     addMethods("rt_Primitive", "intersect", {"finds hits", {}});
     if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
-      addMethods("rt_Exception", "exception", {"for samples that meet an exception", {}});
+      addMethods("rt_Exception", "exception", {"for samples that raise an exception", {}});
     if (context.request.isSampled) {
 #define RTSL_SAMPLING_SLOT(base, method) addMethods(#base, #method, {"called by the host", {}});
 #include "language/SamplingSlots.def"
@@ -107,7 +107,7 @@ private:
         return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())};
       };
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
-        // stands for those that call it
+        // a dispatch function has the cause of its callers
         const bool isDispatch = function.getSymName().starts_with(dispatchPrefix);
         add(context.function(call.getCallee()),
             isDispatch ? reached.lookup(function) : by("called by"));
@@ -149,11 +149,11 @@ private:
   const LinkContext &context;
   llvm::MapVector<mlir::Operation *, Cause> reached;
   std::size_t next = 0, rendering = 0;
-  std::set<std::string> slots; // that are not resolved, and were followed
+  std::set<std::string> slots; // unresolved slots that have been followed
   llvm::StringSet<> added;     // roots and methods
 };
 
-/// "closestHit.Radiance" begins for a ray; "lookup" does not.
+/// "closestHit.Radiance" is started for a ray; "lookup" is not.
 bool isStartedByRays(llvm::StringRef method) {
   const llvm::StringRef name = method.split('.').first;
   return name == "shade" || name == "miss" || name == "closestHit" || name == "anyHit";
@@ -180,15 +180,15 @@ std::string shownName(FuncOp function) {
   return function.getSymName().str();
 }
 
-bool asksForLights(const LinkContext &context) {
+bool usesLights(const LinkContext &context) {
   Reach reach(context);
   reach.run();
   return llvm::any_of(mlir::ModuleOp(context.ir).getOps<FuncOp>(), [&](FuncOp function) {
-    const auto asks = [](mlir::Operation *op) {
+    const auto isLit = [](mlir::Operation *op) {
       return llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op) ? mlir::WalkResult::interrupt()
                                                                 : mlir::WalkResult::advance();
     };
-    return reach.isReachedByRendering(function) && function.walk(asks).wasInterrupted();
+    return reach.isReachedByRendering(function) && function.walk(isLit).wasInterrupted();
   });
 }
 
@@ -210,7 +210,7 @@ void dropUnreached(LinkContext &context) {
         finding.reason = found->second.reason;
         finding.place = found->second.place;
       } else if (found != reached.end()) {
-        finding.reason = "runs while the scene is built, and what renders is without it";
+        finding.reason = "runs only while the scene is built";
         ir::attr::whileBuilding.set(function);
       } else {
         finding.reason = finding.item == Item::States ? "no ray of this scene starts it"
@@ -223,7 +223,8 @@ void dropUnreached(LinkContext &context) {
       const Item item = finding.item;
       context.findings.push_back(std::move(finding));
       if (found == reached.end() && context.request.keep.has(item)) {
-        // What no entry leads to must be one itself. What traces cannot be: only rays start it.
+        // A function that no entry point reaches must be one itself, unless it traces: such
+        // functions are only started by rays.
         if (item == Item::Methods && !traces(function))
           ir::attr::kept.set(function);
         continue;

@@ -1,7 +1,7 @@
-//===- DropUnusedClasses.cpp - keep what the scene has objects of ---------===//
+//===- DropUnusedClasses.cpp - erase classes that the scene has no objects of ===//
 //
-// Methods are lowered once for each class, inherited ones too, so that the functions of a class
-// without objects are never called. Its declaration stays: other classes may name it as their base.
+// Methods are lowered once for each class, inherited ones too, so the functions of a class without
+// objects are never called. Its declaration remains: other classes may name it as their base.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -17,15 +17,15 @@ namespace rtsl::linking {
 
 namespace {
 
-/// The classes of which there are objects; empty: all.
-llvm::StringSet<> wantedOf(const LinkRequest &request) {
+/// The classes that have objects; empty: all.
+llvm::StringSet<> requestedClasses(const LinkRequest &request) {
   llvm::StringSet<> names;
   for (const std::string &name : request.classes)
     names.insert(name);
   return names;
 }
 
-/// The classes of which something runs a method, beside the making of their objects.
+/// The classes with methods that run other than to make their objects.
 std::set<llvm::StringRef> classesThatRun(mlir::ModuleOp ir) {
   std::set<llvm::StringRef> names;
   for (auto function : ir.getOps<mlir::func::FuncOp>())
@@ -41,14 +41,14 @@ Finding describe(const LinkContext &context, const LinkedClass &linked, bool run
   Finding finding = {Item::Classes,
                      linked.info->name,
                      false,
-                     "no object has it",
+                     "it has no objects",
                      {std::string(declared.file), declared.at.line, declared.at.column}};
   if (!linked.hasObjects)
     return finding;
   finding.isNeeded = linked.isUsed && runs;
-  finding.reason = finding.isNeeded ? "an object has it"
-                   : linked.isUsed  ? "an object has it, but no ray runs a method of it"
-                                    : "only objects have it that nothing refers to";
+  finding.reason = finding.isNeeded ? "it has an object"
+                   : linked.isUsed  ? "it has an object, but no ray runs a method of it"
+                                    : "nothing refers to its objects";
   if (const auto place = context.request.places.find(linked.info->name);
       place != context.request.places.end())
     finding.place = place->second;
@@ -58,15 +58,15 @@ Finding describe(const LinkContext &context, const LinkedClass &linked, bool run
 } // namespace
 
 void dropUnusedClasses(LinkContext &context) {
-  const llvm::StringSet<> wanted = wantedOf(context.request);
-  const auto isWanted = [&](llvm::StringRef name) {
-    return wanted.empty() || wanted.contains(name);
+  const llvm::StringSet<> requested = requestedClasses(context.request);
+  const auto isRequested = [&](llvm::StringRef name) {
+    return requested.empty() || requested.contains(name);
   };
   const bool isKept = context.request.keep.has(Item::Classes);
   for (const auto &info : context.module.classes) {
     LinkedClass linked;
     linked.info = info.get();
-    linked.hasObjects = isWanted(info->name);
+    linked.hasObjects = isRequested(info->name);
     linked.record = context.symbols.lookup<ir::ClassOp>(info->name);
     linked.id = static_cast<std::uint32_t>(context.classes.size()) + 1;
     if (linked.record && (linked.hasObjects || isKept))
@@ -77,7 +77,7 @@ void dropUnusedClasses(LinkContext &context) {
 
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<mlir::func::FuncOp>()))
     if (auto name = ir::attr::className.of(function))
-      if (!isWanted(name.getValue()) && !isKept)
+      if (!isRequested(name.getValue()) && !isKept)
         context.symbols.erase(function);
 }
 

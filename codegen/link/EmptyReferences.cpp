@@ -1,13 +1,13 @@
-//===- EmptyReferences.cpp - optional members that the scene leaves out ---===//
+//===- EmptyReferences.cpp - optional members that the scene does not set -===//
 //
 //   %bump = rtsl.load (rtsl.member %self "bump")      %bump = rtsl.null_ref
 //   rtsl.if (%bump is an object) { A } else { B }     rtsl.if false { } else { B }
 //   %c = rtsl.call_method "lookup" on %bump           %c = 0
 //
-// Where no object of a class has anything in an optional member, nothing is loaded or called there,
-// and what runs only if there were an object is gone before anybody counts what the program calls
-// and reads. A method is lowered for each class that has it, so the members of other classes,
-// derived ones too, are their own affair.
+// If an optional member is empty in all objects of a class, it is never loaded or called, and code
+// that runs only if it is set is removed before the methods and the outputs that the program uses
+// are determined. A method is lowered for each class that has it, so members of other classes,
+// including derived ones, are treated separately.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -26,7 +26,7 @@ namespace {
 using mlir::Value;
 using mlir::func::FuncOp;
 
-/// By class and name.
+/// Members, by class and name.
 using Members = std::set<std::pair<std::string, std::string>>;
 
 Members emptyMembers(const LinkContext &context) {
@@ -45,7 +45,7 @@ std::pair<std::string, std::string> keyOf(ir::MemberOp member) {
           member.getMember().str()};
 }
 
-/// What a constructor writes may be an object.
+/// A member that a constructor writes may be set.
 void removeWritten(mlir::ModuleOp ir, Members &empty) {
   for (auto function : ir.getOps<FuncOp>())
     if (ir::attr::constructor.isOn(function))
@@ -56,7 +56,7 @@ void removeWritten(mlir::ModuleOp ir, Members &empty) {
       });
 }
 
-/// Replaces what is loaded from an address, or from a part of what lies there.
+/// Replaces loads from an address or a part of its pointee.
 bool emptyLoads(Value address) {
   bool found = false;
   for (mlir::Operation *user : llvm::make_early_inc_range(address.getUsers())) {
@@ -80,7 +80,7 @@ bool isNull(Value reference) {
   return reference.getDefiningOp<ir::NullRefOp>() != nullptr;
 }
 
-/// A condition, as far as it hangs on references to no object.
+/// The value of a condition, as far as it follows from empty references.
 std::optional<bool> known(Value condition) {
   llvm::APInt constant;
   if (mlir::matchPattern(condition, mlir::m_ConstantInt(&constant)))
@@ -94,13 +94,13 @@ std::optional<bool> known(Value condition) {
   const std::optional<bool> left = known(op->getOperand(0)), right = known(op->getOperand(1));
   if (llvm::isa<mlir::arith::XOrIOp>(op))
     return left && right ? std::optional(*left != *right) : std::nullopt;
-  const bool decides = llvm::isa<mlir::arith::OrIOp>(op); // whatever the other is
+  const bool decides = llvm::isa<mlir::arith::OrIOp>(op); // regardless of the other operand
   if (left == decides || right == decides)
     return decides;
   return left && right ? std::optional(!decides) : std::nullopt;
 }
 
-/// Leaves nothing in a region that control does not enter.
+/// Erases the contents of a region that control does not enter.
 void emptyRegion(mlir::Region &region) {
   if (region.empty())
     return;
@@ -118,7 +118,7 @@ void dropBranches(FuncOp function) {
   });
 }
 
-/// A call of no object does nothing, and its result is zero.
+/// A call through a null reference does nothing, and its result is zero.
 void dropCalls(FuncOp function) {
   function.walk([](ir::CallMethodOp call) {
     if (!isNull(call.getObject()))
@@ -140,7 +140,8 @@ void emptyReferences(LinkContext &context) {
   if (empty.empty())
     return;
   for (auto function : context.ir.getOps<FuncOp>()) {
-    llvm::SmallVector<ir::MemberOp> members; // loads behind them go, on which a walk may stand
+    llvm::SmallVector<ir::MemberOp>
+        members; // collected first: erasing loads would invalidate the walk
     function.walk([&](ir::MemberOp member) {
       if (empty.count(keyOf(member)))
         members.push_back(member);

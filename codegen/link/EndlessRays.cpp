@@ -1,9 +1,9 @@
-//===- EndlessRays.cpp - rays that nothing but the limit of depth ends ----===//
+//===- EndlessRays.cpp - rays that only the depth limit ends --------------===//
 //
-// A shader that always traces, whatever it finds, is no mistake where other materials end its rays.
-// Where every material of a scene that answers a kind of rays sends another of that kind on each
-// way through its program, only a ray that misses everything ends by itself: each sample may run to
-// the limit of depth, and that is worth a warning.
+// A shader that traces on every path is correct if other materials end its rays. If every material
+// of a scene that handles a kind of rays sends another one of that kind on each path, only a ray
+// that misses everything ends by itself: each sample may run to the depth limit, which deserves a
+// warning.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -16,7 +16,7 @@ namespace {
 
 using mlir::func::FuncOp;
 
-/// Ways out of a piece of code on which no such ray has been sent.
+/// The exits of a piece of code that are reached without sending such a ray.
 struct Untraced {
   bool end = false, returns = false, breaks = false, continues = false;
 };
@@ -28,12 +28,12 @@ public:
       : symbols(symbols), payload(payload) {}
 
   bool operator()(FuncOp function) {
-    // false while it is being asked
-    const auto [known, isNew] = answers.try_emplace(function, false);
+    // false while it is being computed
+    const auto [known, isNew] = results.try_emplace(function, false);
     if (!isNew || function.isExternal())
       return known->second;
-    const Untraced ways = walk(function.getBody());
-    return answers[function] = !ways.end && !ways.returns;
+    const Untraced exits = walk(function.getBody());
+    return results[function] = !exits.end && !exits.returns;
   }
 
 private:
@@ -50,35 +50,35 @@ private:
   }
 
   Untraced walk(mlir::Region &region) {
-    Untraced ways;
+    Untraced exits;
     if (region.empty()) {
-      ways.end = true;
-      return ways;
+      exits.end = true;
+      return exits;
     }
     for (mlir::Operation &op : region.front()) {
       if (sends(op))
-        return ways;
+        return exits;
       if (llvm::isa<ir::YieldOp, ir::ConditionOp>(op))
-        ways.end = true;
+        exits.end = true;
       else if (llvm::isa<ir::ReturnOp>(op))
-        ways.returns = true;
+        exits.returns = true;
       else if (llvm::isa<ir::BreakOp>(op))
-        ways.breaks = true;
+        exits.breaks = true;
       else if (llvm::isa<ir::ContinueOp>(op))
-        ways.continues = true;
-      else if (op.getNumRegions() != 0 && !passes(op, ways))
-        return ways;
+        exits.continues = true;
+      else if (op.getNumRegions() != 0 && !passes(op, exits))
+        return exits;
     }
-    return ways;
+    return exits;
   }
 
-  /// Adds what leaves `op` for elsewhere. Whether some way leads behind it.
-  bool passes(mlir::Operation &op, Untraced &ways) {
+  /// Adds the exits of `op`. Returns whether control may continue after it.
+  bool passes(mlir::Operation &op, Untraced &exits) {
     auto add = [&](const Untraced &inner, bool isLoop) {
-      ways.returns |= inner.returns;
+      exits.returns |= inner.returns;
       if (!isLoop) {
-        ways.breaks |= inner.breaks;
-        ways.continues |= inner.continues;
+        exits.breaks |= inner.breaks;
+        exits.continues |= inner.continues;
       }
     };
     if (auto choice = llvm::dyn_cast<ir::IfOp>(op)) {
@@ -94,9 +94,9 @@ private:
         return body.end || body.continues || body.breaks;
       if (loop.getCondition().empty())
         return body.breaks;
-      return walk(loop.getCondition()).end || body.breaks; // it may run no turn
+      return walk(loop.getCondition()).end || body.breaks; // the loop may run no iteration
     }
-    // Lights, and cases: there may be none.
+    // Lights and cases: possibly none runs.
     const bool isSwitch = llvm::isa<ir::SwitchOp>(op);
     for (mlir::Region &region : op.getRegions()) {
       Untraced inner = walk(region);
@@ -109,7 +109,7 @@ private:
 
   const mlir::SymbolTable &symbols;
   mlir::Type payload;
-  llvm::DenseMap<mlir::Operation *, bool> answers;
+  llvm::DenseMap<mlir::Operation *, bool> results;
 };
 
 void check(LinkContext &context, const std::string &method, mlir::Type payload,
@@ -131,8 +131,8 @@ void check(LinkContext &context, const std::string &method, mlir::Type payload,
     return;
   context.diagnostics
       .report(Code::sceneWarning, range,
-              "each material of this scene sends another " + what + " whatever it finds: " + names)
-      .note("only the limit of depth ends such rays, or what misses everything; end some of them "
+              "each material of this scene sends another " + what + " on every path: " + names)
+      .note("such rays end only at the depth limit, or if they miss everything; end some of them "
             "by chance (`rand`), where "
             "their weight is small, or by `rt_Depth`");
 }

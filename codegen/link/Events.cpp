@@ -1,8 +1,7 @@
-//===- Events.cpp - what programs do beside colors ------------------------===//
+//===- Events.cpp - exceptions and prints ---------------------------------===//
 //
-// Exceptions and prints exist in programs that were asked for them: @rtsl_features says so to
-// runtime/device, as a constant. Every `print` has a number, and the runtime is told what stands in
-// it.
+// Exceptions and prints are enabled by options: the constant @rtsl_features passes them to
+// runtime/device. Every `print` has a number, and the runtime is given its format.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"

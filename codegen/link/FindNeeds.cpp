@@ -1,9 +1,9 @@
-//===- FindNeeds.cpp - what of a hit is read ------------------------------===//
+//===- FindNeeds.cpp - the outputs required of a hit ----------------------===//
 //
-// Normals, texture coordinates, derivatives and transforms cost time at every hit. What no function
-// of the program reads is not computed at all; what neither the methods of a material nor those of
-// the objects behind it read is not computed where that material was hit. Which objects these are
-// the scene knows (Scene.cpp).
+// Normals, texture coordinates, derivatives and transforms cost time at every hit. Outputs that no
+// function of the program reads are not computed at all; those that the methods of a material and
+// of the objects it refers to do not read are not computed where that material was hit. The scene
+// determines these objects (Scene.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -32,8 +32,8 @@ std::uint32_t needsOf(llvm::StringRef state) {
       .Default(0);
 }
 
-/// Whether the function may run before the ray is known to hit the primitive, for `intersect`; what
-/// it then reads of the hit has to be there for each candidate.
+/// Whether the function may run for `intersect`, before the ray is known to hit the primitive;
+/// outputs of the hit that it reads must then be computed for each candidate.
 bool mayRunForCandidates(const Reader &reader) {
   const auto method = ir::attr::methodName.of(reader.function);
   return (reader.root.empty() || reader.root == "rt_Primitive" || reader.root == ir::helperRoot) &&
@@ -44,7 +44,7 @@ bool mayRunForCandidates(const Reader &reader) {
                .Default(false));
 }
 
-/// Whether reading this is reading of a candidate.
+/// Whether reading this reads an output of a candidate.
 bool isOfCandidate(llvm::StringRef state, const Reader &reader) {
   if (state == "BoundMin" || state == "BoundMax") {
     const auto method = ir::attr::methodName.of(reader.function);
@@ -56,15 +56,15 @@ bool isOfCandidate(llvm::StringRef state, const Reader &reader) {
          mayRunForCandidates(reader);
 }
 
-/// Whether rays that the function sends may begin where something was hit. How far from there they
-/// begin to see rests on the normal and on how exact the hit is (runtime/device/ray/Spawn.h).
+/// Whether rays that the function sends may start at a hit. Their offset from the surface depends
+/// on the normal and on the error of the hit (runtime/device/ray/Spawn.h).
 bool mayStartAtHits(const Reader &reader) {
   return reader.root.empty() || reader.root == "rt_Material" || reader.root == ir::helperRoot;
 }
 
 constexpr std::uint32_t ofRaysFromHits = RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS;
 
-/// What one function reads itself.
+/// The outputs that one function reads itself.
 std::uint32_t needsOf(const LinkContext &context, mlir::func::FuncOp function) {
   std::uint32_t needs = 0;
   const Reader reader = readerOf(context.symbols, function);
@@ -72,8 +72,8 @@ std::uint32_t needsOf(const LinkContext &context, mlir::func::FuncOp function) {
   return needs;
 }
 
-/// What functions and all that they call read. With `onItself`, calls through references are left
-/// out. `isLit`, if not null, becomes true if they ask for lights.
+/// The outputs that functions and all their callees read. With `onItself`, calls through references
+/// are ignored. `isLit`, if not null, becomes true if they use lights.
 std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const LinkContext &context,
                                bool onItself, bool *isLit = nullptr) {
   std::uint32_t needs = 0;
@@ -131,7 +131,7 @@ std::uint32_t findNeeds(const LinkContext &context) {
 
 namespace {
 
-/// What the methods of this name of all classes below `root` read.
+/// The outputs that the methods of this name of all classes derived from `root` read.
 std::uint32_t needsOfMethods(const LinkContext &context, llvm::StringRef root,
                              const std::string &method) {
   std::vector<mlir::func::FuncOp> methods;
@@ -151,9 +151,9 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
     if (auto owner = ir::attr::className.of(function))
       methods[owner.getValue()].push_back(function);
-  // Lights run on the state of whoever asks for them.
+  // Lights run on the state of the shader that they light.
   const std::uint32_t ofLights = needsOfMethods(context, "rt_Light", "illumination");
-  // Whoever computes one of these may read another.
+  // A method that computes one of these may read another.
   const std::uint32_t ofDerivatives = needsOfMethods(context, "rt_Primitive", "computeDerivatives");
   const std::uint32_t ofNormals = needsOfMethods(context, "rt_Primitive", "computeNormal");
   const std::uint32_t ofCoordinates =

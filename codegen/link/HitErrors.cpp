@@ -1,8 +1,8 @@
-//===- HitErrors.cpp - how exact the hits of primitives are ---------------===//
+//===- HitErrors.cpp - error bounds of the hits of primitives -------------===//
 //
-// Where a ray leaves a primitive of the author's, the runtime has to know how far off t may be
-// (runtime/device/ray/HitError.h). For the primitives with a material that sends rays it is derived
-// here, and where that cannot be done, the author is told to state it.
+// Where a ray leaves a primitive with its own `intersect`, the runtime needs a bound of the error
+// of t (runtime/device/ray/HitError.h). It is derived here for the primitives with a material that
+// sends rays; where that is not possible, the author is asked to state it.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -19,7 +19,7 @@ namespace rtsl::linking {
 
 namespace {
 
-/// The `hit(t)` that begins there; no place if there is none.
+/// The `hit(t)` at that location; an empty range if there is none.
 SourceRange findHit(const typed::Module &module, const SourceManager &sources,
                     const ir::SourcePlace &place) {
   SourceRange range;
@@ -44,7 +44,7 @@ SourceRange findHit(const typed::Module &module, const SourceManager &sources,
   return range;
 }
 
-/// Tells the author which hits of primitives that rays leave have no bound of their error.
+/// Warns of hits without an error bound on primitives that rays leave.
 void warnOfUnboundHits(const std::vector<DerivedHitError> &derived, const typed::Module &module,
                        Diagnostics &diagnostics) {
   for (const DerivedHitError &one : derived)
@@ -68,7 +68,7 @@ std::set<std::string> findSenders(const LinkContext &context) {
   return materials;
 }
 
-/// By primitive: a material on it that sends rays.
+/// For each primitive, a material on it that sends rays.
 std::map<std::string, std::string> findSendersOn(const LinkContext &context,
                                                  const std::set<std::string> &senders) {
   std::map<std::string, std::string> found;
@@ -114,11 +114,11 @@ void deriveHitErrors(LinkContext &context) {
     if (!one.hasFunction && findings[one.className].isNeeded) {
       findings[one.className].isNeeded = false;
       findings[one.className].reason =
-          one.unbound.empty() ? "the author states it" : "none is known";
+          one.unbound.empty() ? "the author states it" : "no bound is known";
     }
   for (auto &[name, finding] : findings)
     context.findings.push_back(std::move(finding));
-  // What is kept although no ray leaves it is nobody's mistake.
+  // No warnings for items kept although no ray leaves them.
   derived.erase(
       std::remove_if(derived.begin(), derived.end(),
                      [&](const DerivedHitError &one) { return !sendersOn.count(one.className); }),

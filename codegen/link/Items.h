@@ -1,8 +1,7 @@
-//===- Items.h - what can be left out of a program, and what was ----------===//
+//===- Items.h - the items that a program may omit, and findings ----------===//
 //
-// Each pass that leaves something out because the scene does not need it looks here whether it may,
-// and notes what it did and why: `rtslc explain` (docs/explain.md) shows these notes and judges
-// nothing itself.
+// Each pass that omits something because the scene does not need it checks here whether it may, and
+// records what it omitted and why: `rtslc explain` (docs/explain.md) only shows these records.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -29,12 +28,12 @@ constexpr Item allItems[] = {
 
 /// "classes": what --keep takes.
 const char *nameOf(Item item);
-/// "Classes": for people.
+/// "Classes": for text output.
 const char *titleOf(Item item);
 /// The item of that name.
 std::optional<Item> itemNamed(std::string_view name);
 
-/// What is kept although it is not needed.
+/// The items that are kept although they are not needed.
 class ItemSet {
 public:
   bool has(Item item) const { return bits >> static_cast<unsigned>(item) & 1; }
@@ -48,13 +47,13 @@ private:
   std::uint32_t bits = 0;
 };
 
-/// A thing that the program has, or does without.
+/// An item that the program contains or omits.
 struct Finding {
   Item item;
-  std::string subject; // as an author would name it: "Solid.lookup"
+  std::string subject; // its name in the source: "Solid.lookup"
   bool isNeeded = false;
-  std::string reason;    // why, in a few words
-  ir::SourcePlace place; // of what needs it, or of what is left out; may be unknown
+  std::string reason;    // a short phrase
+  ir::SourcePlace place; // of the code that needs it, or of the omitted item; may be unknown
 };
 
 using Findings = std::vector<Finding>;

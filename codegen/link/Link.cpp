@@ -44,7 +44,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   if (diagnostics.hasErrors())
     return false;
   linking::makeEntries(context);
-  assert(mlir::succeeded(mlir::verify(ir)) && "linking broke the IR");
+  assert(mlir::succeeded(mlir::verify(ir)) && "linking produced invalid IR");
 
   const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context);
   for (const auto &[index, linked] : llvm::enumerate(context.classes)) {

@@ -1,8 +1,8 @@
 //===- LinkModule.h - linking a module without a scene --------------------===//
 //
-// A module is printed as C++ without a scene. The steps of linking (Link.h) that remove nothing run
-// on it and find the same facts as for a scene: every class may have objects, every material may be
-// on every primitive, and every method may run.
+// A module is printed as C++ without a scene. This runs the steps of linking (Link.h) that remove
+// nothing, and collects the same facts as for a scene: every class may have objects, every material
+// may be on every primitive, and every method may run.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

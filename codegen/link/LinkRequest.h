@@ -1,4 +1,4 @@
-//===- LinkRequest.h - what a scene tells the linker ----------------------===//
+//===- LinkRequest.h - what a scene requires of a program -----------------===//
 #pragma once
 
 #include "codegen/ir/SourcePlace.h"
@@ -15,45 +15,45 @@
 
 namespace rtsl {
 
-/// A part of a scene that may refer to others: an object that has a name, or a place in a list.
+/// A part of a scene that may refer to others: a named object, or an item of a list.
 struct ScenePart {
   enum class Role : std::uint8_t {
     Root,
     Light,
     Named
-  }; // named materials and textures are there for others alone
+  }; // named materials and textures are only used by other parts
   Role role = Role::Root;
-  std::string name; // for people: "material clay"
-  // of the object, and of those that are written in place inside of it
+  std::string name; // shown to users: "material clay"
+  // of the object, and of objects defined inside of it
   std::vector<std::string> classes;
   std::vector<std::size_t> refersTo; // indices of parts
   ir::SourcePlace place;
 };
 
-/// What a scene tells the linker.
+/// The input of the linker about a scene.
 struct LinkRequest {
   /// The classes that the scene has objects of; only these are kept. Empty: all classes of the
   /// module.
   std::vector<std::string> classes;
-  /// The objects of the scene and what they refer to: the code of classes whose objects no ray can
-  /// come to is left out. Empty: all are used.
+  /// The objects of the scene and their references: code of classes whose objects no ray can reach
+  /// is omitted. Empty: all are used.
   std::vector<ScenePart> parts = {};
-  /// Which material meets which primitive, as (primitive class, material class); the primitive
-  /// class is empty for a triangle mesh. Attributes are matched along these.
+  /// The pairs of primitives and materials in the scene, as (primitive class, material class); the
+  /// primitive class is empty for a triangle mesh. Attributes are matched for these pairs.
   std::vector<std::pair<std::string, std::string>> surfaces = {};
   /// The members that the scene sets in some object of a class, by class. An optional one that is
-  /// not among them is empty in all objects; a class that is not there is one of which nothing is
-  /// known.
+  /// not listed is empty in all objects; of a class that is not listed nothing is known.
   std::map<std::string, std::set<std::string>> givenMembers = {};
   runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints
-  bool isSampled = false;     // the host calls SamplingSlots.def; the program has them then
-  /// What stays in the program although the scene does not need it.
+  bool isSampled =
+      false; // the host calls the slots of SamplingSlots.def, which the program then has
+  /// Items that remain in the program although the scene does not need them.
   ItemSet keep = {};
-  /// What is left out although the scene needs it, by Finding::subject: for tests, which require
-  /// that the program changes then.
+  /// Items that are omitted although the scene needs them, by Finding::subject: for tests, which
+  /// check that the program then changes.
   std::set<std::pair<Item, std::string>> without = {};
-  /// Where the scene first mentions a class.
+  /// The location where the scene first mentions a class.
   std::map<std::string, ir::SourcePlace> places = {};
 };
 

@@ -1,8 +1,8 @@
-//===- MakeEntries.cpp - the ways into a program --------------------------===//
+//===- MakeEntries.cpp - the entry points of a program --------------------===//
 //
-// The runtime calls a program in four ways: a slot of Slots.def or SamplingSlots.def on an object,
-// the `intersect` of a class that it knows, the defaults of a class on a new record, and the
-// constructor of a class on packed arguments:
+// The runtime calls a program through four kinds of entry points: a slot of Slots.def or
+// SamplingSlots.def on an object, the `intersect` of a given class, the defaults of a class on a
+// new record, and the constructor of a class on packed arguments:
 //
 //   func.func @Glass.construct(%self: !rtsl.ref<"Glass">, %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
 //
@@ -46,7 +46,7 @@ void makeSlot(LinkContext &context, const Slot &slot) {
     return findMethod(context, *linked, slot.method);
   };
   const bool isForBuilding = std::string_view(slot.method) == "computeBounds";
-  const bool isDerived = slot.method == hitErrorMethod; // no author has made a choice
+  const bool isDerived = slot.method == hitErrorMethod; // no author has defined it
   if (!isNoted && !isForBuilding && !isDerived && llvm::any_of(classes, hasMethod))
     context.findings.push_back(describeDispatch(subject, classes, {}));
 
@@ -60,8 +60,8 @@ void makeSlot(LinkContext &context, const Slot &slot) {
   exportFunction(function);
 }
 
-/// A constructor that takes its arguments from memory, so that the runtime can call it without
-/// knowing its signature.
+/// Makes a constructor that takes its arguments from memory, so that the runtime can call it
+/// without its signature.
 void makeConstruct(LinkContext &context, LinkedClass &linked) {
   const typed::Function *constructor = findConstructor(*linked.info);
   mlir::func::FuncOp target = constructor ? findMethod(context, linked, "constructor") : nullptr;
@@ -123,7 +123,7 @@ void makeEntries(LinkContext &context) {
   makeFeatures(context);
   for (LinkedClass &linked : context.classes) {
     makeConstruct(context, linked);
-    if (linked.info->root == "rt_Primitive") // whoever knows the class need not ask the slot
+    if (linked.info->root == "rt_Primitive") // if the class is known, no dispatch is needed
       if (mlir::func::FuncOp intersect = findMethod(context, linked, "intersect"))
         exportFunction(intersect);
     if (auto initialize = context.function(initializeSymbol(linked.info->name)))

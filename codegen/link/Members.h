@@ -1,4 +1,4 @@
-//===- Members.h - what an object of a class has --------------------------===//
+//===- Members.h - the members of a class, and its constructor ------------===//
 #pragma once
 
 #include "sema/typed/TypedAst.h"

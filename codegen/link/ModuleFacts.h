@@ -9,7 +9,7 @@
 
 namespace rtsl {
 
-/// The type of the rays that carry a payload, and how traversal handles their hits.
+/// A payload type, and how traversal searches for hits of its rays.
 struct RayTypeFacts {
   const typed::Struct *payload = nullptr;
   std::uint32_t number = 0; // from 1
@@ -17,12 +17,12 @@ struct RayTypeFacts {
 };
 
 struct ModuleFacts {
-  /// All payload types: first those that are traced, then those that only have methods.
+  /// All payload types: first those that are traced, then those that only have methods for them.
   std::vector<RayTypeFacts> rayTypes;
   /// Offsets of scratch members in the attributes of a hit, in 32-bit words. A member that no
-  /// method mentions has none. Members of classes with a common base do not overlap.
+  /// method uses has none. Members of classes with a common base do not overlap.
   std::map<const typed::Member *, std::uint32_t> attributeWords;
-  /// RTSL_NEEDS_*: the parts of a hit that the methods of a class read, and those of the program.
+  /// RTSL_NEEDS_*: the outputs of a hit that the methods of a class read, and those of the program.
   std::map<const typed::Class *, std::uint32_t> needsOfClass;
   std::uint32_t needs = 0;
 };

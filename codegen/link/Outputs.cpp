@@ -1,9 +1,9 @@
-//===- Outputs.cpp - results that nobody reads ----------------------------===//
+//===- Outputs.cpp - outputs that are never read --------------------------===//
 //
-// What a method computes goes to state: `computeTextureCoordinates` writes TextureUV and
-// TextureUVW. Whether the method runs at all is a matter of RTSL_NEEDS_* (FindNeeds.cpp); here
-// single results that no function of the program reads are not written, and what was computed for
-// them alone goes with them.
+// Methods store their outputs in the state: `computeTextureCoordinates` writes TextureUV and
+// TextureUVW. RTSL_NEEDS_* (FindNeeds.cpp) determines whether such a method runs at all; here,
+// single outputs that no function of the program reads are not written, and code that only computes
+// them is removed.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -17,9 +17,9 @@ namespace {
 
 using mlir::func::FuncOp;
 
-/// State that methods write for other methods alone. The runtime reads the rest, and both normals
-/// where one is asked for: if the author leaves one out it is the other. `isSampled`: the host
-/// reads what sampling gives.
+/// State that methods write only for other methods. The rest is read by the runtime, which also
+/// reads both normals if one of them is used, because the author may set only one, which then
+/// serves as the other. `isSampled`: the host reads the outputs of sampling.
 bool isOnlyForMethods(llvm::StringRef state, bool isSampled) {
   return llvm::StringSwitch<bool>(state)
       .Cases({"TextureUV", "TextureUVW", "TextureColor", "FloatTextureValue"}, true)
@@ -33,7 +33,7 @@ struct Output {
   bool isRead = false;
 };
 
-/// What the runtime computes of a hit or a sample if somebody asks for it.
+/// Outputs of a hit or a sample that the runtime computes if they are used.
 struct Computed {
   std::uint32_t need;
   const char *subject;
@@ -48,13 +48,12 @@ constexpr Computed computed[] = {
     {RTSL_NEEDS_TIME, "rt_Time, rt_TimeSeed"},
     {RTSL_NEEDS_LAUNCH, "rt_LaunchIndex, rt_LaunchSize"},
     {RTSL_NEEDS_LENS, "rt_LensCoord"},
-    {RTSL_NEEDS_CANDIDATE,
-     "rt_BoundMin, rt_BoundMax and what else `intersect` knows of its object"},
+    {RTSL_NEEDS_CANDIDATE, "rt_BoundMin, rt_BoundMax and other state of the object in `intersect`"},
 };
 
-/// Notes who reads it first, or that nobody does.
+/// Records the first reader, or that there is none.
 Finding findReader(const LinkContext &context, const Computed &one) {
-  Finding finding = {Item::Outputs, one.subject, false, "nobody reads it", {}};
+  Finding finding = {Item::Outputs, one.subject, false, "it is never read", {}};
   for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>()) {
     const Reader reader = readerOf(context.symbols, function);
     const auto read = function.walk([&](mlir::Operation *op) {
@@ -63,7 +62,7 @@ Finding findReader(const LinkContext &context, const Computed &one) {
       finding.isNeeded = true;
       finding.reason =
           (llvm::isa<ir::StateOp>(op) ? "read by `"
-                                      : "where rays begin to see that leave the hit: `") +
+                                      : "required for rays that start at the hit, by `") +
           shownName(function) + "`";
       finding.place = ir::placeOf(op->getLoc());
       return mlir::WalkResult::interrupt();
@@ -105,7 +104,7 @@ void dropUnreadOutputs(LinkContext &context) {
     for (ir::StateOp state : output.written) {
       const auto function = state->getParentOfType<FuncOp>();
       context.findings.push_back({Item::Outputs, "rt_" + name.str() + " of " + shownName(function),
-                                  false, "nobody reads it", ir::placeOf(state->getLoc())});
+                                  false, "it is never read", ir::placeOf(state->getLoc())});
       if (context.request.keep.has(Item::Outputs))
         continue;
       for (mlir::Operation *user : llvm::make_early_inc_range(state->getUsers()))

@@ -1,11 +1,11 @@
-//===- PlaceAttributes.cpp - where scratch members of a hit lie -----------===//
+//===- PlaceAttributes.cpp - offsets of the scratch members of a hit ------===//
 //
 // A primitive's scratch members are attributes of its hits; a material reads those that it declares
-// itself, matched by name and type. Two attributes may share a place if no primitive has both. What
-// nobody reads has no place, and is not stored.
+// itself, matched by name and type. Two attributes may overlap if no primitive has both. An
+// attribute that is never read has no offset, and is not stored.
 //
-// Without a scene, attributes that nobody reads have a place too if there is room, and attributes
-// of classes with a common base do not overlap: C++ has one struct for all of them.
+// Without a scene, attributes that are never read also get offsets if there is space, and
+// attributes of classes with a common base do not overlap: C++ has one struct for all of them.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -64,15 +64,15 @@ void matchSurface(LinkContext &context, const ClassesByName &classes,
 struct Attribute {
   std::string name;
   mlir::Type type;
-  const typed::Member *member = nullptr; // of the first class that mentions it
+  const typed::Member *member = nullptr; // of the first class that uses it
   std::uint32_t words = 0;
   std::uint32_t offset = 0;
   bool isRead = false;
-  std::set<std::string> primitives; // classes whose functions mention it, or their first bases
+  std::set<std::string> primitives; // classes whose functions use it, or their root base classes
   std::vector<ir::AttributeOp> uses;
 };
 
-/// Does `user` write all of the attribute, and nothing else with it?
+/// Does `user` store the whole attribute, and not use it in another way?
 bool isStore(mlir::Operation *user, ir::AttributeOp op) {
   if (auto copy = mlir::dyn_cast<ir::CopyOp>(user))
     return copy.getTarget() == op && copy.getSource() != op;
@@ -95,7 +95,7 @@ std::string groupOf(const LinkContext &context, const ClassesByName &classes,
   return info->name;
 }
 
-/// All attributes of the module, in the order in which they are first mentioned.
+/// All attributes of the module, in the order of first use.
 std::vector<Attribute> collect(const LinkContext &context, const ClassesByName &classes) {
   std::vector<Attribute> attributes;
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>()) {
@@ -132,7 +132,7 @@ void note(LinkContext &context, const Attribute &attribute) {
       {Item::Attributes, attribute.name, attribute.isRead,
        attribute.isRead
            ? fmt::format("{} bytes of the hit, read by `{}`", 4 * attribute.words, function)
-           : fmt::format("`{}` writes it and nobody reads it", function),
+           : fmt::format("`{}` writes it and nothing reads it", function),
        ir::placeOf(use.getLoc())});
 }
 
@@ -141,7 +141,7 @@ bool shareAPrimitive(const Attribute &a, const Attribute &b) {
                      [&](const std::string &name) { return b.primitives.count(name) != 0; });
 }
 
-/// The lowest place that no attribute of the same primitive takes.
+/// The lowest offset that no attribute of the same primitive uses.
 std::uint32_t firstFit(const Attribute &attribute, const std::vector<const Attribute *> &placed) {
   std::uint32_t offset = 0;
   for (bool moved = true; moved;) {
@@ -188,7 +188,7 @@ void placeAttributes(LinkContext &context) {
   std::vector<Attribute> attributes = collect(context, classes);
   for (const Attribute &attribute : attributes)
     note(context, attribute);
-  // Attributes that nobody reads get the remaining space.
+  // Attributes that are never read get the remaining space.
   std::stable_partition(attributes.begin(), attributes.end(),
                         [](const Attribute &attribute) { return attribute.isRead; });
   std::vector<const Attribute *> placed;
@@ -199,7 +199,7 @@ void placeAttributes(LinkContext &context) {
       eraseStores(attribute);
     attribute.offset = firstFit(attribute, placed);
     if (!attribute.isRead) {
-      // Nobody asked for more than there is room for: what is kept only for its own sake gives way.
+      // Too large only because of attributes that are never read: these are dropped.
       const bool fits = attribute.offset + attribute.words <= RTSL_MAX_ATTRIBUTE_WORDS;
       const bool isKept = context.request.keep.has(Item::Attributes) || !context.hasScene;
       if (!isKept || !fits) {

@@ -1,15 +1,14 @@
-//===- RayTypes.cpp - payloads, and who answers them ----------------------===//
+//===- RayTypes.cpp - payload types and the methods for them --------------===//
 //
-// The type of a payload is the type of its ray. Here the types that a scene traces get numbers,
-// which a ray carries, and it is found out how their hits have to be searched for:
+// The type of a payload is the type of its ray. The types that a scene traces get numbers, which a
+// ray carries, and for each it is determined how to search for hits:
 //
-// - no material has `closestHit` for the type: any hit is as good as the nearest, and the first
-//   ends the search;
-// - some material has `anyHit`: hits may be refused. In which order materials are asked must not
-//   show. It does not if they write nothing of the payload, draw no random numbers, and do not end
-//   the search before the nearest hit where somebody wants to know it. Nor does it where each of
-//   them either refuses, or writes the same constants and ends the search, and no `closestHit`
-//   follows. Everywhere else they are asked in the order of hits.
+// - no material has `closestHit` for the type: any hit will do, and the first one ends the search;
+// - some material has `anyHit`: hits may be refused. The order in which the methods run must not be
+//   visible. It is not if they do not write the payload, draw no random numbers, and do not end the
+//   search before the nearest hit where that is needed. Nor is it if each of them either refuses,
+//   or writes the same constants and ends the search, and no `closestHit` follows. In all other
+//   cases they run in the order of hits.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -29,9 +28,9 @@ namespace {
 
 using mlir::func::FuncOp;
 
-/// The methods of this name that the classes of the program have for a payload.
-std::vector<FuncOp> programsFor(const LinkContext &context, const RayType &type,
-                                const std::string &method) {
+/// The methods of this name that the classes of the program define for a payload.
+std::vector<FuncOp> methodsFor(const LinkContext &context, const RayType &type,
+                               const std::string &method) {
   std::vector<FuncOp> programs;
   for (const LinkedClass &linked : context.classes)
     if (FuncOp program =
@@ -40,7 +39,7 @@ std::vector<FuncOp> programsFor(const LinkContext &context, const RayType &type,
   return programs;
 }
 
-/// Functions and all that they call.
+/// Functions and all their direct and indirect callees.
 std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, const LinkContext &context) {
   llvm::SetVector<mlir::Operation *> reached;
   for (FuncOp root : roots)
@@ -57,46 +56,46 @@ std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, const LinkCont
 }
 
 //===----------------------------------------------------------------------===//
-// Does the order show?
+// Visibility of the order of hits
 //===----------------------------------------------------------------------===//
 
-/// What `anyHit` methods for one type of ray do.
-struct Asking {
+/// The effects of the `anyHit` methods for one type of ray.
+struct AnyHitEffects {
   bool writes = false, reads = false; // the payload
-  bool draws = false;                 // random numbers, or does what is not known
+  bool draws = false;                 // random numbers, or has unknown effects
   bool terminates = false;
 };
 
-void look(mlir::Value address, Asking &asking) {
+void addUses(mlir::Value address, AnyHitEffects &effects) {
   for (mlir::Operation *user : address.getUsers()) {
     if (llvm::isa<ir::FieldOp, ir::ElementOp>(user))
-      look(user->getResult(0), asking);
+      addUses(user->getResult(0), effects);
     else if (llvm::isa<ir::LoadOp>(user))
-      asking.reads = true;
+      effects.reads = true;
     else if (auto copy = llvm::dyn_cast<ir::CopyOp>(user); copy && copy.getTarget() != address)
-      asking.reads = true;
+      effects.reads = true;
     else
-      asking.writes = true;
+      effects.writes = true;
   }
 }
 
-Asking askingOf(const std::vector<FuncOp> &functions) {
-  Asking asking;
+AnyHitEffects effectsOf(const std::vector<FuncOp> &functions) {
+  AnyHitEffects effects;
   for (FuncOp function : functions) {
-    asking.draws |= function.isExternal();
+    effects.draws |= function.isExternal();
     function.walk([&](mlir::Operation *op) {
       if (auto payload = llvm::dyn_cast<ir::PayloadOp>(op))
-        look(payload, asking);
+        addUses(payload, effects);
       else if (auto answer = llvm::dyn_cast<ir::AnswerHitOp>(op))
-        asking.terminates |= answer.getAnswer() == ir::HitAnswer::Terminate;
+        effects.terminates |= answer.getAnswer() == ir::HitAnswer::Terminate;
       else if (llvm::isa<ir::RandOp, ir::PrintOp, ir::CallMethodOp>(op))
-        asking.draws = true;
+        effects.draws = true;
     });
   }
-  return asking;
+  return effects;
 }
 
-/// "field.element..." of an address in the payload, through constant indices; empty if it is none.
+/// "field.element..." of an address in the payload with constant indices; empty otherwise.
 std::string pathInPayload(mlir::Value address) {
   if (auto field = address.getDefiningOp<ir::FieldOp>()) {
     if (field.getBase().getDefiningOp<ir::PayloadOp>())
@@ -113,9 +112,9 @@ std::string pathInPayload(mlir::Value address) {
 
 using ConstantStores = std::map<std::string, mlir::Attribute>;
 
-/// Whether each way through the method ends in a refusal without stores, or in the end of the
-/// search with these stores of constants (all of them in front of the answer, in its block).
-/// `stores` is filled by the first that is seen.
+/// Whether each path through the method ends in a refusal without stores, or ends the search after
+/// these stores of constants (all of them before the answer, in its block). The first method fills
+/// in `stores`.
 bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
   bool isAlike = true;
   anyHit.walk([&](ir::ReturnOp end) {
@@ -149,8 +148,8 @@ bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
   return isAlike;
 }
 
-/// Whether all writes of the payload are such stores, and every material asks.
-bool writesShowNoOrder(const LinkContext &context, const std::vector<FuncOp> &anyHits) {
+/// Whether all writes of the payload are such stores, and every material has an `anyHit`.
+bool writesHideOrder(const LinkContext &context, const std::vector<FuncOp> &anyHits) {
   const auto materials =
       std::count_if(context.classes.begin(), context.classes.end(), [](const LinkedClass &linked) {
         return linked.isUsed && linked.info->root == "rt_Material";
@@ -159,7 +158,7 @@ bool writesShowNoOrder(const LinkContext &context, const std::vector<FuncOp> &an
     return false; // some material accepts without writing
   std::optional<ConstantStores> stores;
   for (FuncOp anyHit : anyHits) {
-    bool isSimple = true; // nothing but stores of whole parts writes
+    bool isSimple = true; // only stores of whole parts write
     anyHit.walk([&](mlir::Operation *op) {
       if (llvm::isa<ir::CopyOp, ir::ClearOp, mlir::func::CallOp>(op))
         for (mlir::Value operand : op->getOperands())
@@ -173,36 +172,36 @@ bool writesShowNoOrder(const LinkContext &context, const std::vector<FuncOp> &an
   return true;
 }
 
-bool orderShows(const LinkContext &context, const std::vector<FuncOp> &anyHits,
-                bool hasClosestHit) {
-  const Asking asking = askingOf(reachedFrom(anyHits, context));
-  if (asking.draws || (asking.terminates && hasClosestHit))
+bool isOrderVisible(const LinkContext &context, const std::vector<FuncOp> &anyHits,
+                    bool hasClosestHit) {
+  const AnyHitEffects effects = effectsOf(reachedFrom(anyHits, context));
+  if (effects.draws || (effects.terminates && hasClosestHit))
     return true;
-  if (!asking.writes)
+  if (!effects.writes)
     return false;
-  return hasClosestHit || asking.reads || !writesShowNoOrder(context, anyHits);
+  return hasClosestHit || effects.reads || !writesHideOrder(context, anyHits);
 }
 
 //===----------------------------------------------------------------------===//
-// The types
+// Numbers of types
 //===----------------------------------------------------------------------===//
 
-/// How rtsl_traverse is to search for hits of rays of this type.
+/// How rtsl_traverse must search for hits of rays of this type.
 std::uint32_t searchFor(LinkContext &context, const RayType &type) {
-  const bool hasClosestHit = !programsFor(context, type, "closestHit").empty();
-  const std::vector<FuncOp> anyHits = programsFor(context, type, "anyHit");
+  const bool hasClosestHit = !methodsFor(context, type, "closestHit").empty();
+  const std::vector<FuncOp> anyHits = methodsFor(context, type, "anyHit");
   if (context.hasScene && !hasClosestHit && anyHits.empty() &&
-      programsFor(context, type, "miss").empty())
+      methodsFor(context, type, "miss").empty())
     if (const typed::Struct *payload = structOf(context, type))
       context.diagnostics.report(Code::rayTypeUnanswered, payload->range, payload->name);
   std::uint32_t how = hasClosestHit ? 0 : RTSL_FIRST_HIT;
   if (!anyHits.empty())
-    how |= RTSL_ASK_ANY_HIT | (orderShows(context, anyHits, hasClosestHit) ? RTSL_IN_ORDER : 0);
+    how |= RTSL_ASK_ANY_HIT | (isOrderVisible(context, anyHits, hasClosestHit) ? RTSL_IN_ORDER : 0);
   return how;
 }
 
-/// @rtsl_rt_Material_closestHit_payload(%object): the method for the ray's type, of the object's
-/// class.
+/// @rtsl_rt_Material_closestHit_payload(%object): runs the method for the ray's type, of the
+/// object's class.
 void makePayloadSlot(LinkContext &context, const std::string &base, const std::string &method) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
   const mlir::Location location = builder.getUnknownLoc();
@@ -221,7 +220,7 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
   std::vector<FuncOp> targets;
   llvm::SmallVector<llvm::SmallVector<std::int32_t>> numbers;
   for (const RayType &type : context.rayTypes) {
-    if (programsFor(context, type, method).empty())
+    if (methodsFor(context, type, method).empty())
       continue;
     FuncOp target = create("dispatch." + base + "." + method + "." + type.name());
     target.setPrivate();
@@ -255,7 +254,7 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
 
 } // namespace
 
-/// The type of this payload, which gets the next number if it has none.
+/// The ray type of this payload; assigns the next number if it has none.
 static RayType &rayTypeOf(mlir::Type payload, std::vector<RayType> &types) {
   const auto structure = llvm::cast<ir::StructType>(payload);
   const auto known = std::find_if(types.begin(), types.end(),
@@ -277,7 +276,7 @@ std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
   auto number = [&](auto ray) {
     const auto payload = llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee();
     ray.setRayType(rayTypeOf(payload, types).number);
-    ray.setHow(RTSL_ASK_ANY_HIT | RTSL_IN_ORDER); // what is right for any scene
+    ray.setHow(RTSL_ASK_ANY_HIT | RTSL_IN_ORDER); // correct for any scene
   };
   ir.walk([&](mlir::Operation *op) {
     if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op))
@@ -288,7 +287,7 @@ std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
   return types;
 }
 
-/// The types that have methods and are not traced. Of these only the names are used.
+/// Adds the types that have methods but are not traced. Only their names are used.
 static void addAnsweredTypes(LinkContext &context) {
   for (const auto &definition : context.module.classes)
     for (const auto &method : definition->functions) {

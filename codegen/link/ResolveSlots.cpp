@@ -1,10 +1,10 @@
-//===- ResolveSlots.cpp - from a method's name to the classes that have it ===//
+//===- ResolveSlots.cpp - dispatch of methods by class --------------------===//
 //
 //   %c = rtsl.call_method "weight" on %t(%x) : !rtsl.ref<"rt_Texture">, (f32) -> f32
 // becomes a call of
 //   func.func private @dispatch.rt_Texture.weight(%object, %x) -> f32
-// which switches over the classes below rt_Texture that the scene uses; with one class it is a
-// direct call.
+// which switches over the classes derived from rt_Texture that the scene uses; with one class it is
+// a direct call.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Separate.h"
@@ -15,7 +15,7 @@ namespace rtsl::linking {
 
 namespace {
 
-/// Calls the method of one class and hands on what it gives.
+/// Calls the method of one class and returns its results.
 void buildCall(mlir::OpBuilder &builder, const LinkedClass &linked, mlir::func::FuncOp target,
                mlir::func::FuncOp function) {
   const mlir::Location location = function.getLoc();
@@ -136,7 +136,7 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
 }
 
 void resolveSlots(LinkContext &context) {
-  // then nothing happens, and zero is returned
+  // then the function does nothing and returns zero
   const bool mayBeNone = typed::mayReferToNothing(context.module);
   replaceSlots(context.ir, context.symbols, [&](const SlotCall &slot, mlir::func::FuncOp function) {
     std::vector<const LinkedClass *> classes;

@@ -1,14 +1,14 @@
-//===- UnrollRecursion.cpp - functions that call themselves, level by level ===//
+//===- UnrollRecursion.cpp - copies of recursive functions ----------------===//
 //
 //   func @dispatch.Layer.at(%o, %p)  { call @Mixed.at }      func @dispatch.Layer.at    { call @Mixed.at }
 //   func @Mixed.at(%self, %p)                                func @Mixed.at             { call @dispatch.Layer.at.2 }
 //     { call @dispatch.Layer.at(%inner, ...) }         ==>   func @dispatch.Layer.at.2  { call @Mixed.at.2 }
 //                                                            func @Mixed.at.2           { 0 }
 //
-// A GPU has no room for recursion whose depth only the scene says; and what calls itself is inlined
-// nowhere. Each time round such a cycle a call goes through a reference, to an object that is
-// further down a chain of references (docs/language.md, func.recursion), and how long these chains
-// are is known when the objects are made. What traces has frames of its own
+// A GPU has no memory for recursion whose depth depends on the scene; and recursive functions are
+// never inlined. Each iteration of such a cycle calls through a reference, to an object that is
+// further down a chain of references (docs/language.md, func.recursion), and the lengths of these
+// chains are known when the objects are made. Functions that trace have frames of their own
 // (codegen/passes/continuation/calls/CallFrames.cpp).
 //
 //===----------------------------------------------------------------------===//
@@ -35,7 +35,7 @@ using mlir::func::FuncOp;
 
 using Cycle = llvm::SmallSetVector<mlir::Operation *, 8>;
 
-/// The functions that may call one another round about, group by group.
+/// The cycles of functions that may call one another.
 std::vector<Cycle> findCycles(mlir::ModuleOp ir) {
   std::vector<Cycle> cycles;
   const mlir::CallGraph graph(ir);
@@ -51,7 +51,7 @@ std::vector<Cycle> findCycles(mlir::ModuleOp ir) {
   return cycles;
 }
 
-/// Do the functions, or what they call, send rays?
+/// Do the functions or their callees send rays?
 bool traces(const Cycle &cycle, mlir::ModuleOp ir) {
   Cycle reached = cycle;
   bool found = false;
@@ -75,7 +75,7 @@ public:
       : ir(ir), symbols(ir), cycle(cycle), levels(levels) {}
 
   void run() {
-    for (mlir::Operation *function : cycle) // before any calls another one
+    for (mlir::Operation *function : cycle) // before any copy calls another one
       originals[function] = function->clone();
     for (mlir::Operation *function : cycle)
       copies[{function, 1}] = llvm::cast<FuncOp>(function);
@@ -86,8 +86,8 @@ public:
   }
 
 private:
-  /// Calls of the cycle's functions lead to the copies of the same level, and through references to
-  /// those below.
+  /// Calls of functions of the cycle lead to the copies of the same level, and calls through
+  /// references to those of the next level.
   void redirect(FuncOp function, std::uint32_t level) {
     function.walk([&](CallOp call) {
       mlir::Operation *callee = symbols.lookup(call.getCallee());
@@ -100,7 +100,7 @@ private:
         call.setCallee(copy(callee, below).getSymName());
         return;
       }
-      mlir::OpBuilder builder(call); // no chain of references is as long
+      mlir::OpBuilder builder(call); // no chain of references is this long
       for (mlir::Value result : call.getResults())
         result.replaceAllUsesWith(ir::createZero(builder, call.getLoc(), result.getType()));
       call.erase();
@@ -135,8 +135,8 @@ void unrollRecursion(mlir::ModuleOp ir, std::uint32_t referenceChain) {
   for (const Cycle &cycle : findCycles(ir)) {
     if (traces(cycle, ir))
       continue;
-    // Between two calls through the same references a member has led on; other references may have
-    // been used meanwhile.
+    // Between two calls through the same reference, a member leads to the next object; other
+    // references may be used in between.
     const auto dispatches = static_cast<std::uint32_t>(llvm::count_if(cycle, isDispatch));
     const std::uint64_t levels =
         std::uint64_t(std::max(1u, referenceChain)) * std::max(1u, dispatches);

@@ -1,4 +1,4 @@
-//===- UnrollRecursion.h - functions that call themselves, level by level -===//
+//===- UnrollRecursion.h - copies of recursive functions ------------------===//
 #pragma once
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -8,15 +8,16 @@
 
 namespace rtsl {
 
-/// Copies of a function that calls itself, on objects that members refer to, at most so many.
+/// The most copies of a recursive function whose recursion follows references between objects.
 constexpr std::uint32_t mostRecursionLevels = 32;
 
-/// Makes each call round a cycle of functions that do not trace one of a copy of its own, a level
+/// Replaces each recursive call of functions that do not trace by a call of a copy, one level
 /// further down, so that nothing recurses: no chain of references of the scene's objects is longer
-/// than `referenceChain`. What would have more levels than mostRecursionLevels stays as it is.
+/// than `referenceChain`. Functions that would need more levels than mostRecursionLevels are
+/// unchanged.
 void unrollRecursion(mlir::ModuleOp ir, std::uint32_t referenceChain);
 
-/// A function that does not trace and may call itself; null if there is none.
+/// A recursive function that does not trace; null if there is none.
 mlir::func::FuncOp recursiveFunction(mlir::ModuleOp ir);
 
 } // namespace rtsl

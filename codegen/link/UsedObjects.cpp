@@ -1,9 +1,9 @@
 //===- UsedObjects.cpp - objects that a ray can come to -------------------===//
 //
-// A scene may hold materials and textures that nothing refers to, and lights where no shader looks
-// for any. They are made, for mistakes in them are to be found and what they take (records, random
-// numbers of constructors) is to stay as it is; but nothing calls them. A class of which there are
-// no other objects needs no place in a choice between classes, and its methods are not reached.
+// A scene may contain materials and textures that nothing refers to, and lights that no shader
+// uses. They are made, because mistakes in them should be found, and records and the random numbers
+// of constructors should not change; but they are never called. A class without other objects is
+// not part of dispatch, and its methods are not reached.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Steps.h"
@@ -21,19 +21,19 @@ using Role = ScenePart::Role;
 class Uses {
 public:
   explicit Uses(const LinkContext &context)
-      : context(context), parts(context.request.parts), users(parts.size(), nobody) {}
+      : context(context), parts(context.request.parts), users(parts.size(), unused) {}
 
-  /// Uses every part of this role, and what these refer to.
+  /// Marks every part of this role, and the parts that they refer to, as used.
   void add(Role role) {
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (parts[i].role == role)
         add(i, i);
   }
 
-  bool isUsed(std::size_t part) const { return users[part] != nobody; }
+  bool isUsed(std::size_t part) const { return users[part] != unused; }
   const std::string &userOf(std::size_t part) const { return parts[users[part]].name; }
 
-  /// Says so of each class of the program.
+  /// Sets LinkedClass::isUsed.
   void mark(std::vector<LinkedClass> &classes) const {
     std::set<llvm::StringRef> used;
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -45,7 +45,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t nobody = ~std::size_t(0);
+  static constexpr std::size_t unused = ~std::size_t(0);
 
   void add(std::size_t part, std::size_t user) {
     if (isUsed(part) || context.isWithout(Item::Objects, parts[part].name))
@@ -73,8 +73,8 @@ void findUsedObjects(LinkContext &context) {
   uses.mark(context.classes);
   const bool hasLights =
       llvm::any_of(parts, [](const ScenePart &part) { return part.role == Role::Light; });
-  const bool lightsUp = hasLights && asksForLights(context);
-  if (lightsUp)
+  const bool areLightsUsed = hasLights && usesLights(context);
+  if (areLightsUsed)
     uses.add(Role::Light);
   uses.mark(context.classes);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -82,7 +82,7 @@ void findUsedObjects(LinkContext &context) {
       continue;
     const bool isLight = parts[i].role == Role::Light;
     const std::string reason =
-        isLight ? (lightsUp ? "an `illuminance` that runs meets it" : "no `illuminance` runs")
+        isLight ? (areLightsUsed ? "an `illuminance` that runs uses it" : "no `illuminance` runs")
         : uses.isUsed(i) ? "referred to by " + uses.userOf(i)
                          : "nothing that is used refers to it";
     context.findings.push_back(

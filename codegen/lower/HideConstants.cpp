@@ -1,4 +1,4 @@
-//===- HideConstants.cpp - nothing of single precision folds --------------===//
+//===- HideConstants.cpp - no folding in single precision -----------------===//
 #include "codegen/lower/HideConstants.h"
 
 #include "codegen/ir/Rtsl.h"
@@ -34,7 +34,7 @@ void hideConstants(mlir::ModuleOp module) {
         isFloat(op->getResult(0).getType()))
       sources.push_back(op);
     else if (llvm::isa<arith::SIToFPOp, arith::UIToFPOp, ir::ElementaryOp, ir::RefractOp>(op))
-      functions.push_back(op); // of integers, and of variables that turn out to be zero
+      functions.push_back(op); // of integers; also of variables that turn out to be zero
   });
   llvm::for_each(sources, hideResult);
   llvm::for_each(functions, hideOperands);

@@ -1,9 +1,9 @@
-//===- HideConstants.h - nothing of single precision folds ----------------===//
+//===- HideConstants.h - no folding in single precision -------------------===//
 //
-// With --fp=double arithmetic is widened on LLVM IR (codegen/emit/DoublePrecision.h). What has been
-// folded by then was computed in single precision: 1 - exp(-1e-6) has lost its digits. So lowering
-// leaves arithmetic of constants as it is, and where numbers come from is hidden from the passes:
-// constants, what is loaded, integers that become floats, bits.
+// With --fp=double arithmetic is widened on LLVM IR (codegen/emit/DoublePrecision.h). Anything
+// folded before that was computed in single precision: 1 - exp(-1e-6) has lost its digits. So
+// lowering does not fold arithmetic, and the sources of numbers are hidden from the passes:
+// constants, loads, integers that become floats, bit casts.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

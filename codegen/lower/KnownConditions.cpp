@@ -1,4 +1,4 @@
-//===- KnownConditions.cpp - what expressions that are kept whole come to ---===//
+//===- KnownConditions.cpp - the values of expressions that are kept whole ===//
 #include "codegen/lower/KnownConditions.h"
 
 #include "codegen/ir/Rtsl.h"
@@ -11,7 +11,7 @@ namespace rtsl {
 
 namespace {
 
-/// Numbers of one component, and what is made of them.
+/// The known values of one component, and of expressions of them.
 class KnownValues {
 public:
   explicit KnownValues(const SourceTable &table) : table(table) {}
@@ -20,7 +20,7 @@ public:
 private:
   std::optional<typed::Constant> ofExpression(ir::ExpressionOp whole, unsigned depth);
 
-  static constexpr unsigned deepest = 64; // that one value hangs on another
+  static constexpr unsigned deepest = 64; // length of a chain of dependent values
   const SourceTable &table;
   llvm::DenseMap<mlir::Value, std::optional<typed::Constant>> seen;
 };

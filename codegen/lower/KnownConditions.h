@@ -1,8 +1,8 @@
-//===- KnownConditions.h - what expressions that are kept whole come to -----===//
+//===- KnownConditions.h - the values of expressions that are kept whole --===//
 //
-// The IR cannot fold `rtsl.expression`, whose meaning is the author's tree. Where the tree's leaves
-// are known, its value is: `i < 3` in the first round of a loop, `scale < 0.2` in a function that
-// was called with 0.5.
+// The IR cannot fold `rtsl.expression`, whose meaning is an expression tree of the source. If the
+// values of the tree's leaves are known, so is its own: `i < 3` in the first iteration of a loop,
+// `scale < 0.2` in a function that was called with 0.5.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace rtsl {
 
-/// Whether a bool is true, as far as that is known.
+/// The value of a bool, if it is known.
 std::optional<bool> knownCondition(mlir::Value condition, const SourceTable &table);
 
 } // namespace rtsl

@@ -10,7 +10,7 @@ namespace rtsl {
 
 mlir::OwningOpRef<mlir::ModuleOp> lower(const typed::Module &module, const LowerOptions &options,
                                         mlir::MLIRContext &context) {
-  assert(options.diagnostics && "lowering needs somewhere to report to");
+  assert(options.diagnostics && "lowering needs diagnostics");
   assert(options.colorComponents >= 1 && options.colorComponents <= RTSL_MAX_COLOR);
   context.loadDialect<ir::RtslDialect>();
   std::size_t errorsBefore = options.diagnostics->errorCount();

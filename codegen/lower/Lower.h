@@ -1,8 +1,8 @@
 //===- Lower.h - from the typed tree to level 1 of the `rtsl` dialect -----===//
 //
-// Lowering is the last part that sees the source. It decides every operation: in which order
-// operands are evaluated, what each built-in function computes and how it rounds, and what an index
-// out of range does. docs/language.md says the same for authors.
+// Lowering is the last stage that uses the source. It determines every operation: the order in
+// which operands are evaluated, what each built-in function computes and how it rounds, and the
+// effect of an index out of range. docs/language.md specifies the same for authors.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -21,7 +21,7 @@
 namespace rtsl {
 
 struct LowerOptions {
-  /// Where messages go, and where the names and lines of locations come from.
+  /// Receives messages, and supplies the names and lines of locations.
   Diagnostics *diagnostics = nullptr;
   /// Components of a color, 1 to RTSL_MAX_COLOR. 3 is RGB, 1 is luminance, more is a spectrum (see
   /// Color.h).
@@ -40,8 +40,8 @@ struct LowerOptions {
   std::set<std::string> classes;
 };
 
-/// Lowers a module without errors. Needs `options.diagnostics`. What the rest of the compiler
-/// cannot do yet is reported there, with its place; then the result is null. The result passes the
+/// Lowers a module without errors. Needs `options.diagnostics`. A construct that the rest of the
+/// compiler does not support yet is reported there; then the result is null. The result passes the
 /// verifier.
 mlir::OwningOpRef<mlir::ModuleOp> lower(const typed::Module &module, const LowerOptions &options,
                                         mlir::MLIRContext &context);

@@ -1,7 +1,7 @@
 //===- LowerBuiltins.cpp - built-in functions -----------------------------===//
 //
-// What depends on the ray or the scene is in LowerBuiltinsRay.cpp; everything else is lowered by its
-// formula (language/formulas), which Builtins.def names.
+// Built-in functions that depend on the ray or the scene are in LowerBuiltinsRay.cpp; all others
+// are lowered by their formulas (language/formulas), which Builtins.def names.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/lower/Lowering.h"
@@ -19,11 +19,11 @@ Parts FunctionLowering::lowerBuiltin(const typed::BuiltinExpr &expr) {
   if (auto result = lowerRayBuiltin(expr))
     return *result;
   formulas::Call<Num> call;
-  llvm::SmallVector<Place, 2> places; // of results of `out` parameters
+  llvm::SmallVector<Lvalue, 2> targets; // `out` arguments
   const auto [firstOutput, outputCount] = typed::outputsOf(expr.builtin);
   for (std::size_t i = 0; i < expr.args.size(); ++i)
     if (i >= firstOutput && i < firstOutput + outputCount)
-      places.push_back(place(*expr.args[i]));
+      targets.push_back(lowerLvalue(*expr.args[i]));
     else
       call.arguments.push_back(columns(lower(*expr.args[i])));
   emitter.setLoc(module.location(expr.range));
@@ -33,8 +33,8 @@ Parts FunctionLowering::lowerBuiltin(const typed::BuiltinExpr &expr) {
     unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "`");
     return zeroOf(expr.type);
   }
-  for (std::size_t i = 0; i < places.size(); ++i)
-    store({call.outputs[i]}, places[i]);
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    store({call.outputs[i]}, targets[i]);
   return parts(call.result);
 }
 

@@ -49,7 +49,7 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
   case Builtin::IgnoreIntersection:
   case Builtin::TerminateRay:
     emitter.setLoc(location);
-    // In the middle of an expression code may follow, which nothing reaches.
+    // In the middle of an expression unreachable code may follow.
     emitter.ifThen(emitter.boolConstant(true), [&] { answerHit(expr.builtin); });
     return Parts();
   default:
@@ -57,39 +57,39 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
   }
 }
 
-// Whether there are to be shadows is mostly written out. The ray state has no word for it: no
-// cosine says it (Abi.h).
+// The argument that turns shadows on or off is mostly a constant. RTSL_NO_SHADOWS, which is no
+// possible cosine, turns them off (Abi.h).
 Parts FunctionLowering::lowerIlluminate(const typed::BuiltinExpr &expr) {
   Value light = value(*expr.args[0]), point = value(*expr.args[1]);
   Value shadows = expr.args.size() > 2 ? value(*expr.args[2]) : emitter.boolConstant(true);
   emitter.setLoc(module.location(expr.range));
   Value lit = emitter.variable("lit", emitter.getI1Type());
-  auto ask = [&](bool withShadows) {
+  auto illuminate = [&](bool withShadows) {
     Value normal = withShadows ? Value() : point;
     Value cosine = withShadows ? Value() : emitter.constant(emitter.getF32Type(), RTSL_NO_SHADOWS);
     emitter.store(emitter.make<ir::IlluminateOp>(emitter.getI1Type(), light, point, normal, cosine),
                   lit);
   };
-  emitter.ifThen(shadows, [&] { ask(true); }, [&] { ask(false); });
+  emitter.ifThen(shadows, [&] { illuminate(true); }, [&] { illuminate(false); });
   return {emitter.load(lit)};
 }
 
-// The payload is an `inout` argument: a temporary goes with the ray, and is copied back.
+// The payload is an `inout` argument: a temporary is passed with the ray, and copied back.
 void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
   constexpr unsigned payload = 4, first = 5; // the optional arguments come last
   llvm::SmallVector<Value, 8> arguments;
-  Place target;
+  Lvalue target;
   for (unsigned i = 0; i < expr.args.size(); ++i) {
     if (i != payload) {
       arguments.push_back(value(*expr.args[i]));
       continue;
     }
-    target = place(*expr.args[i]);
-    const bool isOfItsOwn =
+    target = lowerLvalue(*expr.args[i]);
+    const bool isWholeVariable =
         llvm::isa_and_nonnull<ir::VarOp, ir::PayloadOp>(target.address.getDefiningOp());
-    const bool isLeftAlone = std::none_of(expr.args.begin() + first, expr.args.end(),
+    const bool isUnchanged = std::none_of(expr.args.begin() + first, expr.args.end(),
                                           [](const auto &arg) { return hasSideEffects(*arg); });
-    if (module.options.source && isOfItsOwn && isLeftAlone) { // in its own place: nobody else looks
+    if (module.options.source && isWholeVariable && isUnchanged) { // no temporary is needed
       arguments.push_back(target.address);
       continue;
     }
@@ -107,7 +107,7 @@ void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
 
 void FunctionLowering::lowerPrint(const typed::BuiltinExpr &expr) {
   llvm::SmallVector<llvm::StringRef> items;
-  std::vector<std::string> names; // of types; the references stay where they are
+  std::vector<std::string> names; // of types; references are not printed
   names.reserve(expr.args.size());
   llvm::SmallVector<std::int32_t> words;
   llvm::SmallVector<Value> values;
@@ -133,7 +133,7 @@ void FunctionLowering::answerHit(Builtin builtin) {
   emitReturnOfZero();
 }
 
-/// Behind a call of a function that may end `anyHit`.
+/// After a call of a function that may end `anyHit`.
 void FunctionLowering::returnIfHitAnswered() {
   Value ended = emitter.make<ir::HitAnsweredOp>(emitter.getI1Type());
   emitter.ifThen(ended, [&] { emitReturnOfZero(); });

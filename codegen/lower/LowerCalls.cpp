@@ -1,9 +1,9 @@
-//===- LowerCalls.cpp - calls of the author's functions -------------------===//
+//===- LowerCalls.cpp - calls of functions and methods --------------------===//
 //
 // Arguments are evaluated from left to right. An `in` argument is a value, or the address of a
-// copy; for `out` and `inout` the place is found once, before the call, a temporary goes to the
-// function (with the value of the place, for `inout`), and after the call the temporaries are
-// copied back, again from left to right. So what overlaps is harmless.
+// copy; for `out` and `inout` the lvalue is evaluated once, before the call, a temporary is passed
+// to the function (with the lvalue's value, for `inout`), and after the call the temporaries are
+// copied back, again from left to right. So arguments may overlap.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/lower/Lowering.h"
@@ -15,8 +15,8 @@
 
 namespace rtsl::lowering {
 
-// Is the argument a variable of the caller's that neither the callee nor a later argument changes?
-// Nobody else can.
+// Is the argument a variable of the caller that neither the callee nor a later argument changes? No
+// other code can change it.
 static bool canShare(const typed::Expr &arg, const std::vector<typed::ExprPtr> &args,
                      std::size_t index, const std::set<const typed::Variable *> &assigned,
                      const typed::Variable &parameter) {
@@ -30,8 +30,8 @@ static bool canShare(const typed::Expr &arg, const std::vector<typed::ExprPtr> &
   return true;
 }
 
-// For people to read, what stays whole goes to a method that traces as it is, if nobody else looks
-// at it meanwhile.
+// For C++ output: a variable that stays whole is passed without a copy to a method that traces, if
+// no other argument refers to it.
 bool FunctionLowering::canHandOver(const typed::Function &callee,
                                    const std::vector<typed::ExprPtr> &args,
                                    std::size_t index) const {
@@ -43,13 +43,13 @@ bool FunctionLowering::canHandOver(const typed::Function &callee,
   for (std::size_t other = 0; other < args.size(); ++other) {
     if (other > index && hasSideEffects(*args[other]))
       return false;
-    bool isLookedAt = false;
+    bool isAliased = false;
     if (other != index && callee.parameters[other]->direction != ast::Direction::In)
       forEachExpr(*args[other], [&](const typed::Expr &inner) {
         auto *same = dynCast<typed::VariableExpr>(&inner);
-        isLookedAt |= same && same->variable == variable->variable;
+        isAliased |= same && same->variable == variable->variable;
       });
-    if (isLookedAt)
+    if (isAliased)
       return false;
   }
   return true;
@@ -75,7 +75,7 @@ void FunctionLowering::passArguments(const typed::Function &callee,
         continue;
       }
       if (!isDispatched && canShare(*args[i], args, i, assigned, parameter)) {
-        values.push_back(place(*args[i]).address);
+        values.push_back(lowerLvalue(*args[i]).address);
         continue;
       }
       Value copy = temporary(name, type);
@@ -84,10 +84,10 @@ void FunctionLowering::passArguments(const typed::Function &callee,
       continue;
     }
     if (isDispatched && canHandOver(callee, args, i)) {
-      values.push_back(place(*args[i]).address);
+      values.push_back(lowerLvalue(*args[i]).address);
       continue;
     }
-    Place target = place(*args[i]);
+    Lvalue target = lowerLvalue(*args[i]);
     Value copy = temporary(name, type);
     if (parameter.direction == ast::Direction::InOut)
       storeTo(load(target), copy, type);
@@ -101,8 +101,7 @@ void FunctionLowering::copyOut(const std::vector<CopyOut> &outputs) {
     store(loadFrom(output.from, output.target.type), output.target);
 }
 
-/// Does it call what objects of the class do not run otherwise, or what the engine calls in another
-/// way?
+/// Is the callee an overridden function, or one that the engine calls under the same name?
 bool FunctionLowering::isHidden(const typed::CallExpr &expr) const {
   const typed::Function &callee = *expr.function;
   return expr.isOfBase && (callee.isStateMethod || callee.isConstructor ||
@@ -142,9 +141,9 @@ Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {
   return Parts(call.getResults().begin(), call.getResults().end());
 }
 
-// A texture leaves what it finds in two state variables. They are cleared before, so that what it
-// sets nothing of is zero and not what another one has set. One that looks up another keeps its
-// own:
+// A texture stores its results in two state variables. They are cleared before the call, so that a
+// result that it does not set is zero and not that of an earlier texture. A texture that calls
+// another one preserves its own results:
 //
 //   %mine = rtsl.load TextureColor      only where the caller may itself be looked up
 //   rtsl.store 0, TextureColor

@@ -62,13 +62,13 @@ Parts FunctionLowering::lowerConstruct(const typed::ConstructExpr &expr) {
       components.push_back(i);
     return {emitter.shuffle(vector, components)};
   }
-  // What does not fit is dropped before it is taken apart.
-  unsigned wanted = type->isVector() ? type->count : 1;
+  // Excess components are dropped before the vector is split.
+  unsigned needed = type->isVector() ? type->count : 1;
   llvm::SmallVector<Value, 16> scalars;
-  for (std::size_t i = 0; i < args.size() && scalars.size() < wanted; ++i)
+  for (std::size_t i = 0; i < args.size() && scalars.size() < needed; ++i)
     for (Value part : args[i]) {
       Num number = num(part);
-      for (unsigned j = 0; j < number.count() && scalars.size() < wanted; ++j)
+      for (unsigned j = 0; j < number.count() && scalars.size() < needed; ++j)
         scalars.push_back(number[j]);
     }
   if (!type->isVector())
@@ -76,7 +76,7 @@ Parts FunctionLowering::lowerConstruct(const typed::ConstructExpr &expr) {
   return {emitter.vector(scalars)};
 }
 
-// Fields or elements in order, each evaluated into its place.
+// Fields or elements in order, each evaluated into its own memory.
 void FunctionLowering::constructInto(const typed::ConstructExpr &expr, Value address) {
   const Type *type = expr.type;
   for (std::size_t i = 0; i < expr.args.size(); ++i) {

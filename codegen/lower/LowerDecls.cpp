@@ -1,10 +1,10 @@
 //===- LowerDecls.cpp - classes, functions and their names ----------------===//
 //
-// Symbols: a free function keeps its name, `f`, or has its parameters' types behind it where the
-// name is overloaded, `f.vec3.float`. A method is `Class.method`, of the class whose objects run
-// it; `Class.Base.method` is the definition of a base class that `Base::method()` calls. What a
-// call of `intersect` needs a second version of is `Class.helper.intersect` (LowerFunction.cpp says
-// why).
+// Symbols: a free function keeps its name, `f`; an overloaded one is followed by its parameters'
+// types, `f.vec3.float`. A method is `Class.method`, of the class whose objects run it;
+// `Class.Base.method` is the definition of a base class that `Base::method()` calls. The second
+// version of a function that `intersect` may need is `Class.helper.intersect` (LowerFunction.cpp
+// explains why).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -57,7 +57,7 @@ std::string ModuleLowering::symbolOf(const FunctionKey &key) {
   }
   if (key.isForIntersect())
     name += ".intersect";
-  // Far-fetched, but possible: the name of a class and its method spelled by other means.
+  // Unlikely, but possible: a function whose name is spelled like that of a class and its method.
   std::string unique = name;
   for (unsigned i = 2; !symbols.insert(unique).second; ++i)
     unique = name + "." + std::to_string(i);
@@ -79,8 +79,8 @@ ModuleLowering::scratchMembers(const typed::Class *concrete) const {
   return members;
 }
 
-// The object, where a struct, array or matrix goes that is returned, the parameters, and on behalf
-// of `intersect` the scratch members and whether a hit was accepted.
+// The parameters: the object, the address of a struct, array or matrix that is returned, the
+// declared parameters, and for `intersect` the scratch members and whether a hit was accepted.
 mlir::FunctionType ModuleLowering::functionType(const FunctionKey &key) {
   const typed::Function &function = *key.function;
   llvm::SmallVector<mlir::Type> inputs, results;
@@ -139,7 +139,8 @@ static void collectMembers(const typed::Class &definition,
       members.push_back(member.get());
 }
 
-// What objects of the class run, inherited functions first, each in its most derived form.
+// The functions that objects of the class run, inherited functions first, each in its most derived
+// form.
 static void collectFunctions(const typed::Class &definition, const typed::Class &concrete,
                              std::vector<const typed::Function *> &functions) {
   if (definition.base)
@@ -191,7 +192,7 @@ void ModuleLowering::lowerClass(const typed::Class &definition) {
   collectFunctions(definition, definition, methods);
   for (const typed::Function *method : methods) {
     bool isIntersect = method->isStateMethod && method->name == "intersect";
-    // Helpers that only `intersect` can call are lowered when it does.
+    // Helpers that only `intersect` can call are lowered with it.
     if (!method->isStateMethod && !method->isConstructor && definition.root == "rt_Primitive" &&
         hasScratch && takesPartInIntersection(*method, &definition))
       continue;

@@ -1,10 +1,10 @@
-//===- LowerEvaluations.cpp - on variables where they lie -----------------===//
+//===- LowerEvaluations.cpp - expressions with effects, for C++ -----------------===//
 //
-// For C++ (SourceTable.h), of what cannot be an expression of values (LowerSource.cpp).
+// For C++ output (SourceTable.h): expressions that LowerSource.cpp cannot lower.
 //
-// Structs, arrays and matrices stay whole, and so does what a call writes through its parameters:
-// the operation has their addresses. A number or a vector that is written so is a variable of its
-// own for the time, under the same name.
+// Structs, arrays and matrices stay whole: the operation takes their addresses. So do the arguments
+// that a call writes. A number or a vector that is written becomes a variable of the same name
+// during the operation.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -51,7 +51,7 @@ bool FunctionLowering::mentionsMemory(const typed::Expr &expr) {
   return found;
 }
 
-/// Is the target part of a variable that stays whole, or a component that is found at run time?
+/// Is the target part of a variable that stays whole, or a vector component with a computed index?
 bool FunctionLowering::staysWhole(const typed::Expr &target) {
   const typed::Expr &whole = wholeOf(target);
   if (isLocal(whole) && livesInMemory(whole.type))
@@ -60,8 +60,8 @@ bool FunctionLowering::staysWhole(const typed::Expr &target) {
   return index && index->base->type->isVector() && index->index->kind != ExprKind::Literal;
 }
 
-/// Finds what the expression itself, not a part of it, writes.
-bool FunctionLowering::openPlaces(const typed::Expr &expr, Evaluation &evaluation) {
+/// Collects the variables that the expression itself, not a subexpression, writes.
+bool FunctionLowering::collectWritten(const typed::Expr &expr, Evaluation &evaluation) {
   std::vector<const typed::Expr *> parts, written;
   bool readsOld = true;
   auto outputs = [&](const typed::Function *callee, const std::vector<typed::ExprPtr> &args) {
@@ -91,22 +91,23 @@ bool FunctionLowering::openPlaces(const typed::Expr &expr, Evaluation &evaluatio
     parts = {&expr};
   }
 
-  // Parts with effects run before: they must not change what is looked at in its place.
+  // Subexpressions with effects run before: they must not change variables that this one uses in
+  // place.
   std::set<const typed::Variable *> changedBefore;
   for (const typed::Expr *part : parts)
     for (const typed::Variable *variable : assignedVariables(*part))
       changedBefore.insert(variable);
-  std::set<const typed::Variable *> looked;
+  std::set<const typed::Variable *> used;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (isLocal(inner) && livesInMemory(inner.type))
-      looked.insert(cast<typed::VariableExpr>(inner).variable);
+      used.insert(cast<typed::VariableExpr>(inner).variable);
   });
-  for (const typed::Expr *place : written) {
-    const typed::Expr &whole = wholeOf(*place);
+  for (const typed::Expr *target : written) {
+    const typed::Expr &whole = wholeOf(*target);
     if (isLocal(whole))
-      looked.insert(cast<typed::VariableExpr>(whole).variable);
+      used.insert(cast<typed::VariableExpr>(whole).variable);
   }
-  if (std::any_of(looked.begin(), looked.end(),
+  if (std::any_of(used.begin(), used.end(),
                   [&](const auto *variable) { return changedBefore.count(variable) != 0; }))
     return false;
 
@@ -119,11 +120,11 @@ bool FunctionLowering::openPlaces(const typed::Expr &expr, Evaluation &evaluatio
     if (!isLocal(whole))
       return false;
     const typed::Variable *variable = cast<typed::VariableExpr>(whole).variable;
-    if (evaluation.places.count(variable))
+    if (evaluation.addresses.count(variable))
       continue;
-    const Place where = place(whole);
+    const Lvalue lvalue = lowerLvalue(whole);
     if (livesInMemory(whole.type)) {
-      evaluation.places[variable] = where.address;
+      evaluation.addresses[variable] = lvalue.address;
       continue;
     }
     const Value copy = variableOf(variable->name, whole.type);
@@ -133,9 +134,9 @@ bool FunctionLowering::openPlaces(const typed::Expr &expr, Evaluation &evaluatio
       mentions += named && named->variable == variable;
     });
     if (readsOld || &whole != target || mentions > 1)
-      storeTo(load(where), copy, whole.type);
-    evaluation.places[variable] = copy;
-    evaluation.outputs.push_back({where, copy});
+      storeTo(load(lvalue), copy, whole.type);
+    evaluation.addresses[variable] = copy;
+    evaluation.outputs.push_back({lvalue, copy});
   }
   return true;
 }
@@ -160,13 +161,13 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
     if (!isLocal(expr))
       return;
     const typed::Variable *variable = cast<typed::VariableExpr>(expr).variable;
-    if (auto place = evaluation.places.find(variable); place != evaluation.places.end())
-      return leaf(place->second, true);
+    if (auto known = evaluation.addresses.find(variable); known != evaluation.addresses.end())
+      return leaf(known->second, true);
     if (isNamedMatrix(*variable))
       return;
     if (!livesInMemory(expr.type))
       return leaf(value(expr));
-    const Value address = place(expr).address;
+    const Value address = lowerLvalue(expr).address;
     if (!address.getDefiningOp() || !llvm::isa<ir::TableOp>(address.getDefiningOp()))
       leaf(address);
     return;
@@ -181,7 +182,8 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
   }
 }
 
-/// One that traces, or whose parts run only sometimes, is taken apart.
+/// An expression that traces, or with subexpressions that run conditionally, is lowered piece by
+/// piece.
 static bool isOneStep(const typed::Expr &expr) {
   if (typed::mayTrace(expr))
     return false;
@@ -204,7 +206,7 @@ std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, 
     return std::nullopt;
   Evaluation evaluation(into);
   evaluation.hasResult = !isWrite;
-  if (!openPlaces(expr, evaluation))
+  if (!collectWritten(expr, evaluation))
     return lowerNested(expr, evaluation.hasResult, into);
   gather(expr, evaluation, true);
   return makeEvaluation(expr, evaluation, into);
@@ -235,7 +237,7 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
   if (!into && evaluation.hasResult && !expr.type->is(TypeKind::Void))
     types.push_back(module.type(expr.type));
   auto op = emitter.make<ir::EvaluateOp>(types, number, evaluation.operands, writes);
-  if (into) // all of it
+  if (into) // `into` is written as a whole
     ir::attr::into.set(op);
   if (!evaluation.changed.empty())
     ir::attr::changes.set(op, emitter.getDenseI32ArrayAttr(evaluation.changed));
@@ -243,18 +245,18 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
                        cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
   if (evaluation.isNested)
     ir::attr::nested.set(op);
-  else if (!isPrint && (!isCall || isKept(expr))) // nothing but these variables is touched
+  else if (!isPrint && (!isCall || isKept(expr))) // it accesses nothing but these variables
     ir::attr::plain.set(op);
-  for (const auto &[where, copy] : evaluation.outputs)
-    store(loadFrom(copy, where.type), where);
+  for (const auto &[lvalue, copy] : evaluation.outputs)
+    store(loadFrom(copy, lvalue.type), lvalue);
   return Parts(op.getResults().begin(), op.getResults().end());
 }
 
 //===----------------------------------------------------------------------===//
-// Effects within effects
+// Nested effects
 //===----------------------------------------------------------------------===//
 
-/// Can it run between two rays, from its first part to its last?
+/// Does the expression run without a trace in it?
 static bool isBetweenRays(const typed::Expr &expr) {
   bool found = true;
   forEachExpr(expr, [&](const typed::Expr &inner) {
@@ -268,9 +270,9 @@ static bool isBetweenRays(const typed::Expr &expr) {
   return found;
 }
 
-/// One part changes what another looks at: the author's expression stays as it is, nested effects
-/// and all, and the printer puts it in order. Numbers and vectors that it writes are variables of
-/// their own for the time.
+/// One subexpression changes what another one uses: the expression is kept as it is, with its
+/// nested effects, and the C++ printer orders them. Numbers and vectors that it writes become
+/// variables during the operation.
 std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool hasResult,
                                                    Value into) {
   if (!module.options.source || !isBetweenRays(expr))
@@ -287,16 +289,16 @@ std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool
   forEachExpr(expr, [&](const typed::Expr &inner) {
     auto *named = dynCast<typed::VariableExpr>(&inner);
     if (!named || !isLocal(inner) || !assigned.count(named->variable) ||
-        evaluation.places.count(named->variable))
+        evaluation.addresses.count(named->variable))
       return;
-    const Place where = place(inner);
-    evaluation.places[named->variable] = where.address;
+    const Lvalue lvalue = lowerLvalue(inner);
+    evaluation.addresses[named->variable] = lvalue.address;
     if (livesInMemory(inner.type))
       return;
     const Value copy = variableOf(named->variable->name, inner.type);
-    storeTo(load(where), copy, inner.type);
-    evaluation.places[named->variable] = copy;
-    evaluation.outputs.push_back({where, copy});
+    storeTo(load(lvalue), copy, inner.type);
+    evaluation.addresses[named->variable] = copy;
+    evaluation.outputs.push_back({lvalue, copy});
   });
   gather(expr, evaluation, true);
   return makeEvaluation(expr, evaluation, into);
@@ -319,7 +321,7 @@ void FunctionLowering::lowerDiscarded(const typed::Expr &expr) {
   lower(expr);
 }
 
-/// Some part traces, or is not to be kept whole: each part is evaluated in its turn.
+/// Some subexpression traces, or is not to be kept whole: each is evaluated in its turn.
 std::optional<Parts> FunctionLowering::lowerOneByOne(const typed::Expr &expr, Value into) {
   std::vector<const typed::Expr *> parts;
   auto all = [&](const std::vector<typed::ExprPtr> &args) {

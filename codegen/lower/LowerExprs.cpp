@@ -1,6 +1,6 @@
 //===- LowerExprs.cpp - expressions ---------------------------------------===//
 //
-// Operands are evaluated from left to right, and so is an assignment: the place first, then the
+// Operands are evaluated from left to right, and so is an assignment: the lvalue first, then the
 // value, then the store.
 //
 //===----------------------------------------------------------------------===//
@@ -55,13 +55,13 @@ Parts FunctionLowering::lower(const typed::Expr &expr) {
   case ExprKind::Variable:
     return lowerVariable(*cast<typed::VariableExpr>(expr).variable);
   case ExprKind::State:
-    return load(place(expr));
+    return load(lowerLvalue(expr));
   case ExprKind::Member: {
     const typed::Member &member = *cast<typed::MemberExpr>(expr).member;
-    return member.isConst ? lowerConstant(member) : load(place(expr));
+    return member.isConst ? lowerConstant(member) : load(lowerLvalue(expr));
   }
   case ExprKind::Field:
-    return load(place(expr));
+    return load(lowerLvalue(expr));
   case ExprKind::Swizzle: {
     const auto &swizzle = cast<typed::SwizzleExpr>(expr);
     Value vector = value(*swizzle.base);
@@ -110,9 +110,9 @@ Parts FunctionLowering::lower(const typed::Expr &expr) {
   case ExprKind::MethodCall:
     return lowerMethodCall(cast<typed::MethodCallExpr>(expr));
   case ExprKind::String:
-    break; // `print` looks at its text itself
+    break; // `print` uses its text itself
   }
-  llvm_unreachable("every kind of expression is listed");
+  llvm_unreachable("unlisted kind of expression");
 }
 
 /// A constant array with more leaves is copied as a whole.
@@ -123,7 +123,7 @@ void FunctionLowering::lowerInto(const typed::Expr &expr, Value address) {
   if (auto *choice = dynCast<typed::ConditionalExpr>(&expr); choice && module.options.source) {
     if (std::optional<Parts> whole = lowerWhole(expr))
       return storeTo(*whole, address, expr.type);
-    // Under the name of what it is for, not of a temporary.
+    // Named after the variable that is initialized, not after a temporary.
     Value condition = value(*choice->condition);
     return emitter.ifThen(
         condition, [&] { lowerInto(*choice->whenTrue, address); },
@@ -219,8 +219,8 @@ Parts FunctionLowering::lowerLiteral(const Type *type, const typed::Constant &co
   return {table(name, type, words)};
 }
 
-// Behind what was made there before, which it may use. While it is made others may be, which it
-// then uses: they stand before it, for it does not count as made until it is.
+// Inserted after what was made there before, which it may use. `make` may insert further values,
+// which then come before it, because it is recorded only when it is complete.
 Value FunctionLowering::atStart(llvm::function_ref<Value()> make) {
   mlir::OpBuilder::InsertionGuard guard(emitter);
   if (lastAtStart)
@@ -241,7 +241,7 @@ Value FunctionLowering::table(llvm::StringRef name, const Type *type,
                : known = atStart([&] { return emitter.make<ir::TableOp>(pointer, name, words); });
 }
 
-/// The bits of a constant, a word a scalar; false if `value` is none.
+/// The bits of a constant, one word for each scalar; false if `value` is not a constant.
 static bool wordsOf(Value value, llvm::SmallVectorImpl<std::int32_t> &words) {
   auto append = [&](mlir::Attribute scalar) {
     const auto number = llvm::dyn_cast<mlir::FloatAttr>(scalar);
@@ -263,7 +263,7 @@ static bool wordsOf(Value value, llvm::SmallVectorImpl<std::int32_t> &words) {
 
 bool FunctionLowering::appendWords(const typed::Expr &expr,
                                    llvm::SmallVectorImpl<std::int32_t> &words) {
-  // In what is printed for people no operations stay of a matrix that turns out to be no constant.
+  // For C++ output, a matrix that turns out not to be constant must leave no operations behind.
   const bool isPrinted = module.options.source && expr.type->isMatrix();
   if (!isAggregate(expr.type) && !isPrinted)
     return llvm::all_of(lower(expr), [&](Value part) { return wordsOf(part, words); });
@@ -367,7 +367,7 @@ Parts FunctionLowering::lowerVariable(const typed::Variable &variable) {
 Parts FunctionLowering::lowerIndex(const typed::IndexExpr &expr) {
   const Type *type = expr.base->type;
   if (isPlace(expr) && !type->isVector())
-    return load(place(expr));
+    return load(lowerLvalue(expr));
   if (type->isVector()) {
     Value vector = value(*expr.base);
     if (auto *literal = dynCast<typed::LiteralExpr>(expr.index);
@@ -375,12 +375,12 @@ Parts FunctionLowering::lowerIndex(const typed::IndexExpr &expr) {
       return {emitter.extract(vector, static_cast<unsigned>(literal->value.scalars.front().u))};
     return {emitter.extract(vector, clampedIndex(*expr.index, type->count))};
   }
-  return load(place(expr));
+  return load(lowerLvalue(expr));
 }
 
 Parts FunctionLowering::lowerLength(const typed::LengthExpr &expr) {
-  // `buffer[i].length()` asks for the second dimension; which i does not matter, but what it does
-  // is done.
+  // `buffer[i].length()` is the length of the second dimension; the value of i does not matter, but
+  // its side effects happen.
   unsigned dimension = 0;
   const typed::Expr *base = expr.base.get();
   while (auto *index = dynCast<typed::IndexExpr>(base)) {
@@ -393,7 +393,7 @@ Parts FunctionLowering::lowerLength(const typed::LengthExpr &expr) {
   }
   if (!base->type->is(TypeKind::Buffer)) // an array: its length is its type
     return {emitter.intConstant(base->type->count)};
-  Place buffer = place(*base);
+  Lvalue buffer = lowerLvalue(*base);
   return {emitter.make<ir::BufferLengthOp>(emitter.getI32Type(), buffer.address, dimension)};
 }
 
@@ -410,7 +410,7 @@ Parts FunctionLowering::lowerIncDec(const typed::IncDecExpr &expr) {
     if (lowerEvaluation(expr))
       return expr.prefix ? lower(*expr.target) : before;
   }
-  Place target = place(*expr.target);
+  Lvalue target = lowerLvalue(*expr.target);
   Parts before = load(target), after;
   for (Value part : before) {
     Num old = num(part);
@@ -430,7 +430,7 @@ Parts FunctionLowering::lowerAssign(const typed::AssignExpr &expr) {
       return *whole;
   if (module.options.source && staysWhole(*expr.target) && lowerEvaluation(expr))
     return lower(*expr.target);
-  Place target = place(*expr.target);
+  Lvalue target = lowerLvalue(*expr.target);
   Parts result;
   if (expr.compound) {
     Parts old = load(target);
@@ -486,7 +486,7 @@ Parts FunctionLowering::lowerShortCircuit(const typed::BinaryExpr &expr) {
     return {isAnd ? left & right : left | right};
   }
   emitter.setLoc(module.location(expr.range));
-  const bool isRead = module.options.source != nullptr; // then `and` is no name
+  const bool isRead = module.options.source != nullptr; // then `and` must not be given a name
   Value result = temporary(isRead ? isAnd ? "both" : "either" : isAnd ? "and" : "or", expr.type);
   emitter.store(left, result);
   emitter.ifThen(isAnd ? left : !left, [&] { emitter.store(value(*expr.right), result); });

@@ -1,11 +1,10 @@
 //===- LowerFunction.cpp - entry and exit of functions --------------------===//
 //
-// Scratch members of a primitive. In `intersect` they are variables of that call: what one
-// candidate without a hit computes must not touch what the best hit so far has stored. Each
-// `hit(t)` that is accepted is remembered, and where `intersect` returns after one, the scratch
-// members are stored as attributes of the hit. If a hit that does not win has stored its own,
-// traversal runs `intersect` of the winner again (findLostAttributes in
-// runtime/device/traverse/Traverse.h):
+// Scratch members of a primitive. In `intersect` they are variables of that call: a candidate
+// without a hit must not change the values that the best hit so far has stored. Each `hit(t)` that
+// is accepted is noted, and where `intersect` returns after one, the scratch members are stored as
+// attributes of the hit. If a hit that is not the nearest has overwritten them, traversal runs
+// `intersect` of the nearest one again (findLostAttributes in runtime/device/traverse/Traverse.h):
 //
 //   %n = rtsl.var "n"                       a variable for each scratch member
 //   %accepted = rtsl.var "accepted"
@@ -15,9 +14,9 @@
 //   }
 //
 // A helper that uses scratch members or reports hits is lowered a second time for calls from
-// `intersect`, `Class.helper.intersect`, and takes the addresses of these variables behind its own
-// parameters. Everywhere else (and in every material) a scratch member is the attribute of the hit
-// that won.
+// `intersect`, as `Class.helper.intersect`, and takes the addresses of these variables after its
+// own parameters. Everywhere else (and in every material) a scratch member is the attribute of the
+// nearest hit.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/lower/Lowering.h"
@@ -131,7 +130,7 @@ void FunctionLowering::emitReturn(const typed::Expr *value) {
   mlir::Location location = emitter.getLoc();
   Parts results;
   if (value && livesInMemory(value->type))
-    lowerInto(*value, resultAddress); // fresh memory of the caller's
+    lowerInto(*value, resultAddress); // new memory of the caller
   else if (value)
     results = lower(*value);
   emitter.setLoc(location);
@@ -139,7 +138,7 @@ void FunctionLowering::emitReturn(const typed::Expr *value) {
   emitter.returnValues(results);
 }
 
-// Control that reaches the end of a function with a result gives zero.
+// A function with a result returns zero if control reaches its end.
 void FunctionLowering::emitReturnOfZero() {
   const Type *type = key.function->returnType;
   commitScratch();

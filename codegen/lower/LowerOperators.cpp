@@ -91,7 +91,7 @@ Num FunctionLowering::arithmetic(BinaryOp op, Num left, Num right, bool isSigned
   case BinaryOp::LogicalOr:
     break;
   }
-  llvm_unreachable("handled elsewhere");
+  llvm_unreachable("lowered by another function");
 }
 
 Parts FunctionLowering::binary(BinaryOp op, const Parts &left, const Type *leftType,
@@ -120,7 +120,7 @@ Parts FunctionLowering::multiplyMatrices(const Parts &left, const Type *leftType
   return parts(formulas::multiply(columns(left), columns(right)));
 }
 
-// Of whole values: all scalars are equal.
+// Equality of whole values: all scalars are equal.
 Num FunctionLowering::equality(const Parts &left, const Parts &right, const Type *type) {
   if (type->is(TypeKind::Class))
     return num(emitter.make<ir::EqualRefOp>(emitter.getI1Type(), left.front(), right.front()));

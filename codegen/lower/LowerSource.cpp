@@ -1,8 +1,8 @@
 //===- LowerSource.cpp - expressions that are kept whole ------------------===//
 //
-// For C++ (SourceTable.h). An expression becomes one operation whose operands are what in it may
-// change: variables, the ray's state, and parts that have effects, which are lowered first, from
-// left to right. Members and constants stay inside.
+// For C++ output (SourceTable.h). An expression becomes one operation. Its operands are the parts
+// whose values may change: variables, the ray's state, and subexpressions that have effects, which
+// are lowered first, from left to right. Members and constants are not operands.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/lower/Lowering.h"
@@ -21,7 +21,7 @@ static bool hasNoOutputs(const typed::Function &function) {
                      [](const auto &p) { return p->direction == ast::Direction::In; });
 }
 
-/// Is the operation itself, whatever its operands are, one that may stand in a whole expression?
+/// May the operation itself, regardless of its operands, be kept in a whole expression?
 bool FunctionLowering::isKept(const typed::Expr &expr) const {
   switch (expr.kind) {
   case ExprKind::Assign:
@@ -38,7 +38,7 @@ bool FunctionLowering::isKept(const typed::Expr &expr) const {
   }
   case ExprKind::Conditional:
   case ExprKind::Binary: {
-    // Parts that run only if they are needed cannot run before.
+    // Conditional subexpressions cannot be lowered before.
     auto *binary = dynCast<typed::BinaryExpr>(&expr);
     if (binary && binary->op != ast::BinaryOp::LogicalAnd && binary->op != ast::BinaryOp::LogicalOr)
       return true;
@@ -109,7 +109,7 @@ bool FunctionLowering::collectLeaves(const typed::Expr &expr,
   }
 }
 
-/// About how many instructions the expression takes.
+/// Estimated number of instructions of the expression.
 static unsigned costOf(const typed::Expr &expr, const std::vector<const typed::Expr *> &leaves) {
   unsigned total = 0;
   forEachExpr(expr, [&](const typed::Expr &inner) {
@@ -159,7 +159,7 @@ Value FunctionLowering::wholeExpression(SourceTable::Kind kind, const typed::Exp
 }
 
 //===----------------------------------------------------------------------===//
-// Which way an expression goes
+// Choice of lowering
 //===----------------------------------------------------------------------===//
 
 std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {

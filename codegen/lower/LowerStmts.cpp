@@ -12,7 +12,7 @@ using ast::StmtKind;
 void FunctionLowering::lowerAll(const std::vector<typed::StmtPtr> &body) {
   for (const typed::StmtPtr &stmt : body) {
     if (emitter.isTerminated())
-      return; // what follows a return, break or continue never runs
+      return; // code after a return, break or continue never runs
     lower(stmt);
   }
 }
@@ -130,7 +130,7 @@ void FunctionLowering::lowerSwitch(const typed::SwitchStmt &stmt) {
   emitter.switchOver(selector, arms);
 }
 
-// The angle is between 0 and pi: beyond, every light counts.
+// The angle is between 0 and pi: pi or more includes every light.
 void FunctionLowering::lowerIlluminance(const typed::IlluminanceStmt &stmt) {
   Value point = value(*stmt.point);
   Value normal, cosAngle;

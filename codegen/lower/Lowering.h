@@ -1,8 +1,8 @@
-//===- Lowering.h - the two workers of lowering ---------------------------===//
+//===- Lowering.h - the two classes of lowering ---------------------------===//
 //
-// `ModuleLowering` knows types, symbols and which functions are still to do; `FunctionLowering`
-// does one function. The latter's member functions are in a file for each concern: LowerStmts,
-// LowerExprs, LowerPlaces, LowerOperators, LowerConstruct, LowerCalls and LowerBuiltins.
+// `ModuleLowering` has types, symbols and the list of functions still to lower; `FunctionLowering`
+// lowers one function. The latter's member functions are in a file for each concern: LowerStmts,
+// LowerExprs, LowerLvalues, LowerOperators, LowerConstruct, LowerCalls and LowerBuiltins.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -26,14 +26,15 @@
 namespace rtsl::lowering {
 
 /// The value of an expression: of a scalar, vector, color or reference one value; of a matrix its
-/// columns; of a struct or an array the address of where it lies (read it before anything else may
-/// change it); of void nothing.
+/// columns; of a struct or an array its address (read it before other code may change it); of void
+/// nothing.
 using Parts = llvm::SmallVector<Value, 4>;
 
 /// One function to be lowered. A method is lowered once for each class whose objects run it, so
-/// that what it calls on itself is known. `inIntersect`: on behalf of `intersect`, where scratch
-/// members are variables. `isHidden`: a definition of a base class that only `Base::function()`
-/// runs on such objects; of what the engine calls this is an ordinary function.
+/// that its calls on the same object are known. `inIntersect`: for a call from `intersect`, where
+/// scratch members are variables. `isHidden`: a definition of a base class that only
+/// `Base::function()` runs on such objects; it is an ordinary function even if the engine calls one
+/// of the same name.
 struct FunctionKey {
   const typed::Function *function = nullptr;
   const typed::Class *concrete = nullptr;
@@ -46,9 +47,9 @@ struct FunctionKey {
   }
   /// Does the engine call it?
   bool isStateMethod() const { return function && function->isStateMethod && !isHidden; }
-  /// Does its payload come with the ray?
+  /// Does it get its payload from the ray?
   bool takesPayload() const { return isStateMethod() && !function->parameters.empty(); }
-  /// Does it work on the scratch members of the `intersect` that calls it?
+  /// Does it use the scratch members of the `intersect` that calls it?
   bool isForIntersect() const { return inIntersect && !isStateMethod(); }
 };
 
@@ -63,17 +64,15 @@ public:
   mlir::Type pointer(const Type *type) { return ir::PtrType::get(this->type(type)); }
 
   // LowerDecls.cpp
-  /// The function for a key; declares it and puts it on the list of what is to do at the first
-  /// call.
+  /// The function for a key; the first call declares it and adds it to the functions to be lowered.
   mlir::func::FuncOp function(const FunctionKey &key);
-  /// The name of a dispatch slot: the method's, with parameter types where the name alone is not
-  /// enough.
+  /// The name of a dispatch slot: the method's name, with parameter types if it is overloaded.
   std::string slotName(const typed::Function &method) const;
   /// Scratch members of a class, inherited ones first.
   std::vector<const typed::Member *> scratchMembers(const typed::Class *concrete) const;
 
   mlir::Location location(SourceRange range);
-  /// Reports what cannot be lowered yet.
+  /// Reports a construct that is not supported yet.
   void reportUnsupported(SourceRange range, const std::string &what);
 
   mlir::MLIRContext *context() { return target.getContext(); }
@@ -89,21 +88,21 @@ private:
 
   const typed::Module &source;
   mlir::ModuleOp target;
-  Emitter emitter; // of what stands at module level
+  Emitter emitter; // for operations at module level
   llvm::DenseMap<const Type *, mlir::Type> types;
   std::map<FunctionKey, mlir::func::FuncOp> functions;
   std::set<std::string> symbols;
   std::deque<FunctionKey> pending;
 };
 
-/// A place in memory: something behind an address, or components of a vector there.
-struct Place {
+/// An lvalue: an address, or components of the vector at an address.
+struct Lvalue {
   const Type *type = nullptr;
-  Value address; // of the whole vector where components are meant
-  Value guard;   // i1: the place exists; null: it does
+  Value address; // of the whole vector if components are given
+  Value guard;   // i1: whether it exists; null: it does
   bool isPartOfVector = false;
   llvm::SmallVector<unsigned, 4> components; // constant ones, or
-  Value component;                           // one that is computed
+  Value component;                           // a computed one
 };
 
 class FunctionLowering {
@@ -140,22 +139,23 @@ private:
   Parts lower(const typed::Expr &expr);
   Value value(const typed::Expr &expr) { return lower(expr).front(); }
   Num number(const typed::Expr &expr) { return {emitter, value(expr)}; }
-  /// Evaluates into memory that nothing else refers to.
+  /// Evaluates into memory that no other code refers to.
   void lowerInto(const typed::Expr &expr, Value address);
   Parts lowerLiteral(const Type *type, const typed::Constant &constant,
                      llvm::StringRef name = "constant");
-  /// The address of a constant struct or array whose memory is known; `name` is for people.
+  /// The address of a constant struct or array with these words; `name` is shown in printed IR and
+  /// C++.
   Value table(llvm::StringRef name, const Type *type, llvm::ArrayRef<std::int32_t> words);
-  /// The same for an expression; null if it is no constant struct or array.
+  /// The same for an expression; null if it is not a constant struct or array.
   Value tableOf(const typed::Expr &expr, llvm::StringRef name);
-  /// Appends the memory of an expression; false if the expression has other parts than constants.
+  /// Appends the words of an expression; false if not all of it is constant.
   bool appendWords(const typed::Expr &expr, llvm::SmallVectorImpl<std::int32_t> &words);
   /// Calls `make` at the start of the function, and returns what it returns.
   Value atStart(llvm::function_ref<Value()> make);
-  /// Whether a constant expression is arithmetic that is widened later, so that what the checker
-  /// has made of it does not count.
+  /// Whether a constant expression contains arithmetic that is widened later, so that the checker's
+  /// value must not be used.
   bool isComputedWhenRun(const typed::Expr &constant);
-  /// The value of such a constant, made at the start of the function.
+  /// The value of such a constant, computed at the start of the function.
   Parts computedOnce(const void *constant, const typed::Expr &value);
   Parts lowerVariable(const typed::Variable &variable);
   Parts lowerConstant(const typed::Member &member);
@@ -165,7 +165,7 @@ private:
   Parts lowerAssign(const typed::AssignExpr &expr);
   Parts lowerConditional(const typed::ConditionalExpr &expr);
   Parts lowerShortCircuit(const typed::BinaryExpr &expr);
-  /// The same value, safe from what happens later: structs and arrays are copied.
+  /// The same value, which later stores do not change: structs and arrays are copied.
   Parts snapshot(Parts parts, const Type *type);
 
   // LowerSource.cpp
@@ -178,44 +178,44 @@ private:
                         mlir::Type type);
 
   // LowerEvaluations.cpp
-  /// What an evaluation works on: operands, what they stand for, and what is copied back.
+  /// An operation under construction: its operands, the expressions that they stand for, and the
+  /// values that are copied back.
   struct Evaluation {
-    /// `into`: where the value goes; null: nowhere yet.
+    /// `into`: the address that the value is stored to; null: not known yet.
     explicit Evaluation(Value into);
 
     std::vector<const typed::Expr *> leaves;
     llvm::SmallVector<Value, 8> operands;
-    llvm::SmallVector<std::int32_t, 4> changed;            // numbers of operands
-    llvm::DenseMap<const typed::Variable *, Value> places; // of variables that are written
-    std::set<typed::StateVariable> states;                 // that are written
-    std::vector<std::pair<Place, Value>> outputs;
-    bool isNested = false; // parts with effects stay where they are
+    llvm::SmallVector<std::int32_t, 4> changed;               // numbers of operands
+    llvm::DenseMap<const typed::Variable *, Value> addresses; // of written variables
+    std::set<typed::StateVariable> states;                    // written
+    std::vector<std::pair<Lvalue, Value>> outputs;
+    bool isNested = false; // subexpressions with effects are part of it
     bool hasResult = true;
   };
-  /// The expression as one operation that reads and writes variables where they lie; nothing if
-  /// that is not possible. With `into` its value goes there.
+  /// The expression as one operation that reads and writes variables in place; nothing if that is
+  /// not possible. With `into` its value is stored there.
   std::optional<Parts> lowerEvaluation(const typed::Expr &expr, Value into = nullptr);
   Parts makeEvaluation(const typed::Expr &expr, const Evaluation &evaluation, Value into);
-  /// The same for parts that change what others look at; nothing if the expression traces.
+  /// The same for an expression of which one part changes what another uses; nothing if it traces.
   std::optional<Parts> lowerNested(const typed::Expr &expr, bool hasResult, Value into = nullptr);
   std::optional<Parts> lowerOneByOne(const typed::Expr &expr, Value into = nullptr);
-  bool openPlaces(const typed::Expr &expr, Evaluation &evaluation);
+  bool collectWritten(const typed::Expr &expr, Evaluation &evaluation);
   void gather(const typed::Expr &expr, Evaluation &evaluation, bool isTop);
   bool mentionsMemory(const typed::Expr &expr);
-  /// Is it a constant matrix? Expressions have it under its name, as they have constant structs and
-  /// arrays.
+  /// Is it a constant matrix? Expressions refer to it by name, as to constant structs and arrays.
   static bool isNamedMatrix(const typed::Variable &variable);
   bool staysWhole(const typed::Expr &target);
-  /// An expression whose value nobody asks for.
+  /// Evaluates an expression for its side effects.
   void lowerDiscarded(const typed::Expr &expr);
   Value variableOf(llvm::StringRef name, const Type *type);
 
-  // LowerPlaces.cpp
-  Place place(const typed::Expr &expr);
-  Place indexPlace(const typed::IndexExpr &expr);
-  Place bufferPlace(const typed::IndexExpr &expr);
-  Parts load(const Place &place);
-  void store(const Parts &parts, const Place &place);
+  // LowerLvalues.cpp
+  Lvalue lowerLvalue(const typed::Expr &expr);
+  Lvalue indexLvalue(const typed::IndexExpr &expr);
+  Lvalue bufferLvalue(const typed::IndexExpr &expr);
+  Parts load(const Lvalue &lvalue);
+  void store(const Parts &parts, const Lvalue &lvalue);
   Parts loadFrom(Value address, const Type *type);
   void storeTo(const Parts &parts, Value address, const Type *type);
   Value temporary(llvm::StringRef name, const Type *type);
@@ -246,9 +246,9 @@ private:
   Parts lowerCall(const typed::CallExpr &expr, Value result = nullptr);
   Parts lowerMethodCall(const typed::MethodCallExpr &expr);
   Parts lowerLookup(const typed::MethodCallExpr &expr);
-  /// Copies arguments in: values, and addresses of temporaries.
+  /// An `out` or `inout` argument: the temporary that is copied to the lvalue after the call.
   struct CopyOut {
-    Place target;
+    Lvalue target;
     Value from;
   };
   void passArguments(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
@@ -275,7 +275,7 @@ private:
   void unsupported(SourceRange range, const std::string &what) {
     module.reportUnsupported(range, what);
   }
-  /// A value of `type` to go on with behind an error.
+  /// A value of `type`, to continue after an error.
   Parts zeroOf(const Type *type);
 
   ModuleLowering &module;
@@ -290,25 +290,25 @@ private:
   llvm::DenseMap<const typed::Variable *, Binding> variables;
   Value resultAddress; // where a struct, array or matrix is returned
 
-  // In `intersect` and on its behalf
+  // In `intersect` and helpers that it calls
   llvm::DenseMap<const typed::Member *, Value> scratch;
   Value accepted; // address of a bool: has this intersection reported a hit that counts?
   bool commitsScratch = false;
-  bool mayEndAnyHit = false; // it is `anyHit`, or a function that may run on its behalf
+  bool mayEndAnyHit = false; // it is `anyHit`, or a function that it may call
 
   // Constant structs and arrays, made once at the start of the function.
   llvm::DenseMap<std::pair<mlir::Type, mlir::Attribute>, Value> tables;
   std::map<const typed::Variable *, Value>
-      globalAggregates;                            // constants of the file that are no literals
+      globalAggregates;                            // constants of the file that are not literals
   std::map<const void *, Parts> computedConstants; // by variable or member
   std::map<const typed::Expr *, bool> computedWhenRun;
-  mlir::Operation *lastAtStart = nullptr; // of what makes them
+  mlir::Operation *lastAtStart = nullptr; // the last operation of these values
 };
 
 inline bool isAggregate(const Type *type) {
   return type->is(TypeKind::Struct) || type->is(TypeKind::Array) || type->is(TypeKind::Buffer);
 }
-/// Passed to functions by address.
+/// Is a value of this type passed by address?
 inline bool livesInMemory(const Type *type) {
   return isAggregate(type) || type->isMatrix();
 }

@@ -1,7 +1,7 @@
 //===- SourceTable.h - expressions that the IR keeps whole ----------------===//
 //
 // Lowering with a table (LowerOptions::source) makes one `rtsl.expression` of an expression instead
-// of the operations that compute it. Whoever prints the IR for people finds the author's tree here.
+// of the operations that compute it. The C++ printer finds the expression's tree in the table.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -21,15 +21,15 @@ struct SourceTable {
     Compound,    // the new value of the target of `target op= value`
     Step,        // that of `++target`
     AngleCosine, // the cosine of the angle of an `illuminance`
-    Into         // the value goes to a variable that stays whole, the first operand
+    Into         // the value is stored to a variable that stays whole, the first operand
   };
   struct Entry {
     Kind kind = Kind::Value;
     const typed::Expr *expr = nullptr;
-    std::vector<const typed::Expr *> leaves; // what the operands stand for, one each
+    std::vector<const typed::Expr *> leaves; // the expressions that the operands stand for
   };
   std::vector<Entry> entries; // by the number of the operation
-  /// Of variables in memory, by the number in their attribute `rtsl.declared`.
+  /// Types of variables in memory, by the number in their attribute `rtsl.declared`.
   std::vector<const Type *> types;
 
   /// Does a call read nothing but its arguments and members, and change nothing?

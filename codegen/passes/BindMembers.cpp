@@ -24,11 +24,11 @@ namespace {
 
 using Words = llvm::ArrayRef<int32_t>;
 
-/// Bytes of a member that is worth a table of its own. Tables are to fit into the nearest cache
-/// beside everything else.
+/// Largest member that gets a table of its own, in bytes. Tables should fit into the nearest cache
+/// together with other data.
 constexpr size_t largestTable = 4096;
 
-/// One scalar of a value from its word; null for a reference, which no constant stands for.
+/// One scalar of a value from its word; null for a reference, which cannot be a constant.
 mlir::TypedAttr scalarOf(mlir::Type type, int32_t word) {
   if (type.isF32()) {
     float value;
@@ -42,7 +42,7 @@ mlir::TypedAttr scalarOf(mlir::Type type, int32_t word) {
   return nullptr;
 }
 
-/// A value from its words. As MLIR keeps NaNs as they are, so does this.
+/// A value from its words. NaNs keep their bits, here as in MLIR.
 mlir::TypedAttr valueOf(mlir::Type type, Words words) {
   auto vector = llvm::dyn_cast<mlir::VectorType>(type);
   if (!vector)
@@ -57,7 +57,7 @@ mlir::TypedAttr valueOf(mlir::Type type, Words words) {
   return mlir::DenseElementsAttr::get(vector, elements);
 }
 
-/// What is known to lie at `address`, from there to the end of the member; nothing if that is open.
+/// The known words from `address` to the end of the member; nothing if they are not known.
 std::optional<Words> wordsAt(const ir::ClassTable &classes, Value address) {
   mlir::Operation *op = address.getDefiningOp();
   if (auto member = llvm::dyn_cast_or_null<ir::MemberOp>(op)) {
@@ -83,7 +83,7 @@ std::optional<Words> wordsAt(const ir::ClassTable &classes, Value address) {
   }
   std::optional<Words> base = wordsAt(classes, op->getOperand(0));
   mlir::Type type = llvm::cast<ir::PtrType>(address.getType()).getPointee();
-  // An index out of range stands in code that never runs.
+  // An index out of range occurs only in code that never runs.
   if (!base || bytes / 4 + ir::sizeInBytes(type) / 4 > base->size())
     return std::nullopt;
   return base->drop_front(bytes / 4);
@@ -119,7 +119,7 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
     getOperation().walk([&](ir::MemberOp member) { placeInTable(member); });
   }
 
-  /// What is read at an index that only the running shader knows.
+  /// Replaces an access at an index known only at run time by one of a table.
   void placeInTable(ir::MemberOp member) {
     const std::optional<Words> words = wordsAt(*classes, member);
     const mlir::Type type = llvm::cast<ir::PtrType>(member.getType()).getPointee();
@@ -143,7 +143,7 @@ struct BindMembers : mlir::PassWrapper<BindMembers, mlir::OperationPass<mlir::fu
     op->erase();
   }
 
-  mlir::ModuleOp described; // by `classes`: one module in all functions of a run
+  mlir::ModuleOp described; // the module of `classes`; the same for all functions of a run
   std::shared_ptr<const ir::ClassTable> classes;
 };
 

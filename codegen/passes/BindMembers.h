@@ -1,12 +1,12 @@
 //===- BindMembers.h - members that are the same in all objects -----------===//
 //
-// When the objects of a scene are known, linking notes on each member that has one value in all of
-// them what lies in their records there, and on the module what else it knows of the scene:
+// When the objects of a scene are known, linking records on each member that has one value in all
+// of them its words in their records, and on the module other facts about the scene:
 //
 //   rtsl.member_decl @index : f32 access "private" {rtsl.bound = array<i32: 1069547520>}   // 1.5
 //   module attributes {rtsl.light_count = 2 : i32, rtsl.ambient = array<f32: 0.1, 0.1, 0.2>}
 //
-// Here the loads of such members become constants, so that what is computed from them folds.
+// This pass replaces the loads of such members by constants, so that computations on them fold.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -12,13 +12,13 @@
 
 namespace rtsl {
 
-/// The components of a part of a graph, those first that others lead to (Tarjan, "Depth-first
+/// The strongly connected components of a part of a graph, successors first (Tarjan, "Depth-first
 /// search and linear graph algorithms", 1972).
 template <typename Node>
 class Components {
 public:
   using Part = llvm::SmallSetVector<Node, 16>;
-  /// Calls `visit` for each node that an edge leads to.
+  /// Calls `visit` for each successor of the node.
   using Successors = llvm::function_ref<void(Node, llvm::function_ref<void(Node)> visit)>;
 
   static std::vector<Part> of(const Part &part, Successors successors) {

@@ -1,4 +1,4 @@
-//===- DecideBranches.cpp - branches whose way is known ---------------------===//
+//===- DecideBranches.cpp - branches on known conditions ------------------===//
 #include "codegen/passes/DecideBranches.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -12,7 +12,7 @@ namespace rtsl::codegen {
 namespace arith = mlir::arith;
 namespace cf = mlir::cf;
 
-/// What a condition is the opposite of, if it is; `isOpposite` changes then.
+/// The condition without its negations; each one flips `isOpposite`.
 static mlir::Value withoutNegation(mlir::Value condition, bool &isOpposite) {
   while (auto negation = condition.getDefiningOp<arith::XOrIOp>()) {
     if (!mlir::matchPattern(negation.getRhs(), mlir::m_One()))
@@ -23,7 +23,8 @@ static mlir::Value withoutNegation(mlir::Value condition, bool &isOpposite) {
   return condition;
 }
 
-/// By a branch on the same condition, or its opposite, that control has passed.
+/// The value of a condition if every path to the branch takes one edge of an earlier branch on the
+/// same condition or its opposite.
 static std::optional<bool> passedBefore(mlir::Value condition, cf::CondBranchOp branch,
                                         mlir::DominanceInfo &dominance) {
   for (mlir::Operation *user : condition.getUsers()) {

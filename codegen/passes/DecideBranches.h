@@ -1,11 +1,11 @@
-//===- DecideBranches.h - branches whose way is known -----------------------===//
+//===- DecideBranches.h - branches on known conditions --------------------===//
 //
 //   cf.cond_br %first, ^a, ^b                    cf.cond_br %first, ^a, ^b
 // ^b:                                 ==>      ^b:
 //   cf.cond_br %first, ^c, ^d                    cf.cond_br %false, ^c, ^d
 //
-// Behind a branch its condition is known. What else is known, a caller may say who knows more than
-// the IR does.
+// After a branch, the value of its condition is known. The caller may supply other known conditions
+// that do not follow from the IR.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -17,11 +17,11 @@
 
 namespace rtsl::codegen {
 
-/// Whether a condition is true, as far as that is known.
+/// The value of a condition, if it is known.
 using KnownCondition = std::function<std::optional<bool>(mlir::Value)>;
 
-/// Makes conditions of branches constants where they are known; Simplify folds such branches.
-/// Returns whether there were any.
+/// Replaces known conditions of branches by constants; Simplify folds such branches. Returns
+/// whether there were any.
 bool decideBranches(mlir::func::FuncOp function, const KnownCondition &isKnown);
 
 } // namespace rtsl::codegen

@@ -1,4 +1,4 @@
-//===- ExpandCopies.cpp - small copies, value by value --------------------===//
+//===- ExpandCopies.cpp - small copies as loads and stores ----------------===//
 #include "codegen/passes/ExpandCopies.h"
 
 #include "codegen/ir/Attributes.h"
@@ -35,8 +35,8 @@ bool isSmall(mlir::Type type) {
   return ir::leafCount(type) <= mostLeaves && !holdsBuffer(type);
 }
 
-/// With expressions kept whole, for people to read, so are variables; but for what rays carry,
-/// whose fields the passes look at.
+/// In C++ output, where expressions are kept whole, variables are too, except payloads: passes
+/// track their fields.
 bool staysWhole(Value address) {
   address = ir::baseAddress(address);
   if (llvm::isa_and_nonnull<ir::PayloadOp>(address.getDefiningOp()))
@@ -44,8 +44,8 @@ bool staysWhole(Value address) {
   return llvm::none_of(address.getUsers(), llvm::IsaPred<ir::TracePayloadOp>);
 }
 
-/// Calls `visit` with the addresses of each leaf of the type behind `addresses`, which is the same
-/// for all of them.
+/// Calls `visit` with the addresses of each leaf of the type that `addresses` point to, which is
+/// the same for all of them.
 void forEachLeaf(OpBuilder &builder, Location location, llvm::ArrayRef<Value> addresses,
                  llvm::function_ref<void(llvm::ArrayRef<Value>)> visit) {
   mlir::Type type = pointee(addresses.front());
@@ -75,16 +75,16 @@ struct ExpandCopies : mlir::PassWrapper<ExpandCopies, mlir::OperationPass<mlir::
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(ExpandCopies)
   llvm::StringRef getArgument() const override { return "rtsl-expand-copies"; }
   llvm::StringRef getDescription() const override {
-    return "small copies become loads and stores of their leaves";
+    return "replaces small copies by loads and stores of their leaves";
   }
 
   void runOnOperation() override {
     OpBuilder builder(&getContext());
     auto module = getOperation()->getParentOfType<mlir::ModuleOp>();
-    const bool isForPeople = module && ir::attr::source.isOn(module);
+    const bool isForCpp = module && ir::attr::source.isOn(module);
     getOperation().walk([&](ir::CopyOp copy) {
       if (!isSmall(pointee(copy.getSource())) ||
-          (isForPeople && staysWhole(copy.getSource()) && staysWhole(copy.getTarget())))
+          (isForCpp && staysWhole(copy.getSource()) && staysWhole(copy.getTarget())))
         return;
       builder.setInsertionPoint(copy);
       forEachLeaf(builder, copy.getLoc(), {copy.getSource(), copy.getTarget()},
@@ -95,7 +95,7 @@ struct ExpandCopies : mlir::PassWrapper<ExpandCopies, mlir::OperationPass<mlir::
       copy.erase();
     });
     getOperation().walk([&](ir::ClearOp clear) {
-      if (!isSmall(pointee(clear.getAddress())) || (isForPeople && staysWhole(clear.getAddress())))
+      if (!isSmall(pointee(clear.getAddress())) || (isForCpp && staysWhole(clear.getAddress())))
         return;
       builder.setInsertionPoint(clear);
       forEachLeaf(builder, clear.getLoc(), {clear.getAddress()}, [&](llvm::ArrayRef<Value> leaf) {

@@ -1,8 +1,8 @@
-//===- ExpandCopies.h - small copies, value by value -------------------===//
+//===- ExpandCopies.h - small copies as loads and stores ------------------===//
 //
 // An `rtsl.copy` or `rtsl.clear` of an aggregate with at most 64 leaves (scalars, vectors,
-// references) becomes loads and stores of the leaves, which the optimiser sees through. Larger
-// ones, and buffers, stay for memcpy and memset.
+// references) becomes loads and stores of the leaves, which the optimiser can analyse. Larger ones,
+// and buffers, become memcpy and memset later.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -7,8 +7,7 @@ class RewritePatternSet;
 
 namespace rtsl::codegen {
 
-/// Adds a pattern that computes math.fma of constants, scalars and vectors, which MLIR itself
-/// leaves alone.
+/// Adds a pattern that folds math.fma of constants, scalars and vectors, which MLIR does not.
 void addFmaFolding(mlir::RewritePatternSet &patterns);
 
 } // namespace rtsl::codegen

@@ -14,7 +14,7 @@ struct HoistVariables : mlir::PassWrapper<HoistVariables, mlir::OperationPass<ml
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(HoistVariables)
   llvm::StringRef getArgument() const override { return "rtsl-hoist-vars"; }
   llvm::StringRef getDescription() const override {
-    return "variables move to the entry of their function";
+    return "moves variables to the entry of their function";
   }
 
   void runOnOperation() override {

@@ -1,8 +1,8 @@
-//===- HoistVariables.h - variables to the entry of their function -----===//
+//===- HoistVariables.h - variables to the entry of their function --------===//
 //
-// Moves every `rtsl.var` to the entry block, where promotion and stack slots want it. A variable is
-// zero each time that control comes to it, so an `rtsl.clear` stays behind in its place (promotion
-// makes a value of that). Loop bodies and inlined functions are where such variables come from.
+// Moves every `rtsl.var` to the entry block, as promotion and stack slots require. A variable is
+// zero each time that control reaches it, so an `rtsl.clear` remains where it was (promotion makes
+// a value of that). Such variables come from loop bodies and inlined functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

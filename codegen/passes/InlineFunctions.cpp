@@ -1,4 +1,4 @@
-//===- InlineFunctions.cpp - calls replaced by what they call -------------===//
+//===- InlineFunctions.cpp - inlining -------------------------------------===//
 #include "codegen/passes/InlineFunctions.h"
 
 #include "codegen/ir/Attributes.h"
@@ -17,11 +17,11 @@ namespace {
 
 /// Functions of at most this many operations are inlined wherever they are called.
 constexpr unsigned smallFunction = 60;
-/// With arithmetic in double, what crosses a call in memory is rounded: only what would make
-/// programs grow without end is called.
+/// With arithmetic in double, values that cross a call in memory are rounded: calls remain only
+/// where inlining would make programs grow without bound.
 constexpr unsigned smallFunctionInDouble = 20000;
-/// Functions that trace, at most this many: a frame of their own costs more than copies of the
-/// code, up to here.
+/// For functions that trace: up to this many operations, copies of the code cost less than a frame
+/// of its own.
 constexpr unsigned smallTracingFunction = 1000;
 
 unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {
@@ -32,8 +32,8 @@ unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {
   return count;
 }
 
-/// Whether a trace stands in the function itself. What its callees trace has been inlined by then,
-/// or needs a frame anyway.
+/// Whether the function itself contains a trace. By then, callees that trace have been inlined, or
+/// need a frame anyway.
 bool traces(mlir::func::FuncOp function) {
   return function
       .walk([](mlir::Operation *op) {
@@ -48,7 +48,7 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(InlineFunctions)
   explicit InlineFunctions(bool inlinesAll) : inlinesAll(inlinesAll) {}
   llvm::StringRef getArgument() const override { return "rtsl-inline"; }
-  llvm::StringRef getDescription() const override { return "calls are replaced by what they call"; }
+  llvm::StringRef getDescription() const override { return "inlines calls"; }
 
   bool isWorthIt(const mlir::Inliner::ResolvedCall &resolved) {
     auto callee = resolved.targetNode->getCallableRegion()->getParentOfType<mlir::func::FuncOp>();
@@ -69,8 +69,8 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
   }
 
   void runOnOperation() override {
-    // Counted once: callees are treated before their callers, so that what is called once has been
-    // inlined before anything could copy the call. Asking for the uses of each callee would walk
+    // Counted once: callees are processed before their callers, so a function that is called once
+    // has been inlined before the call could be copied. Querying the uses of each callee would walk
     // the whole module each time.
     useCount.clear();
     if (auto uses = mlir::SymbolTable::getSymbolUses(getOperation()))
@@ -92,7 +92,7 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
 
 private:
   bool inlinesAll;
-  llvm::DenseMap<mlir::StringAttr, unsigned> useCount; // before anything was inlined
+  llvm::DenseMap<mlir::StringAttr, unsigned> useCount; // before inlining
 };
 
 } // namespace

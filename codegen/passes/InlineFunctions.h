@@ -1,9 +1,9 @@
-//===- InlineFunctions.h - calls replaced by what they call ------------===//
+//===- InlineFunctions.h - inlining ---------------------------------------===//
 //
-// Inlines, from the leaves of the call graph up: functions that trace (a function of its own would
-// need a frame of its own), small ones, and those that are called once. Never one with
-// `rtsl.noinline`, a recursive one (dispatch may be), or a constructor into what is none: members
-// are constants outside of constructors.
+// Inlines functions, callees first: functions that trace (separately they would need a frame of
+// their own), small ones, and those that are called once. It never inlines a function with
+// `rtsl.noinline`, a recursive one (dispatch may be), or a constructor into another function:
+// members are constants outside of constructors.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,10 +18,10 @@ class Pass;
 
 namespace rtsl::codegen {
 
-/// Of a function that traces: is a frame of its own cheaper than a copy for each of its callers?
+/// For a function that traces: is its own frame cheaper than a copy for each caller?
 bool isLargeToInline(mlir::func::FuncOp function);
 
-/// `rtsl-inline`, on a module of level 2. With `inlinesAll`: whatever the size of a function.
+/// `rtsl-inline`, on a module of level 2. With `inlinesAll`, regardless of the size of a function.
 std::unique_ptr<mlir::Pass> createInlineFunctionsPass(bool inlinesAll = false);
 
 } // namespace rtsl::codegen

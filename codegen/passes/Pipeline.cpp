@@ -20,8 +20,8 @@
 
 namespace rtsl::codegen {
 
-/// Takes variables apart, makes them values and cleans up. Twice: an index that was in a variable
-/// is a constant only after the first time.
+/// Splits variables into parts, promotes them to values and cleans up. Twice: an index that was in
+/// a variable is a constant only after the first time.
 static void addPromotion(mlir::OpPassManager &function) {
   function.addPass(createHoistVariablesPass());
   for (int round = 0; round < 2; ++round) {
@@ -33,7 +33,7 @@ static void addPromotion(mlir::OpPassManager &function) {
 }
 
 void buildSsaPipeline(mlir::OpPassManager &module) {
-  // Each function by itself first, so that what is inlined is small.
+  // Each function by itself first, so that inlined functions are small.
   auto &functions = module.nest<mlir::func::FuncOp>();
   functions.addPass(createBindMembersPass());
   functions.addPass(createToControlFlowPass());
@@ -45,7 +45,7 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   addPromotion(inlined);
   inlined.addPass(createPropagateConstantsPass());
   inlined.addPass(createExpandCopiesPass());
-  inlined.addPass(createBindMembersPass()); // what copies have hidden
+  inlined.addPass(createBindMembersPass()); // for members that copies have hidden
   inlined.addPass(createSimplifyPass());
 
   module.addPass(mlir::createSymbolDCEPass());

@@ -1,4 +1,4 @@
-//===- PromoteVariables.cpp - all variables of a function become values ---===//
+//===- PromoteVariables.cpp - promotion of all variables of a function ----===//
 #include "codegen/passes/PromoteVariables.h"
 
 #include "codegen/ir/IncomingEdges.h"
@@ -16,8 +16,7 @@ namespace {
 
 using mlir::Value;
 
-/// The variable that the operation loads, stores or clears as a whole, if it does nothing else with
-/// one.
+/// The variable that the operation loads, stores or clears as a whole, if it accesses no other.
 ir::VarOp accessedBy(mlir::Operation *op) {
   Value address;
   if (auto load = llvm::dyn_cast<ir::LoadOp>(op))
@@ -35,7 +34,7 @@ bool isPromotable(ir::VarOp variable) {
                       [&](mlir::Operation *user) { return accessedBy(user) == variable; });
 }
 
-/// Braun et al., with the blocks and their edges known from the start.
+/// The algorithm of Braun et al., with all blocks and edges known from the start.
 class Promotion {
 public:
   Promotion(mlir::func::FuncOp function, llvm::ArrayRef<ir::VarOp> variables)
@@ -51,12 +50,12 @@ public:
     for (auto [load, variable] : first)
       values[load.getResult()] = atStart(load->getBlock(), variable);
     for (std::size_t i = 0; i < arguments.size();
-         ++i) // in order, for so are the arguments of a block; there may come more
+         ++i) // in order, like the arguments of a block; this may add more
       complete(arguments[i].first, arguments[i].second);
     for (auto [load, variable] : first) {
       Value value = load.getResult();
       for (auto next = values.find(value); next != values.end(); next = values.find(value))
-        value = next->second; // which another load may have given, further up
+        value = next->second; // which may be another load, further up
       load.getResult().replaceAllUsesWith(value);
     }
     for (auto [load, variable] : first)
@@ -66,9 +65,10 @@ public:
   }
 
 private:
-  using Place = std::pair<mlir::Block *, mlir::Operation *>; // of a variable in a block
+  using BlockVariable = std::pair<mlir::Block *, mlir::Operation *>; // of a variable in a block
 
-  /// Within the block: loads are what was stored before, but for the first one where nothing was.
+  /// Within a block, loads are replaced by the value stored before; loads before any store are
+  /// collected in `first`.
   void walk(mlir::Block &block) {
     const mlir::DataLayout layout;
     const llvm::SmallPtrSet<mlir::OpOperand *, 1> noUses;
@@ -87,7 +87,7 @@ private:
         load.getResult().replaceAllUsesWith(held);
       } else if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
         held = store.getValue();
-        (void)store.removeBlockingUses(slot, noUses, builder, held, layout); // passes the name on
+        (void)store.removeBlockingUses(slot, noUses, builder, held, layout); // transfers the name
       } else {
         builder.setInsertionPoint(&op);
         held = ir::createZero(builder, op.getLoc(), slot.elemType);
@@ -96,9 +96,10 @@ private:
     }
   }
 
-  /// What a variable holds where the block begins. Where several edges meet that is an argument.
+  /// The value of a variable at the beginning of the block: an argument if there are several
+  /// predecessors.
   Value atStart(mlir::Block *block, ir::VarOp variable) {
-    llvm::SmallVector<mlir::Block *> passed; // all of them begin with the same
+    llvm::SmallVector<mlir::Block *> passed; // all of them begin with the same value
     Value value;
     while (!value) {
       if (auto known = starts.find({block, variable}); known != starts.end()) {
@@ -116,7 +117,7 @@ private:
         block = predecessor;
       } else {
         mlir::BlockArgument argument = block->addArgument(slot.elemType, variable.getLoc());
-        variable.handleBlockArgument(slot, argument, builder); // its name
+        variable.handleBlockArgument(slot, argument, builder); // names it
         arguments.push_back({argument, variable});
         value = argument;
       }
@@ -126,7 +127,7 @@ private:
     return value;
   }
 
-  /// Passes on what the variable holds at the end of each block that leads to the argument's.
+  /// Passes the variable's values at the ends of the predecessors to the argument.
   void complete(mlir::BlockArgument argument, ir::VarOp variable) {
     ir::forEachEdgeInto(*argument.getOwner(), [&](ir::Edge edge) {
       auto end = ends.find({edge.from(), variable});
@@ -138,9 +139,9 @@ private:
   llvm::ArrayRef<ir::VarOp> variables;
   llvm::SmallPtrSet<mlir::Operation *, 32> promoted;
   mlir::OpBuilder builder;
-  llvm::DenseMap<Place, Value> starts,
-      ends; // where it is known; ends of blocks that access the variable
-  // what these give is what their blocks begin with
+  llvm::DenseMap<BlockVariable, Value> starts,
+      ends; // known values; `ends`: of blocks that access the variable
+  // loads whose value is the one at the beginning of the block
   llvm::SmallVector<std::pair<ir::LoadOp, ir::VarOp>> first;
   llvm::SmallVector<std::pair<mlir::BlockArgument, ir::VarOp>> arguments;
 };
@@ -150,7 +151,9 @@ struct PromoteVariables
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(PromoteVariables)
   explicit PromoteVariables(unsigned fewest) : fewest(fewest) {}
   llvm::StringRef getArgument() const override { return "rtsl-promote-vars"; }
-  llvm::StringRef getDescription() const override { return "variables become values, all at once"; }
+  llvm::StringRef getDescription() const override {
+    return "promotes all variables to values at once";
+  }
 
   void runOnOperation() override {
     if (getOperation().isExternal())
@@ -163,7 +166,7 @@ struct PromoteVariables
       return;
     mlir::IRRewriter rewriter(&getContext());
     (void)mlir::eraseUnreachableBlocks(rewriter,
-                                       getOperation()->getRegions()); // which may lead in a circle
+                                       getOperation()->getRegions()); // which may be cyclic
     Promotion(getOperation(), variables).run();
   }
 

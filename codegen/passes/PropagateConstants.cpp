@@ -1,4 +1,4 @@
-//===- PropagateConstants.cpp - what is constant whichever way control comes ===//
+//===- PropagateConstants.cpp - constants across branches and loops -------===//
 #include "codegen/passes/PropagateConstants.h"
 
 #include "codegen/ir/IncomingEdges.h"
@@ -20,11 +20,11 @@ namespace dataflow = mlir::dataflow;
 
 namespace {
 
-/// MLIR's analysis folds operations with operands that are constant as far as it knows yet, and
-/// takes back what folding has changed in the operation only if it gives no result.
-/// `vector.extract` with an index that is taken for constant gets the index built in and then gives
-/// a result: MLIR 22 leaves the index there although it is not constant after all
-/// (https://github.com/llvm/llvm-project/pull/213933). So here everything is taken back.
+/// MLIR's analysis folds operations whose operands are constants as far as is known at that point,
+/// and undoes in-place changes only if the fold returns no result. `vector.extract` with an index
+/// that is assumed constant gets it as an attribute and then also returns a result: MLIR 22 keeps
+/// the index even if it turns out not to be constant
+/// (https://github.com/llvm/llvm-project/pull/213933). So here every change is undone.
 class ConstantPropagation : public dataflow::SparseConstantPropagation {
 public:
   using SparseConstantPropagation::SparseConstantPropagation;
@@ -44,12 +44,12 @@ public:
   }
 };
 
-/// More edges than these do not lead to one block while constants are propagated.
+/// The most edges that one block may have while constants are propagated.
 constexpr std::size_t mostEdges = 32;
 
-/// The analysis looks at all edges to a block whenever one of them comes to be executed. Where
-/// thousands do, as from the cases of a switch, they come together in steps; simplification takes
-/// these back.
+/// The analysis visits all edges to a block whenever one of them becomes executable. Where there
+/// are thousands, as from the cases of a switch, they are joined in steps; simplification removes
+/// these blocks.
 void joinInSteps(mlir::Block &join) {
   llvm::SmallVector<ir::Edge> edges;
   while (true) {
@@ -80,7 +80,7 @@ struct PropagateConstants
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(PropagateConstants)
   llvm::StringRef getArgument() const override { return "rtsl-propagate-constants"; }
   llvm::StringRef getDescription() const override {
-    return "finds constants through branches and loops";
+    return "propagates constants through branches and loops";
   }
 
   void runOnOperation() override {

@@ -1,8 +1,8 @@
-//===- PropagateConstants.h - what is constant whichever way control comes -===//
+//===- PropagateConstants.h - constants across branches and loops ---------===//
 //
-// Sparse conditional constant propagation (Wegman and Zadeck 1991): values are taken for constant,
-// and branches for never taken, until something proves otherwise; so it sees through loops, where
-// folding alone does not.
+// Sparse conditional constant propagation (Wegman and Zadeck 1991): values are assumed constant,
+// and branches not taken, until proved otherwise; so it finds constants in loops, where folding
+// alone does not.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,4 +1,4 @@
-//===- ShareExpressions.cpp - what is computed twice is computed once -----===//
+//===- ShareExpressions.cpp - common subexpression elimination ------------===//
 #include "codegen/passes/ShareExpressions.h"
 
 #include "mlir/IR/Dominance.h"
@@ -14,7 +14,7 @@ namespace rtsl::codegen {
 
 namespace {
 
-/// Operations that compute the same of the same operands are equal.
+/// Operations with the same opcode, attributes and operands are equal.
 struct SameOperation : llvm::DenseMapInfo<mlir::Operation *> {
   using Equivalence = mlir::OperationEquivalence;
   static unsigned getHashValue(const mlir::Operation *op) {
@@ -58,7 +58,8 @@ private:
     }
   }
 
-  /// The blocks that one dominates, without recursion: a function may have thousands in a row.
+  /// Visits the blocks dominated by `root`, without recursion: a function may have chains of
+  /// thousands.
   void shareBelow(mlir::DominanceInfoNode *root) {
     struct Level {
       Level(Known &known, mlir::DominanceInfoNode *node)
@@ -128,16 +129,15 @@ private:
 
   mlir::DominanceInfo &dominance;
   Known known;
-  llvm::DenseMap<mlir::Operation *, unsigned> writesBefore; // of reads, in their blocks
+  llvm::DenseMap<mlir::Operation *, unsigned>
+      writesBefore; // number of writes in the block before each read
   std::vector<mlir::Operation *> dead;
 };
 
 struct ShareExpressions : mlir::PassWrapper<ShareExpressions, mlir::OperationPass<>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(ShareExpressions)
   llvm::StringRef getArgument() const override { return "rtsl-share-expressions"; }
-  llvm::StringRef getDescription() const override {
-    return "what is computed twice is computed once";
-  }
+  llvm::StringRef getDescription() const override { return "eliminates common subexpressions"; }
   void runOnOperation() override {
     for (mlir::Region &region : getOperation()->getRegions())
       for (auto function : region.getOps<mlir::FunctionOpInterface>()) {

@@ -1,9 +1,9 @@
-//===- ShareExpressions.h - what is computed twice is computed once -------===//
+//===- ShareExpressions.h - common subexpression elimination --------------===//
 //
-// Common subexpressions over the tree of dominators, as mlir::eliminateCommonSubExpressions finds
-// them: pure operations wherever the first one dominates, reads within a block if nothing is
-// written in between. MLIR's looks for such a write from the first read on at each read that equals
-// it, which takes the square of the time in a long block; this counts writes as it goes.
+// Common subexpressions over the dominator tree, as in mlir::eliminateCommonSubExpressions: pure
+// operations wherever the first one dominates, reads within a block without a write in between. For
+// each read, MLIR searches for such a write from the first equal read on, which takes quadratic
+// time in a long block; this pass counts writes as it goes.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,7 +18,7 @@ class Pass;
 
 namespace rtsl::codegen {
 
-/// In a function over blocks. True if something was found.
+/// Runs on a function over blocks. True if it changed anything.
 bool shareExpressions(mlir::Operation *function, mlir::DominanceInfo &dominance);
 
 /// The same as a pass, on a module of such functions.

@@ -30,7 +30,8 @@ Simplify::Simplify(mlir::MLIRContext *context) {
   patterns = mlir::FrozenRewritePatternSet(std::move(all));
 }
 
-/// Where a branch on a constant, or one with one target, goes; nothing if that is open.
+/// The only successor that a branch can take: of a branch on a constant, or one with one target;
+/// nothing if there are several.
 static std::optional<unsigned> onlySuccessor(mlir::Operation *terminator) {
   llvm::APInt value;
   if (auto branch = llvm::dyn_cast<cf::CondBranchOp>(terminator)) {
@@ -52,7 +53,7 @@ static std::optional<unsigned> onlySuccessor(mlir::Operation *terminator) {
   return std::nullopt;
 }
 
-/// An argument that is the same value whichever way control comes is that value.
+/// Replaces an argument that gets the same value on all edges by that value.
 static bool dropSameArguments(mlir::Region &body) {
   bool changed = false;
   for (mlir::Block &block : llvm::drop_begin(body))
@@ -127,7 +128,7 @@ static bool skipPassThrough(mlir::Region &body) {
   return changed;
 }
 
-/// ^a: x; br ^b(%v)   ^b(%p): y     ==>     ^a: x; y        if that is the only way to ^b
+/// ^a: x; br ^b(%v)   ^b(%p): y     ==>     ^a: x; y        if that is the only edge to ^b
 static bool mergeChains(mlir::IRRewriter &rewriter, mlir::Region &body) {
   bool changed = false;
   for (mlir::Block &block : body)
@@ -147,9 +148,10 @@ void Simplify::run(mlir::func::FuncOp function) const {
   mlir::IRRewriter rewriter(function.getContext());
   mlir::GreedyRewriteConfig config;
   config.setRegionSimplificationLevel(
-      mlir::GreedySimplifyRegionLevel::Disabled); // below, once a round
+      mlir::GreedySimplifyRegionLevel::Disabled); // done below, once per iteration
   bool changed = true;
-  for (int round = 0; changed && round < 10; ++round) { // each folds what the one before uncovered
+  for (int round = 0; changed && round < 10;
+       ++round) { // each iteration folds what the previous one exposed
     changed = false;
     (void)mlir::eraseUnreachableBlocks(rewriter, function->getRegions());
     (void)mlir::applyPatternsGreedily(function, patterns, config, &changed);
@@ -165,7 +167,7 @@ void Simplify::run(mlir::func::FuncOp function) const {
       changed |= folded;
     }
     if (round > 0 && !changed)
-      break; // what was unified in the round before is unified still
+      break; // values unified in the previous iteration are unified already
     mlir::DominanceInfo dominance(function);
     changed |= shareExpressions(function, dominance);
   }
@@ -176,7 +178,7 @@ namespace {
 struct SimplifyPass : mlir::PassWrapper<SimplifyPass, mlir::OperationPass<mlir::func::FuncOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(SimplifyPass)
   llvm::StringRef getArgument() const override { return "rtsl-simplify"; }
-  llvm::StringRef getDescription() const override { return "folds, and drops what is dead"; }
+  llvm::StringRef getDescription() const override { return "folds, and erases dead code"; }
   mlir::LogicalResult initialize(mlir::MLIRContext *context) override {
     simplify = std::make_shared<Simplify>(context);
     return mlir::success();

@@ -1,9 +1,9 @@
 //===- Simplify.h - folding over `cf` -------------------------------------===//
 //
-// Folds, canonicalises and finds common subexpressions in functions of level 2. It does what MLIR's
-// passes of that name do, but takes away blocks that cannot be reached at once: the patterns on
-// branches of MLIR 22 crash or run for ever on loops that nobody enters, which is what is left of a
-// loop where a condition turns out to be constant.
+// Folds, canonicalises and eliminates common subexpressions in functions of level 2. It does the
+// same as MLIR's passes of these names, but erases unreachable blocks at once: the branch patterns
+// of MLIR 22 crash or do not terminate on unreachable loops, which remain of a loop whose condition
+// turns out to be constant.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,7 +19,7 @@ class Pass;
 
 namespace rtsl::codegen {
 
-/// Holds the patterns, which are made once.
+/// Owns the patterns, which are built once.
 class Simplify {
 public:
   explicit Simplify(mlir::MLIRContext *context);

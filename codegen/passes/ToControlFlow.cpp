@@ -21,12 +21,12 @@ namespace cf = mlir::cf;
 
 namespace {
 
-/// Where the jumps in a region go to.
+/// The targets of jumps in a region.
 struct Targets {
   Block *onYield = nullptr;
   Block *onBreak = nullptr;
   Block *onContinue = nullptr;
-  Block *onFalse = nullptr; // `rtsl.condition`; when true it is as a yield
+  Block *onFalse = nullptr; // for a false `rtsl.condition`; a true one continues like a yield
 };
 
 class Lowering {
@@ -182,11 +182,11 @@ void Lowering::lowerTerminator(mlir::Operation *terminator, const Targets &targe
   else if (auto returnOp = llvm::dyn_cast<ir::ReturnOp>(terminator))
     mlir::func::ReturnOp::create(builder, location, returnOp.getValues());
   else
-    return; // already a branch of level 2
+    return; // already on level 2
   terminator->erase();
 }
 
-/// Lowers everything in `block`, which is cut behind each structured op; the last piece gets the
+/// Lowers everything in `block`, which is split after each structured op; the last part gets the
 /// terminator.
 void Lowering::lowerBlock(Block *block, const Targets &targets) {
   for (auto next = block->begin(); next != block->end();) {
@@ -213,7 +213,7 @@ struct ToControlFlow : mlir::PassWrapper<ToControlFlow, mlir::OperationPass<mlir
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(ToControlFlow)
   llvm::StringRef getArgument() const override { return "rtsl-to-cf"; }
   llvm::StringRef getDescription() const override {
-    return "structured control flow becomes blocks and branches";
+    return "replaces structured control flow by blocks and branches";
   }
 
   void runOnOperation() override {

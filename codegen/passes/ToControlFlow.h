@@ -1,8 +1,8 @@
 //===- ToControlFlow.h - structured control flow to branches -----------===//
 //
 // Level 1 to level 2: `rtsl.if`, `rtsl.loop`, `rtsl.switch` and `rtsl.illuminance` become blocks
-// and branches of `cf`, `rtsl.return` becomes `func.return`. Code behind a jump, which cannot run,
-// is dropped.
+// and branches of `cf`, `rtsl.return` becomes `func.return`. Code after a jump, which cannot run,
+// is erased.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -38,7 +38,11 @@ private:
   void function(const FunctionDecl &function);
   void statement(const Stmt *stmt);
   void statements(const std::vector<StmtPtr> &list);
+  void branch(const IfStmt &branch);
+  void loop(const Stmt &stmt);
   void expression(const char *role, const Expr *expr);
+  std::string label(const Expr &expr);
+  void operands(const Expr &expr);
   void expressions(const char *role, const std::vector<ExprPtr> &list);
 
   std::string out;
@@ -176,107 +180,92 @@ void Dumper::expressions(const char *role, const std::vector<ExprPtr> &list) {
 void Dumper::expression(const char *role, const Expr *expr) {
   if (!expr)
     return;
-  const auto head = [&](std::string_view text) { line(fmt::format("{}{}", role, text)); };
-  switch (expr->kind) {
+  line(role + label(*expr));
+  const Indent indent(depth);
+  operands(*expr);
+}
+
+/// The line of an expression, without its operands.
+std::string Dumper::label(const Expr &expr) {
+  switch (expr.kind) {
   case ExprKind::IntLiteral:
-    head(fmt::format("int {}", as<IntLiteral>(*expr).spelling));
-    break;
+    return fmt::format("int {}", as<IntLiteral>(expr).spelling);
   case ExprKind::FloatLiteral:
-    head(fmt::format("float {}{}", as<FloatLiteral>(*expr).spelling,
-                     as<FloatLiteral>(*expr).suffix));
-    break;
+    return fmt::format("float {}{}", as<FloatLiteral>(expr).spelling,
+                       as<FloatLiteral>(expr).suffix);
   case ExprKind::BoolLiteral:
-    head(as<BoolLiteral>(*expr).value ? "bool true" : "bool false");
-    break;
+    return as<BoolLiteral>(expr).value ? "bool true" : "bool false";
   case ExprKind::StringLiteral:
-    head(fmt::format("string {}", quoted(as<StringLiteral>(*expr).value)));
-    break;
+    return fmt::format("string {}", quoted(as<StringLiteral>(expr).value));
   case ExprKind::Name:
-    head(fmt::format("name {}", as<NameExpr>(*expr).name));
-    break;
+    return fmt::format("name {}", as<NameExpr>(expr).name);
   case ExprKind::Error:
-    head("error");
-    break;
-  case ExprKind::Paren: {
-    head("paren");
-    const Indent indent(depth);
-    expression("", as<ParenExpr>(*expr).inner.get());
-    break;
-  }
-  case ExprKind::Unary: {
-    head(fmt::format("unary {}", spelling(as<UnaryExpr>(*expr).op)));
-    const Indent indent(depth);
-    expression("", as<UnaryExpr>(*expr).operand.get());
-    break;
-  }
-  case ExprKind::Binary: {
-    const auto &binary = as<BinaryExpr>(*expr);
-    head(fmt::format("binary {}", spelling(binary.op)));
-    const Indent indent(depth);
-    expression("", binary.left.get());
-    expression("", binary.right.get());
-    break;
-  }
+    return "error";
+  case ExprKind::Paren:
+    return "paren";
+  case ExprKind::Unary:
+    return fmt::format("unary {}", spelling(as<UnaryExpr>(expr).op));
+  case ExprKind::Binary:
+    return fmt::format("binary {}", spelling(as<BinaryExpr>(expr).op));
   case ExprKind::Assign: {
-    const auto &assign = as<AssignExpr>(*expr);
-    head(fmt::format("assign {}=", assign.compound ? spelling(assign.op) : ""));
-    const Indent indent(depth);
-    expression("", assign.target.get());
-    expression("", assign.value.get());
-    break;
+    const auto &assign = as<AssignExpr>(expr);
+    return fmt::format("assign {}=", assign.compound ? spelling(assign.op) : "");
   }
-  case ExprKind::Conditional: {
-    const auto &conditional = as<ConditionalExpr>(*expr);
-    head("conditional");
-    const Indent indent(depth);
-    expression("", conditional.condition.get());
-    expression("true: ", conditional.whenTrue.get());
-    expression("false: ", conditional.whenFalse.get());
-    break;
-  }
-  case ExprKind::Comma: {
-    head("comma");
-    const Indent indent(depth);
-    expression("", as<CommaExpr>(*expr).left.get());
-    expression("", as<CommaExpr>(*expr).right.get());
-    break;
-  }
+  case ExprKind::Conditional:
+    return "conditional";
+  case ExprKind::Comma:
+    return "comma";
   case ExprKind::Call: {
-    const auto &call = as<CallExpr>(*expr);
-    head(fmt::format("call {}{}{}{}", call.receiver ? "." : "", call.base.text,
-                     call.base.text.empty() ? "" : "::", call.callee.text));
-    const Indent indent(depth);
-    expression("receiver: ", call.receiver.get());
-    expressions("", call.args);
-    break;
+    const auto &call = as<CallExpr>(expr);
+    return fmt::format("call {}{}{}{}", call.receiver ? "." : "", call.base.text,
+                       call.base.text.empty() ? "" : "::", call.callee.text);
   }
-  case ExprKind::Construct: {
-    const auto &construct = as<ConstructExpr>(*expr);
-    head(fmt::format("construct {}", type(construct.type)));
-    const Indent indent(depth);
-    sizes(construct.type);
-    expressions("", construct.args);
-    break;
+  case ExprKind::Construct:
+    return fmt::format("construct {}", type(as<ConstructExpr>(expr).type));
+  case ExprKind::Member:
+    return fmt::format("member .{}", as<MemberExpr>(expr).member.text);
+  case ExprKind::Index:
+    return "index";
+  case ExprKind::InitializerList:
+    return "list";
   }
-  case ExprKind::Member: {
-    head(fmt::format("member .{}", as<MemberExpr>(*expr).member.text));
-    const Indent indent(depth);
-    expression("", as<MemberExpr>(*expr).base.get());
-    break;
-  }
-  case ExprKind::Index: {
-    head("index");
-    const Indent indent(depth);
-    expression("", as<IndexExpr>(*expr).base.get());
-    expression("", as<IndexExpr>(*expr).index.get());
-    break;
-  }
-  case ExprKind::InitializerList: {
-    head("list");
-    const Indent indent(depth);
-    expressions("", as<InitializerListExpr>(*expr).elements);
-    break;
-  }
+  return {};
+}
+
+void Dumper::operands(const Expr &expr) {
+  switch (expr.kind) {
+  case ExprKind::Paren:
+    return expression("", as<ParenExpr>(expr).inner.get());
+  case ExprKind::Unary:
+    return expression("", as<UnaryExpr>(expr).operand.get());
+  case ExprKind::Binary:
+    expression("", as<BinaryExpr>(expr).left.get());
+    return expression("", as<BinaryExpr>(expr).right.get());
+  case ExprKind::Assign:
+    expression("", as<AssignExpr>(expr).target.get());
+    return expression("", as<AssignExpr>(expr).value.get());
+  case ExprKind::Conditional:
+    expression("", as<ConditionalExpr>(expr).condition.get());
+    expression("true: ", as<ConditionalExpr>(expr).whenTrue.get());
+    return expression("false: ", as<ConditionalExpr>(expr).whenFalse.get());
+  case ExprKind::Comma:
+    expression("", as<CommaExpr>(expr).left.get());
+    return expression("", as<CommaExpr>(expr).right.get());
+  case ExprKind::Call:
+    expression("receiver: ", as<CallExpr>(expr).receiver.get());
+    return expressions("", as<CallExpr>(expr).args);
+  case ExprKind::Construct:
+    sizes(as<ConstructExpr>(expr).type);
+    return expressions("", as<ConstructExpr>(expr).args);
+  case ExprKind::Member:
+    return expression("", as<MemberExpr>(expr).base.get());
+  case ExprKind::Index:
+    expression("", as<IndexExpr>(expr).base.get());
+    return expression("", as<IndexExpr>(expr).index.get());
+  case ExprKind::InitializerList:
+    return expressions("", as<InitializerListExpr>(expr).elements);
+  default: // literals and names
+    return;
   }
 }
 
@@ -297,95 +286,96 @@ void Dumper::statement(const Stmt *stmt) {
   switch (stmt->kind) {
   case StmtKind::Compound:
     line("block");
-    statements(as<CompoundStmt>(*stmt).body);
-    break;
+    return statements(as<CompoundStmt>(*stmt).body);
   case StmtKind::Declaration:
     for (const VariableDecl &declared : as<DeclarationStmt>(*stmt).variables)
       variable("variable", declared);
-    break;
+    return;
   case StmtKind::Expression: {
     line("expression");
     const Indent indent(depth);
-    expression("", as<ExpressionStmt>(*stmt).expr.get());
-    break;
+    return expression("", as<ExpressionStmt>(*stmt).expr.get());
   }
-  case StmtKind::If: {
-    const auto &branch = as<IfStmt>(*stmt);
-    line("if");
-    {
-      const Indent indent(depth);
-      expression("", branch.condition.get());
-      statement(branch.thenStmt.get());
-    }
-    if (branch.elseStmt) {
-      line("else");
-      const Indent indent(depth);
-      statement(branch.elseStmt.get());
-    }
-    break;
-  }
-  case StmtKind::For: {
-    const auto &loop = as<ForStmt>(*stmt);
-    line("for");
-    const Indent indent(depth);
-    statement(loop.init.get());
-    expression("condition: ", loop.condition.get());
-    expression("step: ", loop.step.get());
-    statement(loop.body.get());
-    break;
-  }
-  case StmtKind::While: {
-    line("while");
-    const Indent indent(depth);
-    expression("", as<WhileStmt>(*stmt).condition.get());
-    statement(as<WhileStmt>(*stmt).body.get());
-    break;
-  }
-  case StmtKind::DoWhile: {
-    line("do");
-    const Indent indent(depth);
-    statement(as<DoWhileStmt>(*stmt).body.get());
-    expression("while: ", as<DoWhileStmt>(*stmt).condition.get());
-    break;
-  }
+  case StmtKind::If:
+    return branch(as<IfStmt>(*stmt));
+  case StmtKind::For:
+  case StmtKind::While:
+  case StmtKind::DoWhile:
+  case StmtKind::Illuminance:
+    return loop(*stmt);
   case StmtKind::Switch: {
     line("switch");
     {
       const Indent indent(depth);
       expression("", as<SwitchStmt>(*stmt).value.get());
     }
-    statements(as<SwitchStmt>(*stmt).body);
-    break;
+    return statements(as<SwitchStmt>(*stmt).body);
   }
   case StmtKind::Case: {
     const Expr *value = as<CaseStmt>(*stmt).value.get();
     line(value ? "case" : "default");
     const Indent indent(depth);
-    expression("", value);
-    break;
+    return expression("", value);
   }
   case StmtKind::Break:
-    line("break");
-    break;
+    return line("break");
   case StmtKind::Continue:
-    line("continue");
-    break;
+    return line("continue");
   case StmtKind::Return: {
     line("return");
     const Indent indent(depth);
-    expression("", as<ReturnStmt>(*stmt).value.get());
-    break;
+    return expression("", as<ReturnStmt>(*stmt).value.get());
+  }
+  case StmtKind::Empty:
+    return line("empty");
+  }
+}
+
+void Dumper::branch(const IfStmt &branch) {
+  line("if");
+  {
+    const Indent indent(depth);
+    expression("", branch.condition.get());
+    statement(branch.thenStmt.get());
+  }
+  if (branch.elseStmt) {
+    line("else");
+    const Indent indent(depth);
+    statement(branch.elseStmt.get());
+  }
+}
+
+void Dumper::loop(const Stmt &stmt) {
+  switch (stmt.kind) {
+  case StmtKind::For: {
+    const auto &loop = as<ForStmt>(stmt);
+    line("for");
+    const Indent indent(depth);
+    statement(loop.init.get());
+    expression("condition: ", loop.condition.get());
+    expression("step: ", loop.step.get());
+    return statement(loop.body.get());
+  }
+  case StmtKind::While: {
+    line("while");
+    const Indent indent(depth);
+    expression("", as<WhileStmt>(stmt).condition.get());
+    return statement(as<WhileStmt>(stmt).body.get());
+  }
+  case StmtKind::DoWhile: {
+    line("do");
+    const Indent indent(depth);
+    statement(as<DoWhileStmt>(stmt).body.get());
+    return expression("while: ", as<DoWhileStmt>(stmt).condition.get());
   }
   case StmtKind::Illuminance: {
     line("illuminance");
     const Indent indent(depth);
-    expressions("", as<IlluminanceStmt>(*stmt).args);
-    statement(as<IlluminanceStmt>(*stmt).body.get());
-    break;
+    expressions("", as<IlluminanceStmt>(stmt).args);
+    return statement(as<IlluminanceStmt>(stmt).body.get());
   }
-  case StmtKind::Empty:
-    line("empty");
-    break;
+  default:
+    return;
   }
 }
 

@@ -58,6 +58,7 @@ private:
   void visitSwitch(const SwitchStmt &stmt);
   void visitIlluminance(const IlluminanceStmt &stmt);
   void visit(const Expr &expr);
+  void visitCall(const Expr &expr);
   void visitTarget(const Expr &target, bool reads);
   void visitArgument(const Expr &arg, ast::Direction direction);
   void read(const Variable &variable, SourceRange range);
@@ -224,32 +225,32 @@ void FlowCheck::visit(const Expr &expr) {
     for (const ExprPtr &arg : cast<ConstructExpr>(expr).args)
       visit(*arg);
     return;
-  case ExprKind::Builtin: {
-    // The author may leave a payload uninitialised before the ray is traced: passing it is not
-    // counted as a read.
-    const auto &call = cast<BuiltinExpr>(expr);
-    for (std::size_t i = 0; i != call.args.size(); ++i)
-      visitArgument(*call.args[i],
-                    isOutArgument(call.builtin, i) ? ast::Direction::Out : ast::Direction::In);
-    return;
-  }
-  case ExprKind::Call: {
-    const auto &call = cast<CallExpr>(expr);
-    for (std::size_t i = 0; i != call.args.size(); ++i)
-      visitArgument(*call.args[i], call.function->parameters[i]->direction);
-    return;
-  }
-  case ExprKind::MethodCall: {
-    const auto &call = cast<MethodCallExpr>(expr);
-    visit(*call.receiver);
-    for (std::size_t i = 0; i != call.args.size(); ++i)
-      visitArgument(*call.args[i],
-                    call.function ? call.function->parameters[i]->direction : ast::Direction::In);
-    return;
-  }
+  case ExprKind::Builtin:
+  case ExprKind::Call:
+  case ExprKind::MethodCall:
+    return visitCall(expr);
   default:
     return;
   }
+}
+
+void FlowCheck::visitCall(const Expr &expr) {
+  const auto visitAll = [&](const std::vector<ExprPtr> &args, const Function *callee) {
+    for (std::size_t i = 0; i != args.size(); ++i)
+      visitArgument(*args[i], callee ? callee->parameters[i]->direction : ast::Direction::In);
+  };
+  if (const auto *call = dynCast<CallExpr>(&expr))
+    return visitAll(call->args, call->function);
+  if (const auto *call = dynCast<MethodCallExpr>(&expr)) {
+    visit(*call->receiver);
+    return visitAll(call->args, call->function);
+  }
+  // The author may leave a payload uninitialised before the ray is traced: passing it is not
+  // counted as a read.
+  const auto &call = cast<BuiltinExpr>(expr);
+  for (std::size_t i = 0; i != call.args.size(); ++i)
+    visitArgument(*call.args[i],
+                  isOutArgument(call.builtin, i) ? ast::Direction::Out : ast::Direction::In);
 }
 
 //===----------------------------------------------------------------------===//

@@ -288,7 +288,15 @@ public:
   std::optional<Constant> evaluate(const typed::Expr &expr);
 
 private:
+  std::optional<Constant> evaluateField(const typed::FieldExpr &expr);
+  std::optional<Constant> evaluateSwizzle(const typed::SwizzleExpr &expr);
   std::optional<Constant> evaluateIndex(const typed::IndexExpr &expr);
+  std::optional<Constant> evaluateUnary(const typed::UnaryExpr &expr);
+  std::optional<Constant> evaluateBinary(const typed::BinaryExpr &expr);
+  std::optional<Constant> evaluateConditional(const typed::ConditionalExpr &expr);
+  std::optional<Constant> evaluateConvert(const typed::ConvertExpr &expr);
+  std::optional<Constant> evaluateConstruct(const typed::ConstructExpr &expr);
+  std::optional<Constant> evaluateCall(const typed::BuiltinExpr &expr);
   bool evaluateAll(const std::vector<typed::ExprPtr> &exprs, std::vector<Constant> &values);
 
   std::nullopt_t notConstant(const typed::Expr &expr) {
@@ -332,6 +340,87 @@ std::optional<Constant> Evaluator::evaluateIndex(const typed::IndexExpr &expr) {
   return slice(*base, static_cast<std::uint64_t>(at) * stride, stride);
 }
 
+std::optional<Constant> Evaluator::evaluateField(const typed::FieldExpr &expr) {
+  std::optional<Constant> base = evaluate(*expr.base);
+  if (!base)
+    return std::nullopt;
+  std::uint64_t first = 0;
+  const typed::Struct &structure = *expr.base->type->structure;
+  for (std::uint32_t i = 0; i != expr.field; ++i)
+    first += scalarCount(structure.fields[i].type);
+  return slice(*base, first, scalarCount(expr.type));
+}
+
+std::optional<Constant> Evaluator::evaluateSwizzle(const typed::SwizzleExpr &expr) {
+  std::optional<Constant> base = evaluate(*expr.base);
+  if (!base)
+    return std::nullopt;
+  Constant result;
+  for (std::uint8_t component : expr.components)
+    result.scalars.push_back(base->scalars[component]);
+  return result;
+}
+
+std::optional<Constant> Evaluator::evaluateUnary(const typed::UnaryExpr &expr) {
+  std::optional<Constant> operand = evaluate(*expr.operand);
+  if (!operand)
+    return std::nullopt;
+  if (expr.type->is(TypeKind::Color) && operand->scalars.size() != 1) // see foldColor
+    return std::nullopt;
+  return foldUnary(expr.op, expr.type, *operand);
+}
+
+std::optional<Constant> Evaluator::evaluateBinary(const typed::BinaryExpr &expr) {
+  std::optional<Constant> left = evaluate(*expr.left);
+  if (!left)
+    return std::nullopt;
+  std::optional<Constant> right = evaluate(*expr.right);
+  if (!right)
+    return std::nullopt;
+  if (std::optional<Constant> result = foldBinary(expr, *left, *right))
+    return result;
+  return notConstant(expr);
+}
+
+std::optional<Constant> Evaluator::evaluateConditional(const typed::ConditionalExpr &expr) {
+  std::optional<Constant> condition = evaluate(*expr.condition);
+  if (!condition)
+    return std::nullopt;
+  return evaluate(condition->scalars[0].b ? *expr.whenTrue : *expr.whenFalse);
+}
+
+std::optional<Constant> Evaluator::evaluateConvert(const typed::ConvertExpr &expr) {
+  std::optional<Constant> operand = evaluate(*expr.operand);
+  if (!operand)
+    return std::nullopt;
+  if (!expr.type->scalar())
+    return notConstant(expr);
+  for (Scalar &scalar : operand->scalars)
+    scalar = convertScalar(scalar, expr.operand->type->scalar()->kind, expr.type->scalar()->kind);
+  return operand;
+}
+
+std::optional<Constant> Evaluator::evaluateConstruct(const typed::ConstructExpr &expr) {
+  // A color inside an aggregate has no fixed number of scalars.
+  const bool isAggregate = expr.type->is(TypeKind::Array) || expr.type->is(TypeKind::Struct);
+  if (isAggregate &&
+      (contains(expr.type, TypeKind::Color) || scalarCount(expr.type) > maxFoldedScalars))
+    return notConstant(expr);
+  std::vector<Constant> args;
+  if (!evaluateAll(expr.args, args))
+    return std::nullopt;
+  return foldConstruct(expr.type, expr, args);
+}
+
+std::optional<Constant> Evaluator::evaluateCall(const typed::BuiltinExpr &expr) {
+  std::vector<Constant> args;
+  if (!evaluateAll(expr.args, args))
+    return std::nullopt;
+  if (std::optional<Constant> result = evaluateBuiltin(expr, args))
+    return result;
+  return notConstant(expr);
+}
+
 std::optional<Constant> Evaluator::evaluate(const typed::Expr &expr) {
   if (expr.type->isError())
     return std::nullopt;
@@ -341,100 +430,32 @@ std::optional<Constant> Evaluator::evaluate(const typed::Expr &expr) {
   switch (expr.kind) {
   case typed::ExprKind::Literal:
     return cast<typed::LiteralExpr>(expr).value;
-  case typed::ExprKind::Variable: {
-    const typed::Variable *variable = cast<typed::VariableExpr>(expr).variable;
-    if (variable->constant)
-      return *variable->constant;
+  case typed::ExprKind::Variable:
+    if (const auto &constant = cast<typed::VariableExpr>(expr).variable->constant)
+      return *constant;
     return notConstant(expr);
-  }
-  case typed::ExprKind::Member: {
-    const typed::Member *member = cast<typed::MemberExpr>(expr).member;
-    if (member->constant)
-      return *member->constant;
+  case typed::ExprKind::Member:
+    if (const auto &constant = cast<typed::MemberExpr>(expr).member->constant)
+      return *constant;
     return notConstant(expr);
-  }
-  case typed::ExprKind::Field: {
-    const auto &field = cast<typed::FieldExpr>(expr);
-    std::optional<Constant> base = evaluate(*field.base);
-    if (!base)
-      return std::nullopt;
-    std::uint64_t first = 0;
-    const typed::Struct &structure = *field.base->type->structure;
-    for (std::uint32_t i = 0; i != field.field; ++i)
-      first += scalarCount(structure.fields[i].type);
-    return slice(*base, first, scalarCount(expr.type));
-  }
-  case typed::ExprKind::Swizzle: {
-    const auto &swizzle = cast<typed::SwizzleExpr>(expr);
-    std::optional<Constant> base = evaluate(*swizzle.base);
-    if (!base)
-      return std::nullopt;
-    Constant result;
-    for (std::uint8_t component : swizzle.components)
-      result.scalars.push_back(base->scalars[component]);
-    return result;
-  }
+  case typed::ExprKind::Field:
+    return evaluateField(cast<typed::FieldExpr>(expr));
+  case typed::ExprKind::Swizzle:
+    return evaluateSwizzle(cast<typed::SwizzleExpr>(expr));
   case typed::ExprKind::Index:
     return evaluateIndex(cast<typed::IndexExpr>(expr));
-  case typed::ExprKind::Unary: {
-    const auto &unary = cast<typed::UnaryExpr>(expr);
-    std::optional<Constant> operand = evaluate(*unary.operand);
-    if (!operand)
-      return std::nullopt;
-    if (expr.type->is(TypeKind::Color) && operand->scalars.size() != 1) // see foldColor
-      return std::nullopt;
-    return foldUnary(unary.op, expr.type, *operand);
-  }
-  case typed::ExprKind::Binary: {
-    const auto &binary = cast<typed::BinaryExpr>(expr);
-    std::optional<Constant> left = evaluate(*binary.left);
-    if (!left)
-      return std::nullopt;
-    std::optional<Constant> right = evaluate(*binary.right);
-    if (!right)
-      return std::nullopt;
-    if (std::optional<Constant> result = foldBinary(binary, *left, *right))
-      return result;
-    return notConstant(expr);
-  }
-  case typed::ExprKind::Conditional: {
-    const auto &conditional = cast<typed::ConditionalExpr>(expr);
-    std::optional<Constant> condition = evaluate(*conditional.condition);
-    if (!condition)
-      return std::nullopt;
-    return evaluate(condition->scalars[0].b ? *conditional.whenTrue : *conditional.whenFalse);
-  }
-  case typed::ExprKind::Convert: {
-    const auto &convert = cast<typed::ConvertExpr>(expr);
-    std::optional<Constant> operand = evaluate(*convert.operand);
-    if (!operand || !expr.type->scalar())
-      return operand ? std::optional<Constant>(notConstant(expr)) : std::nullopt;
-    for (Scalar &scalar : operand->scalars)
-      scalar =
-          convertScalar(scalar, convert.operand->type->scalar()->kind, expr.type->scalar()->kind);
-    return operand;
-  }
-  case typed::ExprKind::Construct: {
-    const auto &construct = cast<typed::ConstructExpr>(expr);
-    // A color inside an aggregate has no fixed number of scalars.
-    const bool isAggregate = expr.type->is(TypeKind::Array) || expr.type->is(TypeKind::Struct);
-    if (isAggregate &&
-        (contains(expr.type, TypeKind::Color) || scalarCount(expr.type) > maxFoldedScalars))
-      return notConstant(expr);
-    std::vector<Constant> args;
-    if (!evaluateAll(construct.args, args))
-      return std::nullopt;
-    return foldConstruct(expr.type, construct, args);
-  }
-  case typed::ExprKind::Builtin: {
-    const auto &call = cast<typed::BuiltinExpr>(expr);
-    std::vector<Constant> args;
-    if (!evaluateAll(call.args, args))
-      return std::nullopt;
-    if (std::optional<Constant> result = evaluateBuiltin(call, args))
-      return result;
-    return notConstant(expr);
-  }
+  case typed::ExprKind::Unary:
+    return evaluateUnary(cast<typed::UnaryExpr>(expr));
+  case typed::ExprKind::Binary:
+    return evaluateBinary(cast<typed::BinaryExpr>(expr));
+  case typed::ExprKind::Conditional:
+    return evaluateConditional(cast<typed::ConditionalExpr>(expr));
+  case typed::ExprKind::Convert:
+    return evaluateConvert(cast<typed::ConvertExpr>(expr));
+  case typed::ExprKind::Construct:
+    return evaluateConstruct(cast<typed::ConstructExpr>(expr));
+  case typed::ExprKind::Builtin:
+    return evaluateCall(cast<typed::BuiltinExpr>(expr));
   default:
     return notConstant(expr);
   }

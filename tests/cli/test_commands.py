@@ -129,8 +129,8 @@ class Commands(Case):
                    f"  float s = {quotients}luminance(trace(rt_HitPoint, rt_RayDirection)){')' * 34};\n"
                    "  rt_SampleColor = color(s);\n}\n")
         _, error = self.run_rtslc("check", "sums.rtsl", "-Wlive-state")
-        self.assertRegex(error, "bytes are live across this `trace`, more than 128; what line 4 computes takes the most: 4 bytes")
-        self.assertRegex(error, "and then: what line 4 computes 4, ")
+        self.assertRegex(error, "bytes are live across this `trace`, more than 128; the value computed in line 4 takes the most: 4 bytes")
+        self.assertRegex(error, r"also saved: the value computed in line 4 \(4\), ")
         self.assertNotIn("rand.2", error)
 
     def test_documented_warnings_are_those_of_the_compiler(self):

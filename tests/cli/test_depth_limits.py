@@ -95,14 +95,14 @@ class DepthLimits(Case):
         self.assertEqual(self.overflows("Endless", 9), 128)
         self.assertEqual(self.overflows("Endless", 256), 128)
         text = self.explained("Endless", 9)
-        self.assertIn("traces on every way: the limit of depth ends it", text)
+        self.assertIn("traces on every path: ends at the depth limit", text)
         self.assertRegex(text, r"stack: 10 levels of \d+ bytes for rays as deep as 9, more if that is larger")
 
     def test_a_shader_that_always_traces_is_a_warning_at_compile_time(self):
         self.scene("Endless", 5)
         for command in (["compile", "--emit=ptx"], ["explain", "--states"]):
             _, error = self.run_rtslc(command[0], "scene.json", "-o", "out", *command[1:])
-            self.assertIn(f"{ENDLESS} whatever it finds: `Endless`", error)
+            self.assertIn(f"{ENDLESS} on every path: `Endless`", error)
             self.assertIn("[-Wscene]", error)
         _, error = self.run_rtslc("compile", "scene.json", "-o", "out", "--emit=ptx", "-Wno-scene")
         self.assertEqual(error, "")
@@ -110,20 +110,20 @@ class DepthLimits(Case):
     def test_chance_limits_depth(self):
         self.assertEqual(self.overflows("Roulette", 200), 0)
         self.assertGreater(self.overflows("Roulette", 1), 0)
-        self.assertIn("traces or not by rand()", self.explained("Roulette"))
+        self.assertIn("traces depending on rand()", self.explained("Roulette"))
 
     def test_the_weight_of_a_ray_limits_depth(self):
         self.assertEqual(self.overflows("Fading", 6), 0)
         self.assertEqual(self.overflows("Fading", 5), 128)
         text = self.explained("Fading")
-        self.assertIn("traces or not by its payload", text)
+        self.assertIn("traces depending on its payload", text)
         self.assertIn("recursion runs as a loop", text)
         self.assertIn("stack: 1 level of", text) # that of `generate`
 
     def test_a_shader_limits_depth(self):
         self.assertEqual(self.overflows("Shallow", 3), 0)
         self.assertEqual(self.overflows("Shallow", 2), 128)
-        self.assertIn("traces or not by rt_Depth", self.explained("Shallow"))
+        self.assertIn("traces depending on rt_Depth", self.explained("Shallow"))
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ class Documents(Case):
         page = read("docs/packages.md")
         self.assertIn(f"| version of the format: {constant('runtime/package/Package.cpp', 'formatVersion')} |", page)
         depth = constant("runtime/render/RenderOptions.h", "maxRayDepth")
-        self.assertIn(f"| {depth + 1} numbers of 4 bytes: what `rtsl_lane_bytes` says for each limit of depth "
+        self.assertIn(f"| {depth + 1} numbers of 4 bytes: what `rtsl_lane_bytes` says for each depth limit "
                       f"from 0 to {depth} |", page)
 
     def test_ranges_are_those_of_the_schema(self):

@@ -108,7 +108,7 @@ class Explain(Case):
     def test_what_a_scene_adds_is_needed(self):
         self.write_scene(materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}})
         items = self.entries()
-        self.assertEqual(items["lights"]["illuminance"][:2], (False, "the scene has no lights: the loop is gone"))
+        self.assertEqual(items["lights"]["illuminance"][:2], (False, "the scene has no lights: the loop is removed"))
         self.assertTrue(items["outputs"]["computeNormal"][0]) # a shadow ray would leave the hit
         self.assertFalse(items["methods"]["Paint.unusedHelper"][0])
 
@@ -123,7 +123,7 @@ class Explain(Case):
     def test_text_names_every_left_out_thing_with_its_line(self):
         self.write_scene()
         text, _ = self.run_rtslc("explain", "scene.json")
-        self.assertRegex(text, r"left out +Paint +all\.rtsl:\d+ +no object has it")
+        self.assertRegex(text, r"left out +Paint +all\.rtsl:\d+ +it has no objects")
         self.assertRegex(text, r"needed +Ball\.computeTextureCoordinates +all\.rtsl:\d+ +read by `Answering\.shade`")
         kept, _ = self.run_rtslc("explain", "scene.json", "--keep=dispatch,meshes")
         self.assertRegex(kept, r"Choices between classes +\S+ +\S+ +kept")
@@ -177,7 +177,7 @@ class Explain(Case):
         items = self.entries()
         self.assertEqual(items["objects"]["material blue"][:2], (False, "nothing that is used refers to it"))
         self.assertEqual(items["objects"]["material red"][:2], (True, "referred to by objects.0"))
-        self.assertEqual(items["classes"]["Paint"][:2], (False, "only objects have it that nothing refers to"))
+        self.assertEqual(items["classes"]["Paint"][:2], (False, "nothing refers to its objects"))
         self.assertTrue(items["classes"]["Answering"][0])
         self.assertIn("in the code", items["parameters"]["Answering.tint"][1]) # a green one that nothing has does not differ
         saved = {item["item"]: item["saved"] for item in self.document["items"]}
@@ -286,7 +286,7 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
     def test_prints_are_needed_where_a_shader_that_runs_prints(self):
         self.write_scene()
         self.write("all.rtsl", SHADERS.replace("illuminance (rt_HitPoint)", 'print("paint"); illuminance (rt_HitPoint)'))
-        self.assertEqual(self.entries()["events"]["print"][:2], (False, "no shader that runs prints"))
+        self.assertEqual(self.entries()["events"]["print"][:2], (False, "no `print` runs"))
 
     def test_ptx_of_a_scene_is_bound_to_it(self):
         self.write_scene()

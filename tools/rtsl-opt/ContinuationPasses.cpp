@@ -51,24 +51,25 @@ RTSL_FUNCTION_STEP(InsertSuspendsPass, "rtsl-insert-suspends", "ends blocks at t
   return mlir::success();
 })
 RTSL_FUNCTION_STEP(LastTracesPass, "rtsl-last-traces",
-                   "gives the place of a ray to the last that it sends", {
-                     endAtLastTraces(function);
+                   "replaces rays by the tail traces that they send", {
+                     endAtTailTraces(function);
                      return mlir::success();
                    })
 struct CutJoinsPass : FunctionStep<CutJoinsPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(CutJoinsPass)
   static constexpr llvm::StringLiteral argument = "rtsl-cut-joins";
   static constexpr llvm::StringLiteral description =
-      "gives code that many states would copy a state of its own";
+      "makes states of code that many states would copy";
   CutJoinsPass() = default;
   CutJoinsPass(const CutJoinsPass &other) : FunctionStep(other) {}
-  Option<unsigned> free{*this, "free", llvm::cl::desc("copies of operations that are always fine"),
+  Option<unsigned> free{*this, "free",
+                        llvm::cl::desc("number of copied operations that is always accepted"),
                         llvm::cl::init(4000)};
   Option<unsigned> copies{*this, "copies",
-                          llvm::cl::desc("so many times the function's operations are fine"),
+                          llvm::cl::desc("accepted factor of the function's operations"),
                           llvm::cl::init(4)};
   Option<unsigned> shortest{*this, "shortest",
-                            llvm::cl::desc("operations between two cuts, at least"),
+                            llvm::cl::desc("least number of operations between two cuts"),
                             llvm::cl::init(16)};
   mlir::LogicalResult step(FuncOp function) {
     JoinOptions options;
@@ -81,24 +82,25 @@ struct CutJoinsPass : FunctionStep<CutJoinsPass> {
 };
 
 RTSL_FUNCTION_STEP(FrameObjectsPass, "rtsl-frame-objects",
-                   "moves variables that outlive a trace to the frame", {
+                   "moves variables that are live across a trace to the frame", {
                      moveVariablesToFrame(function);
                      return mlir::success();
                    })
-RTSL_FUNCTION_STEP(TrimVectorsPass, "rtsl-trim-vectors", "takes parts of vectors before a trace", {
-  trimVectors(function);
-  return mlir::success();
-})
+RTSL_FUNCTION_STEP(TrimVectorsPass, "rtsl-trim-vectors",
+                   "extracts components of vectors before a trace", {
+                     trimVectors(function);
+                     return mlir::success();
+                   })
 RTSL_FUNCTION_STEP(SaveLivePass, "rtsl-save-live",
-                   "passes what is live across a trace to its resume block",
+                   "passes values that are live across a trace to its resume block",
                    { return saveLive(function); })
 RTSL_FUNCTION_STEP(LayoutFramePass, "rtsl-layout-frame",
-                   "gives what is saved its place in the frame", {
+                   "assigns slots in the frame to saved values", {
                      layoutFrame(function);
                      return mlir::success();
                    })
 RTSL_FUNCTION_STEP(CleanStoresPass, "rtsl-clean-stores",
-                   "removes stores of what a slot already holds", {
+                   "removes stores of values that a slot already holds", {
                      cleanStores(function);
                      return mlir::success();
                    })
@@ -111,11 +113,11 @@ struct RematerialisePass : FunctionStep<RematerialisePass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(RematerialisePass)
   static constexpr llvm::StringLiteral argument = "rtsl-rematerialise";
   static constexpr llvm::StringLiteral description =
-      "recomputes behind a trace what is cheaper than to save";
+      "recomputes values after a trace that are cheaper to recompute than to save";
   RematerialisePass() = default;
   RematerialisePass(const RematerialisePass &other) : FunctionStep(other) {}
   Option<bool> onlyAddresses{*this, "only-addresses",
-                             llvm::cl::desc("recompute only what cannot be saved")};
+                             llvm::cl::desc("recompute only values that cannot be saved")};
   mlir::LogicalResult step(FuncOp function) {
     RematerialiseOptions options;
     options.onlyAddresses = onlyAddresses;
@@ -154,7 +156,7 @@ struct TrimPayloadsPass : ModuleStep<TrimPayloadsPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(TrimPayloadsPass)
   static constexpr llvm::StringLiteral argument = "rtsl-trim-payloads";
   static constexpr llvm::StringLiteral description =
-      "takes fields out of payloads that nobody reads";
+      "removes fields of payloads that are never read";
   mlir::LogicalResult step(mlir::ModuleOp module) {
     trimPayloads(module);
     return mlir::success();
@@ -177,7 +179,7 @@ struct DispatchPass : ModuleStep<DispatchPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(DispatchPass)
   static constexpr llvm::StringLiteral argument = "rtsl-dispatch";
   static constexpr llvm::StringLiteral description =
-      "numbers states and makes what the machine calls";
+      "numbers states and makes the functions that the machine calls";
   mlir::LogicalResult step(mlir::ModuleOp module) { return makeDispatch(module); }
 };
 
@@ -187,10 +189,9 @@ struct SplitPass : ModuleStep<SplitPass> {
   static constexpr llvm::StringLiteral description = "splits functions at their traces: all steps";
   SplitPass() = default;
   SplitPass(const SplitPass &other) : ModuleStep(other) {}
-  Option<bool> noRematerialise{*this, "no-rematerialise",
-                               llvm::cl::desc("save everything that is live")};
+  Option<bool> noRematerialise{*this, "no-rematerialise", llvm::cl::desc("save all live values")};
   Option<bool> noTrim{*this, "no-trim", llvm::cl::desc("save whole vectors")};
-  Option<bool> noCleanUp{*this, "no-clean-up", llvm::cl::desc("leave all stores and loads")};
+  Option<bool> noCleanUp{*this, "no-clean-up", llvm::cl::desc("keep all stores and loads")};
   Option<bool> noDispatch{*this, "no-dispatch", llvm::cl::desc("leave states without numbers")};
   Option<std::string> reportAs{
       *this, "report", llvm::cl::desc("what was saved: `text` or `json`, to standard error")};

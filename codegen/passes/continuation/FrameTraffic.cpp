@@ -1,4 +1,4 @@
-//===- FrameTraffic.cpp - what states move between registers and frame ----===//
+//===- FrameTraffic.cpp - loads and stores of the frame -------------------===//
 #include "codegen/passes/continuation/FrameTraffic.h"
 
 #include "codegen/ir/Layout.h"
@@ -10,7 +10,8 @@ namespace rtsl::continuation {
 
 namespace {
 
-/// Bytes of the values that the block's operations of this kind move; a word of bools counts once.
+/// Bytes of the values that the block's operations of this kind load or store; a word of bools
+/// counts once.
 template <typename Op>
 std::uint32_t bytesIn(mlir::Block &block) {
   std::uint32_t bytes = 0;
@@ -28,11 +29,11 @@ std::uint32_t bytesIn(mlir::Block &block) {
   return bytes;
 }
 
-/// What is loaded on the ways through the state that load least and most. No loop loads, so both
-/// are there after as many rounds as there are blocks.
-BytesRange loadedOnWays(FuncOp state) {
+/// The least and most bytes loaded on a path through the state. Loops contain no loads, so both are
+/// known after as many iterations as there are blocks.
+BytesRange loadedOnPaths(FuncOp state) {
   llvm::DenseMap<mlir::Block *, BytesRange> upTo;
-  BytesRange ways = {~0u, 0};
+  BytesRange paths = {~0u, 0};
   bool changed = true;
   for (std::size_t round = 0; changed && round <= state.getBody().getBlocks().size(); ++round) {
     changed = false;
@@ -46,7 +47,7 @@ BytesRange loadedOnWays(FuncOp state) {
       if (block.isEntryBlock())
         range.least = 0;
       else if (range.least == ~0u)
-        continue; // nothing is known of what comes before
+        continue; // no predecessor is known yet
       range = {range.least + own, range.most + own};
       auto [at, isNew] = upTo.try_emplace(&block, range);
       changed |= isNew || at->second.least != range.least || at->second.most != range.most;
@@ -55,16 +56,16 @@ BytesRange loadedOnWays(FuncOp state) {
   }
   for (auto &[block, range] : upTo)
     if (block->hasNoSuccessors())
-      ways = {std::min(ways.least, range.least), std::max(ways.most, range.most)};
-  return ways.least == ~0u ? BytesRange{0, 0} : ways;
+      paths = {std::min(paths.least, range.least), std::max(paths.most, range.most)};
+  return paths.least == ~0u ? BytesRange{0, 0} : paths;
 }
 
 } // namespace
 
 void FrameTraffic::add(FuncOp state) {
-  TraceTraffic &behind = traffic[state.getSymName()];
-  behind.restored = loadedOnWays(state);
-  state.walk([&](ir::FrameLoadOp) { ++behind.loads; });
+  TraceTraffic &after = traffic[state.getSymName()];
+  after.restored = loadedOnPaths(state);
+  state.walk([&](ir::FrameLoadOp) { ++after.loads; });
 
   const auto storesBefore = [&](mlir::Operation *suspends, llvm::StringRef resume) {
     mlir::Block &block = *suspends->getBlock();

@@ -1,4 +1,4 @@
-//===- FrameTraffic.h - what states move between registers and frame ------===//
+//===- FrameTraffic.h - loads and stores of the frame ---------------------===//
 #pragma once
 
 #include "codegen/passes/continuation/Report.h"
@@ -8,11 +8,11 @@
 
 namespace rtsl::continuation {
 
-/// The loads and stores of a function's states at one moment, by the state in which they come back.
+/// The current loads and stores of a function's states, by the state that the trace resumes.
 class FrameTraffic {
 public:
   void add(FuncOp state);
-  /// What is stored before the trace that comes back in `state`, and restored behind it.
+  /// Stores before the trace that resumes `state`, and loads after it.
   TraceTraffic at(llvm::StringRef state) const;
 
 private:

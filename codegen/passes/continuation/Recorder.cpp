@@ -1,4 +1,4 @@
-//===- Recorder.cpp - what is noted of a function while it is split -------===//
+//===- Recorder.cpp - records the splitting of a function -----------------===//
 #include "codegen/passes/continuation/Recorder.h"
 
 #include "codegen/ir/Attributes.h"
@@ -27,7 +27,7 @@ std::uint32_t bytesOf(llvm::ArrayRef<mlir::Value> values) {
   return bytes + (bools + 31) / 32 * 4;
 }
 
-/// With everything that a trace saves stored before it and restored behind it.
+/// The traffic if every value that a trace saves is stored before it and restored after it.
 StepReport stepBeforeSplit(const char *step, const SuspendPlan &plan) {
   const std::uint32_t bytes = bytesOf(plan.saved);
   const auto count = static_cast<unsigned>(plan.saved.size());
@@ -48,9 +48,9 @@ Recorder::Recorder(FuncOp function, const WriteSummary &summary, bool explains,
   report.endings = endingsOf(function);
 }
 
-void Recorder::foundLastTraces(llvm::ArrayRef<mlir::Location> places) {
+void Recorder::foundTailTraces(llvm::ArrayRef<mlir::Location> places) {
   for (mlir::Location place : places)
-    report.lastTraces.push_back(ir::placeOf(place));
+    report.tailTraces.push_back(ir::placeOf(place));
 }
 
 mlir::LogicalResult Recorder::suspended() {
@@ -71,8 +71,8 @@ mlir::LogicalResult Recorder::trimmedVectors() {
   return notePlainLiveness("trim-vectors");
 }
 
-/// What would be saved if nothing were computed again: with the first step, the figure that all
-/// others are compared with.
+/// The values that would be saved if none were recomputed: after the first step, the baseline of
+/// all others.
 mlir::LogicalResult Recorder::notePlainLiveness(const char *step) {
   if (!explains)
     return mlir::success();
@@ -107,7 +107,7 @@ void Recorder::planned(llvm::ArrayRef<SuspendPlan> plans) {
   }
 }
 
-/// What is recomputed of what plain liveness would save, and what that costs.
+/// Which of the values that plain liveness would save are recomputed, and at what cost.
 void Recorder::explainPlan(const SuspendPlan &plan, TraceReport &trace) {
   trace.steps.push_back(stepBeforeSplit("rematerialise", plan));
   llvm::StringSet<> live;
@@ -144,13 +144,14 @@ void Recorder::cleanedStores(FuncOp state) {
 }
 
 static void noteTransitions(FuncOp state, std::vector<TransitionReport> &transitions) {
-  llvm::StringSet<> called; // jumps to where these begin are said with them
+  llvm::StringSet<> called; // calls: the jumps to their states are not listed
   state.walk([&](ir::EnterOp call) {
     called.insert((call.getCallee() + ".state0").str());
-    const TransitionReport way = {TransitionReport::Call, state.getSymName().str(),
-                                  call.getResume().value_or("").str(), call.getCallee().str()};
-    if (std::find(transitions.begin(), transitions.end(), way) == transitions.end())
-      transitions.push_back(way);
+    const TransitionReport transition = {TransitionReport::Call, state.getSymName().str(),
+                                         call.getResume().value_or("").str(),
+                                         call.getCallee().str()};
+    if (std::find(transitions.begin(), transitions.end(), transition) == transitions.end())
+      transitions.push_back(transition);
   });
   static constexpr std::pair<ir::Transition, TransitionReport::Kind> kinds[] = {
       {ir::Transition::Return, TransitionReport::Return},

@@ -1,6 +1,6 @@
-//===- Recorder.h - what is noted of a function while it is split ---------===//
+//===- Recorder.h - records the splitting of a function -------------------===//
 //
-// Split.cpp says what it has done; this notes it in a report. Nothing here changes the IR.
+// Records the steps of Split.cpp in a report, without changing the IR.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -11,20 +11,20 @@
 
 namespace rtsl::continuation {
 
-/// Notes what becomes of one function. Each member is called after the step that it is named for,
+/// Records the steps for one function. Each member is called after the step that it is named after,
 /// in this order.
 class Recorder {
 public:
-  /// `explains`: note what each trace would save without the optimisations, and with each of them
+  /// `explains`: record what each trace would save without the optimisations, and with each of them
   /// (SplitOptions::explain).
   Recorder(FuncOp function, const WriteSummary &summary, bool explains, FunctionReport &report);
 
-  void foundLastTraces(llvm::ArrayRef<mlir::Location> places);
-  /// All traces stand at the ends of blocks. Fails, with a message, if a value can neither be saved
+  void foundTailTraces(llvm::ArrayRef<mlir::Location> places);
+  /// All traces are at the ends of blocks. Fails, with a message, if a value can neither be saved
   /// nor recomputed.
   mlir::LogicalResult suspended();
   mlir::LogicalResult trimmedVectors();
-  /// It is known what is saved and what is recomputed; nothing is changed yet.
+  /// The plans are made; the IR is unchanged.
   void planned(llvm::ArrayRef<SuspendPlan> plans);
   void laidOut(FrameLayout frame);
   void split(llvm::ArrayRef<FuncOp> states);

@@ -1,4 +1,4 @@
-//===- Report.cpp - what splitting cost and saved -------------------------===//
+//===- Report.cpp - costs and savings of splitting ------------------------===//
 #include "codegen/passes/continuation/Report.h"
 
 #include "runtime/device/engines/Machine.h"

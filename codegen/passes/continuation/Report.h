@@ -1,6 +1,6 @@
-//===- Report.h - what splitting cost and saved ---------------------------===//
+//===- Report.h - costs and savings of splitting --------------------------===//
 //
-// What the steps note; codegen/explain makes text, JSON and pictures of it.
+// Recorded by the steps of splitting; codegen/explain makes text, JSON and drawings of it.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -17,60 +17,60 @@
 
 namespace rtsl {
 
-/// Where a trace stands.
+/// The location of a trace in the source.
 using TracePlace = ir::SourcePlace;
 
-/// Over the ways on which a trace is met, or the ways on from it.
+/// Over all paths to a trace, or all paths from it.
 struct BytesRange {
   std::uint32_t least = 0, most = 0;
 };
 
-/// What is moved between registers and frame at one trace.
+/// Loads and stores of the frame at one trace.
 struct TraceTraffic {
-  BytesRange stored, restored;    // before it, behind it
+  BytesRange stored, restored;    // before and after it
   unsigned stores = 0, loads = 0; // operations
   bool isStored = false;          // by some state
 };
 
-/// The same with all steps done up to one of them.
+/// The same after the steps up to this one.
 struct StepReport {
   const char *step;             // "liveness": none of the optimisations
-  std::uint32_t savedBytes = 0; // in the frame while the ray is away
+  std::uint32_t savedBytes = 0; // in the frame while the ray is traced
   TraceTraffic traffic;
 };
 
-/// What a trace runs beside the author's own code.
+/// What runs at a trace in addition to the code of the source.
 struct ExtraReport {
-  unsigned recomputed = 0, stores = 0, loads = 0; // operations, but for constants and addresses
+  unsigned recomputed = 0, stores = 0, loads = 0; // operations, except constants and addresses
   std::int64_t cost = 0;                          // units of CostTable.h
 };
 
-/// One trace of a function, in the order in which they stand.
+/// One trace of a function, in the order of the code.
 struct TraceReport {
   TracePlace place;
   std::string callee;    // of a call on a frame of its own; empty: it is a trace
   std::string resumesAt; // the state
-  // What plain liveness would save, constants included. This and what follows from it (`steps`,
-  // `rematerialised`, `plainly`) is there if SplitOptions::explain.
+  // The values that plain liveness would save, constants included. This and the data derived from
+  // it (`steps`, `rematerialised`, `plainly`) require SplitOptions::explain.
   std::vector<std::string> live;
   std::uint32_t liveBytes = 0;
   std::vector<std::string> saved;
-  std::vector<std::string> savedShown;     // what messages call them
-  std::vector<std::uint32_t> savedSizes;   // bytes of each; 0 of a bool
+  std::vector<std::string> savedShown;     // their names in messages
+  std::vector<std::uint32_t> savedSizes;   // bytes of each; 0 for a bool
   std::uint32_t savedBytes = 0;            // bools as bits of one word
-  std::vector<std::string> rematerialised; // of what was live; not what it is made from
+  std::vector<std::string> rematerialised; // of the live values; without intermediate ones
   std::uint32_t rematerialisedBytes = 0;   // of these, had they been saved
   std::vector<StepReport> steps;           // in the order of the optimisations
-  ExtraReport extra, plainly;              // as it is, and if all that is live were saved
-  /// No ray is sent: code that many states reach begins here (CutJoins.h).
+  ExtraReport extra, plainly;              // with the optimisations, and with all live values saved
+  /// No ray is sent: this state begins at a join that several states reach (CutJoins.h).
   bool isJoin = false;
-  /// Nothing follows but sums and products of what came back: recursion keeps what these need.
+  /// Followed only by sums and products of the result: recursion saves their operands.
   bool onlyScalesAndAdds = false;
 };
 
-/// A way from the end of a state to what comes next.
+/// A transition at the end of a state.
 struct TransitionReport {
-  /// Call: of `callee`, and on in `to` when it has returned.
+  /// Call: runs `callee`, then state `to`.
   enum Kind : std::uint8_t { Trace, Jump, Done, Last, Call, Return } kind;
   std::string from, to; // states; `to` is empty for Done, Last and Return
   std::string callee;
@@ -84,27 +84,27 @@ struct FunctionReport {
   std::string name;
   std::vector<TraceReport> traces;
   continuation::Endings endings;
-  std::vector<TracePlace> lastTraces; // whose ray takes the place of this one
+  std::vector<TracePlace> tailTraces; // whose rays replace this one
   continuation::FrameLayout frame;
   std::vector<std::string> states;
-  std::vector<TransitionReport> transitions; // in the order of `states`, none twice
+  std::vector<TransitionReport> transitions; // in the order of `states`, without duplicates
 };
 
 struct SplitReport {
   std::vector<FunctionReport> functions;
   RayGraph rays;
   std::vector<std::uint32_t> frameAreas; // frameAreas() of calls/Steps.h
-  std::uint32_t keptWords = 0;           // of the state of a ray that waits (KeptState.h)
+  std::uint32_t keptWords = 0;           // of the state of a waiting ray (KeptState.h)
   std::vector<continuation::TrimmedPayload> trimmed;
-  /// The limit of depth for which the stack is shown; that of scenes that name none.
+  /// The depth limit for which the stack size is given; that of scenes without one of their own.
   std::uint32_t maxDepth = 8;
   /// States of all functions.
   std::uint32_t stateCount() const;
-  /// Bytes of the largest frame, with those of what is called above it.
+  /// Bytes of the largest frame, with those of its callees above it.
   std::uint32_t frameSize() const;
-  /// Bytes more for each object in a chain of references; 0 if no function calls itself.
+  /// Additional bytes for each object in a chain of references; 0 if no function calls itself.
   std::uint32_t frameGrowth() const;
-  /// Bytes that a ray takes on the stack, with a frame of that size.
+  /// Bytes of stack for each ray, with a frame of that size.
   std::uint64_t levelBytes() const;
 };
 

@@ -17,7 +17,7 @@ using namespace continuation;
 
 namespace {
 
-/// Takes one function through all steps.
+/// Runs all steps on one function.
 class FunctionSplitter {
 public:
   FunctionSplitter(FuncOp function, const SplitOptions &options, const codegen::Simplify &simplify,
@@ -48,30 +48,30 @@ mlir::LogicalResult FunctionSplitter::check(FuncOp changed, llvm::StringRef step
                              << step << "`";
 }
 
-/// A branch that is decided may decide others.
+/// One decided branch may decide others.
 void FunctionSplitter::decide(FuncOp changed) {
   while (options.isKnown && codegen::decideBranches(changed, options.isKnown))
     simplify.run(changed);
 }
 
-/// Blocks end at their traces, and variables that live longer lie in the frame.
+/// Ends blocks at their traces, and moves variables that are live across a trace to the frame.
 mlir::LogicalResult FunctionSplitter::suspend() {
-  // In a program that is printed for people copies read better than states that no trace has made,
-  // unless they are many.
-  const bool isForPeople = ir::attr::source.isOn(function->getParentOfType<mlir::ModuleOp>());
+  // In C++ output, duplicated code is easier to read than additional states, unless there is much
+  // of it.
+  const bool isForCpp = ir::attr::source.isOn(function->getParentOfType<mlir::ModuleOp>());
   decide(function);
   insertSuspends(function, summary);
-  recorder.foundLastTraces(endAtLastTraces(function));
-  cutJoins(function, isForPeople ? JoinOptions::forPeople() : JoinOptions());
+  recorder.foundTailTraces(endAtTailTraces(function));
+  cutJoins(function, isForCpp ? JoinOptions::forCpp() : JoinOptions());
   moveVariablesToFrame(function);
-  if (isForPeople)
+  if (isForCpp)
     removeIdleClears(function);
   if (mlir::failed(check(function, "suspend")))
     return mlir::failure();
   return recorder.suspended();
 }
 
-/// What is live over a trace is saved or recomputed.
+/// Saves or recomputes each value that is live across a trace.
 mlir::LogicalResult FunctionSplitter::save() {
   if (options.trim) {
     trimVectors(function);
@@ -116,7 +116,7 @@ mlir::LogicalResult FunctionSplitter::run() {
   return mlir::success();
 }
 
-/// A function that the machine can run: nothing comes in but the object, and nothing goes out.
+/// Can the machine run the function? It has no parameters except the object, and no result.
 bool isRunnable(FuncOp function) {
   return function.getNumResults() == 0 &&
          function.getNumArguments() == (objectOf(function) ? 1u : 0u);
@@ -141,7 +141,8 @@ void keepTracingMethods(mlir::ModuleOp module) {
     if (method && llvm::is_contained(startedByRuntime, method.getValue().split('.').first))
       ir::attr::noinline.set(function);
   }
-  // Of a circle the call through a reference is cut: each goes to an object further down.
+  // Cycles are cut at calls through references: each leads to an object further down a chain of
+  // references.
   for (FuncOp function : functionsThatMayCallThemselves(module))
     if (function.getSymName().starts_with("dispatch.")) {
       ir::attr::noinline.set(function);
@@ -163,7 +164,7 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
   for (FuncOp function : module.getOps<FuncOp>())
     if (ir::attr::states.isOn(function) && listed.insert(function).second)
       functions.push_back(function);
-  // What is called comes after its callers, which ask what it writes.
+  // Callees come after their callers, which need the summary of their writes.
   std::stable_partition(functions.begin(), functions.end(),
                         [](FuncOp function) { return !isFramed(function); });
   const WriteSummary summary(module);
@@ -171,7 +172,7 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
     if (isFramed(function))
       takeArgumentsFromFrame(function);
     if (!isRunnable(function))
-      continue; // a function of the author's that others could call, if they were in this program
+      continue; // a function that nothing in this program calls
     FunctionReport ofFunction;
     if (mlir::failed(FunctionSplitter(function, options, simplify, summary, ofFunction).run()))
       return false;

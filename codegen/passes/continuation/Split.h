@@ -1,7 +1,7 @@
 //===- Split.h - shaders that trace become state machines -----------------===//
 //
-// The whole of this folder in one call: level 2 with `rtsl.trace` in, states and their dispatch
-// out. A function that does not trace is not touched.
+// All steps of this folder in one call: turns level 2 with `rtsl.trace` into states and their
+// dispatch. Functions that do not trace are unchanged.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -14,21 +14,21 @@
 namespace rtsl {
 
 struct SplitOptions {
-  /// Recompute what is cheaper than to save. Off: everything that is live is saved.
+  /// Recompute values that are cheaper to recompute than to save. Off: save all live values.
   bool rematerialise = true;
-  /// Save the components of vectors, and pass the fields of payloads, that are read, not all.
+  /// Save only those components of vectors, and pass only those fields of payloads, that are read.
   bool trim = true;
-  /// No stores of what a slot holds already; loads where they are used.
+  /// Remove stores of values that the slot already holds, and move loads to their uses.
   bool cleanUp = true;
-  /// Report what each trace would save without the optimisations, and with each of them: as much
-  /// work again as the optimisations.
+  /// Report what each trace would save without the optimisations, and with each of them; this
+  /// doubles the time.
   bool explain = false;
-  /// Number the states and make the functions that the machine calls. Off: for looking at.
+  /// Number the states and make the functions that the machine calls. Off: for examining the
+  /// states.
   bool dispatch = true;
-  /// Decides branches that folding cannot, for people who read the states. None: branches stay as
-  /// they are.
+  /// Decides branches that folding cannot, for C++ output. None: such branches remain.
   codegen::KnownCondition isKnown;
-  /// The verifier after each step, not only at the end.
+  /// Run the verifier after each step, not only at the end.
 #ifdef NDEBUG
   bool verifyEach = false;
 #else
@@ -36,12 +36,12 @@ struct SplitOptions {
 #endif
 };
 
-/// Level 1, before the pipeline to level 2: keeps the methods that the runtime starts and that
-/// trace functions of their own, so that each has its own states. Without it they become part of
-/// the entries, which costs nothing but the report's detail.
+/// Level 1, before the pipeline to level 2: keeps methods that trace and that the runtime starts as
+/// separate functions, so that each has its own states. Otherwise they are inlined into the entry
+/// points, which only makes the report less detailed.
 void keepTracingMethods(mlir::ModuleOp module);
 
-/// Splits every function of the module that traces, is not called by one that does, and gives no
+/// Splits every function of the module that traces, is not called by one that traces, and has no
 /// result. Reports errors through MLIR's diagnostics and returns false.
 bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitReport &report);
 

@@ -18,7 +18,7 @@ namespace rtsl {
 using namespace lowering;
 namespace arith = mlir::arith;
 
-/// What `intersect` does beside computing t.
+/// Erases what `intersect` does beside computing t.
 static void dropEffects(mlir::func::FuncOp function) {
   function.walk([](mlir::Operation *op) {
     auto store = llvm::dyn_cast<ir::StoreOp>(op);
@@ -30,7 +30,7 @@ static void dropEffects(mlir::func::FuncOp function) {
   });
 }
 
-/// Nothing was hit yet that `intersect` could see.
+/// Makes `intersect` see no earlier hit.
 static void forgetOtherHits(mlir::func::FuncOp function) {
   function.walk([](ir::LoadOp load) {
     auto state = load.getAddress().getDefiningOp<ir::StateOp>();
@@ -48,10 +48,9 @@ static Num stateOf(Emitter &emitter, llvm::StringRef name) {
   return {emitter, emitter.load(emitter.make<ir::StateOp>(name, emitter.getF32Type()))};
 }
 
-/// Floats are compared as they are without roundings, so that the branches are the right ones and
-/// not those that roundings have led `intersect` into. Which one is right may be in doubt, because
-/// elementary functions are off; then `otherwise` says whether the opposite is tried. True if that
-/// can be.
+/// Floats are compared without roundings, so that the branches are the correct ones and not those
+/// that roundings have led `intersect` to. Errors of elementary functions may leave it open which
+/// branch is correct; then `otherwise` tells whether to take the opposite one. True if that can be.
 static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningError &errors,
                              Value otherwise) {
   bool mayBeInDoubt = false;
@@ -78,8 +77,8 @@ static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningE
   return mayBeInDoubt;
 }
 
-/// Everything from `start` on is run once more if it has not found the hit, with `otherwise`.
-/// `bound` is what it has found then.
+/// Runs the code from `start` on once more, with `otherwise`, unless it has found the hit. `bound`
+/// is the result.
 static void tryOtherwise(mlir::Block *start, Value bound, Value otherwise) {
   mlir::Region &body = *start->getParent();
   llvm::SmallVector<mlir::Operation *> returns;
@@ -143,7 +142,7 @@ bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary,
     emitter.setInsertionPoint(hit);
     const Num t(emitter, hit.getT());
     if (exact) {
-      // The hit that is nearest to T.
+      // The hit nearest to T.
       const Num before(emitter, emitter.load(bound)), least(emitter, emitter.load(nearest));
       const Wide difference = abs(found - Wide(emitter, exact->value));
       const Wide error = exact->error ? difference + Wide(emitter, exact->error) : difference;
@@ -155,14 +154,13 @@ bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary,
     } else {
       allHaveBounds = false;
     }
-    // Of a hit that is nearer it is known that it did not count; of one that is further away, that
-    // it would have.
+    // A nearer hit is known to have been rejected; a further one would have been accepted.
     hit.replaceAllUsesWith(Value(less(distance, t)));
     hit.erase();
   }
   if (hasBound && compareUnrounded(comparisons, errors, otherwise))
     tryOtherwise(start, bound, otherwise);
-  if (allHaveBounds) // a hit that none of them is was there by rounding alone
+  if (allHaveBounds) // if no hit is within its bound, this one was there only because of rounding
     llvm::cast<arith::ConstantOp>(atFirst.getDefiningOp())
         .setValueAttr(emitter.getF32FloatAttr(device::hitNotFound));
   for (mlir::Block &block : intersect.getBody())
@@ -183,7 +181,7 @@ struct BoundHitErrorPass
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(BoundHitErrorPass)
   llvm::StringRef getArgument() const override { return "rtsl-bound-hit-error"; }
   llvm::StringRef getDescription() const override {
-    return "`intersect` becomes a function that bounds the error of its t";
+    return "turns `intersect` into a function that bounds the error of its t";
   }
   void getDependentDialects(mlir::DialectRegistry &registry) const override {
     registry.insert<ir::RtslDialect, mlir::arith::ArithDialect, mlir::math::MathDialect,

@@ -8,14 +8,14 @@
 //                                                 ...
 //                                                 hitError = bound
 //
-// The new function computes in double what `intersect` has computed when it reported the hit at T:
-// the difference is the error. -1 if that is not known, and -2 if there is no such hit
-// (runtime/device/ray/HitError.h). So nothing is lost where no ray leaves the hit. It writes no
-// scratch members, prints nothing, and draws no random numbers.
+// The new function computes in double the value that `intersect` computed when it reported the hit
+// at T: the difference is the error. The result is -1 if that is not known, and -2 if there is no
+// such hit (runtime/device/ray/HitError.h). So this costs nothing if no ray leaves the hit. The
+// function writes no scratch members, prints nothing, and draws no random numbers.
 //
-// It takes the branches that double takes, which are the right ones, but for comparisons that
-// elementary functions leave in doubt, because they are exact to single precision only. If the hit
-// is not found, these are decided the other way, all of them, and everything is run once more.
+// It takes the branches that double takes, which are the correct ones, except for comparisons whose
+// result is uncertain because elementary functions are exact to single precision only. If it does
+// not find the hit, all of these are inverted and everything is run once more.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -33,15 +33,15 @@ class Pass;
 
 namespace rtsl {
 
-/// Hits of an `intersect` whose error has no bound, and why.
+/// A hit of an `intersect` whose error has no bound, and why.
 struct UnboundHit {
   mlir::Location place;
   std::string reason;
 };
 
-/// Turns an `intersect` of level 2 into the function above, in place; false if none of its hits has
-/// a bound that is to be derived, and then the function is not to be used. Hits for which the
-/// author states an error are left to him.
+/// Turns an `intersect` of level 2 into the function above, in place; false if no bound is derived
+/// for any of its hits, and then the function must not be used. Hits whose error the author states
+/// need none.
 bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary,
                    std::vector<UnboundHit> &unbound);
 

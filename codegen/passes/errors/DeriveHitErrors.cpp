@@ -20,7 +20,7 @@ namespace arith = mlir::arith;
 namespace math = mlir::math;
 namespace vector = mlir::vector;
 
-/// Functions, and all that they call directly.
+/// The given functions, and all that they call directly or indirectly.
 static llvm::SetVector<mlir::Operation *> reachedFrom(llvm::ArrayRef<FuncOp> functions,
                                                       const mlir::SymbolTable &symbols) {
   llvm::SetVector<mlir::Operation *> reached(functions.begin(), functions.end());
@@ -54,7 +54,7 @@ llvm::SetVector<mlir::Operation *> functionsThatSendRays(mlir::ModuleOp ir,
   return senders;
 }
 
-/// Is it a number, a bool, or at most four of them?
+/// Is it a number, a bool, or a vector of at most four?
 static bool isPlain(mlir::Type type) {
   auto vector = llvm::dyn_cast<mlir::VectorType>(type);
   const mlir::Type scalar = vector ? vector.getElementType() : type;
@@ -63,8 +63,8 @@ static bool isPlain(mlir::Type type) {
           (!vector && scalar.isIndex()));
 }
 
-/// The first operation that the writer of C++ does not show (codegen/cpp/HitErrors.cpp); null if
-/// there is none. Machine code does without such a function too, so that both have the same bounds.
+/// The first operation that the C++ printer does not support (codegen/cpp/HitErrors.cpp); null if
+/// there is none. Machine code omits the function then too, so that both have the same bounds.
 static mlir::Operation *findNotShown(FuncOp function) {
   mlir::Operation *found = nullptr;
   function.walk([&](mlir::Operation *op) {
@@ -103,7 +103,7 @@ static void run(mlir::ModuleOp module, llvm::function_ref<void(mlir::OpPassManag
 #endif
   build(passes);
   if (mlir::failed(passes.run(module)))
-    llvm::report_fatal_error("the passes that bound errors fail");
+    llvm::report_fatal_error("the passes that bound errors have failed");
 }
 
 std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
@@ -116,7 +116,7 @@ std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTabl
       originals.push_back(intersect);
   if (originals.empty())
     return {};
-  // A copy of what `intersect` runs, and of the classes, which is taken down to level 2.
+  // A copy of `intersect`, its callees and the classes, which is lowered to level 2.
   mlir::OwningOpRef<mlir::ModuleOp> copy = mlir::ModuleOp::create(ir.getLoc());
   for (auto record : ir.getOps<ir::ClassOp>())
     copy->push_back(record->clone());
@@ -149,7 +149,7 @@ std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTabl
     if (mlir::Operation *notShown = one.hasFunction ? findNotShown(method) : nullptr) {
       one.hasFunction = false;
       one.unbound.push_back(
-          {notShown->getLoc(), "it depends on what the compiler does not follow"});
+          {notShown->getLoc(), "it depends on an operation that the compiler does not analyse"});
     }
     if (one.hasFunction) {
       method->remove();

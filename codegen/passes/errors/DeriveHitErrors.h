@@ -1,8 +1,8 @@
 //===- DeriveHitErrors.h - bounds of t for the primitives of a program ----===//
 //
-// Adds `Class.rt_boundHitError` (BoundHitError.h) to a module of level 1 that nothing has been
-// linked or bound in yet: so the function is the same whatever becomes of the module, machine code
-// for a scene or C++ for any, and gives the same bits.
+// Adds `Class.rt_boundHitError` (BoundHitError.h) to a module of level 1 before it is linked or
+// bound: so the function does not depend on whether it is compiled for a scene or printed as C++,
+// and gives the same bits.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,22 +19,23 @@
 
 namespace rtsl {
 
-/// How the function is called: a slot of language/Slots.def that no author can write.
+/// The name of the function: a slot of language/Slots.def that authors cannot define.
 constexpr llvm::StringLiteral hitErrorMethod = "rt_boundHitError";
 
 struct DerivedHitError {
   std::string className;
-  bool hasFunction = false; // some hit has a bound that the author does not state
+  bool hasFunction = false; // some hit has a derived bound
   std::vector<UnboundHit> unbound;
 };
 
-/// For each of these classes that has an `intersect`. `symbols` is the table of `ir`.
+/// Derives the function for each of these classes that has an `intersect`. `symbols` is the table
+/// of `ir`.
 std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
                                              const std::vector<std::string> &classes,
                                              ElementaryErrors elementary);
 
-/// Functions that send rays, or call some that do. A call through a reference may, if anything
-/// does.
+/// Functions that send rays, directly or through calls. A call through a reference counts if any
+/// function sends rays.
 llvm::SetVector<mlir::Operation *> functionsThatSendRays(mlir::ModuleOp ir,
                                                          const mlir::SymbolTable &symbols);
 

@@ -1,20 +1,20 @@
-//===- ElementaryErrors.h - how far elementary functions are off ----------===//
+//===- ElementaryErrors.h - errors of elementary functions ----------------===//
 #pragma once
 
 namespace rtsl {
 
-/// What bounds the relative errors of elementary functions: `unit` all of them, or, where
-/// `powGrows`, all but pow(x, y), which has unit (1 + |y log2 x|). Relative to the smallest normal
-/// float where the result is smaller (docs/elementary-functions.md).
+/// A bound of the relative errors of elementary functions: `unit` for all of them, except, if
+/// `powGrows`, pow(x, y), which has unit (1 + |y log2 x|). Relative to the smallest normal float if
+/// the result is smaller (docs/elementary-functions.md).
 struct ElementaryErrors {
   double unit;
   bool powGrows;
 };
 
-/// Correctly rounded. Holds for double too, for what both have in memory is single, and they are to
+/// Correctly rounded. Used for double too: values in memory are single in both, and both are to
 /// trace the same rays.
 constexpr ElementaryErrors strictErrors{0x1p-24, false};
-/// By --fp=fast.
+/// With --fp=fast.
 constexpr ElementaryErrors fastErrors{0x1p-21, true};
 
 } // namespace rtsl

@@ -26,17 +26,17 @@ static bool isFloats(Value value) {
   return scalarType(value.getType()).isF32();
 }
 
-/// Operations that take vectors apart and put them together, and touch no number.
+/// Operations that only split and combine vectors.
 static bool onlyMoves(mlir::Operation &op) {
   return llvm::isa<vector::ExtractOp, vector::InsertOp, vector::FromElementsOp, vector::BroadcastOp,
                    vector::ShuffleOp>(op);
 }
 
 //===----------------------------------------------------------------------===//
-// Errors that travel
+// Propagation of errors
 //===----------------------------------------------------------------------===//
 
-/// Nothing: none.
+/// Nothing: exact.
 using Error = std::optional<Wide>;
 
 static Error plus(Error a, Error b) {
@@ -58,8 +58,8 @@ static Value valueOf(Error error) {
   return error ? Value(*error) : Value();
 }
 
-/// Half a unit of a literal that was rounded to single precision; 0 of whole numbers, 1e30 among
-/// them, which only stands for what is far away, and of those with few digits in binary, such as
+/// The largest rounding of a literal to single precision, half a unit; 0 for whole numbers,
+/// including 1e30, which is used as infinity, and for numbers with few binary digits, such as
 /// 0.375.
 static double roundingOf(const llvm::APFloat &literal) {
   const double value = literal.convertToDouble();
@@ -90,10 +90,10 @@ static bool bringsError(mlir::Operation *op) {
 }
 
 //===----------------------------------------------------------------------===//
-// The whole
+// The function
 //===----------------------------------------------------------------------===//
 
-/// Calls `visit` for the values that flow into a float: operands, or what the branches pass.
+/// Calls `visit` for the values that flow into a float: operands, or those passed by branches.
 static void forEachSource(Value value, llvm::function_ref<void(Value)> visit) {
   if (auto argument = llvm::dyn_cast<mlir::BlockArgument>(value)) {
     mlir::Block *block = argument.getOwner();
@@ -117,7 +117,7 @@ std::optional<Unrounded> RunningError::of(Value value) {
   const Unrounded found = unrounded(value);
   if (!obstacle)
     return found;
-  known.clear(); // some of it is not finished
+  known.clear(); // some of it is incomplete
   return std::nullopt;
 }
 
@@ -127,7 +127,7 @@ Unrounded RunningError::fail(mlir::Location place, std::string reason) {
   return {};
 }
 
-/// What is the same in double, made where the emitter stands.
+/// The same value in double, converted at the insertion point.
 Unrounded RunningError::exact(Value value) {
   return {widened(emitter, value), {}, true};
 }
@@ -144,7 +144,7 @@ Unrounded RunningError::unrounded(Value value) {
   return made;
 }
 
-/// A block argument gets others beside it, for what flows in.
+/// Adds parallel block arguments for the double value and its error.
 Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
   mlir::Block *block = argument.getOwner();
   emitter.setLoc(argument.getLoc());
@@ -161,7 +161,7 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
 
   llvm::SmallVector<ir::Edge> edges;
   ir::forEachEdgeInto(*block, [&](ir::Edge edge) {
-    edge.operands().append(zero); // until it is known
+    edge.operands().append(zero); // until the value is known
     if (hasErrors)
       edge.operands().append(zero);
     edges.push_back(edge);
@@ -171,7 +171,7 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
     if (obstacle)
       return {};
     if (incoming.error && !made.error) // no float that isIterated has followed leads here
-      return fail(argument.getLoc(), "it goes through a whole number, which may jump");
+      return fail(argument.getLoc(), "it depends on a whole number, which changes in steps");
     edge.operands().getMutableForwardedOperands().slice(index, 1).assign(incoming.value);
     if (incoming.error)
       edge.operands().getMutableForwardedOperands().slice(index + 1, 1).assign(incoming.error);
@@ -180,7 +180,7 @@ Unrounded RunningError::ofArgument(mlir::BlockArgument argument) {
 }
 
 Unrounded RunningError::ofResult(mlir::Operation &op) {
-  // What operands are comes first: it stands right behind what made them.
+  // Operands first: their code comes right after their definitions.
   for (Value operand : op.getOperands())
     if (isFloats(operand))
       (void)unrounded(operand);
@@ -192,6 +192,34 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
     return ofConstant(op);
   if (llvm::isa<ir::HideOp>(op)) // --fp=double: the same number
     return unrounded(op.getOperand(0));
+  return llvm::TypeSwitch<mlir::Operation *, Unrounded>(&op)
+      .Case<arith::AddFOp, arith::SubFOp, arith::MulFOp, math::FmaOp, arith::DivFOp, math::SqrtOp,
+            arith::NegFOp, math::AbsFOp>([&](auto) { return ofArithmetic(op); })
+      .Case([&](arith::SelectOp) { return ofChoice(op); })
+      .Case([&](ir::ElementaryOp) { return ofFunction(op); })
+      .Case([&](ir::LoadOp) { return ofLoad(op); })
+      .Case<arith::SIToFPOp, arith::UIToFPOp, arith::BitcastOp>(
+          [&](auto) { return ofConversion(op); })
+      .Case<math::FloorOp, math::CeilOp, math::TruncOp, math::RoundEvenOp>([&](auto) -> Unrounded {
+        if (unrounded(op.getOperand(0)).isExact)
+          return exact(op.getResult(0));
+        return fail(op.getLoc(), "it depends on a whole number, which changes in steps");
+      })
+      .Case([&](ir::HideOp) { return unrounded(op.getOperand(0)); })
+      .Case([&](ir::RandOp) { return fail(op.getLoc(), "it depends on `rand`"); })
+      .Default([&](mlir::Operation *) {
+        return onlyMoves(op)
+                   ? ofParts(op)
+                   : fail(op.getLoc(),
+                          "it depends on an operation that the compiler does not analyse");
+      });
+}
+
+//===----------------------------------------------------------------------===//
+// Operations
+//===----------------------------------------------------------------------===//
+
+Unrounded RunningError::ofArithmetic(mlir::Operation &op) {
   const auto wide = [&](unsigned index) {
     return Wide(emitter, unrounded(op.getOperand(index)).value);
   };
@@ -218,7 +246,7 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
         const Wide quotient = wide(0) / wide(1);
         if (!error(0) && !error(1))
           return {quotient, {}};
-        Wide least = abs(wide(1)); // that the divisor may be
+        Wide least = abs(wide(1)); // the smallest possible divisor
         if (error(1))
           least = greater(least - *error(1), least.like(0));
         return {quotient, *plus(error(0), times(error(1), quotient)) / least};
@@ -238,40 +266,24 @@ Unrounded RunningError::ofResult(mlir::Operation &op) {
       .Case([&](math::AbsFOp) -> Unrounded {
         return {abs(wide(0)), valueOf(error(0)), unrounded(op.getOperand(0)).isExact};
       })
-      .Case([&](arith::SelectOp) { return ofChoice(op); })
-      .Case([&](ir::ElementaryOp) { return ofFunction(op); })
-      .Case([&](ir::LoadOp) { return ofLoad(op); })
-      .Case<arith::SIToFPOp, arith::UIToFPOp, arith::BitcastOp>([&](auto conversion) -> Unrounded {
-        llvm::DenseMap<Value, bool> seen;
-        if (!isExactWhole(conversion->getOperand(0), seen))
-          return fail(op.getLoc(), "it goes through a whole number, which may jump");
-        emitter.setInsertionPointAfter(&op);
-        if (llvm::isa<arith::BitcastOp>(op))
-          return exact(op.getResult(0));
-        using Op = decltype(conversion);
-        if constexpr (std::is_same_v<Op, arith::BitcastOp>)
-          return {};
-        else
-          return {emitter.fold<Op>(wideType(op.getResult(0).getType()), conversion->getOperand(0)),
-                  {}};
-      })
-      .Case<math::FloorOp, math::CeilOp, math::TruncOp, math::RoundEvenOp>([&](auto) -> Unrounded {
-        if (unrounded(op.getOperand(0)).isExact)
-          return exact(op.getResult(0));
-        return fail(op.getLoc(), "it goes through a whole number, which may jump");
-      })
-      .Case([&](ir::HideOp) { return unrounded(op.getOperand(0)); })
-      .Case([&](ir::RandOp) { return fail(op.getLoc(), "it depends on `rand`"); })
-      .Default([&](mlir::Operation *) {
-        return onlyMoves(op)
-                   ? ofParts(op)
-                   : fail(op.getLoc(), "it goes through what the compiler does not follow");
-      });
+      .Default(
+          [&](mlir::Operation *) -> Unrounded { llvm_unreachable("no arithmetic operation"); });
 }
 
-//===----------------------------------------------------------------------===//
-// Operations
-//===----------------------------------------------------------------------===//
+/// Integers and bit patterns as floats.
+Unrounded RunningError::ofConversion(mlir::Operation &op) {
+  const Value whole = op.getOperand(0);
+  llvm::DenseMap<Value, bool> seen;
+  if (!isExactWhole(whole, seen))
+    return fail(op.getLoc(), "it depends on a whole number, which changes in steps");
+  emitter.setInsertionPointAfter(&op);
+  if (llvm::isa<arith::BitcastOp>(op))
+    return exact(op.getResult(0));
+  const mlir::Type type = wideType(op.getResult(0).getType());
+  return {llvm::isa<arith::SIToFPOp>(op) ? emitter.fold<arith::SIToFPOp>(type, whole)
+                                         : emitter.fold<arith::UIToFPOp>(type, whole),
+          {}};
+}
 
 Unrounded RunningError::ofConstant(mlir::Operation &op) {
   Unrounded made = exact(op.getResult(0));
@@ -292,10 +304,10 @@ Unrounded RunningError::ofLoad(mlir::Operation &op) {
     from = from->getOperand(0).getDefiningOp();
   if (llvm::isa_and_nonnull<ir::StateOp, ir::MemberOp, ir::TableOp>(from))
     return exact(op.getResult(0));
-  return fail(op.getLoc(), "it goes through an array whose index is known at run time only");
+  return fail(op.getLoc(), "it depends on an array element with an index known only at run time");
 }
 
-/// Of a vector's parts.
+/// For operations on a vector's components.
 Unrounded RunningError::ofParts(mlir::Operation &op) {
   mlir::IRMapping values, errors;
   bool isExact = true, hasError = false;
@@ -319,8 +331,8 @@ Unrounded RunningError::ofParts(mlir::Operation &op) {
   return made;
 }
 
-/// Of `min` and `max` it is known what they choose without roundings; of others the condition
-/// decides (compareUnrounded).
+/// `min` and `max` choose by the unrounded values; other choices are made by the condition
+/// (compareUnrounded).
 Unrounded RunningError::ofChoice(mlir::Operation &op) {
   auto choice = llvm::cast<arith::SelectOp>(op);
   const Unrounded a = unrounded(choice.getTrueValue()), b = unrounded(choice.getFalseValue());
@@ -345,8 +357,8 @@ Unrounded RunningError::ofChoice(mlir::Operation &op) {
           a.isExact && b.isExact};
 }
 
-/// How far a result is off from the function of the very argument. The bounds are relative to the
-/// smallest normal number where the result is smaller.
+/// The error of an elementary function itself, for an exact argument. The bounds are relative to
+/// the smallest normal number if the result is smaller.
 Wide RunningError::ownError(ir::Elementary function, Wide result) {
   const Wide size = abs(result);
   if (function != ir::Elementary::Pow || !elementary.powGrows)
@@ -365,13 +377,26 @@ Wide RunningError::single(ir::Elementary function, llvm::ArrayRef<Wide> argument
       emitter.make<ir::ElementaryOp>(rounded.front().getType(), function, rounded).getResult());
 }
 
-/// The single result f(x), x rounded, moved by the slope there times what the rounding took. Where
-/// that is not small beside the distance of x from where the function bends, f(x) is left as it is,
-/// with a bound of how far it may change.
+/// A call f(x) of an elementary function with an inexact argument.
+struct RunningError::FunctionCall {
+  mlir::Operation *op;
+  ir::Elementary function;
+  llvm::SmallVector<Wide> arguments; // unrounded
+  Wide x;                            // the first argument, rounded to single precision
+  Wide moved;                        // by that rounding
+  Value error;                       // bound of the error of the first argument; null: none
+  Wide spread;                       // bound of how far x is off in total
+  Wide result;                       // f(x)
+  Wide own;                          // bound of the error of f itself
+  Wide zero, one, infinite;          // constants
+};
+
+/// The single result f(x), x rounded, corrected by the derivative there times the rounding of x. If
+/// that is not small compared with the distance of x from a point where f is not smooth, f(x) is
+/// not corrected but gets a bound of its possible change.
 Unrounded RunningError::ofFunction(mlir::Operation &op) {
-  using F = ir::Elementary;
   auto call = llvm::cast<ir::ElementaryOp>(op);
-  const F function = call.getFunction();
+  const ir::Elementary function = call.getFunction();
   llvm::SmallVector<Wide> arguments;
   bool isExact = true;
   for (Value operand : call.getOperands()) {
@@ -380,113 +405,134 @@ Unrounded RunningError::ofFunction(mlir::Operation &op) {
     isExact &= one.isExact && !one.error;
   }
   const Wide result = single(function, arguments);
-  Wide own = ownError(function, result);
+  const Wide own = ownError(function, result);
   if (isExact)
     return {result, own};
 
   const Wide x = widened(emitter, narrowed(arguments.front())), one = x.like(1);
   const Wide moved = arguments.front() - x;
-  const Value found = unrounded(call.getOperands().front()).error;
-  // that x may be off by
-  const Wide spread = found ? abs(moved) + Wide(emitter, found) : abs(moved);
-  const Wide none = x.like(0), infinite = x.like(std::numeric_limits<double>::infinity());
-  const auto same = [&](F other) { return single(other, x); }; // of the same argument
-  /// `room`: within half of this the tangent is off by at most twice the share of it that x is off
-  /// by. `otherwise`: how far f may be off beyond.
-  const auto alongTangent = [&](Wide slope, Wide room, Wide otherwise) -> Unrounded {
-    const Value isNear = isAtMost(2.0 * spread, room), isStill = isAtMost(spread, none);
-    const Wide shift = slope * moved, share = 2.0 * spread / room;
-    const Wide left =
-        abs(slope) * spread * share + (found ? abs(slope) * Wide(emitter, found) : none);
-    const Wide value = choose(isStill, result, choose(isNear, result + shift, result));
-    return {value, own + choose(isStill, none, choose(isNear, left, otherwise))};
-  };
+  const Value error = unrounded(call.getOperands().front()).error;
+  const Wide spread = error ? abs(moved) + Wide(emitter, error) : abs(moved);
+  const Wide zero = x.like(0), infinite = x.like(std::numeric_limits<double>::infinity());
+  const FunctionCall f = {&op,    function, arguments, x,    moved, error,
+                          spread, result,   own,       zero, one,   infinite};
+  if (function == ir::Elementary::Pow)
+    return ofPow(f);
+  if (function == ir::Elementary::Atan2)
+    return ofAtan2(f);
+  return ofUnaryFunction(f);
+}
 
-  switch (function) {
+/// The result for an f that is smooth near x. `own`: bound of the error of f itself. `slope`: of f
+/// at x. `room`: if x is off by less than half of this, the slope changes by at most the factor
+/// 2 spread / room. `otherwise`: bound of the error if x is off by more.
+Unrounded RunningError::alongTangent(const FunctionCall &f, Wide own, Wide slope, Wide room,
+                                     Wide otherwise) {
+  const Value isNear = isAtMost(2.0 * f.spread, room), isStill = isAtMost(f.spread, f.zero);
+  const Wide shift = slope * f.moved, share = 2.0 * f.spread / room;
+  const Wide left =
+      abs(slope) * f.spread * share + (f.error ? abs(slope) * Wide(emitter, f.error) : f.zero);
+  const Wide value = choose(isStill, f.result, choose(isNear, f.result + shift, f.result));
+  return {value, own + choose(isStill, f.zero, choose(isNear, left, otherwise))};
+}
+
+Unrounded RunningError::ofUnaryFunction(const FunctionCall &f) {
+  using F = ir::Elementary;
+  const Wide x = f.x, spread = f.spread, result = f.result;
+  const Wide none = f.zero, one = f.one, infinite = f.infinite;
+  const auto same = [&](F other) { return single(other, x); }; // of the same argument
+  const auto along = [&](Wide slope, Wide room, Wide otherwise) {
+    return alongTangent(f, f.own, slope, room, otherwise);
+  };
+  switch (f.function) {
   case F::Sin:
-    return alongTangent(same(F::Cos), one, spread);
+    return along(same(F::Cos), one, spread);
   case F::Cos:
-    return alongTangent(-same(F::Sin), one, spread);
+    return along(-same(F::Sin), one, spread);
   case F::SinPi:
-    return alongTangent(3.141592653589793 * same(F::CosPi), x.like(0.25), 3.1415927 * spread);
+    return along(3.141592653589793 * same(F::CosPi), x.like(0.25), 3.1415927 * spread);
   case F::CosPi:
-    return alongTangent(-(3.141592653589793 * same(F::SinPi)), x.like(0.25), 3.1415927 * spread);
+    return along(-(3.141592653589793 * same(F::SinPi)), x.like(0.25), 3.1415927 * spread);
   case F::Atan:
-    return alongTangent(1.0 / (one + x * x), one, spread);
+    return along(1.0 / (one + x * x), one, spread);
   case F::Tanh:
-    return alongTangent(one - result * result, one, spread);
+    return along(one - result * result, one, spread);
   case F::Asinh:
-    return alongTangent(1.0 / sqrt(one + x * x), one, spread);
+    return along(1.0 / sqrt(one + x * x), one, spread);
   case F::Tan:
-    return alongTangent(one + result * result, 1.0 / (one + abs(result)), infinite);
+    return along(one + result * result, 1.0 / (one + abs(result)), infinite);
   case F::Sinh:
-    return alongTangent(same(F::Cosh), one, infinite);
+    return along(same(F::Cosh), one, infinite);
   case F::Cosh:
-    return alongTangent(same(F::Sinh), one, infinite);
+    return along(same(F::Sinh), one, infinite);
   case F::Asin:
   case F::Acos: { // beyond: at most pi / sqrt(2) times the root of the error of x
     const Wide slope = 1.0 / sqrt(greater(one - x * x, none));
-    return alongTangent(function == F::Asin ? slope : -slope, one - abs(x),
-                        2.2214415 * sqrt(spread));
+    return along(f.function == F::Asin ? slope : -slope, one - abs(x), 2.2214415 * sqrt(spread));
   }
   case F::Acosh:
-    return alongTangent(1.0 / sqrt(greater(x * x - one, none)), x - one, infinite);
+    return along(1.0 / sqrt(greater(x * x - one, none)), x - one, infinite);
   case F::Atanh:
-    return alongTangent(1.0 / (one - x * x), one - abs(x), infinite);
+    return along(1.0 / (one - x * x), one - abs(x), infinite);
   case F::Exp:
   case F::Expm1:
-    return alongTangent(function == F::Exp ? result : result + one, one, infinite);
+    return along(f.function == F::Exp ? result : result + one, one, infinite);
   case F::Exp2:
-    return alongTangent(0.6931471805599453 * result, one, infinite);
+    return along(0.6931471805599453 * result, one, infinite);
   case F::Log:
-    return alongTangent(1.0 / x, x, infinite);
+    return along(1.0 / x, x, infinite);
   case F::Log2:
-    return alongTangent(1.4426950408889634 / x, x, infinite);
+    return along(1.4426950408889634 / x, x, infinite);
   case F::Log1p:
-    return alongTangent(1.0 / (one + x), one + x, infinite);
+    return along(1.0 / (one + x), one + x, infinite);
   case F::InverseSqrt:
-    return alongTangent(-(result / (2.0 * x)), x, infinite);
-  case F::Pow: {
-    const Value exponent = call.getOperands()[1];
-    if (!unrounded(exponent).isExact)
-      return fail(op.getLoc(), "it depends on an exponent that is not exact");
-    // Beyond: |x^p - y^p| <= |x - y|^p for 0 <= p <= 1.
-    const Wide p = arguments[1];
-    if (const Value rounding = unrounded(exponent).error) { // of x^p along p: x^p log x
-      const Wide slope = choose(isAtMost(x, none), none, abs(result * same(F::Log)));
-      own = own + slope * Wide(emitter, rounding);
-    }
-    const Wide root = single(F::Pow, {spread, p});
-    const Wide far =
-        choose(isAtMost(none, p), choose(isAtMost(p, one), 1.0000005 * root, infinite), infinite);
-    return alongTangent(p * result / x, abs(x) / (one + abs(p)), far);
+    return along(-(result / (2.0 * x)), x, infinite);
+  default:
+    return fail(f.op->getLoc(), "it depends on an operation that the compiler does not analyse");
   }
-  case F::Atan2: {
-    const Wide y = x, across = widened(emitter, narrowed(arguments[1]));
-    const Unrounded other = unrounded(call.getOperands()[1]);
-    const Wide movedAcross = arguments[1] - across;
-    const Wide all = other.error ? spread + abs(movedAcross) + Wide(emitter, other.error)
-                                 : spread + abs(movedAcross);
-    const Wide size = abs(y) + abs(across), square = y * y + across * across;
-    const Value isNear = isAtMost(4.0 * all, size), isStill = isAtMost(all, none);
-    const Wide shift = (across * moved - y * movedAcross) / square, share = all / size;
-    Wide left = 8.0 * share * share;
-    if (found || other.error)
-      left = left + 2.0 * share;
-    return {choose(isStill, result, choose(isNear, result + shift, result)),
-            own + choose(isStill, none, choose(isNear, left, x.like(6.283185307179586)))};
+}
+
+Unrounded RunningError::ofPow(const FunctionCall &f) {
+  using F = ir::Elementary;
+  const Value exponent = f.op->getOperand(1);
+  if (!unrounded(exponent).isExact)
+    return fail(f.op->getLoc(), "it depends on an inexact exponent");
+  // Beyond: |x^p - y^p| <= |x - y|^p for 0 <= p <= 1.
+  const Wide x = f.x, p = f.arguments[1];
+  Wide own = f.own;
+  if (const Value rounding = unrounded(exponent).error) { // of x^p along p: x^p log x
+    const Wide slope = choose(isAtMost(x, f.zero), f.zero, abs(f.result * single(F::Log, x)));
+    own = own + slope * Wide(emitter, rounding);
   }
-  }
-  return fail(op.getLoc(), "it goes through what the compiler does not follow");
+  const Wide root = single(F::Pow, {f.spread, p});
+  const Wide far = choose(isAtMost(f.zero, p),
+                          choose(isAtMost(p, f.one), 1.0000005 * root, f.infinite), f.infinite);
+  return alongTangent(f, own, p * f.result / x, abs(x) / (f.one + abs(p)), far);
+}
+
+Unrounded RunningError::ofAtan2(const FunctionCall &f) {
+  const Wide y = f.x, across = widened(emitter, narrowed(f.arguments[1]));
+  const Unrounded other = unrounded(f.op->getOperand(1));
+  const Wide movedAcross = f.arguments[1] - across;
+  const Wide all = other.error ? f.spread + abs(movedAcross) + Wide(emitter, other.error)
+                               : f.spread + abs(movedAcross);
+  const Wide size = abs(y) + abs(across), square = y * y + across * across;
+  const Value isNear = isAtMost(4.0 * all, size), isStill = isAtMost(all, f.zero);
+  const Wide shift = (across * f.moved - y * movedAcross) / square, share = all / size;
+  Wide left = 8.0 * share * share;
+  if (f.error || other.error)
+    left = left + 2.0 * share;
+  return {choose(isStill, f.result, choose(isNear, f.result + shift, f.result)),
+          f.own + choose(isStill, f.zero, choose(isNear, left, f.x.like(6.283185307179586)))};
 }
 
 //===----------------------------------------------------------------------===//
-// What has no error that could be given
+// Values without a known error
 //===----------------------------------------------------------------------===//
 
-/// Does a loop compute the value, or what it depends on, from itself? How far an iteration is from
-/// where it leads to is no rounding. That a loop chooses among values, as the least of several
-/// roots, is no iteration.
+/// Does a loop compute the value, or an operand of it, from its previous value? The error of an
+/// iteration is not due to rounding alone. A loop that chooses among values, such as the least of
+/// several roots, is no iteration.
 bool RunningError::isIterated(Value value) {
   llvm::SmallSetVector<Value, 16> reached;
   reached.insert(value);
@@ -501,14 +547,14 @@ bool RunningError::isIterated(Value value) {
     for (Value part : component)
       if (mlir::Operation *op = part.getDefiningOp();
           op && !onlyMoves(*op) && !llvm::isa<arith::SelectOp, ir::HideOp>(op)) {
-        (void)fail(op->getLoc(), "a loop computes it from what it was before");
+        (void)fail(op->getLoc(), "a loop computes it from its previous value");
         return true;
       }
   }
   return false;
 }
 
-/// Is every float exact that a whole number or a condition depends on?
+/// Is every float exact that an integer or a condition depends on?
 bool RunningError::isExactWhole(Value value, llvm::DenseMap<Value, bool> &seen) {
   if (isFloats(value))
     return unrounded(value).isExact && !obstacle;

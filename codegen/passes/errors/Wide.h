@@ -1,7 +1,7 @@
-//===- Wide.h - double precision in few words -----------------------------===//
+//===- Wide.h - concise double precision ----------------------------------===//
 //
-// What Num is for single precision (codegen/formulas/Emitter.h): a value of f64, or a vector of
-// them, with operators.
+// The counterpart of Num (codegen/formulas/Emitter.h) in double precision: a value of f64, or a
+// vector of them, with operators.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -93,7 +93,7 @@ inline Wide greater(Wide a, Wide b) {
   return choose(isBelow(a, b), b, a);
 }
 
-/// f64 in the shape of a type.
+/// f64, in the shape of a type.
 inline mlir::Type wideType(mlir::Type shape) {
   return lowering::withScalar(shape, mlir::Float64Type::get(shape.getContext()));
 }

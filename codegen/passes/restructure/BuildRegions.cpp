@@ -1,15 +1,15 @@
 //===- BuildRegions.cpp - branches to regions -----------------------------===//
 //
-// Walks the plan from the entry on. The code of a block is put at the end of the region that is
-// being built, then that of what it branches to, then that of the blocks in which these ways meet:
+// Walks the plan from the entry on. The code of a block is appended to the region under
+// construction, then that of its successors, then that of the blocks in which these paths join:
 //
 //     ^a: A; cond_br %c, ^b, ^d          A
 //     ^b: B; br ^d                ==>    rtsl.if %c { B }
 //     ^d: D                              D
 //
-// A branch becomes nothing if control comes to its target anyhow, `rtsl.continue` or `rtsl.break`
-// if these go there. Otherwise the target lies further out: a flag is set, control leaves what it
-// is in, and behind that the flag is asked:
+// A branch becomes nothing if its target follows anyway, `rtsl.continue` or `rtsl.break` if these
+// lead to it. Otherwise the target is further out: a flag is set, control leaves the current
+// construct, and the flag is tested after it:
 //
 //     %far = rtsl.var "left"
 //     rtsl.loop do { ... rtsl.if %found { far = true; rtsl.break } ... }
@@ -36,17 +36,17 @@ public:
   mlir::LogicalResult run();
 
 private:
-  /// A construct that control can be sent out of with a flag.
+  /// A construct that control can leave with a flag.
   struct Level {
     enum Kind : std::uint8_t { Sequence, Loop, Switch } kind;
-    Block *place;                               // the flags stand there,
-    mlir::Operation *behind;                    // behind this operation; null: at the beginning
+    Block *block;                               // the flags are declared in this block,
+    mlir::Operation *after;                     // after this operation; null: at the beginning
     llvm::MapVector<Block *, Value> flags = {}; // by target
-    bool isLeft = false;                        // a loop: by `rtsl.break` without a flag
+    bool isLeft = false;                        // a loop: left by `rtsl.break` without a flag
   };
-  /// What jumps mean at a point.
+  /// The targets of jumps at a point.
   struct Context {
-    Block *next = nullptr;    // control comes there when it reaches the end of the region
+    Block *next = nullptr;    // target of the end of the region
     Block *header = nullptr;  // `rtsl.continue`
     Block *breakTo = nullptr; // `rtsl.break`
     Level *level = nullptr;   // the innermost
@@ -54,7 +54,7 @@ private:
   };
   using Part = llvm::function_ref<bool(Block *at, const Context &)>;
 
-  // Each puts code at the end of `at`. True: control may reach the end, and then goes to
+  // Each of these appends code to `at`. True: control may reach the end, and then continues at
   // context.next; false: the last operation is a terminator.
   bool putBlock(Block *block, Block *at, const Context &context);
   bool putLoop(Block *header, Block *at, const Context &context);
@@ -65,11 +65,11 @@ private:
   bool putTerminator(mlir::Operation *terminator, Block *at, const Context &context);
   bool putChoice(mlir::cf::CondBranchOp branch, Block *at, const Context &context);
   bool putSwitch(mlir::cf::SwitchOp choice, Block *at, const Context &context);
-  bool putWay(Block *target, Block *at, const Context &context);
+  bool putEdge(Block *target, Block *at, const Context &context);
   bool putJump(Block *target, Block *at, const Context &context);
   bool putUnreachable(Block *at);
   bool putIf(ir::IfOp choice, bool thenIsOpen, bool elseIsOpen, Block *at);
-  void dropUnaskedFlags();
+  void dropUntestedFlags();
 
   Level open(Level::Kind kind, Block *at) {
     return {kind, at, at->empty() ? nullptr : &at->back()};
@@ -84,7 +84,7 @@ private:
   const Plan &plan;
   mlir::OpBuilder builder;
   mlir::Location location = builder.getUnknownLoc();
-  llvm::DenseSet<Block *> insideOf; // the headers of loops whose bodies are being built
+  llvm::DenseSet<Block *> insideOf; // headers of the loops whose bodies are under construction
   llvm::SmallVector<ir::VarOp> allFlags;
   bool failed = false;
 };
@@ -108,10 +108,10 @@ bool Builder::putJump(Block *target, Block *at, const Context &context) {
   Level &level = *context.level;
   Value &flag = level.flags[target];
   if (!flag) {
-    if (level.behind)
-      builder.setInsertionPointAfter(level.behind);
+    if (level.after)
+      builder.setInsertionPointAfter(level.after);
     else
-      builder.setInsertionPointToStart(level.place);
+      builder.setInsertionPointToStart(level.block);
     allFlags.push_back(ir::VarOp::create(builder, location, "left", builder.getI1Type()));
     flag = allFlags.back();
   }
@@ -122,13 +122,13 @@ bool Builder::putJump(Block *target, Block *at, const Context &context) {
   return false;
 }
 
-bool Builder::putWay(Block *target, Block *at, const Context &context) {
+bool Builder::putEdge(Block *target, Block *at, const Context &context) {
   const bool goesBack = insideOf.contains(target);
   return plan.isInline(target) && !goesBack ? putBlock(target, at, context)
                                             : putJump(target, at, context);
 }
 
-/// Behind a loop that is never left.
+/// After a loop that is never left.
 bool Builder::putUnreachable(Block *at) {
   llvm::SmallVector<Value> zeros;
   builder.setInsertionPointToEnd(at);
@@ -142,7 +142,7 @@ bool Builder::putUnreachable(Block *at) {
 // Choices
 //===----------------------------------------------------------------------===//
 
-/// Completes an `rtsl.if` whose arms are there. Behind an arm that leaves, the other one needs no
+/// Completes an `rtsl.if` whose arms are complete. After an arm that leaves, the other one needs no
 /// region: it follows.
 bool Builder::putIf(ir::IfOp choice, bool thenIsOpen, bool elseIsOpen, Block *at) {
   Block *thenBlock = &choice.getThenRegion().front(), *elseBlock = &choice.getElseRegion().front();
@@ -174,12 +174,12 @@ bool Builder::putIf(ir::IfOp choice, bool thenIsOpen, bool elseIsOpen, Block *at
 
 bool Builder::putChoice(mlir::cf::CondBranchOp branch, Block *at, const Context &context) {
   if (branch.getTrueDest() == branch.getFalseDest())
-    return putWay(branch.getTrueDest(), at, context);
+    return putEdge(branch.getTrueDest(), at, context);
   auto choice = put<ir::IfOp>(at, branch.getCondition());
   Block *thenBlock = &choice.getThenRegion().emplaceBlock();
   Block *elseBlock = &choice.getElseRegion().emplaceBlock();
-  const bool thenIsOpen = putWay(branch.getTrueDest(), thenBlock, context);
-  const bool elseIsOpen = putWay(branch.getFalseDest(), elseBlock, context);
+  const bool thenIsOpen = putEdge(branch.getTrueDest(), thenBlock, context);
+  const bool elseIsOpen = putEdge(branch.getFalseDest(), elseBlock, context);
   return putIf(choice, thenIsOpen, elseIsOpen, at);
 }
 
@@ -207,7 +207,7 @@ bool Builder::putSwitch(mlir::cf::SwitchOp choice, Block *at, const Context &con
   inside.breakTo = nullptr; // `rtsl.break` leaves the switch
   bool isOpen = !defaultArm;
   for (auto [entry, arm] : llvm::zip(targets, arms.getArms())) {
-    if (!putWay(entry.first, &arm.front(), inside))
+    if (!putEdge(entry.first, &arm.front(), inside))
       continue;
     put<ir::BreakOp>(&arm.front());
     isOpen = true;
@@ -218,7 +218,7 @@ bool Builder::putSwitch(mlir::cf::SwitchOp choice, Block *at, const Context &con
       llvm::to_vector(level.flags), [](Block *, const Context &) { return true; }, at, context);
 }
 
-/// Asks flags one after the other; if none is set, what is `otherwise`.
+/// Tests flags one after the other; if none is set, continues with `otherwise`.
 bool Builder::putFlagged(llvm::ArrayRef<std::pair<Block *, Value>> flags, Part otherwise, Block *at,
                          const Context &context) {
   if (flags.empty())
@@ -240,7 +240,7 @@ bool Builder::putBlock(Block *block, Block *at, const Context &context) {
   if (!plan.isLoopHeader(block))
     return putBody(block, at, context);
   return putSequence(
-      [&](Block *place, const Context &where) { return putLoop(block, place, where); },
+      [&](Block *into, const Context &around) { return putLoop(block, into, around); },
       plan.followingLoop(block), at, context);
 }
 
@@ -261,17 +261,17 @@ bool Builder::putLoop(Block *header, Block *at, const Context &context) {
   if (level.isLeft)
     return putFlagged(
         llvm::to_vector(level.flags),
-        [&](Block *place, const Context &where) {
-          return exit.standsBehindLoop ? putBlock(exit.target, place, where)
-                                       : putJump(exit.target, place, where);
+        [&](Block *into, const Context &around) {
+          return exit.followsLoop ? putBlock(exit.target, into, around)
+                                  : putJump(exit.target, into, around);
         },
         at, context);
-  // There is no other way out than the last of those with a flag.
+  // The last exit with a flag needs no test: there is no other one.
   Block *last = level.flags.back().first;
   level.flags.pop_back();
   return putFlagged(
       llvm::to_vector(level.flags),
-      [&](Block *place, const Context &where) { return putJump(last, place, where); }, at, context);
+      [&](Block *into, const Context &around) { return putJump(last, into, around); }, at, context);
 }
 
 bool Builder::putBody(Block *block, Block *at, const Context &context) {
@@ -279,11 +279,11 @@ bool Builder::putBody(Block *block, Block *at, const Context &context) {
   at->getOperations().splice(at->end(), block->getOperations(), block->begin(),
                              terminator->getIterator());
   return putSequence(
-      [&](Block *place, const Context &where) { return putTerminator(terminator, place, where); },
+      [&](Block *into, const Context &around) { return putTerminator(terminator, into, around); },
       plan.following(block), at, context);
 }
 
-/// `first`, whose ways meet in the first block of `rest`, and then on.
+/// `first`, whose paths join in the first block of `rest`, and then the others.
 bool Builder::putSequence(Part first, llvm::ArrayRef<Block *> rest, Block *at,
                           const Context &context) {
   if (rest.empty())
@@ -293,17 +293,17 @@ bool Builder::putSequence(Part first, llvm::ArrayRef<Block *> rest, Block *at,
   inside.next = rest.front();
   inside.level = &level;
   if (!first(at, inside)) {
-    failed = true; // the plan has the block here because ways meet in it
+    failed = true; // in the plan the paths join in this block
     return false;
   }
   return putSequence(
-      [&](Block *place, const Context &where) {
+      [&](Block *into, const Context &around) {
         return putFlagged(
             llvm::to_vector(level.flags),
             [&](Block *inner, const Context &there) {
               return putBlock(rest.front(), inner, there);
             },
-            place, where);
+            into, around);
       },
       rest.drop_front(), at, context);
 }
@@ -311,7 +311,7 @@ bool Builder::putSequence(Part first, llvm::ArrayRef<Block *> rest, Block *at,
 bool Builder::putTerminator(mlir::Operation *terminator, Block *at, const Context &context) {
   location = terminator->getLoc();
   if (auto branch = llvm::dyn_cast<mlir::cf::BranchOp>(terminator))
-    return putWay(branch.getDest(), at, context);
+    return putEdge(branch.getDest(), at, context);
   if (auto branch = llvm::dyn_cast<mlir::cf::CondBranchOp>(terminator))
     return putChoice(branch, at, context);
   if (auto choice = llvm::dyn_cast<mlir::cf::SwitchOp>(terminator))
@@ -321,13 +321,13 @@ bool Builder::putTerminator(mlir::Operation *terminator, Block *at, const Contex
     return false;
   }
   terminator->emitError() << "`" << terminator->getName()
-                          << "` cannot be brought back to structured control flow";
+                          << "` cannot become structured control flow";
   failed = true;
   return putUnreachable(at);
 }
 
-/// Nobody asks for the flag of a loop with no other way out, or where both ways are the same.
-void Builder::dropUnaskedFlags() {
+/// A flag is not tested if the loop has no other exit, or if both targets are the same.
+void Builder::dropUntestedFlags() {
   llvm::erase_if(allFlags, [](ir::VarOp flag) {
     if (llvm::any_of(flag->getUsers(), [](mlir::Operation *user) {
           return !llvm::isa<ir::StoreOp>(user) && !user->use_empty();
@@ -360,7 +360,7 @@ mlir::LogicalResult Builder::run() {
     block->dropAllDefinedValueUses();
   for (Block *block : old)
     block->erase();
-  dropUnaskedFlags();
+  dropUntestedFlags();
   joinFlags(allFlags);
   return mlir::failure(failed);
 }

@@ -1,12 +1,12 @@
-//===- JoinFlags.cpp - one flag for one way out -----------------------------===//
+//===- JoinFlags.cpp - one flag for each exit -----------------------------===//
 //
 //     if found { inner = true; break }             if found { outer = true; break }
 //   ...                                     ==>  ...
 //   if inner { outer = true; break }             if outer { break }
 //
-// Who leaves several constructs at once sets the flag of each. A flag that is asked only to set
-// another is that other one: from where it is set control comes straight to where it is asked, and
-// from there to where the other is.
+// Code that leaves several constructs at once sets the flag of each. A flag that is tested only to
+// set another one is replaced by the other one: after it is set, control goes straight to its test,
+// and from there to the test of the other.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/restructure/Steps.h"
@@ -19,9 +19,9 @@ static bool isConstant(mlir::Operation &op) {
   return op.hasTrait<mlir::OpTrait::ConstantLike>();
 }
 
-/// Where `if asked { flag = true; ... }` sets the flag; null: it is something else.
-static ir::StoreOp setBy(ir::LoadOp asked) {
-  auto choice = asked->hasOneUse() ? llvm::dyn_cast<ir::IfOp>(*asked->user_begin()) : ir::IfOp();
+/// The store to the flag in `if tested { flag = true; ... }`; null: it is something else.
+static ir::StoreOp setBy(ir::LoadOp test) {
+  auto choice = test->hasOneUse() ? llvm::dyn_cast<ir::IfOp>(*test->user_begin()) : ir::IfOp();
   if (!choice || !choice.getElseRegion().empty())
     return {};
   auto store =
@@ -29,26 +29,26 @@ static ir::StoreOp setBy(ir::LoadOp asked) {
   return store && mlir::matchPattern(store.getValue(), mlir::m_One()) ? store : ir::StoreOp();
 }
 
-/// Makes `inner` the flag that it sets where it is asked last. Returns whether there is such a
-/// flag.
+/// Replaces `inner` by the flag that is set where `inner` is tested last. Returns whether there is
+/// such a flag.
 static bool join(ir::VarOp inner, const llvm::DenseSet<mlir::Operation *> &flags) {
   ir::StoreOp set;
   for (mlir::Operation *user : inner->getUsers())
-    if (auto asked = llvm::dyn_cast<ir::LoadOp>(user))
-      if (ir::StoreOp store = setBy(asked);
+    if (auto test = llvm::dyn_cast<ir::LoadOp>(user))
+      if (ir::StoreOp store = setBy(test);
           store && flags.contains(store.getAddress().getDefiningOp()))
         set = store;
   if (!set || set.getAddress() == inner.getResult())
     return false;
   auto choice = llvm::cast<ir::IfOp>(set->getParentOp());
-  mlir::Operation *asked = choice.getCondition().getDefiningOp();
+  mlir::Operation *test = choice.getCondition().getDefiningOp();
   inner.getResult().replaceAllUsesWith(set.getAddress());
   set.erase();
   mlir::Block &then = choice.getThenRegion().front();
   if (llvm::all_of(then.without_terminator(), isConstant) &&
       llvm::isa<ir::YieldOp>(then.getTerminator())) {
     choice.erase();
-    asked->erase();
+    test->erase();
   }
   return true;
 }

@@ -9,10 +9,9 @@
 //                                              rtsl.store %next, %i
 //                                              cf.br ^loop
 //
-// A block argument and what flows into it share a variable if they are never needed at the same
-// time, and if they do not bear different names of the author's. Two values are needed at the same
-// time if one is live where the other is defined (Budimlic et al., "Fast copy coalescing and
-// live-range identification", 2002).
+// A block argument and the values that flow into it share a variable unless they interfere or have
+// different names in the source. Two values interfere if one is live where the other is defined
+// (Budimlic et al., "Fast copy coalescing and live-range identification", 2002).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -30,31 +29,31 @@ using mlir::Block;
 using mlir::Value;
 using IsVisible = llvm::function_ref<bool(Value, Block *)>;
 
-// A branch with several ways cannot store what one of them passes: that way gets a block.
-void giveBlocksToWays(FuncOp function) {
+// A branch with several successors cannot store the operands of one edge: that edge gets a block.
+void splitEdges(FuncOp function) {
   for (Block &block : llvm::make_early_inc_range(function.getBody())) {
     mlir::Operation *terminator = block.getTerminator();
     auto branch = llvm::dyn_cast<mlir::BranchOpInterface>(terminator);
     if (!branch || terminator->getNumSuccessors() < 2)
       continue;
-    for (unsigned way = 0; way < terminator->getNumSuccessors(); ++way) {
-      mlir::SuccessorOperands operands = branch.getSuccessorOperands(way);
+    for (unsigned edge = 0; edge < terminator->getNumSuccessors(); ++edge) {
+      mlir::SuccessorOperands operands = branch.getSuccessorOperands(edge);
       if (operands.empty())
         continue;
       Block *between = new Block;
       function.getBody().getBlocks().insert(std::next(block.getIterator()), between);
       mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(between);
-      mlir::cf::BranchOp::create(builder, terminator->getLoc(), terminator->getSuccessor(way),
+      mlir::cf::BranchOp::create(builder, terminator->getLoc(), terminator->getSuccessor(edge),
                                  operands.getForwardedOperands());
       operands.erase(0, operands.size());
-      terminator->setSuccessor(between, way);
+      terminator->setSuccessor(between, edge);
     }
   }
 }
 
 namespace {
 
-/// What can stand in the text as often as it likes.
+/// May the operation be duplicated freely in the text?
 bool isRepeatable(mlir::Operation *op) {
   if (llvm::isa<ir::VarOp>(op))
     return false;
@@ -63,7 +62,8 @@ bool isRepeatable(mlir::Operation *op) {
           op->hasTrait<mlir::OpTrait::ConstantLike>() || llvm::isa<ir::NullRefOp, ir::NextOp>(op));
 }
 
-/// Constants and addresses are made again where they cannot be seen. Addresses are no values.
+/// Repeats constants and addresses where their definitions are not visible. Addresses are not
+/// values.
 void repeatWhereUsed(FuncOp function, IsVisible isVisible) {
   llvm::SmallVector<mlir::Operation *> work;
   function.walk([&](mlir::Operation *op) {
@@ -102,7 +102,7 @@ private:
   bool needsVariable(Value value);
   void joinArguments();
   void join(Value argument, Value incoming);
-  bool isLiveBehind(Value value, Value definition);
+  bool isLiveAfter(Value value, Value definition);
   void makeVariables();
   Value load(Value member, mlir::Operation *before);
   void copyAlong(mlir::cf::BranchOp branch);
@@ -111,7 +111,7 @@ private:
 
   struct Web {
     llvm::SmallVector<Value> members;
-    std::string name; // of the author's; empty: none
+    std::string name; // in the source; empty: none
     Value address;
   };
 
@@ -140,8 +140,8 @@ void Variables::collect() {
       add(value);
 }
 
-/// Is `value` needed behind the point at which `definition` is defined?
-bool Variables::isLiveBehind(Value value, Value definition) {
+/// Is `value` live after the definition of `definition`?
+bool Variables::isLiveAfter(Value value, Value definition) {
   Block *block = definition.getParentBlock();
   mlir::Operation *at = definition.getDefiningOp(); // null: the beginning
   const bool isLiveIn = liveness.into(block).test(liveness.numberOf(value));
@@ -179,7 +179,7 @@ void Variables::join(Value argument, Value incoming) {
       argument.getType() != incoming.getType() || (haveNames && webs[into].name != webs[from].name);
   for (Value a : webs[into].members)
     for (Value b : webs[from].members)
-      meet = meet || isLiveBehind(a, b) || isLiveBehind(b, a);
+      meet = meet || isLiveAfter(a, b) || isLiveAfter(b, a);
   if (meet)
     return;
   for (Value member : webs[from].members) {
@@ -202,7 +202,7 @@ void Variables::joinArguments() {
 void Variables::makeVariables() {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(&function.getBody().front());
   continuation::UniqueNames names;
-  // Values that need no variable and joined none go back to being values.
+  // Values that need no variable and were not joined remain values.
   for (Web &web : webs) {
     if (web.members.size() == 1 && !needsVariable(web.members.front())) {
       webOf.erase(web.members.front());
@@ -223,8 +223,7 @@ Value Variables::load(Value member, mlir::Operation *before) {
   return ir::LoadOp::create(builder, member.getLoc(), webs[webOf.lookup(member)].address);
 }
 
-/// Stores what the branch passes, all at once: what a variable held before is read before it is
-/// written.
+/// Stores the operands of the branch, in parallel: every variable is read before it is overwritten.
 void Variables::copyAlong(mlir::cf::BranchOp branch) {
   struct Copy {
     unsigned to;
@@ -244,7 +243,8 @@ void Variables::copyAlong(mlir::cf::BranchOp branch) {
     auto *free = llvm::find_if(copies, [&](const Copy &copy) {
       return llvm::none_of(copies, [&](const Copy &other) { return reads(other, copy.to); });
     });
-    if (free == copies.end()) { // all go round in circles: keep what the first one overwrites
+    if (free ==
+        copies.end()) { // only cycles are left: save the value that the first one overwrites
       free = copies.begin();
       Value old = ir::LoadOp::create(builder, branch.getLoc(), webs[free->to].address);
       for (Copy &copy : copies)

@@ -1,4 +1,4 @@
-//===- MakeReducible.cpp - loops that are entered at one block ------------===//
+//===- MakeReducible.cpp - loops with one entry ---------------------------===//
 //
 //   for (...) {                       state 1:      ^r: cond_br %v, ^step, ^q
 //     if (u) {                                      ^q: Q; br ^step
@@ -8,10 +8,10 @@
 //     Q;
 //   }
 //
-// The state that begins behind the trace enters the loop of ^q, ^step and ^body at two blocks. What
-// lies before the one that becomes the header is copied: here ^q, which is then once in front of
-// the loop and once in it. A loop in a loop may be copied twice, so in the worst case code grows by
-// a factor of two a level of nesting.
+// The state that begins after the trace enters the loop of ^q, ^step and ^body at two blocks. The
+// blocks before the one that becomes the header are copied: here ^q, which then exists once before
+// the loop and once in it. A nested loop may be copied twice, so in the worst case code doubles
+// with each level of nesting.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/IncomingEdges.h"
@@ -40,14 +40,14 @@ BlockSet entriesOf(const BlockSet &loop) {
   return entries;
 }
 
-/// A loop that is entered at several blocks, the largest around it first; empty if there is none.
+/// A loop with several entries, outer loops first; empty if there is none.
 BlockSet findIrreducible(const BlockSet &part) {
   const auto successors = [](Block *block, llvm::function_ref<void(Block *)> visit) {
     llvm::for_each(block->getSuccessors(), visit);
   };
   for (const BlockSet &loop : Components<Block *>::of(part, successors)) {
     if (loop.size() == 1 && !llvm::is_contained(loop.front()->getSuccessors(), loop.front()))
-      continue; // no loop
+      continue; // not a loop
     BlockSet entries = entriesOf(loop);
     if (entries.size() > 1)
       return loop;
@@ -59,7 +59,7 @@ BlockSet findIrreducible(const BlockSet &part) {
   return {};
 }
 
-/// What of the loop is reached from outside before `header` is.
+/// The blocks of the loop that can be reached from outside without passing `header`.
 BlockSet before(Block *header, const BlockSet &loop, const BlockSet &entries) {
   BlockSet reached;
   for (Block *entry : entries)
@@ -74,7 +74,7 @@ BlockSet before(Block *header, const BlockSet &loop, const BlockSet &entries) {
   return reached;
 }
 
-/// The blocks to copy so that they cost least.
+/// The cheapest set of blocks to copy.
 BlockSet cheapestCopy(const BlockSet &loop) {
   BlockSet entries = entriesOf(loop), best;
   std::size_t lowest = std::numeric_limits<std::size_t>::max();
@@ -91,7 +91,7 @@ BlockSet cheapestCopy(const BlockSet &loop) {
   return best;
 }
 
-/// Ways into the loop from outside go to the copies.
+/// Edges into the loop from outside lead to the copies.
 void copyIntoLoop(const BlockSet &copied, const BlockSet &loop) {
   mlir::IRMapping mapping;
   mlir::Region *region = loop.front()->getParent();
@@ -127,7 +127,7 @@ void makeReducible(FuncOp function) {
   BlockSet loop = findIrreducible(blocksOf(function));
   if (loop.empty())
     return;
-  // Copies of blocks define values twice, so what leaves a block goes through variables.
+  // Copies of blocks define values twice, so values that are live out of a block become variables.
   leaveSsa(function, [](mlir::Value value, Block *use) {
     return value.getParentBlock() == use || value.getParentBlock()->isEntryBlock();
   });

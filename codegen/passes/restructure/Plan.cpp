@@ -1,9 +1,8 @@
-//===- Plan.cpp - where each block goes -----------------------------------===//
+//===- Plan.cpp - the position of each block ------------------------------===//
 //
-// The code of a block stands in that of its immediate dominator: where the branch to it was, if
-// there is only one, or behind everything that the dominator branches to, if several ways meet in
-// it (Ramsey, "Beyond Relooper", ICFP 2022). A block at which a loop is left stands behind the
-// loop.
+// The code of a block is nested in that of its immediate dominator: at the branch to it, if there
+// is only one, or after everything that the dominator branches to, if several edges lead to it
+// (Ramsey, "Beyond Relooper", ICFP 2022). A block to which a loop exits follows the loop.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/restructure/Steps.h"
@@ -18,8 +17,8 @@ using mlir::Block;
 
 namespace {
 
-/// Where control goes when it leaves the loop: best where its head says so, as in a `while`; then
-/// where its end does, as in a `do`; then what is left for most often, first in the text.
+/// The main exit of a loop: preferably the one in its header, as in a `while`; then the one in its
+/// latch, as in a `do`; then the target of most exits, and the first of these in the text.
 Block *mainExit(mlir::CFGLoop &loop) {
   Block *header = loop.getHeader();
   auto exitFrom = [&](Block *block) -> Block * {
@@ -33,14 +32,14 @@ Block *mainExit(mlir::CFGLoop &loop) {
   Block *latch = loop.getLoopLatch();
   if (Block *exit = latch ? exitFrom(latch) : nullptr)
     return exit;
-  llvm::MapVector<Block *, unsigned> ways;
+  llvm::MapVector<Block *, unsigned> edges;
   for (Block *block : loop.getBlocks())
     for (Block *next : block->getSuccessors())
       if (!loop.contains(next))
-        ++ways[next];
+        ++edges[next];
   Block *best = nullptr;
-  for (auto [block, count] : ways)
-    if (!best || count > ways.lookup(best))
+  for (auto [block, count] : edges)
+    if (!best || count > edges.lookup(best))
       best = block;
   return best;
 }
@@ -57,16 +56,16 @@ Plan::Plan(FuncOp function) {
   for (Block *block : llvm::ReversePostOrderTraversal<Block *>(&body.front()))
     order.push_back(block);
 
-  // Not those that go back to a loop's header; several cases of a switch are one way.
-  auto waysInto = [&](Block *block) {
-    llvm::SmallPtrSet<Block *, 4> ways;
+  // Without back edges; several cases of a switch with one target are one edge.
+  auto edgesInto = [&](Block *block) {
+    llvm::SmallPtrSet<Block *, 4> edges;
     for (Block *from : block->getPredecessors())
       if (!dominance.dominates(block, from))
-        ways.insert(from);
-    return ways.size();
+        edges.insert(from);
+    return edges.size();
   };
 
-  llvm::DenseMap<Block *, Block *> behind; // the header of the loop that the block stands behind
+  llvm::DenseMap<Block *, Block *> after; // the header of the loop that the block follows
   for (Block *header : order) {
     mlir::CFGLoop *loop = loops.getLoopFor(header);
     if (!loop || loop->getHeader() != header)
@@ -74,33 +73,32 @@ Plan::Plan(FuncOp function) {
     Exit exit;
     exit.target = mainExit(*loop);
     mlir::CFGLoop *around = loop->getParentLoop();
-    exit.standsBehindLoop = exit.target && dominance.properlyDominates(header, exit.target) &&
-                            waysInto(exit.target) == 1 &&
-                            (!around || around->contains(exit.target));
-    if (exit.standsBehindLoop)
-      behind[exit.target] = header;
+    exit.followsLoop = exit.target && dominance.properlyDominates(header, exit.target) &&
+                       edgesInto(exit.target) == 1 && (!around || around->contains(exit.target));
+    if (exit.followsLoop)
+      after[exit.target] = header;
     exits[header] = exit;
   }
 
   for (Block *block : llvm::drop_begin(order)) {
     Block *dominator = dominance.getNode(block)->getIDom()->getBlock();
-    if (Block *header = behind.lookup(block)) {
-      parent[block] = parent.lookup(header); // comes before, for it dominates
+    if (Block *header = after.lookup(block)) {
+      parent[block] = parent.lookup(header); // processed before, because it dominates
       continue;
     }
     parent[block] = dominator;
-    if (waysInto(block) == 1) {
+    if (edgesInto(block) == 1) {
       inlined.insert(block);
       continue;
     }
-    // Ways out of a loop meet behind it.
+    // Exits of a loop join after it.
     Block *left = nullptr;
     for (mlir::CFGLoop *loop = loops.getLoopFor(dominator); loop && !loop->contains(block);
          loop = loop->getParentLoop())
       left = loop->getHeader();
     if (left)
       parent[block] = parent.lookup(left);
-    (left ? mergesBehindLoop[left] : merges[dominator]).push_back(block);
+    (left ? mergesAfterLoop[left] : merges[dominator]).push_back(block);
   }
 }
 
@@ -110,8 +108,8 @@ llvm::ArrayRef<Block *> Plan::following(Block *block) const {
 }
 
 llvm::ArrayRef<Block *> Plan::followingLoop(Block *header) const {
-  auto found = mergesBehindLoop.find(header);
-  if (found == mergesBehindLoop.end())
+  auto found = mergesAfterLoop.find(header);
+  if (found == mergesAfterLoop.end())
     return {};
   return found->second;
 }

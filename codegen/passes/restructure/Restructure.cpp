@@ -1,4 +1,4 @@
-//===- Restructure.cpp - blocks and branches back to structured control flow ==//
+//===- Restructure.cpp - blocks and branches to structured control flow ---===//
 #include "codegen/passes/restructure/Restructure.h"
 #include "codegen/ir/Attributes.h"
 
@@ -18,13 +18,13 @@ using mlir::Block;
 
 namespace {
 
-/// Does an expression that goes to a variable, its first operand, change only that?
+/// Does an expression that is stored to a variable, its first operand, change only that variable?
 bool changesNothingElse(mlir::Operation *evaluation) {
   auto changed = ir::attr::changes.of(evaluation);
   return !changed || (changed.size() == 1 && changed[0] == 0);
 }
 
-/// Is the flag only set? Then nobody asks, and it goes.
+/// Erases flags that are set but never tested.
 void dropUnreadVariables(FuncOp function) {
   llvm::SmallVector<ir::VarOp> variables;
   function.walk([&](ir::VarOp variable) { variables.push_back(variable); });
@@ -47,15 +47,15 @@ void dropUnreadVariables(FuncOp function) {
   }
 }
 
-/// The operation of `block` that is, or holds, `op`; null if there is none.
+/// The operation of `block` that is or contains `op`; null if there is none.
 mlir::Operation *ancestorIn(Block *block, mlir::Operation *op) {
   while (op && op->getBlock() != block)
     op = op->getParentOp();
   return op;
 }
 
-/// Variables that were made of values stand in the innermost region that has all their uses. So do
-/// the author's, if they start there anew.
+/// Variables that were made of values move to the innermost region that has all their uses. So do
+/// those of the source, if they are initialised there.
 void placeVariables(FuncOp function) {
   for (auto variable : llvm::to_vector(function.getBody().front().getOps<ir::VarOp>())) {
     const bool isValue = ir::attr::value.isOn(variable);
@@ -80,7 +80,7 @@ void placeVariables(FuncOp function) {
 }
 
 /// rtsl.loop do { A; rtsl.if %c { rtsl.break }; B }  ==>  rtsl.loop cond { A; !c } do { B }
-/// if B needs nothing of A.
+/// if B uses no value of A.
 void findCondition(ir::LoopOp loop) {
   Block &body = loop.getBody().front();
   ir::IfOp exit;
@@ -113,7 +113,7 @@ void findCondition(ir::LoopOp loop) {
                                    std::next(end));
 }
 
-/// What only the branches needed, which are gone, or variables.
+/// Erases values that only branches used.
 void dropDeadCode(FuncOp function) {
   function.walk<mlir::WalkOrder::PostOrder, mlir::ReverseIterator>([](mlir::Operation *op) {
     const bool isUnread = llvm::isa<ir::EvaluateOp>(op) && op->use_empty() &&
@@ -128,7 +128,7 @@ void dropDeadCode(FuncOp function) {
 mlir::LogicalResult restructure(FuncOp function) {
   if (function.isExternal())
     return mlir::success();
-  giveBlocksToWays(function);
+  splitEdges(function);
   makeReducible(function);
   leaveSsa(function, [plan = Plan(function)](mlir::Value value, Block *use) {
     return plan.isVisible(value.getParentBlock(), use);
@@ -156,7 +156,7 @@ struct RestructurePass : mlir::PassWrapper<RestructurePass, mlir::OperationPass<
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(RestructurePass)
   llvm::StringRef getArgument() const override { return "rtsl-restructure"; }
   llvm::StringRef getDescription() const override {
-    return "brings blocks and branches back to structured control flow";
+    return "turns blocks and branches into structured control flow";
   }
   void getDependentDialects(mlir::DialectRegistry &registry) const override {
     registry.insert<ir::RtslDialect>();

@@ -1,8 +1,8 @@
-//===- Restructure.h - blocks and branches back to structured control flow -===//
+//===- Restructure.h - blocks and branches to structured control flow -----===//
 //
-// Level 2 to level 1, for code that people are to read: `cf` becomes `rtsl.if`, `rtsl.loop` and
-// `rtsl.switch`, block arguments become variables under the author's names. Machine code is made
-// from level 2 and never comes by here.
+// Level 2 to level 1, for C++ output: `cf` becomes `rtsl.if`, `rtsl.loop` and `rtsl.switch`, block
+// arguments become variables with the names in the source. Machine code is generated from level 2,
+// without this pass.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace rtsl {
 
-/// Brings a function of level 2, or a state, back to level 1. Fails with a message if a block ends
+/// Restructures a function of level 2, or a state, to level 1. Fails with a message if a block ends
 /// in something other than a branch of `cf`, `func.return` or `rtsl.end`.
 mlir::LogicalResult restructure(mlir::func::FuncOp function);
 

@@ -1,4 +1,4 @@
-//===- CallFrames.cpp - functions that have a frame of their own ----------===//
+//===- CallFrames.cpp - functions with a frame of their own ---------------===//
 //
 //   func @f(%self, %d) -> f32 {               func @f(%self) {
 //     trace %d                                  %d = rtsl.call_argument "d"[16]
@@ -7,10 +7,10 @@
 //                                               return
 //                                             }
 //
-// What cannot become part of its caller, for it would become part of itself, runs on a frame above
-// that of its caller, within the same level: it is the same ray. Its object comes with it as that
-// of any method. InsertSuspends.cpp makes a suspend of the call, SplitStates.cpp ends the state
-// there, and Dispatch.cpp says what is written where.
+// A function that cannot be inlined into its caller because of recursion runs on a frame above that
+// of its caller, within the same level: it is the same ray. Its object is passed as for any method.
+// InsertSuspends.cpp makes a suspend of the call, SplitStates.cpp ends the state there, and
+// Dispatch.cpp defines the layout of the frame.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -35,7 +35,7 @@ CallLayout layoutCall(mlir::TypeRange arguments, mlir::TypeRange results) {
   std::uint32_t end = RTSL_CALL_HEADER;
   auto place = [&](mlir::Type type, llvm::SmallVector<std::int32_t> &offsets) {
     const bool isAddress = llvm::isa<ir::PtrType>(type);
-    if (isAddress) // of eight bytes, which have to lie as such
+    if (isAddress) // of eight bytes, aligned
       end = (end + 7) / 8 * 8;
     offsets.push_back(static_cast<std::int32_t>(end));
     end += isAddress ? 8 : ir::sizeInBytes(type);
@@ -77,12 +77,12 @@ void takeArgumentsFromFrame(FuncOp function) {
 }
 
 //===----------------------------------------------------------------------===//
-// How much that can be at once
+// The largest sum of frames in one level
 //===----------------------------------------------------------------------===//
 
 namespace {
 
-/// Chains of references up to this length are counted exactly; behind, each object takes as much as
+/// Chains of references up to this length are counted exactly; beyond, each object takes as much as
 /// all these functions.
 constexpr unsigned longestChain = 32;
 
@@ -100,11 +100,11 @@ private:
     std::uint32_t bytes = 0;
     bool isCalled = false;
     std::vector<Call> calls;
-    bool comesRound = false; // may be called while it runs
+    bool isRecursive = false; // is part of a cycle of calls
   };
   unsigned numberOf(llvm::StringRef name);
   void read(FuncOp state);
-  void findCircles();
+  void findCycles();
   std::uint32_t bytes(unsigned function, unsigned chain);
 
   mlir::ModuleOp module;
@@ -120,7 +120,7 @@ unsigned FrameCounter::numberOf(llvm::StringRef name) {
   return at->second;
 }
 
-/// Does a member of the function's own object refer to it?
+/// Is the object loaded from a member of the function's own object?
 bool isOfMember(mlir::Value object, FuncOp state) {
   auto load = object.getDefiningOp<ir::LoadOp>();
   while (auto cast = object.getDefiningOp<ir::CastRefOp>()) {
@@ -157,7 +157,7 @@ void FrameCounter::read(FuncOp state) {
   });
 }
 
-void FrameCounter::findCircles() {
+void FrameCounter::findCycles() {
   for (unsigned start = 0; start < functions.size(); ++start) {
     llvm::SmallSetVector<unsigned, 8> reached;
     for (const Call &call : functions[start].calls)
@@ -165,12 +165,12 @@ void FrameCounter::findCircles() {
     for (std::size_t i = 0; i < reached.size(); ++i)
       for (const Call &call : functions[reached[i]].calls)
         reached.insert(call.callee);
-    functions[start].comesRound = reached.contains(start);
+    functions[start].isRecursive = reached.contains(start);
   }
 }
 
-/// Of the function and all that it may call, if chains of references reach `chain` further. Round a
-/// circle calls go down such a chain, so each takes one object of it.
+/// Bytes of the function and of all that it may call, with `chain` objects left in chains of
+/// references. Calls in a cycle follow such a chain, so each takes one object of it.
 std::uint32_t FrameCounter::bytes(unsigned function, unsigned chain) {
   auto [at, isNew] = known.insert({{function, chain}, 0});
   if (!isNew)
@@ -178,7 +178,7 @@ std::uint32_t FrameCounter::bytes(unsigned function, unsigned chain) {
   std::uint32_t most = 0;
   for (const Call &call : functions[function].calls) {
     const bool goesDown =
-        functions[call.callee].comesRound && (functions[function].comesRound || call.onMember);
+        functions[call.callee].isRecursive && (functions[function].isRecursive || call.onMember);
     if (!goesDown)
       most = std::max(most, bytes(call.callee, chain));
     else if (chain > 0)
@@ -186,17 +186,17 @@ std::uint32_t FrameCounter::bytes(unsigned function, unsigned chain) {
   }
   const std::uint32_t own = functions[function].bytes;
   return known[{function, chain}] =
-             most == 0 ? own : (own + 7) / 8 * 8 + most; // as Dispatch.cpp has it
+             most == 0 ? own : (own + 7) / 8 * 8 + most; // as in Dispatch.cpp
 }
 
 std::vector<std::uint32_t> FrameCounter::run() {
   for (FuncOp state : module.getOps<FuncOp>())
     if (ir::attr::state.isOn(state))
       read(state);
-  findCircles();
-  const bool anyCircle = llvm::any_of(functions, [](const Function &f) { return f.comesRound; });
+  findCycles();
+  const bool anyCycle = llvm::any_of(functions, [](const Function &f) { return f.isRecursive; });
   std::vector<std::uint32_t> areas;
-  for (unsigned chain = 0; chain <= (anyCircle ? longestChain : 0); ++chain) {
+  for (unsigned chain = 0; chain <= (anyCycle ? longestChain : 0); ++chain) {
     std::uint32_t most = 0;
     for (unsigned function = 0; function < functions.size(); ++function)
       if (!functions[function].isCalled)

@@ -1,11 +1,11 @@
 //===- InlineTracing.cpp - calls of functions that trace ------------------===//
 //
-// A state is a piece of one function, so what a function calls and what may trace becomes part of
-// it. A call behind which nothing happens, on the caller's own object, stays: it is marked
-// `rtsl.tail` and later a jump from state to state. That is what an entry is that switches over the
-// classes of a scene. A call of what may be called by itself, through references, cannot become
-// what it calls, and one of a large function that several call should not: `rtsl.framed`, a frame
-// of its own (CallFrames.cpp).
+// A state is a piece of one function, so calls that may trace are inlined. A call on the caller's
+// own object that nothing follows remains: it is marked `rtsl.tail` and later becomes a jump from
+// state to state. Entry points that switch over the classes of a scene consist of such calls. A
+// function that may call itself, through references, cannot be inlined, and a large function with
+// several callers should not be: these are marked `rtsl.framed` and get a frame of their own
+// (CallFrames.cpp).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -38,13 +38,13 @@ public:
 private:
   enum class Visit { New, Open, Done };
   void visit(FuncOp function);
-  bool wantsFrame(FuncOp callee);
+  bool needsFrame(FuncOp callee);
   FuncOp tracingCallee(CallOp call) {
     auto callee = symbols.lookup<FuncOp>(call.getCallee());
     return callee && tracing.contains(callee) ? callee : FuncOp();
   }
   bool isTail(CallOp call, FuncOp callee);
-  /// The calls that the copy has.
+  /// Returns the calls in the copy.
   llvm::SmallVector<CallOp> inlineCall(CallOp call, FuncOp callee);
   void eraseUncalled();
 
@@ -52,10 +52,10 @@ private:
   mlir::SymbolTable symbols;
   llvm::SmallSetVector<mlir::Operation *, 16> tracing;
   llvm::DenseMap<mlir::Operation *, Visit> visits;
-  llvm::DenseMap<mlir::Operation *, unsigned> callCounts; // before anything was inlined
+  llvm::DenseMap<mlir::Operation *, unsigned> callCounts; // before inlining
 };
 
-/// Is the caller over when the call is, and is the callee's object the caller's?
+/// Does the caller return right after the call, and is the callee's object the caller's?
 bool Inliner::isTail(CallOp call, FuncOp callee) {
   auto caller = call->getParentOfType<FuncOp>();
   mlir::Value object = objectOf(caller);
@@ -91,15 +91,15 @@ llvm::SmallVector<CallOp> Inliner::inlineCall(CallOp call, FuncOp callee) {
     before->getParent()->getBlocks().insert(after->getIterator(), copy);
     mapping.map(&block, copy);
     for (mlir::BlockArgument argument : block.getArguments()) {
-      // Addresses are computed again behind traces, which arguments of blocks cannot be.
+      // Addresses cannot be block arguments, because they are recomputed after traces.
       if (block.isEntryBlock() && llvm::isa<ir::PtrType>(argument.getType()))
         mapping.map(argument, call.getOperand(argument.getArgNumber()));
       else
         mapping.map(argument, copy->addArgument(argument.getType(), argument.getLoc()));
     }
   }
-  // Blocks need not stand in an order in which definitions come first; clone maps operands when all
-  // are there.
+  // Definitions need not come before uses in the order of blocks; operands are mapped when all
+  // operations have been cloned.
   llvm::SmallVector<mlir::Operation *> clones;
   for (mlir::Block &block : callee.getBody()) {
     builder.setInsertionPointToEnd(mapping.lookup(&block));
@@ -131,8 +131,8 @@ llvm::SmallVector<CallOp> Inliner::inlineCall(CallOp call, FuncOp callee) {
   return calls;
 }
 
-/// One that is marked already may call itself.
-bool Inliner::wantsFrame(FuncOp callee) {
+/// A function that is already marked may call itself.
+bool Inliner::needsFrame(FuncOp callee) {
   return isFramed(callee) || visits[callee] == Visit::Open ||
          (callCounts[callee] > 1 && codegen::isLargeToInline(callee));
 }
@@ -142,7 +142,7 @@ void Inliner::visit(FuncOp function) {
   if (state != Visit::New)
     return;
   state = Visit::Open;
-  llvm::SmallVector<CallOp> pending; // the first in the end
+  llvm::SmallVector<CallOp> pending; // in reverse order
   const auto add = [&](llvm::ArrayRef<CallOp> calls) {
     pending.append(calls.rbegin(), calls.rend());
   };
@@ -157,7 +157,7 @@ void Inliner::visit(FuncOp function) {
     visit(callee);
     if (visits[callee] == Visit::Done && isTail(call, callee)) {
       ir::attr::tail.set(call);
-    } else if (wantsFrame(callee)) {
+    } else if (needsFrame(callee)) {
       ir::attr::framed.set(callee);
       ir::attr::framed.set(call);
     } else {
@@ -172,7 +172,7 @@ void Inliner::run() {
     if (FuncOp callee = tracingCallee(call))
       ++callCounts[callee];
   });
-  // What has a frame already first: the others of its circle then become part of it.
+  // Functions that already have a frame first: the others of their cycle are then inlined.
   for (bool framed : {true, false})
     for (mlir::Operation *function : tracing)
       if (isFramed(function) == framed)
@@ -180,7 +180,7 @@ void Inliner::run() {
   eraseUncalled();
 }
 
-/// What was only called from where it is now inlined has done its work.
+/// Erases functions whose calls have all been inlined.
 void Inliner::eraseUncalled() {
   llvm::DenseMap<mlir::StringAttr, unsigned> uses;
   const auto forEachUse = [](mlir::Region &region, llvm::function_ref<void(mlir::StringAttr)> act) {

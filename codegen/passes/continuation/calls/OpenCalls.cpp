@@ -1,13 +1,13 @@
-//===- OpenCalls.cpp - calls through references, of a program without a scene ===//
+//===- OpenCalls.cpp - calls through references without a scene -----------===//
 //
 //   rtsl.call_method "follow" on %f(%d)
 //       ==>   func.call @dispatch.Filter.follow(%f, %d) {rtsl.framed}
 //
-// where some class below Filter has a `follow` that may trace. Which one runs is known when there
-// is a scene, so `@dispatch.Filter.follow` is only declared, under the first class that has the
-// method; whoever makes a program of this (codegen/cpp) chooses there. The methods that it may
-// stand for get frames of their own. The declaration says what they may write, `rtsl.writes`, for
-// they are cut before all that call them are.
+// where some class derived from Filter has a `follow` that may trace. The callee is known only for
+// a scene, so `@dispatch.Filter.follow` is only declared, under the first class that has the
+// method; the C++ output (codegen/cpp) dispatches there. The methods that it may call get frames of
+// their own. The declaration lists the state variables that they may write, `rtsl.writes`, because
+// callers are split before them.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -38,12 +38,13 @@ private:
 
   mlir::ModuleOp module;
   mlir::SymbolTable symbols;
-  llvm::SmallSetVector<mlir::Operation *, 8> framed; // what was called so
-  // and what they may stand for
+  llvm::SmallSetVector<mlir::Operation *, 8>
+      framed; // methods that calls through references may run
+  // declared dispatch functions and their possible callees
   llvm::SmallVector<std::pair<FuncOp, llvm::SmallVector<FuncOp>>> declarations;
 };
 
-/// The author's class that this one derives from, or null.
+/// The base class in the source, or null.
 ir::ClassOp OpenCalls::baseClass(ir::ClassOp definition) {
   return definition.getBase() ? symbols.lookup<ir::ClassOp>(*definition.getBase()) : ir::ClassOp();
 }
@@ -70,12 +71,13 @@ static llvm::StringRef baseOf(ir::CallMethodOp call) {
   return llvm::cast<ir::RefType>(call.getObject().getType()).getClassName();
 }
 
-/// Does the method run as states? Lowering marks all methods that may trace (typed::Function::sends).
+/// Does the method run as states? Lowering marks all methods that may trace
+/// (typed::Function::sends).
 static bool runsAsStates(FuncOp method) {
   return ir::attr::states.isOn(method);
 }
 
-/// The class that has the method and whose base has not.
+/// The class that has the method and whose base does not.
 std::string OpenCalls::firstWith(llvm::StringRef className, llvm::StringRef method) {
   auto definition = symbols.lookup<ir::ClassOp>(className);
   if (!definition) // a class of the language
@@ -86,8 +88,8 @@ std::string OpenCalls::firstWith(llvm::StringRef className, llvm::StringRef meth
   return definition.getSymName().str();
 }
 
-/// Who calls the method on the own object does not want a frame for it: it stays as it is, and has
-/// a twin.
+/// Calls of the method on the caller's own object need no frame: for these the method is kept
+/// unchanged, and a copy gets the frame.
 void OpenCalls::giveFrame(FuncOp method) {
   if (!framed.insert(method))
     return;
@@ -123,18 +125,18 @@ void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
     symbols.insert(declaration);
     declarations.push_back({declaration, {}});
   }
-  for (auto &[known, stands] : declarations)
+  for (auto &[known, callees] : declarations)
     if (known == declaration)
       for (FuncOp target : mayRun)
-        if (!llvm::is_contained(stands, target))
-          stands.push_back(target);
+        if (!llvm::is_contained(callees, target))
+          callees.push_back(target);
   auto framedCall = mlir::func::CallOp::create(builder, call.getLoc(), declaration, arguments);
   ir::attr::framed.set(framedCall);
   call.replaceAllUsesWith(framedCall.getResults());
   call.erase();
 }
 
-/// One may call another, so until nothing changes.
+/// One may call another: iterates until nothing changes.
 void OpenCalls::summariseWrites() {
   mlir::OpBuilder builder(module.getContext());
   for (auto &entry : declarations)
@@ -143,9 +145,9 @@ void OpenCalls::summariseWrites() {
   while (changed) {
     changed = false;
     const WriteSummary summary(module);
-    for (auto &[declaration, stands] : declarations) {
+    for (auto &[declaration, callees] : declarations) {
       StateWrites writes;
-      for (FuncOp target : stands)
+      for (FuncOp target : callees)
         writes.add(summary.ofFunction(target));
       const mlir::Attribute before = ir::attr::writes.of(declaration);
       if (writes.any) {
@@ -169,8 +171,8 @@ void OpenCalls::run() {
       replace(call, mayRun);
   }
   summariseWrites();
-  for (auto &[declaration, stands] : declarations)
-    for (FuncOp target : stands)
+  for (auto &[declaration, callees] : declarations)
+    for (FuncOp target : callees)
       if (runsAsStates(target))
         giveFrame(target);
 }

@@ -1,4 +1,4 @@
-//===- CostTable.cpp - the cost of saving and of recomputing -------------------===//
+//===- CostTable.cpp - costs of saving and recomputing --------------------===//
 #include "codegen/passes/continuation/common/CostTable.h"
 
 #include "codegen/ir/BaseAddress.h"
@@ -25,7 +25,7 @@ static std::int64_t components(mlir::Type type) {
   return shape ? shape.getNumElements() : 1;
 }
 
-/// The cost of loading a word.
+/// Cost of a load for each word, by the memory it loads from.
 static std::int64_t loadCost(mlir::Value address) {
   mlir::Operation *base = ir::baseOperation(address);
   if (llvm::isa_and_nonnull<ir::MemberOp, ir::TableOp>(base))

@@ -1,4 +1,4 @@
-//===- CostTable.h - the cost of saving and of recomputing ----------------===//
+//===- CostTable.h - costs of saving and recomputing ----------------------===//
 //
 // In the units of language/Costs.h.
 //
@@ -14,11 +14,11 @@ namespace rtsl::continuation {
 /// The cost of executing `op` again.
 std::int64_t recomputeCost(mlir::Operation *op);
 
-/// How much more often a block in `depth` loops runs than one in none.
+/// Estimated executions of a block in `depth` loops for each execution outside of loops.
 std::int64_t loopFrequency(unsigned depth);
 
-/// The cost of keeping a value of this type across a trace that runs `traceFrequency` times, when it
-/// is made `madeFrequency` times: stored when made, loaded when the trace comes back.
+/// The cost of saving a value of this type across a trace that runs `traceFrequency` times, if it is
+/// defined `madeFrequency` times: stored when defined, loaded after the trace.
 std::int64_t saveCost(mlir::Type type, std::int64_t madeFrequency, std::int64_t traceFrequency);
 
 } // namespace rtsl::continuation

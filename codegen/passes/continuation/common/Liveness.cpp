@@ -1,4 +1,4 @@
-//===- Liveness.cpp - which values are needed where -----------------------===//
+//===- Liveness.cpp - which values are live where -------------------------===//
 #include "codegen/passes/continuation/common/Liveness.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
@@ -20,7 +20,7 @@ Liveness::Liveness(FuncOp function) {
       for (mlir::Value result : op.getResults())
         number(result);
   }
-  mlir::Value object = objectOf(function); // comes with the ray: needs no one to keep it
+  mlir::Value object = objectOf(function); // passed with the ray: never saved
   for (mlir::Block *block : order) {
     BlockSets &sets = blocks[block];
     sets.used = sets.defined = sets.in = none();

@@ -1,7 +1,7 @@
-//===- Liveness.h - which values are needed where -------------------------===//
+//===- Liveness.h - which values are live where ---------------------------===//
 //
-// MLIR's own liveness is by operation and has no order; here it is by block, of one function, in
-// program order, and a suspend may be told what it hands on.
+// MLIR's own liveness is by operation and unordered; this one is by block, for one function, in
+// program order, and the values that a suspend uses can be given.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -17,20 +17,19 @@ class Liveness {
 public:
   explicit Liveness(FuncOp function);
 
-  /// Computes what is live from the uses of values. With `handedOn`, a suspend needs those values
-  /// (as bits) and not what is live behind it.
+  /// Computes liveness from the uses of values. With `handedOn`, a suspend uses those values (as
+  /// bits) and not all that are live after it.
   using HandedOn = llvm::DenseMap<mlir::Operation *, llvm::BitVector>;
   void compute(const HandedOn *handedOn = nullptr);
 
-  /// After compute() with what suspends hand on: this one hands on these values, and what it handed
-  /// on before.
+  /// After compute() with `handedOn`: adds these values to those that the suspend uses.
   void extend(ir::SuspendOp suspend, const llvm::BitVector &handedOn);
 
-  /// Values that are live at the beginning of a block and not its arguments.
+  /// The values that are live at the beginning of a block, without its arguments.
   const llvm::BitVector &into(mlir::Block *block) const { return blocks.find(block)->second.in; }
 
   /// Program order: blocks in reverse postorder, arguments, then operations; a definition is before
-  /// what it dominates.
+  /// all values that it dominates.
   llvm::ArrayRef<mlir::Value> values() const { return all; }
   unsigned numberOf(mlir::Value value) const { return numbers.lookup(value); }
   llvm::SmallVector<mlir::Value> valuesOf(const llvm::BitVector &set) const;
@@ -38,7 +37,7 @@ public:
 
 private:
   struct BlockSets {
-    llvm::BitVector used, defined, in; // used: before it is defined here
+    llvm::BitVector used, defined, in; // used: before a definition in the block
   };
   llvm::SmallVector<mlir::Block *> order; // reverse postorder
   llvm::SmallVector<mlir::Value> all;

@@ -1,4 +1,4 @@
-//===- Names.cpp - what values are called in the source -------------------===//
+//===- Names.cpp - names of values in the source --------------------------===//
 #include "codegen/passes/continuation/common/Names.h"
 
 #include "codegen/ir/IncomingEdges.h"
@@ -11,7 +11,7 @@
 namespace rtsl::continuation {
 
 static std::string nameInLocation(mlir::Location location) {
-  // Built-in functions name their code after themselves: that is not a name of the author's.
+  // Built-in functions give their own name to their code: not a name in the source.
   if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
     return name.getName().strref().starts_with("rtsl.") ? "" : name.getName().str();
   if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location)) {
@@ -21,7 +21,7 @@ static std::string nameInLocation(mlir::Location location) {
         return name;
     }
   }
-  // The name in an inlined function before that of what it was called for.
+  // Prefer the name in an inlined function to that of the variable that gets its result.
   if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location)) {
     std::string name = nameInLocation(call.getCallee());
     return name.empty() ? nameInLocation(call.getCaller()) : name;
@@ -52,7 +52,7 @@ static std::string nameOfAddress(mlir::Value address) {
   return "address";
 }
 
-/// The first name among what flows into a block argument.
+/// The first name among the values that flow into a block argument.
 static std::string nameOfArgument(mlir::BlockArgument argument,
                                   llvm::SmallPtrSetImpl<mlir::Block *> &seen) {
   mlir::Block *block = argument.getOwner();
@@ -121,9 +121,10 @@ std::string describeToAuthor(mlir::Value value) {
   if (!name.empty())
     return "`" + name + "`";
   const ir::SourcePlace place = ir::placeOf(value.getLoc());
-  const char *does = value.getDefiningOp<ir::TraceResultOp>() ? "brings back" : "computes";
-  return place.isKnown() ? "what line " + std::to_string(place.line) + " " + does
-                         : "a value in between";
+  if (!place.isKnown())
+    return "an intermediate value";
+  const char *made = value.getDefiningOp<ir::TraceResultOp>() ? "returned" : "computed";
+  return std::string("the value ") + made + " in line " + std::to_string(place.line);
 }
 
 std::string UniqueNames::unique(const std::string &name) {

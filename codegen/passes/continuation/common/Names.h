@@ -1,4 +1,4 @@
-//===- Names.h - what values are called in the source ---------------------===//
+//===- Names.h - names of values in the source ----------------------------===//
 #pragma once
 
 #include "mlir/IR/Value.h"
@@ -9,28 +9,28 @@
 
 namespace rtsl::continuation {
 
-/// The name that an address or a value goes by: the variable that it was (a NameLoc), the member or
-/// state variable that it was read from, or what made it ("mulf"). Never empty, and the same on
-/// every run.
+/// The name of an address or a value: the variable that it was (a NameLoc), the member or state
+/// variable that it was loaded from, or the operation ("mulf"). Never empty, and the same on every
+/// run.
 std::string sourceName(mlir::Value value);
 
-/// The variable that the value was; empty if it was none of the author's.
+/// The variable that the value was in the source; empty if there is none.
 std::string authorsName(mlir::Value value);
 
-/// Is that name of what an inlined function was called for? It fits what the function returns, and
-/// not its conditions.
+/// Does the name come from the caller of an inlined function? Then it describes the function's
+/// result, not its conditions.
 bool isNamedByCaller(mlir::Value value);
 
-/// What a message calls the value: "`sum`", "`rt_HitPoint`", or "what line 12 computes" where the
-/// author gave no name.
+/// The value in a message: "`sum`", "`rt_HitPoint`", or "the value computed in line 12" if it has
+/// no name in the source.
 std::string describeToAuthor(mlir::Value value);
 
-/// Names for values of one function, each different: the second "sum" is "sum.2".
+/// Names for values of one function, each unique: the second "sum" is "sum.2".
 class UniqueNames {
 public:
-  /// The name of a value; the same each time it is asked.
+  /// The name of a value; the same on each call.
   const std::string &of(mlir::Value value);
-  /// `name`, or that with a number if it is taken.
+  /// `name`, with a number if it is taken.
   std::string unique(const std::string &name);
 
 private:

@@ -1,4 +1,4 @@
-//===- Recompute.cpp - what gives the same value again behind a trace -----===//
+//===- Recompute.cpp - operations that can be repeated after a trace ------===//
 #include "codegen/passes/continuation/common/Recompute.h"
 
 #include "codegen/ir/Attributes.h"
@@ -9,7 +9,7 @@
 
 namespace rtsl::continuation {
 
-/// State that only the runtime writes, before a shader runs: not even an unknown method changes it.
+/// State that only the runtime writes, before a shader runs: calls do not change it.
 static constexpr llvm::StringLiteral fixedState[] = {
     "Epsilon",       "HitDistance",    "ScreenCoord",   "LensCoord",    "TimeSeed",
     "LaunchIndex",   "LaunchSize",     "Time",          "Depth",        "ObjectToWorld",
@@ -23,7 +23,7 @@ bool StateWrites::add(const StateWrites &other) {
   return isNew;
 }
 
-/// Under this name, which no state variable has, goes what the ray carries.
+/// The key for the payload, which no state variable has as its name.
 static constexpr llvm::StringLiteral payloadName = "payload";
 
 static StateWrites writesThrough(mlir::Value address) {
@@ -35,7 +35,7 @@ static StateWrites writesThrough(mlir::Value address) {
     writes.names.insert(payloadName);
   else if (!llvm::isa_and_nonnull<ir::VarOp, ir::FrameObjectOp, ir::MemberOp, ir::AttributeOp,
                                   ir::BufferElementOp>(base))
-    writes.any = true; // an argument: whatever the caller passed
+    writes.any = true; // an argument: any address of the caller
   return writes;
 }
 
@@ -62,14 +62,14 @@ WriteSummary::WriteSummary(mlir::ModuleOp module) {
         writes.names.insert(name.getValue());
   }
   propagate(module);
-  if (!hasLights) // not linked yet: any light may come
+  if (!hasLights) // not linked yet: the lights are not known
     illumination.any = true;
 }
 
-/// From what functions write themselves to their callers. Cycles of calls through references end
-/// where nothing is new.
+/// Adds the writes of functions to those of their callers. Recursion through references ends when
+/// nothing changes.
 void WriteSummary::propagate(mlir::ModuleOp module) {
-  // Lights are as if called where a point is lit: under this name, which no function has.
+  // A point that is lit counts as a call of the lights: under this name, which no function has.
   const auto lights = mlir::StringAttr::get(module.getContext(), "");
   llvm::DenseMap<mlir::StringAttr, llvm::SmallVector<mlir::StringAttr, 2>> callers;
   llvm::SmallVector<mlir::StringAttr> changed;
@@ -109,8 +109,8 @@ StateWrites WriteSummary::of(mlir::Operation *op) const {
   if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
     return writesThrough(clear.getAddress());
   if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
-    // Where the callee writes through addresses that it is given, it is the caller's state only if
-    // that is given.
+    // If the callee writes through its address parameters, it writes the caller's state only if
+    // passed such an address.
     auto callee = functions.find(call.getCalleeAttr().getAttr());
     if (callee == functions.end()) {
       writes.any = true;
@@ -137,7 +137,8 @@ StateWrites WriteSummary::of(mlir::Operation *op) const {
   return writes;
 }
 
-/// Walks from the suspend backwards until the load; nothing on the way may write what was loaded.
+/// Searches backwards from the suspend for the load; nothing on a path may write the loaded
+/// address.
 bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendOp suspend) {
   auto [known, isNew] = unchanged.try_emplace({load, suspend}, false);
   if (!isNew)
@@ -145,7 +146,7 @@ bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendO
   bool fixed = llvm::is_contained(fixedState, state);
   auto writes = [&](mlir::Operation *op) {
     if (llvm::isa<ir::IlluminateOp>(op) && state == "HitPoint")
-      return false; // whatever lights do: it is put back (illuminate in runtime/device/engines/Classic.h)
+      return false; // written by lights, but restored (illuminate in runtime/device/engines/Classic.h)
     StateWrites found = summary.of(op);
     return found.names.contains(state) || (found.any && !fixed);
   };
@@ -194,7 +195,7 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
     mlir::Operation *base = ir::baseOperation(load.getAddress());
     if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
       return isUnchanged(load, state.getName(), suspend);
-    if (llvm::isa_and_nonnull<ir::PayloadOp>(base)) // rays that this one sends have others
+    if (llvm::isa_and_nonnull<ir::PayloadOp>(base)) // rays sent by this one have other payloads
       return isUnchanged(load, payloadName, suspend);
     return isConstantForLaunch(load.getAddress()) || llvm::isa_and_nonnull<ir::AttributeOp>(base);
   }

@@ -1,11 +1,11 @@
-//===- Recompute.h - what gives the same value again behind a trace -------===//
+//===- Recompute.h - operations that can be repeated after a trace --------===//
 //
-// An operation can be executed again behind a trace if it has no effect and reads nothing that may
-// have changed since it was executed before. Members and buffers are constant for a launch. The
-// state variables of a ray stay its own while other rays run, but its shader may write them: a load
-// of one counts only if no path from the load to the trace, without passing the load again, can
-// write it. Arguments of blocks, random numbers, results of calls, of traces and loads of local
-// variables never do.
+// An operation can be executed again after a trace if it has no side effect and reads no memory
+// that may have changed since its first execution. Members and buffers are constant for a launch.
+// The state variables of a ray do not change while other rays run, but its own shader may write
+// them: a load of one can be repeated only if no path from the load to the trace, without passing
+// the load again, may write it. Arguments of blocks, random numbers, results of calls and of
+// traces, and loads of local variables can never be repeated.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,21 +18,21 @@
 
 namespace rtsl::continuation {
 
-/// State variables that something may write.
+/// State variables that may be written.
 struct StateWrites {
   bool any = false;
   llvm::StringSet<> names;
 
   bool mayWrite(llvm::StringRef name) const { return any || names.contains(name); }
-  /// True if there was anything new.
+  /// True if this added any.
   bool add(const StateWrites &other);
 };
 
-/// Which state variables the functions of a module may write, calls included.
+/// Which state variables the functions of a module may write, including callees.
 class WriteSummary {
 public:
   explicit WriteSummary(mlir::ModuleOp module);
-  /// What one operation may write.
+  /// The state variables that one operation may write.
   StateWrites of(mlir::Operation *op) const;
   StateWrites ofFunction(FuncOp function) const {
     return functions.lookup(function.getSymNameAttr());
@@ -42,16 +42,16 @@ private:
   void propagate(mlir::ModuleOp module);
 
   llvm::DenseMap<mlir::StringAttr, StateWrites> functions;
-  StateWrites illumination; // what lights write when a point is lit
+  StateWrites illumination; // written by lights when a point is lit
 };
 
-/// Answers for one function.
+/// Which operations of one function can be recomputed.
 class Recompute {
 public:
   Recompute(FuncOp function, const WriteSummary &summary) : function(function), summary(summary) {}
 
-  /// Whether `op`, which dominates `suspend`, gives the same results again when it is executed
-  /// behind it, if its operands are there.
+  /// Whether `op`, which dominates `suspend`, has the same results when executed again after it, if
+  /// its operands are available.
   bool isPossible(mlir::Operation *op, ir::SuspendOp suspend);
 
 private:
@@ -60,7 +60,7 @@ private:
   FuncOp function;
   const WriteSummary &summary;
   llvm::DenseMap<std::pair<mlir::Operation *, mlir::Operation *>, bool> unchanged;
-  llvm::DenseMap<mlir::Operation *, bool> free; // of effects; asked for again at each trace
+  llvm::DenseMap<mlir::Operation *, bool> free; // of side effects; cached for all traces
   llvm::StringMap<bool> written;                // by the function anywhere
 };
 

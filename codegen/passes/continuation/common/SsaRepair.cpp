@@ -1,10 +1,10 @@
 //===- SsaRepair.cpp - one value with several definitions -----------------===//
 //
-// Which definition reaches the beginning of a block is found by iteration over the blocks where the
-// value is live; where two meet, the block gets an argument (Cytron et al., "Efficiently Computing
-// Static Single Assignment Form and the Control Dependence Graph", 1991, pruned by liveness).
-// Arguments that turn out to merge one definition with itself are taken back (Braun et al., "Simple
-// and Efficient Construction of Static Single Assignment Form", 2013).
+// The definitions that reach the beginning of a block are found by iteration over the blocks where
+// the value is live; where two meet, the block gets an argument (Cytron et al., "Efficiently
+// Computing Static Single Assignment Form and the Control Dependence Graph", 1991, pruned by
+// liveness). Arguments that merge a single definition with themselves are removed (Braun et al.,
+// "Simple and Efficient Construction of Static Single Assignment Form", 2013).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/SsaRepair.h"
@@ -27,7 +27,7 @@ public:
   void run();
 
 private:
-  /// What is the value at the end of a block? Null: not known yet.
+  /// The value at the end of a block; null: not known yet.
   mlir::Value atEnd(mlir::Block *block);
   void findLiveBlocks(llvm::ArrayRef<mlir::OpOperand *> uses);
   void findReaching(llvm::ArrayRef<mlir::Block *> order);
@@ -39,14 +39,13 @@ private:
   const BlockOrder &blocks;
   mlir::Block *home;
   llvm::SmallPtrSet<mlir::Block *, 16> liveInto;
-  // What the value is at the beginning of a block: a definition, or the block itself, which merges
-  // several.
+  // The value at the beginning of a block: a definition, or the block itself, if it merges several.
   llvm::DenseMap<mlir::Block *, mlir::Value> reaching;
   llvm::SmallPtrSet<mlir::Block *, 16> merges;
   llvm::DenseMap<mlir::Block *, mlir::Value> mergeValues;
 };
 
-/// Blocks at whose beginning the value is read before it is defined anew.
+/// Blocks at whose beginning the value is live.
 void Repair::findLiveBlocks(llvm::ArrayRef<mlir::OpOperand *> uses) {
   llvm::SmallVector<mlir::Block *> worklist;
   auto add = [&](mlir::Block *block) {
@@ -68,7 +67,7 @@ mlir::Value Repair::atEnd(mlir::Block *block) {
   return reaching.lookup(block);
 }
 
-/// Gives every block where two definitions may meet an argument.
+/// Adds an argument to every block where two definitions may meet.
 void Repair::findReaching(llvm::ArrayRef<mlir::Block *> order) {
   bool changed = true;
   while (changed) {
@@ -98,8 +97,7 @@ void Repair::findReaching(llvm::ArrayRef<mlir::Block *> order) {
   }
 }
 
-/// An argument that every predecessor gives the same definition, or the argument itself, is that
-/// definition.
+/// Replaces an argument that gets the same definition, or itself, on every edge by that definition.
 bool Repair::dropTrivialArgument(llvm::ArrayRef<mlir::Block *> order) {
   for (mlir::Block *block : order) {
     if (!merges.contains(block))
@@ -127,7 +125,7 @@ bool Repair::dropTrivialArgument(llvm::ArrayRef<mlir::Block *> order) {
   return false;
 }
 
-/// Hands the definitions that reach the predecessors to the arguments.
+/// Passes the definitions that reach the predecessors to the arguments.
 void Repair::placeArguments(llvm::ArrayRef<mlir::Block *> order) {
   for (mlir::Block *block : order) {
     if (merges.contains(block))

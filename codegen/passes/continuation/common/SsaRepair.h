@@ -9,15 +9,15 @@
 
 namespace rtsl::continuation {
 
-/// New definitions of one value, each in force from the beginning of a block.
+/// New definitions of one value, each valid from the beginning of a block.
 using Redefinitions = llvm::MapVector<mlir::Block *, mlir::Value>;
 
-/// The blocks of a function in reverse postorder, for many repairs: arguments of blocks come and go
-/// meanwhile, blocks and branches do not.
+/// The blocks of a function in reverse postorder, for many repairs: these change block arguments,
+/// but no blocks or branches.
 class BlockOrder {
 public:
   explicit BlockOrder(mlir::Region &body);
-  /// Those of `blocks` that can be reached, in that order.
+  /// The reachable ones of `blocks`, in that order.
   llvm::SmallVector<mlir::Block *> sorted(const llvm::SmallPtrSetImpl<mlir::Block *> &blocks) const;
 
 private:

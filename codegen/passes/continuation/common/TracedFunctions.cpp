@@ -38,7 +38,7 @@ llvm::ArrayRef<llvm::StringLiteral> machineEntries() {
 
 namespace {
 
-/// The functions of a module and who calls whom.
+/// The call graph of a module.
 struct Calls {
   explicit Calls(mlir::ModuleOp module);
 
@@ -48,9 +48,9 @@ struct Calls {
     llvm::SmallVector<unsigned> callees, callers;
   };
   std::vector<Function> functions; // in the order of the module
-  /// Of each function: does it trace, or call one that does?
+  /// For each function: does it trace, or call one that does?
   std::vector<bool> tracing() const;
-  /// Of each function: do its calls lead back to it?
+  /// For each function: is it in a cycle?
   std::vector<bool> inCycles() const;
 };
 
@@ -153,7 +153,7 @@ llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module) 
   llvm::SmallVector<FuncOp> found;
   for (auto [function, traces, isInCycle] :
        llvm::zip(calls.functions, calls.tracing(), calls.inCycles()))
-    if (traces && isInCycle) // what calls what traces does so itself
+    if (traces && isInCycle) // cycles of these trace as a whole
       found.push_back(function.op);
   return found;
 }

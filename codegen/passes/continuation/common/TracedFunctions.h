@@ -10,20 +10,20 @@ namespace rtsl::continuation {
 
 using mlir::func::FuncOp;
 
-/// The suspends of a function, in the order in which their blocks stand.
+/// The suspends of a function, in the order of their blocks.
 llvm::SmallVector<ir::SuspendOp> suspendsOf(FuncOp function);
 
-/// The object of a method: it comes with the ray and is never saved. Null if the first argument is
-/// no reference.
+/// The object of a method: it is passed with the ray and never saved. Null if the first argument is
+/// not a reference.
 mlir::Value objectOf(FuncOp function);
 
 /// The functions of the module that trace, or that call one that does.
 llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module);
 
-/// Those of them that calls lead back to.
+/// Those of them that are recursive.
 llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module);
 
-/// The entries that the machine starts (runtime/device/engines/Machine.h): their states are made
+/// The entry points that the machine starts (runtime/device/engines/Machine.h): they become states
 /// even if they do not trace.
 llvm::ArrayRef<llvm::StringLiteral> machineEntries();
 

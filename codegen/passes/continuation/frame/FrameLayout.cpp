@@ -1,15 +1,15 @@
-//===- FrameLayout.cpp - places in the frame ------------------------------===//
+//===- FrameLayout.cpp - offsets in the frame -----------------------------===//
 //
 //     rtsl.suspend %o, %d, ^r(%i) names ["i"]        rtsl.frame_store %i, "i"[0]
 //   ^r(%i'):                                ==>      rtsl.suspend %o, %d, ^r
 //                                                  ^r:
 //                                                    %i' = rtsl.frame_load "i"[0]
 //
-// One slot a value over all traces, so that nothing is ever copied from slot to slot. Values that
-// are never saved at the same trace may share words; objects share them with others that are not
-// wanted while they are (ObjectLifetimes.h). Bools take a bit each. Words are given first fit, to
-// the largest values first, to those that are saved most often first, or as they come, whichever
-// frame is smallest.
+// A value has the same slot at all traces, so that nothing is ever copied from slot to slot. Values
+// that are never saved at the same trace may share words; objects share them with others that are
+// not live at the same time (ObjectLifetimes.h). Bools take a bit each. Words are assigned first
+// fit: largest values first, most often saved first, or in program order, whichever frame is
+// smallest.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -27,22 +27,22 @@ namespace rtsl::continuation {
 
 namespace {
 
-/// Something that wants words of its own at some traces.
+/// An item that needs words of its own at some traces.
 struct Item {
   std::string name;
   std::uint32_t size = 4; // bytes
-  llvm::BitVector traces; // at which it is saved; of an object: wanted
+  llvm::BitVector traces; // at which it is saved; for an object: live
   bool isObject = false;
-  llvm::BitVector objects = {}; // of an object: others that are wanted while it is
-  unsigned number = 0;          // of an object, among them
+  llvm::BitVector objects = {}; // for an object: others that are live at the same time
+  unsigned number = 0;          // for an object: its index among them
   std::uint32_t offset = 0;
-  std::vector<unsigned> bools = {}; // of a word of bools: their indices, one a bit
+  std::vector<unsigned> bools = {}; // for a word of bools: their indices, one for each bit
 };
 
 struct SavedBool {
   std::string name;
   llvm::BitVector traces;
-  unsigned bit = 0; // over all words of bools
+  unsigned bit = 0; // counted over all words of bools
 };
 
 bool interfere(const Item &a, const Item &b) {
@@ -70,10 +70,10 @@ private:
   void rewrite();
 
   FuncOp function;
-  std::uint32_t base = 0; // bytes: behind what a call hands over
+  std::uint32_t base = 0; // bytes: after arguments and results of a call
   llvm::SmallVector<ir::SuspendOp> suspends;
   std::vector<Item> items;
-  std::vector<unsigned> objects; // among them
+  std::vector<unsigned> objects; // indices of objects in `items`
   std::vector<SavedBool> bools;
   llvm::StringMap<unsigned> itemOf, boolOf;
   std::uint32_t size = 0;
@@ -96,7 +96,7 @@ void Layouter::collect() {
             {name.str(), ir::sizeInBytes(value.getType()), llvm::BitVector(suspends.size())});
       items[at->second].traces.set(index);
     }
-  // The same object stands in several blocks, once it is recomputed; its name is unique.
+  // An object may occur in several blocks if it has been recomputed; its name is unique.
   for (auto [number, lifetime] : llvm::enumerate(lifetimesOfObjects(function, suspends))) {
     itemOf[("object " + lifetime.object.getName()).str()] = items.size();
     objects.push_back(items.size());
@@ -106,7 +106,7 @@ void Layouter::collect() {
   }
 }
 
-/// Gives each bool the lowest bit that is free at all its traces; 32 make a word.
+/// Assigns each bool the lowest bit that is free at all its traces; 32 make a word.
 void Layouter::placeBools() {
   for (unsigned i = 0; i < bools.size(); ++i) {
     llvm::BitVector taken(bools.size());
@@ -133,7 +133,7 @@ std::uint32_t Layouter::place(const std::vector<unsigned> &order,
   std::vector<std::vector<unsigned>> placedAt(suspends.size()); // by trace
   std::vector<unsigned> placedObjects;
   std::vector<unsigned> seenFor(items.size(),
-                                ~0u); // an item that is saved at several of the same traces
+                                ~0u); // an item that shares several traces with this one
   for (unsigned index : order) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> taken; // from, to
     const auto look = [&](const std::vector<unsigned> &placed) {
@@ -211,7 +211,7 @@ FrameLayout Layouter::describe() const {
   return layout;
 }
 
-/// Does an object take some of these words, at other times?
+/// Does an object use some of these words at other times?
 bool Layouter::isShared(std::uint32_t offset, std::uint32_t size) const {
   return llvm::any_of(objects, [&](unsigned index) {
     const Item &item = items[index];

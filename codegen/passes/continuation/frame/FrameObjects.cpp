@@ -1,12 +1,12 @@
-//===- FrameObjects.cpp - variables in memory that outlive a trace --------===//
+//===- FrameObjects.cpp - variables in memory that are live across a trace ===//
 //
 //   %table = rtsl.var "table"             %table = rtsl.frame_object "table"
 //   ...                            ==>    rtsl.clear %table
 //   a trace                               ...
 //   use %table[%i]                        a trace, use %table[%i]
 //
-// What mem2reg left in memory is indexed at run time, or is the payload of a ray. Its address is
-// that of a place in the frame, on both sides of a trace.
+// Variables that mem2reg could not promote are indexed at run time, or are payloads of rays. They
+// move to the frame; the address is the same on both sides of a trace.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/Liveness.h"
@@ -15,7 +15,7 @@
 
 namespace rtsl::continuation {
 
-/// Collects an address and what is computed from it.
+/// Collects an address and all addresses derived from it.
 static void addDerived(mlir::Value address, llvm::SmallVectorImpl<mlir::Value> &derived) {
   derived.push_back(address);
   for (mlir::Operation *user : address.getUsers())
@@ -39,7 +39,8 @@ void moveVariablesToFrame(FuncOp function) {
   for (ir::VarOp variable : variables) {
     llvm::SmallVector<mlir::Value> derived;
     addDerived(variable.getResult(), derived);
-    // Others than this state see the payload of a ray, and what a call is given the address of.
+    // The payload of a ray, and variables passed to a call by address, are accessed by other
+    // states.
     bool isShown = llvm::any_of(derived, [](mlir::Value value) {
       return llvm::any_of(value.getUsers(), llvm::IsaPred<ir::SpawnPayloadOp, ir::EnterOp>);
     });
@@ -50,8 +51,7 @@ void moveVariablesToFrame(FuncOp function) {
     mlir::OpBuilder builder(variable);
     auto object = ir::FrameObjectOp::create(builder, variable.getLoc(), variable.getType(),
                                             names.unique(variable.getName().str()), 0u);
-    object->setDiscardableAttrs(
-        variable->getDiscardableAttrDictionary()); // what a printer knows of it
+    object->setDiscardableAttrs(variable->getDiscardableAttrDictionary()); // for the C++ printer
     ir::ClearOp::create(builder, variable.getLoc(), object);
     variable.replaceAllUsesWith(object.getResult());
     variable.erase();

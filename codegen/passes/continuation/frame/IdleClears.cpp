@@ -1,12 +1,11 @@
-//===- IdleClears.cpp - clears of what is written before it is read --------===//
+//===- IdleClears.cpp - clears of variables that are overwritten ----------===//
 //
 //   rtsl.clear %ray                       rtsl.clear %ray
 //   rtsl.clear %ray             ==>       ...
 //   ...
 //
-// Variables in memory are cleared where they are declared, and once more where they move to the
-// frame. For people, who read what the printer for C++ makes of it, a clear says that somebody
-// wants the zeros.
+// Variables in memory are cleared at their declaration, and again when they move to the frame. In
+// C++ output a clear should appear only where the zeros are read.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -25,7 +24,7 @@ bool mentions(mlir::Operation *op, mlir::Value root) {
   });
 }
 
-/// Does the operation write all of it, and read nothing of it?
+/// Does the operation overwrite the whole variable without reading it?
 bool overwrites(mlir::Operation *op, mlir::Value root) {
   if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
     return clear.getAddress() == root;
@@ -39,7 +38,7 @@ bool overwrites(mlir::Operation *op, mlir::Value root) {
   return false;
 }
 
-/// Is it written again, on every way, before anybody looks at it?
+/// Is the variable overwritten on every path before it is accessed?
 bool isIdle(ir::ClearOp clear) {
   const mlir::Value root = clear.getAddress();
   llvm::SmallPtrSet<mlir::Block *, 16> seen;

@@ -1,4 +1,4 @@
-//===- ObjectLifetimes.cpp - when what an object holds is wanted ----------===//
+//===- ObjectLifetimes.cpp - liveness of objects in the frame -------------===//
 #include "codegen/passes/continuation/frame/ObjectLifetimes.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
@@ -30,9 +30,9 @@ private:
   std::vector<ObjectLifetime> lifetimes;
   llvm::StringMap<unsigned> numbers;
   llvm::DenseMap<mlir::Operation *, llvm::SmallVector<unsigned, 2>>
-      uses;                                           // reads, or writes of parts
-  llvm::DenseMap<mlir::Operation *, unsigned> clears; // of all that an object is
-  BitVector escaped; // to where they cannot be followed: wanted always
+      uses;                                           // reads, or partial writes
+  llvm::DenseMap<mlir::Operation *, unsigned> clears; // of whole objects
+  BitVector escaped;                                  // with unknown uses: always live
   llvm::DenseMap<mlir::Block *, BitVector> atBeginning;
 };
 
@@ -72,7 +72,7 @@ BitVector Finder::atEnd(mlir::Block &block) {
   return live;
 }
 
-/// What is wanted at the beginning of each block, until nothing changes.
+/// Which objects are live at the beginning of each block; iterates until nothing changes.
 void Finder::findLive() {
   llvm::SmallVector<mlir::Block *> order(llvm::post_order(&function.getBody().front()));
   bool changed = true;
@@ -94,7 +94,8 @@ void Finder::findLive() {
   }
 }
 
-/// Who is wanted while another is touched; a lifetime begins with a touch, or with the function.
+/// Which objects are live while another is accessed; a lifetime begins at the first access, or with
+/// the function.
 void Finder::walkBack(mlir::Block &block) {
   BitVector live = atEnd(block);
   const auto *suspend = llvm::find(suspends, llvm::dyn_cast<ir::SuspendOp>(block.back()));

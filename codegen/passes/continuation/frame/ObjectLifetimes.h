@@ -1,8 +1,8 @@
-//===- ObjectLifetimes.h - when what an object holds is wanted ------------===//
+//===- ObjectLifetimes.h - liveness of objects in the frame ---------------===//
 //
-// A variable that lies in the frame, as payloads do, is cleared where it is declared and wanted
-// until its last use. Two that are never wanted at the same time may share their words, and so may
-// an object and what is saved at traces at which it is not wanted.
+// A variable in the frame, such as a payload, is cleared at its declaration and live until its last
+// use. Two that are never live at the same time may share their words, and so may an object and
+// values that are saved only at traces where it is not live.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -14,12 +14,12 @@
 namespace rtsl::continuation {
 
 struct ObjectLifetime {
-  ir::FrameObjectOp object; // the first of its name: it may be computed again elsewhere
-  llvm::BitVector traces;   // at which it is wanted, or handed to the ray
-  llvm::BitVector objects;  // that are wanted while this one is
+  ir::FrameObjectOp object; // the first of its name: it may be recomputed elsewhere
+  llvm::BitVector traces;   // at which it is live, or passed to the ray
+  llvm::BitVector objects;  // that are live while this one is
 };
 
-/// In the order in which the objects stand; `suspends` are those of the function.
+/// In the order of the objects; `suspends` are those of the function.
 std::vector<ObjectLifetime> lifetimesOfObjects(FuncOp function,
                                                llvm::ArrayRef<ir::SuspendOp> suspends);
 

@@ -1,6 +1,6 @@
-//===- Steps.h - where it is saved ----------------------------------------===//
+//===- Steps.h - the layout of the frame ----------------------------------===//
 //
-// Each step lies in the file that is named here; Split.cpp calls them.
+// Each step with its file; Split.cpp calls them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,18 +13,18 @@
 
 namespace rtsl::continuation {
 
-/// FrameObjects.cpp: variables that are still in memory and live across a trace move to the frame.
+/// FrameObjects.cpp: moves variables that are still in memory and live across a trace to the frame.
 void moveVariablesToFrame(FuncOp function);
 
-/// IdleClears.cpp: of a program that is printed for people, no variable is cleared that is written
-/// before it is read.
+/// IdleClears.cpp: for C++ output, removes clears of variables that are overwritten before they are
+/// read.
 void removeIdleClears(FuncOp function);
 
-/// A place in the frame.
+/// A slot of the frame.
 struct FrameSlot {
   std::string name;
   std::uint32_t offset = 0; // bytes
-  std::uint32_t size = 0;   // bytes; a bool's is that of the word which it is in
+  std::uint32_t size = 0;   // bytes; for a bool, of its word
   int bit = -1;             // of a bool
   bool isObject = false;
 };
@@ -32,14 +32,14 @@ struct FrameSlot {
 struct FrameLayout {
   std::vector<FrameSlot> slots; // by offset, then bit, then first use
   std::uint32_t size = 0;       // bytes
-  /// If no two values or objects shared words, nor bools.
+  /// The size if values and objects shared no words, and bools no bits.
   std::uint32_t unshared = 0;
-  /// No frame is smaller: the most that is alive at one trace.
+  /// A lower bound of the size: the most bytes that are live at one trace.
   std::uint32_t lowerBound = 0;
 };
 
-/// FrameLayout.cpp: gives each saved value and each frame object its place, and turns what suspends
-/// pass into loads and stores. The function gets `rtsl.frame_size` in bytes.
+/// FrameLayout.cpp: assigns each saved value and each frame object its offset, and turns the
+/// operands of suspends into loads and stores. The function gets `rtsl.frame_size` in bytes.
 FrameLayout layoutFrame(FuncOp function);
 
 } // namespace rtsl::continuation

@@ -1,9 +1,9 @@
-//===- MinimumCut.cpp - what to save and what to recompute ----------------===//
+//===- MinimumCut.cpp - the choice between saving and recomputing ---------===//
 //
 // Maximum flow by blocking flows (Dinic, "Algorithm for solution of a problem of maximum flow in a
-// network with power estimation", 1970). As they are built the graphs have no circles, so the first
-// flow goes along all of their edges, whatever the distances; that leaves little to the phases,
-// which would be as many as the longest chain of operands.
+// network with power estimation", 1970). The graphs are acyclic as built, so the first flow uses
+// all of their edges, regardless of distances; that leaves little to the phases, whose number would
+// otherwise be the length of the longest chain of operands.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/save/MinimumCut.h"
@@ -26,13 +26,14 @@ public:
   }
 
   std::int64_t maximumFlow(unsigned source, unsigned sink);
-  /// Nodes to which more could flow from the source: the smallest source side of a minimum cut.
+  /// The nodes that the source reaches in the residual graph: the smallest source side of a minimum
+  /// cut.
   std::vector<bool> sourceSide(unsigned source);
 
 private:
   struct Edge {
     unsigned to;
-    std::int64_t capacity; // what is left of it; edge i ^ 1 goes back
+    std::int64_t capacity; // residual; edge i ^ 1 is the reverse edge
   };
   bool measure(unsigned source, unsigned sink);
   bool isAhead(unsigned node, unsigned index) const {
@@ -42,11 +43,11 @@ private:
 
   std::vector<Edge> edges;
   std::vector<llvm::SmallVector<unsigned, 6>> edgesOf;
-  std::vector<int> level; // empty: none has been measured, and every edge leads ahead
+  std::vector<int> level; // empty: not computed, and every edge is admissible
   std::vector<unsigned> next;
 };
 
-/// Distances from the source along edges that have capacity left; true if the sink can be reached.
+/// Computes distances from the source in the residual graph; true if the sink can be reached.
 bool Network::measure(unsigned source, unsigned sink) {
   level.assign(edgesOf.size(), -1);
   std::vector<unsigned> queue = {source};
@@ -62,7 +63,7 @@ bool Network::measure(unsigned source, unsigned sink) {
   return level[sink] >= 0;
 }
 
-/// Sends at most so much from the node to the sink, along edges that lead ahead.
+/// Sends at most `limit` units from the node to the sink, along admissible edges.
 std::int64_t Network::augment(unsigned node, unsigned sink, std::int64_t limit) {
   if (node == sink)
     return limit;
@@ -76,7 +77,7 @@ std::int64_t Network::augment(unsigned node, unsigned sink, std::int64_t limit) 
     edges[index].capacity -= sent;
     edges[index ^ 1].capacity += sent;
     all += sent;
-    if (all == limit) // more may fit through this edge
+    if (all == limit) // this edge may have capacity left
       break;
   }
   return all;
@@ -84,7 +85,7 @@ std::int64_t Network::augment(unsigned node, unsigned sink, std::int64_t limit) 
 
 std::int64_t Network::maximumFlow(unsigned source, unsigned sink) {
   std::int64_t flow = augment(source, sink, impossible);
-  // With infinite capacity all the way nothing separates source and sink.
+  // If a path has infinite capacity, no cut separates source and sink.
   while (flow < impossible && measure(source, sink)) {
     std::fill(next.begin(), next.end(), 0u);
     flow += augment(source, sink, impossible - flow);
@@ -108,52 +109,52 @@ std::vector<bool> Network::sourceSide(unsigned source) {
   return reached;
 }
 
-/// What is decided without a cut. A needed value that cannot be recomputed is saved; one whose
-/// operands are there anyway is recomputed if that alone is cheaper. Then it is there too, for
-/// nothing more, as is what costs nothing to recompute of such values. Of most shaders little is
-/// left.
-class Foregone {
+/// Decisions that need no cut. A needed value that cannot be recomputed is saved; one whose
+/// operands are available is recomputed if that is cheaper. Then it is available too, at no further
+/// cost, and so are values that are free to recompute from available ones. In most shaders few
+/// decisions remain.
+class Presolve {
 public:
-  explicit Foregone(const std::vector<ValueNode> &values) : isThere(values.size()) {
+  explicit Presolve(const std::vector<ValueNode> &values) : isAvailable(values.size()) {
     for (unsigned v = 0; v < values.size(); ++v) {
       const ValueNode &value = values[v];
       if (value.recomputeCost >= impossible) {
-        isThere[v] = value.needed && value.saveCost < impossible;
-        if (isThere[v])
+        isAvailable[v] = value.needed && value.saveCost < impossible;
+        if (isAvailable[v])
           cost += value.saveCost;
         continue;
       }
       const bool isDecided = value.recomputeCost < value.saveCost &&
                              std::all_of(
                                  value.operands.begin(), value.operands.end(),
-                                 [&](unsigned operand) { return isThere[operand]; });
-      isThere[v] = isDecided && (value.needed || value.recomputeCost == 0);
-      if (isThere[v] && value.needed)
+                                 [&](unsigned operand) { return isAvailable[operand]; });
+      isAvailable[v] = isDecided && (value.needed || value.recomputeCost == 0);
+      if (isAvailable[v] && value.needed)
         cost += value.recomputeCost;
     }
   }
 
-  std::vector<bool> isThere;
-  std::int64_t cost = 0; // of those that are needed
+  std::vector<bool> isAvailable;
+  std::int64_t cost = 0; // of the needed ones
 };
 
 } // namespace
 
 Choice chooseSaved(const std::vector<ValueNode> &values) {
   const unsigned count = values.size();
-  const Foregone foregone(values);
-  std::vector<unsigned> nodeOf(count); // N(v) of those that are open; R(v) is the next
+  const Presolve presolve(values);
+  std::vector<unsigned> nodeOf(count); // N(v) of the undecided values; R(v) is the next node
   unsigned nodes = 2;
   const unsigned source = 0, sink = 1;
   for (unsigned v = 0; v < count; ++v)
-    if (!foregone.isThere[v]) {
+    if (!presolve.isAvailable[v]) {
       nodeOf[v] = nodes;
       nodes += 2;
     }
 
   Network network(nodes);
   for (unsigned v = 0; v < count; ++v) {
-    if (foregone.isThere[v])
+    if (presolve.isAvailable[v])
       continue;
     const unsigned needed = nodeOf[v], recomputed = needed + 1;
     if (values[v].needed)
@@ -161,7 +162,7 @@ Choice chooseSaved(const std::vector<ValueNode> &values) {
     network.connect(needed, recomputed, values[v].saveCost);
     network.connect(recomputed, sink, values[v].recomputeCost);
     for (unsigned operand : values[v].operands)
-      if (!foregone.isThere[operand])
+      if (!presolve.isAvailable[operand])
         network.connect(recomputed, nodeOf[operand], impossible);
   }
   std::int64_t flow = network.maximumFlow(source, sink);
@@ -172,14 +173,14 @@ Choice chooseSaved(const std::vector<ValueNode> &values) {
   choice.feasible = flow < impossible;
   if (!choice.feasible)
     return choice;
-  choice.cost = flow + foregone.cost;
+  choice.cost = flow + presolve.cost;
   std::vector<bool> side = network.sourceSide(source);
   std::vector<bool> isUsed(count);
-  for (unsigned v = count; v-- > 0;) { // operands after what they are used for
-    if (foregone.isThere[v]) {
-      const bool isWanted = values[v].needed || isUsed[v];
-      choice.recomputed[v] = isWanted && values[v].recomputeCost < impossible;
-      choice.saved[v] = isWanted && !choice.recomputed[v];
+  for (unsigned v = count; v-- > 0;) { // users before operands
+    if (presolve.isAvailable[v]) {
+      const bool isNeeded = values[v].needed || isUsed[v];
+      choice.recomputed[v] = isNeeded && values[v].recomputeCost < impossible;
+      choice.saved[v] = isNeeded && !choice.recomputed[v];
     } else {
       choice.recomputed[v] = side[nodeOf[v]] && side[nodeOf[v] + 1];
       choice.saved[v] = side[nodeOf[v]] && !side[nodeOf[v] + 1];

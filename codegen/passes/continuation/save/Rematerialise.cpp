@@ -1,7 +1,7 @@
 //===- Rematerialise.cpp - recompute instead of saving --------------------===//
 //
-// A value that is needed behind a trace is saved before it and restored behind it, or computed
-// again there from other values, which are saved or computed again in turn:
+// A value that is needed after a trace is saved before it and restored after it, or recomputed
+// there from other values, which are saved or recomputed in turn:
 //
 //     %eta = rtsl.load %member                   %eta = rtsl.load %member
 //     %w = arith.mulf %x, %eta                   %w = arith.mulf %x, %eta
@@ -12,20 +12,20 @@
 //                                                %w' = arith.mulf %x, %eta'
 //                                                use %w'
 //
-// Which, is a minimum cut at each trace (MinimumCut.h) with the costs of CostTable.h. A value keeps
-// its identity: whether restored or recomputed, it is bit for bit what it was, so one trace may
-// save what another recomputes. What a trace saves has to be there when it suspends, so it is
-// needed behind the traces before it; therefore plans and liveness are computed in turn until
-// neither changes. Arguments of blocks are never recomputed.
+// The choice is a minimum cut at each trace (MinimumCut.h) with the costs of CostTable.h. Restored
+// or recomputed, a value has the same bits, so one trace may save a value that another recomputes.
+// A value that a trace saves must be available when it suspends, so it is needed after earlier
+// traces; therefore plans and liveness are computed alternately until neither changes. Arguments of
+// blocks are never recomputed.
 //
-// That each trace's choice is the cheapest for it does not make all of them together the cheapest:
-// a value that is saved for less here may have to be saved at the traces before only for that. So
-// afterwards one after the other is forbidden to be saved at one trace, and if all plans together
-// are cheaper without, it stays so.
+// The cheapest choice for each trace is not the cheapest for all of them together: a value that is
+// cheap to save at one trace may have to be saved at earlier traces only for that. So afterwards
+// each saving at one trace is forbidden in turn, and remains so if all plans together are cheaper
+// without it.
 //
-// In strict SSA an operand of a value cannot be defined anew while the value is live (its
-// definition dominates that of the value, which dominates all uses), so what is recomputed from
-// operands as they are behind the trace is the same value, in loops too.
+// In strict SSA an operand of a value cannot be redefined while the value is live (its definition
+// dominates that of the value, which dominates all uses), so a value recomputed from the operands
+// after the trace is the same, in loops too.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
@@ -65,7 +65,7 @@ private:
   struct Decision {
     BitVector needed, saved, recomputed;
   };
-  /// One a trace.
+  /// One for each trace.
   using Decisions = llvm::SmallVector<Decision>;
   mlir::LogicalResult decideAll(Decisions &decisions);
   mlir::LogicalResult decide(std::size_t trace, Decision &decision);
@@ -87,10 +87,10 @@ private:
   mlir::CFGLoopInfo loops;
   Value object; // a parameter of every state
   llvm::SmallVector<ir::SuspendOp> suspends = suspendsOf(function);
-  // what is not saved at each trace, whatever that costs; empty: nothing
+  // values that may not be saved at each trace, regardless of cost; empty: none
   llvm::SmallVector<BitVector> forbidden;
-  std::vector<std::optional<llvm::SmallVector<unsigned, 4>>> operandNumbers; // made when asked for
-  std::vector<std::int64_t> costs; // of executing what makes a value once; -1: not asked for yet
+  std::vector<std::optional<llvm::SmallVector<unsigned, 4>>> operandNumbers; // computed on demand
+  std::vector<std::int64_t> costs; // of executing the defining operation once; -1: not computed yet
 };
 
 llvm::ArrayRef<unsigned> Planner::operandsOf(unsigned value) {
@@ -106,7 +106,7 @@ llvm::ArrayRef<unsigned> Planner::operandsOf(unsigned value) {
   return *operands;
 }
 
-/// An address, and an index that has been made of an i32, have no place in a frame.
+/// Addresses, and `index` values made of an i32, cannot be saved in a frame.
 std::int64_t Planner::costOfSaving(unsigned number, std::size_t trace) {
   Value value = liveness.values()[number];
   if (!ir::isValueType(value.getType()) || (!forbidden.empty() && forbidden[trace].test(number)))
@@ -115,7 +115,7 @@ std::int64_t Planner::costOfSaving(unsigned number, std::size_t trace) {
                   frequency(suspends[trace]->getBlock()));
 }
 
-/// `impossible` where saving is not dearer: then nothing that a value is made of need be looked at.
+/// `impossible` unless it is cheaper than saving: then the operands need not be considered.
 std::int64_t Planner::costOfRecomputing(unsigned number, std::size_t trace) {
   Value value = liveness.values()[number];
   if (options.onlyAddresses && ir::isValueType(value.getType()))
@@ -131,9 +131,9 @@ std::int64_t Planner::costOfRecomputing(unsigned number, std::size_t trace) {
   return cost;
 }
 
-/// The cheapest way to have `decision.needed` behind the suspend.
+/// The cheapest way to make `decision.needed` available after the suspend.
 mlir::LogicalResult Planner::decide(std::size_t trace, Decision &decision) {
-  // Everything from which something needed can be recomputed.
+  // All values from which a needed one can be recomputed.
   llvm::DenseMap<unsigned, std::int64_t> recomputing;
   BitVector reached = decision.needed;
   llvm::SmallVector<unsigned> worklist(reached.set_bits_begin(), reached.set_bits_end());
@@ -150,7 +150,7 @@ mlir::LogicalResult Planner::decide(std::size_t trace, Decision &decision) {
       }
   }
 
-  // As nodes, in program order: operands come first.
+  // Nodes in program order: operands come first.
   llvm::SmallVector<unsigned> values(reached.set_bits_begin(), reached.set_bits_end());
   llvm::DenseMap<unsigned, unsigned> nodeOf;
   std::vector<ValueNode> nodes(values.size());
@@ -186,11 +186,11 @@ mlir::LogicalResult Planner::complain(ir::SuspendOp suspend, llvm::ArrayRef<unsi
     if (node.saveCost == impossible && node.recomputeCost == impossible)
       return mlir::emitError(suspend.getLoc())
              << "the address `" << sourceName(liveness.values()[number])
-             << "` is used after a trace and cannot be computed again there";
+             << "` is used after a trace and cannot be recomputed there";
   return mlir::emitError(suspend.getLoc()) << "an address cannot be kept across a trace";
 }
 
-/// Keeps of a decision what is needed in the end, directly or for something recomputed.
+/// Keeps the part of a decision that is needed in the end, directly or to recompute other values.
 void Planner::dropUnneeded(Decision &decision, const BitVector &needed) {
   BitVector kept = needed;
   llvm::SmallVector<unsigned> worklist(needed.set_bits_begin(), needed.set_bits_end());
@@ -220,8 +220,8 @@ mlir::LogicalResult Planner::decideAll(Decisions &decisions) {
       handedOn[suspend] = decision.saved;
     liveness.compute(&handedOn);
   };
-  // Needs only grow here, so this ends. Later traces first: what they save is a need of earlier
-  // ones.
+  // The sets of needed values only grow here, so this terminates. Later traces first: a value that
+  // they save is needed after earlier ones.
   bool changed = true, isStale = true;
   while (changed) {
     changed = false;
@@ -244,7 +244,7 @@ mlir::LogicalResult Planner::decideAll(Decisions &decisions) {
         liveness.extend(suspends[i], decisions[i].saved);
     }
   }
-  // And here they only shrink: on the way some plans may have wanted what the last ones do not.
+  // Here they only shrink: intermediate plans may have needed values that the final ones do not.
   changed = true;
   while (changed) {
     changed = false;
@@ -269,7 +269,7 @@ std::int64_t Planner::costOf(const Decisions &decisions) {
   return cost;
 }
 
-/// How much is tried to make all plans together cheaper: values by traces, each time.
+/// Limit of the search for plans that are cheaper together: values times traces for each attempt.
 static constexpr std::size_t mostTried = 20000;
 
 void Planner::improveTogether(Decisions &decisions) {
@@ -283,14 +283,14 @@ void Planner::improveTogether(Decisions &decisions) {
     return false;
   };
   bool improved = true;
-  while (improved) { // one saving less may make another worth it
+  while (improved) { // forbidding one saving may make another attempt succeed
     improved = false;
     for (std::size_t trace = suspends.size(); trace-- > 0;) {
       const BitVector candidates = decisions[trace].saved;
       for (unsigned number : candidates.set_bits()) {
         if (!decisions[trace].saved.test(number) || !isNeededElsewhere(number, trace))
           continue;
-        // What is then saved in its place is forbidden in turn.
+        // The values that are then saved instead are forbidden in turn.
         const BitVector before = forbidden[trace];
         BitVector next = liveness.none();
         next.set(number);

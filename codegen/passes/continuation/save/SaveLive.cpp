@@ -1,11 +1,11 @@
-//===- SaveLive.cpp - what survives a trace, by name ----------------------===//
+//===- SaveLive.cpp - values live across a trace, by name -----------------===//
 //
 //     rtsl.suspend %o, %d, ^resume               rtsl.suspend %o, %d, ^resume(%i : i32) names ["i"]
 //   ^resume:                             ==>   ^resume(%i' : i32):
 //     use %i                                     use %i'
 //
-// Afterwards nothing that is defined before a suspend is used behind it but the object of the
-// method, and each state can be cut out.
+// Afterwards, except for the object of the method, no value that is defined before a suspend is
+// used after it, so that each state can be separated.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/Liveness.h"

@@ -1,18 +1,18 @@
-//===- TrimPayloads.cpp - pass only the fields that somebody reads --------===//
+//===- TrimPayloads.cpp - pass only the fields that are read --------------===//
 //
-// A payload lies in the frame of who sends the ray; its programs read and write it there. Over a
-// whole program it is known who reads which field, and who writes it:
+// A payload is in the frame of the method that sends the ray; the methods that run for the ray read
+// and write it there. In a whole program it is known which methods read and write each field:
 //
 //     struct P {color light; float weight; int depth;}     ==>     struct P {color light;}
 //
-// - A field that nobody reads is gone, with all stores to it. Copies from payload to payload of the
-//   same field are no reads, so a value that is only handed on and on is gone too.
-// - A field that no program of the ray reads or writes is not the ray's: it is a variable of who
-//   sends it, which is kept across the trace only if it is needed behind, and only if that is
-//   cheaper than to compute it again.
+// - A field that is never read is removed, with all stores to it. Copies from payload to payload of
+//   the same field do not count as reads, so a value that is only passed on is removed too.
+// - A field that no method of the ray reads or writes need not be in the payload: it becomes a
+//   variable of the sender, which is saved across the trace only if it is needed after it, and only
+//   if recomputing it is more expensive.
 //
-// A field that programs read but nobody reads behind the trace, or that they write but that nobody
-// sets before, has to have its place all the same: so each field that is left is passed both ways.
+// Any other field remains and is passed in both directions: also one that is read, but not after
+// the trace, or written, but not set before.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Layout.h"
@@ -30,10 +30,10 @@ using mlir::Value;
 
 namespace {
 
-/// What is done with one field of a type of payload.
+/// Uses of one field of a payload type.
 struct FieldUse {
-  bool isRead = false;     // for more than to be handed on
-  bool byPrograms = false; // read or written where the ray arrives
+  bool isRead = false;     // other than to be passed on
+  bool byPrograms = false; // read or written by methods that run for the ray
 };
 
 class PayloadTrimmer {
@@ -41,7 +41,7 @@ public:
   PayloadTrimmer(mlir::ModuleOp module, ir::StructType type)
       : module(module), type(type), uses(type.getFieldNames().size()) {}
 
-  /// The names of the fields that are not passed any more.
+  /// Returns the removed fields.
   TrimmedPayload run();
 
 private:
@@ -55,7 +55,8 @@ private:
 
   mlir::ModuleOp module;
   ir::StructType type;
-  llvm::SetVector<mlir::Operation *> bases; // addresses of payloads: `rtsl.payload` or a variable
+  llvm::SetVector<mlir::Operation *>
+      bases; // base addresses of payloads: `rtsl.payload` or a variable
   std::vector<FieldUse> uses;
 };
 
@@ -64,7 +65,7 @@ mlir::Type pointeeOf(Value address) {
   return pointer ? pointer.getPointee() : mlir::Type();
 }
 
-/// All payloads of the type. False if one is used in a way that is not understood.
+/// Finds all payloads of the type. False if one has an unknown use.
 bool PayloadTrimmer::findBases() {
   bool isUnderstood = true;
   module.walk([&](mlir::Operation *op) {
@@ -84,7 +85,7 @@ bool PayloadTrimmer::findBases() {
   return isUnderstood;
 }
 
-/// Is this the address of the field in some payload of the type?
+/// Is this the address of the field in a payload of the type?
 bool PayloadTrimmer::isOwnField(Value address, unsigned field) {
   auto access = address.getDefiningOp<ir::FieldOp>();
   return access && pointeeOf(access.getBase()) == type &&
@@ -110,7 +111,7 @@ void PayloadTrimmer::look(Value address, unsigned field, bool ofProgram) {
   }
 }
 
-/// The accesses of a field in all payloads, as they stand.
+/// The accesses of a field in all payloads, in order.
 llvm::SmallVector<ir::FieldOp> PayloadTrimmer::accessesOf(unsigned field) {
   llvm::SmallVector<ir::FieldOp> accesses;
   for (mlir::Operation *base : bases)
@@ -121,7 +122,7 @@ llvm::SmallVector<ir::FieldOp> PayloadTrimmer::accessesOf(unsigned field) {
   return accesses;
 }
 
-/// A field that only who sends the ray uses becomes a variable of its own, and then values.
+/// A field that only the sender uses becomes a variable, which is then promoted to values.
 void PayloadTrimmer::makeVariables(unsigned field) {
   llvm::MapVector<mlir::Operation *, ir::VarOp> own;
   mlir::OpBuilder builder(module.getContext());
@@ -146,16 +147,16 @@ void PayloadTrimmer::makeVariables(unsigned field) {
   }
 }
 
-/// All accesses of a field that nobody reads, and what is only read to be handed on.
+/// Erases all accesses of a field that is never read, and loads that only pass it on.
 void PayloadTrimmer::eraseAccesses(unsigned field) {
-  llvm::SetVector<mlir::Operation *> gone;
+  llvm::SetVector<mlir::Operation *> erased;
   for (ir::FieldOp access : accessesOf(field))
-    gone.insert(access);
-  for (std::size_t i = 0; i < gone.size(); ++i)
-    gone.insert(gone[i]->user_begin(), gone[i]->user_end());
-  for (mlir::Operation *op : gone)
+    erased.insert(access);
+  for (std::size_t i = 0; i < erased.size(); ++i)
+    erased.insert(erased[i]->user_begin(), erased[i]->user_end());
+  for (mlir::Operation *op : erased)
     op->dropAllReferences();
-  for (mlir::Operation *op : gone)
+  for (mlir::Operation *op : erased)
     op->erase();
 }
 
@@ -172,7 +173,7 @@ ir::StructType PayloadTrimmer::changeType(llvm::ArrayRef<unsigned> kept) {
   return smaller;
 }
 
-/// Without fields if nothing is taken out.
+/// Returns no fields if none is removed.
 TrimmedPayload PayloadTrimmer::run() {
   if (!findBases())
     return {};
@@ -188,7 +189,7 @@ TrimmedPayload PayloadTrimmer::run() {
       kept.push_back(field);
     else
       dropped.push_back(type.getFieldNames()[field].str());
-  if (dropped.empty() || kept.empty()) // the ray carries something, if only its type
+  if (dropped.empty() || kept.empty()) // a payload keeps at least one field
     return {};
   for (unsigned field = 0; field < uses.size(); ++field) {
     if (!uses[field].isRead)
@@ -210,7 +211,7 @@ std::vector<TrimmedPayload> trimPayloads(mlir::ModuleOp module) {
     types.insert(pointeeOf(trace.getPayload()));
   });
   std::vector<TrimmedPayload> trimmed;
-  if (!isLinked) // other classes may come that read the rest
+  if (!isLinked) // unlinked classes may read the fields
     return trimmed;
   for (mlir::Type type : types) {
     TrimmedPayload payload = PayloadTrimmer(module, llvm::cast<ir::StructType>(type)).run();

@@ -5,10 +5,10 @@
 //   %x = vector.extract %v[0]        ==>       a trace
 //   use %x                                     use %x
 //
-// If nothing but parts of a vector is read behind a trace, the parts are what is live across it.
-// Where the whole vector is needed too, the minimum cut sees that a part costs nothing to take out
-// again. So that parts are seen through arithmetic, an operation on vectors of whose result only
-// some components are read is first done on those alone.
+// If only some components of a vector are read after a trace, these components are live across it
+// instead. If the whole vector is needed too, the minimum cut recomputes the component, because
+// extracting it is free. To see components through arithmetic, an operation on vectors of whose
+// result only some components are read is first narrowed to those.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/Liveness.h"
@@ -37,7 +37,7 @@ static bool isComponentwise(mlir::Operation *op) {
                       [](mlir::Type type) { return llvm::isa<mlir::VectorType>(type); });
 }
 
-/// Does `op` for the components that are read alone, if these are not all.
+/// Narrows `op` to the components that are read, if these are not all.
 static bool narrow(mlir::Operation *op) {
   if (!isComponentwise(op) || op->use_empty())
     return false;
@@ -74,7 +74,7 @@ static bool narrow(mlir::Operation *op) {
   return true;
 }
 
-/// Whether taking `op` out of its operand early may make less live: parts, and of a vector alone.
+/// Whether extracting early may reduce liveness: `op` extracts from a single vector.
 static bool isPart(mlir::Operation &op) {
   if (auto extract = llvm::dyn_cast<vector::ExtractOp>(op))
     return componentOf(extract) >= 0;
@@ -89,12 +89,10 @@ void trimVectors(FuncOp function) {
     return;
   llvm::SmallVector<mlir::Operation *> operations;
   function.walk([&](mlir::Operation *op) {
-    if (!llvm::isa<vector::ExtractOp>(
-            op)) // those go with their operand, which may be looked at first
+    if (!llvm::isa<vector::ExtractOp>(op)) // these move together with their operand
       operations.push_back(op);
   });
-  for (mlir::Operation *op :
-       llvm::reverse(operations)) // users first: what they read is extracts then
+  for (mlir::Operation *op : llvm::reverse(operations)) // users first: then they read extracts
     narrow(op);
 
   Liveness liveness(function);
@@ -111,19 +109,20 @@ void trimVectors(FuncOp function) {
                ? a->isBeforeInBlock(b)
                : blockNumbers.lookup(a->getBlock()) < blockNumbers.lookup(b->getBlock());
   };
-  llvm::DenseMap<mlir::Value, mlir::Value> replaced; // parts may have parts
+  llvm::DenseMap<mlir::Value, mlir::Value> replaced; // extracts may have extracts
   for (mlir::Value live : liveness.valuesOf(acrossTraces)) {
     const auto other = replaced.find(live);
     mlir::Value whole = other != replaced.end() ? other->second : live;
-    llvm::SmallVector<mlir::Operation *> parts; // in program order: uses have none
+    llvm::SmallVector<mlir::Operation *>
+        parts; // in program order; an extract has no other uses of its operand
     for (mlir::Operation *user : whole.getUsers())
       if (isPart(*user) && user->getOperand(0) == whole &&
           user->getBlock() != whole.getParentBlock() &&
-          !llvm::is_contained(parts, user)) // a shuffle has its operand twice
+          !llvm::is_contained(parts, user)) // a shuffle may use its operand twice
         parts.push_back(user);
     llvm::sort(parts, isBefore);
     for (mlir::Operation *part : parts) {
-      // The same part that is there already, or that moved before.
+      // An equal extract that is already there, or was moved before.
       mlir::Operation *same = nullptr;
       for (mlir::Operation *user : whole.getUsers())
         if (user != part && user->getBlock() == whole.getParentBlock() &&
@@ -142,7 +141,7 @@ void trimVectors(FuncOp function) {
       }
     }
   }
-  // A result of a trace comes first in its block; it may have been pushed down.
+  // The result of a trace comes first in its block; it may have been moved down.
   for (ir::SuspendOp suspend : suspendsOf(function))
     for (mlir::Operation &op : *suspend.getResume())
       if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp, ir::CallReturnedOp>(op)) {

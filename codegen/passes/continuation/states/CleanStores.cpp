@@ -1,12 +1,12 @@
 //===- CleanStores.cpp - do not store what the slot already holds ---------===//
 //
 //   %i = rtsl.frame_load "i"[0]
-//   ...                                 a store less, and the load too, if nothing else reads it
+//   ...                                 the store is removed, and the load too if it has no other use
 //   rtsl.frame_store %i, "i"[0]   ==>
 //
-// Stores come only at the ends of states, so between a load and a store of a state nothing else
-// writes the slot, unless it shares words with an object; what has to be followed is the value,
-// through arguments of blocks.
+// Stores are only at the ends of states, so between a load and a store of a state no other
+// operation writes the slot, unless it shares words with an object; only the value has to be
+// followed, through arguments of blocks.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -30,11 +30,11 @@ public:
   }
 
 private:
-  /// Does the slot hold `value` just before `op`, however control came there?
+  /// Does the slot hold `value` just before `op`, on every path?
   bool holdsBefore(mlir::Operation *op, mlir::Value value);
   bool overlaps(std::uint32_t offset, mlir::Type type, std::optional<std::uint32_t> bit);
-  /// Is it of the slot that is stored to? Of its name too: where a frame is printed for people,
-  /// slots that share words are fields of their own.
+  /// Is it the slot of the store? The name must match too: in C++ output, slots that share words
+  /// are separate fields.
   template <typename Op>
   bool isSame(Op op) {
     return op.getOffset() == store.getOffset() && op.getBit() == store.getBit() &&
@@ -42,8 +42,8 @@ private:
   }
 
   ir::FrameStoreOp store;
-  // What is being asked: true round a loop, for then it is what came into the loop.
-  llvm::DenseSet<std::pair<mlir::Block *, mlir::Value>> asked;
+  // Pending queries: assumed true in a cycle, where the answer is that at the entry of the loop.
+  llvm::DenseSet<std::pair<mlir::Block *, mlir::Value>> pending;
 };
 
 bool SlotContents::overlaps(std::uint32_t offset, mlir::Type type,
@@ -73,7 +73,7 @@ bool SlotContents::holdsBefore(mlir::Operation *op, mlir::Value value) {
     return false; // computed here
   if (block->isEntryBlock() || block->hasNoPredecessors())
     return false;
-  if (!asked.insert({block, value}).second)
+  if (!pending.insert({block, value}).second)
     return true;
   auto argument = llvm::dyn_cast<mlir::BlockArgument>(value);
   bool merges = argument && argument.getOwner() == block;
@@ -92,15 +92,15 @@ bool cleanStores(FuncOp state) {
     return false;
   llvm::SmallVector<ir::FrameStoreOp> stores;
   state.walk([&](ir::FrameStoreOp store) { stores.push_back(store); });
-  llvm::SmallVector<ir::FrameStoreOp> idle;
+  llvm::SmallVector<ir::FrameStoreOp> redundant;
   for (ir::FrameStoreOp store : stores)
     if (SlotContents(store).isHeldAlready())
-      idle.push_back(store);
-  for (ir::FrameStoreOp store : idle)
+      redundant.push_back(store);
+  for (ir::FrameStoreOp store : redundant)
     store.erase();
   mlir::IRRewriter rewriter(state.getContext());
   const bool isSmaller = mlir::succeeded(mlir::runRegionDCE(rewriter, state->getRegions()));
-  return isSmaller || !idle.empty();
+  return isSmaller || !redundant.empty();
 }
 
 } // namespace rtsl::continuation

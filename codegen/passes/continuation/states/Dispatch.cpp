@@ -1,14 +1,14 @@
-//===- Dispatch.cpp - from states to a machine ----------------------------===//
+//===- Dispatch.cpp - from states to a state machine ----------------------===//
 //
 // Makes the frame a parameter and numbers the states, and adds what
 // runtime/device/engines/Machine.h calls:
 //
-//   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, gives what comes next
+//   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, returns the next transition
 //   func @rtsl_frame_size(%chain: i32) -> i32                   bytes of the largest frame
-//   func @rtsl_calls() -> i32                                   whether some state calls on a frame of its own
-//   func @rtsl_rt_Material_shade_first() -> i32                 the state in which an entry begins
-//   func @rtsl_rays_sent(%kind: i32) -> i32                     what bounds the stack (RayGraph.h)
-//   func @rtsl_rays_kept(%part: i32) -> i32                     what of their state waiting rays read (KeptState.h)
+//   func @rtsl_calls() -> i32                                   whether some state calls a function on its own frame
+//   func @rtsl_rt_Material_shade_first() -> i32                 the first state of an entry point
+//   func @rtsl_rays_sent(%kind: i32) -> i32                     the data that bounds the stack (RayGraph.h)
+//   func @rtsl_rays_kept(%part: i32) -> i32                     the state that waiting rays read later (KeptState.h)
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -38,7 +38,7 @@ std::uint32_t payloadsOf(const RayGraph &rays) {
   std::uint32_t sent = rays.hasGenerate ? 0 : 1; // the camera's
   for (const RayGraph::Kind &kind : rays.kinds)
     sent |= kind.sent | kind.sentLast;
-  if (rays.kinds.size() == 1 || generate == 0) // of colors alone, or any
+  if (rays.kinds.size() == 1 || generate == 0) // only rays without payloads, or unknown ones
     return rays.kinds.front().name == "color" ? 1 : 3;
   return (sent & 1 ? 1u : 0u) | (sent & ~1u ? 2u : 0u);
 }
@@ -144,14 +144,14 @@ mlir::Value Dispatcher::loadFrom(mlir::Location location, mlir::Value frame, std
   return ir::LoadOp::create(builder, location, address(location, frame, offset, type));
 }
 
-/// The frame of what is called begins where this one ends.
+/// The callee's frame begins at the end of this one.
 mlir::LogicalResult Dispatcher::expand(ir::EnterOp call, mlir::Value frame,
                                        std::uint32_t frameSize) {
   builder.setInsertionPoint(call);
   mlir::Location location = call.getLoc();
   const std::int32_t resume = numbers.lookup(call.getResume().value_or(""));
   if (resume == 0)
-    return call.emitOpError() << "goes on in `" << call.getResume().value_or("")
+    return call.emitOpError() << "resumes in `" << call.getResume().value_or("")
                               << "`, which is no state";
   auto state = call->getParentOfType<FuncOp>();
   mlir::Value own = objectOf(state);
@@ -200,7 +200,7 @@ mlir::LogicalResult Dispatcher::passFrame(FuncOp state) {
   mlir::Type frameType = ir::PtrType::get(builder.getI32Type());
   (void)state.insertArgument(state.getNumArguments(), frameType, {}, state.getLoc());
   mlir::Value frame = state.getArgument(state.getNumArguments() - 1);
-  std::uint32_t frameSize = 0; // as those above it see it: addresses take eight bytes
+  std::uint32_t frameSize = 0; // as its callees use it: addresses take eight bytes
   if (auto size = ir::attr::frameSize.of(state))
     frameSize = (static_cast<std::uint32_t>(size.getInt()) + 7) / 8 * 8;
   bool isFine = true;
@@ -246,7 +246,7 @@ mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
   if (next.getState()) {
     value = numbers.lookup(*next.getState());
     if (value == 0)
-      return next.emitOpError() << "names `" << *next.getState() << "`, which is no state";
+      return next.emitOpError() << "names `" << *next.getState() << "`, which is not a state";
     if (next.getTransition() == ir::Transition::Jump)
       value = -value;
   }
@@ -280,7 +280,7 @@ FuncOp Dispatcher::makeConstant(llvm::StringRef name, std::int32_t value) {
   return function;
 }
 
-/// @name(%index: i32) -> i32: one of the values; 0 where there is none.
+/// @name(%index: i32) -> i32: one of the values; 0 if the index is out of range.
 FuncOp Dispatcher::makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t> values) {
   mlir::Location location = builder.getUnknownLoc();
   FuncOp function = makeFunction(name, {builder.getI32Type()});
@@ -304,7 +304,8 @@ FuncOp Dispatcher::makeTable(llvm::StringRef name, llvm::ArrayRef<std::uint32_t>
   return function;
 }
 
-/// @rtsl_frame_size(%chain: i32) -> i32: from the last value on the last difference is added.
+/// @rtsl_frame_size(%chain: i32) -> i32: beyond the table, the last difference is added for each
+/// index.
 void Dispatcher::makeFrameSize() {
   mlir::Location location = builder.getUnknownLoc();
   auto asInt = [](std::uint32_t value) { return static_cast<std::int32_t>(value); };
@@ -333,7 +334,7 @@ void Dispatcher::makeFrameSize() {
       builder, location, mlir::ValueRange(arith::AddIOp::create(builder, location, known, more)));
 }
 
-/// A switch over all states. A number that is none ends the method.
+/// A switch over all states. Any other number ends the method.
 void Dispatcher::makeRunState() {
   mlir::Location location = builder.getUnknownLoc();
   mlir::Type object = ir::RefType::get(builder.getContext(), "object");
@@ -365,8 +366,7 @@ void Dispatcher::makeRunState() {
                              llvm::ArrayRef<std::int32_t>(values), blocks, noOperands);
 }
 
-/// Methods that trace, are in no state and are called by nobody, as --keep has them, cannot be of a
-/// machine.
+/// Methods that trace but have no callers and no states, kept by --keep, cannot run on the machine.
 void Dispatcher::dropUncalled() {
   llvm::SmallVector<FuncOp> uncalled;
   do {
@@ -400,8 +400,9 @@ mlir::LogicalResult Dispatcher::run() {
       continue;
     unsigned ownArguments = objectOf(state) ? 1 : 0;
     if (state.getNumArguments() != ownArguments)
-      return state.emitError() << "`" << state.getSymName()
-                               << "` takes more than its object, which the machine cannot pass";
+      return state.emitError()
+             << "`" << state.getSymName()
+             << "` has parameters besides its object, which the machine cannot pass";
     states.push_back(state);
     std::int32_t number = states.size();
     numbers[state.getSymName()] = number;

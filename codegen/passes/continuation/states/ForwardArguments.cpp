@@ -1,14 +1,15 @@
-//===- ForwardArguments.cpp - arguments of blocks that merge nothing ------===//
+//===- ForwardArguments.cpp - block arguments with one incoming value -----===//
 //
 //   cond_br ..., ^a(%v), ^b(%v)                 cond_br ..., ^a, ^b
 //   ^a(%x): br ^b(%x)                   ==>     ^a: br ^b
 //   ^b(%y): cond_br ..., ^a(%y), ^c             ^b: cond_br ..., ^a, ^c        and %v for %x and %y
 //
-// A state lacks the ways on which other values came. Arguments that pass each other on round a loop
-// are a component of the graph from an argument to what comes for it. One into which a single value
-// comes is that value; of one into which several come, those arguments are looked at by themselves
-// that take only from the component (Braun et al., "Simple and Efficient Construction of Static
-// Single Assignment Form", 2013, algorithm 5).
+// A state has fewer edges than the function it was split from, so a block argument may get only one
+// value. Arguments that pass each other on in a loop are a strongly connected component of the
+// graph from arguments to their incoming values. A component with a single incoming value is
+// replaced by it; in one with several, those arguments are examined separately that get values only
+// from the component (Braun et al., "Simple and Efficient Construction of Static Single Assignment
+// Form", 2013, algorithm 5).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/IncomingEdges.h"
@@ -31,26 +32,26 @@ public:
 
 private:
   void collect(mlir::Block &block);
-  Value behind(Value value) const;
+  Value resolve(Value value) const;
   void forward(const Arguments &part);
   void forwardComponent(const Arguments &component);
   void erase(mlir::Block &block);
 
   FuncOp function;
   llvm::MapVector<Value, llvm::SmallVector<Value>> incoming; // of each argument
-  llvm::DenseMap<Value, Value> forwarded;                    // what it is
+  llvm::DenseMap<Value, Value> forwarded;                    // its replacement
 };
 
 void Forwarder::collect(mlir::Block &block) {
   for (mlir::BlockArgument argument : block.getArguments()) {
     llvm::SmallVector<Value> passed;
     ir::forEachEdgeInto(block, [&](ir::Edge edge) { passed.push_back(edge.passedTo(argument)); });
-    if (!llvm::is_contained(passed, Value())) // no terminator makes the value itself
+    if (!llvm::is_contained(passed, Value())) // no terminator produces the value itself
       incoming.insert({argument, std::move(passed)});
   }
 }
 
-Value Forwarder::behind(Value value) const {
+Value Forwarder::resolve(Value value) const {
   for (auto known = forwarded.find(value); known != forwarded.end(); known = forwarded.find(value))
     value = known->second;
   return value;
@@ -63,7 +64,7 @@ void Forwarder::forwardComponent(const Arguments &component) {
   for (Value argument : component) {
     bool isInner = true;
     for (Value operand : incoming.find(argument)->second) {
-      const Value value = behind(operand);
+      const Value value = resolve(operand);
       if (component.contains(value))
         continue;
       isInner = false;
@@ -107,7 +108,7 @@ void Forwarder::run() {
   forward(all);
   for (Value argument : all)
     if (forwarded.count(argument))
-      argument.replaceAllUsesWith(behind(argument));
+      argument.replaceAllUsesWith(resolve(argument));
   for (mlir::Block &block : llvm::drop_begin(function.getBody()))
     erase(block);
 }

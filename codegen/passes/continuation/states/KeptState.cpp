@@ -1,4 +1,4 @@
-//===- KeptState.cpp - what of a waiting ray's state is kept --------------===//
+//===- KeptState.cpp - the state that a waiting ray keeps -----------------===//
 #include "codegen/passes/continuation/states/KeptState.h"
 
 #include "codegen/ir/Attributes.h"
@@ -33,7 +33,7 @@ struct Fields {
       result.fields |= std::uint64_t(1) << field;
     return result;
   }
-  /// True if there was anything new.
+  /// True if this added any.
   bool add(const Fields &other) {
     const Fields before = *this;
     fields |= other.fields;
@@ -53,14 +53,14 @@ KeptField fieldOf(llvm::StringRef variable) {
       .Default(device::keptFieldCount);
 }
 
-/// What is the same for all rays of a sample: it stays in the state (takeFromSample in
+/// Fields that are the same for all rays of a sample: they stay in the state (takeFromSample in
 /// runtime/device/ray/Undefined.h).
 Fields sharedByRays() {
   return Fields::of({device::keptScreenCoord, device::keptLensCoord, device::keptTimeSeed,
                      device::keptLaunchIndex, device::keptLaunchSize, device::keptExceptionCode});
 }
 
-/// What of the state an address points into.
+/// The fields of the state that an address points to.
 Fields fieldsAt(mlir::Value address) {
   mlir::Operation *base = ir::baseOperation(address);
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
@@ -81,7 +81,8 @@ Fields fieldsAt(mlir::Value address) {
   return {};
 }
 
-/// What the runtime reads of a ray that sends another one: Classic.h, Programs.h and Spawn.h.
+/// The fields that the runtime reads of a ray that sends another one: Classic.h, Programs.h and
+/// Spawn.h.
 Fields readsOfSending() {
   return Fields::of({device::keptRandomKey, device::keptDimension, device::keptDepth,
                      device::keptInstance, device::keptHitPointError, device::keptHitPoint,
@@ -104,9 +105,9 @@ private:
 
   mlir::ModuleOp module;
   bool sendsPayloads = false, hasOpenCalls = false;
-  llvm::StringSet<> callers;         // states in which calls with frames of their own return
-  llvm::StringMap<Fields> functions; // what they read, with all that they call
-  llvm::StringMap<Fields> live;      // where states begin
+  llvm::StringSet<> callers;         // states that resume after calls with frames of their own
+  llvm::StringMap<Fields> functions; // read by functions, including their callees
+  llvm::StringMap<Fields> live;      // at the beginnings of states
 };
 
 Finder::Finder(mlir::ModuleOp module) : module(module) {
@@ -118,9 +119,9 @@ Finder::Finder(mlir::ModuleOp module) : module(module) {
   });
 }
 
-/// What the runtime reads on behalf of an operation.
+/// The fields that the runtime reads to execute an operation.
 Fields Finder::implicitReads(mlir::Operation *op) const {
-  Fields inherited; // by a ray that is sent; without payloads all rays have the same
+  Fields inherited; // by a ray that is sent; without payloads these are the same for all rays
   if (sendsPayloads)
     inherited = Fields::of({device::keptTime, device::keptRayMask, device::keptRayRoot});
   Fields fields;
@@ -151,11 +152,11 @@ Fields Finder::implicitReads(mlir::Operation *op) const {
   return fields;
 }
 
-/// What an operation reads itself, or by what it calls.
+/// The fields that an operation reads, directly or through calls.
 Fields Finder::reads(mlir::Operation *op) const {
   Fields fields = implicitReads(op);
   if (llvm::isa<ir::FieldOp, ir::ElementOp>(op))
-    return fields; // an address is computed
+    return fields; // only computes an address
   for (mlir::OpOperand &operand : op->getOpOperands()) {
     if (!llvm::isa<ir::PtrType>(operand.get().getType()))
       continue;
@@ -170,7 +171,7 @@ Fields Finder::reads(mlir::Operation *op) const {
   return fields;
 }
 
-/// What an operation writes whole.
+/// The fields that an operation overwrites completely.
 Fields written(mlir::Operation *op) {
   mlir::Value address;
   if (auto store = llvm::dyn_cast<ir::StoreOp>(op))
@@ -187,7 +188,7 @@ Fields Finder::ofFunction(llvm::StringRef name) const {
   return known == functions.end() ? Fields::all() : known->second;
 }
 
-/// What functions read; those that are only declared may read all.
+/// The fields that functions read; declared ones may read all.
 void Finder::summarise() {
   for (FuncOp function : module.getOps<FuncOp>())
     functions[function.getSymName()] = function.isExternal() ? Fields::all() : Fields();
@@ -201,7 +202,7 @@ void Finder::summarise() {
   }
 }
 
-/// Whether rays of the state's kind bring back a color, or the sample's color is theirs.
+/// Whether rays of the state's kind return a color, or the sample's color is theirs.
 bool bringsColor(FuncOp state) {
   const auto method = ir::attr::methodName.of(state);
   const llvm::StringRef name = state.getSymName();
@@ -210,10 +211,10 @@ bool bringsColor(FuncOp state) {
          !name.starts_with("rtsl_rt_Miss_miss_payload.");
 }
 
-/// What is live behind a state that ends so.
+/// The fields that are live after a state with this end.
 Fields Finder::after(ir::NextOp next) const {
   Fields fields;
-  if (sendsPayloads) // whether a color goes to the one that sent the ray
+  if (sendsPayloads) // whether a color is returned to the sender
     fields.add(Fields::of({device::keptRayType}));
   switch (next.getTransition()) {
   case ir::Transition::Trace:
@@ -240,12 +241,12 @@ Fields Finder::after(ir::NextOp next) const {
 Fields Finder::atEnd(FuncOp state, ir::EndOp end) const {
   if (auto next = end.getNext().getDefiningOp<ir::NextOp>())
     return after(next);
-  Fields fields; // one of several
+  Fields fields; // either of several
   state.walk([&](ir::NextOp next) { fields.add(after(next)); });
   return fields;
 }
 
-/// Liveness within a state. True if more is live at its beginning than was known.
+/// Liveness within a state. True if fields were added to those live at its beginning.
 bool Finder::update(FuncOp state) {
   llvm::DenseMap<mlir::Block *, Fields> liveIn;
   bool changed = true;

@@ -31,8 +31,7 @@ private:
 
   mlir::ModuleOp module;
   RayGraph graph;
-  /// The kinds whose rays may run a function that has frames of its own: those that run its
-  /// callers.
+  /// The kinds of rays that may run a function with a frame of its own: those of its callers.
   llvm::StringMap<std::uint32_t> kindsOfCallers;
 };
 
@@ -45,7 +44,7 @@ bool isState(mlir::func::FuncOp function) {
   return ir::attr::state.isOn(function);
 }
 
-/// The kind of rays with this payload: its number in a linked program, or else the next one.
+/// The kind of rays with this payload: its number in a linked program, otherwise the next one.
 std::uint32_t Finder::payload(llvm::StringRef name, std::optional<std::uint32_t> number) {
   auto known = std::find_if(graph.kinds.begin() + 1, graph.kinds.end(),
                             [&](const RayGraph::Kind &kind) { return kind.name == name; });
@@ -85,7 +84,7 @@ void Finder::findCallers() {
   }
 }
 
-/// The kinds whose rays may run this state, as bits.
+/// The kinds of rays that may run this state, as bits.
 std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
   if (continuation::isFramed(state))
     return kindsOfCallers.lookup(state.getSymName().rsplit(".state").first);
@@ -97,13 +96,13 @@ std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
     for (std::size_t kind = 1; kind < graph.kinds.size(); ++kind)
       if (graph.kinds[kind].name == suffix)
         return 1u << kind;
-    return 0; // nobody sends such rays
+    return 0; // such rays are never sent
   }
   if (base == "shade" || base == "miss")
     return 1;
   if (isOfGenerate(state))
     return 1u << (graph.kinds.size() - 1);
-  // A method that has become part of its entry.
+  // A method that has been inlined into its entry point.
   llvm::StringRef name = state.getSymName();
   if (name.starts_with("rtsl_rt_Material_shade.") || name.starts_with("rtsl_rt_Miss_miss."))
     return 1;
@@ -153,7 +152,7 @@ RayGraph Finder::run() {
     graph.hasGenerate |= isState(state) && isOfGenerate(state);
   if (graph.hasGenerate)
     graph.kinds.push_back({"generate"});
-  if (graph.kinds.size() > RTSL_MAX_RAY_KINDS) { // as if each could send each
+  if (graph.kinds.size() > RTSL_MAX_RAY_KINDS) { // assume that each can send each
     graph.kinds = {{"any", 1}};
     return graph;
   }
@@ -184,7 +183,7 @@ std::uint32_t RayGraph::levels(std::uint32_t maxDepth) const {
 }
 
 bool RayGraph::grows() const {
-  // In so many steps a way that comes round has come round.
+  // After this many steps every cycle has been found.
   constexpr std::uint32_t far = 2 * RTSL_MAX_RAY_KINDS;
   return levels(2 * far) != levels(far);
 }

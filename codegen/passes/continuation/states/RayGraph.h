@@ -1,8 +1,8 @@
 //===- RayGraph.h - which rays send which ---------------------------------===//
 //
-// A kind of rays are those that the same programs answer: the ones that bring a color, and one kind
-// for each type of payload. `generate` is a kind of its own. What the programs of a kind may send
-// bounds the stack (runtime/device/engines/StackBound.h).
+// Rays of one kind run the same methods: those that return a color are one kind, those with each
+// type of payload another. `generate` is a kind of its own. The kinds of rays that the methods of a
+// kind may send bound the stack (runtime/device/engines/StackBound.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,24 +19,24 @@ namespace rtsl {
 struct RayGraph {
   struct Kind {
     std::string name;           // "color", the payload's struct, or "generate"
-    std::uint32_t sent = 0;     // bits: kinds of rays that its programs wait for
-    std::uint32_t sentLast = 0; // and that take the place of one of this kind
+    std::uint32_t sent = 0;     // bits: kinds of rays that its methods send and wait for
+    std::uint32_t sentLast = 0; // bits: kinds of rays that its methods send as tail traces
   };
-  std::vector<Kind> kinds; // as rtsl_ray_kinds numbers them
+  std::vector<Kind> kinds; // in the numbering of rtsl_ray_kinds
   bool hasGenerate = false;
-  /// No ray waits but `generate`, or none does, and no other method has a frame: one level serves
-  /// all.
+  /// Only `generate` waits for rays, or nothing does, and no other method has a frame: one level is
+  /// enough.
   bool waitsOnce = false;
 
-  /// Levels that any sample needs at most, exactly.
+  /// The exact number of levels that a sample may need.
   std::uint32_t levels(std::uint32_t maxDepth) const;
-  /// Does a larger limit of depth need a larger stack?
+  /// Does a larger depth limit need a larger stack?
   bool grows() const;
-  /// Of a set of kinds, given as bits.
+  /// The names of a set of kinds, given as bits.
   std::vector<std::string> names(std::uint32_t set) const;
 };
 
-/// Whether a state is one of `generate`.
+/// Whether a state belongs to `generate`.
 bool isOfGenerate(mlir::func::FuncOp state);
 
 /// The graph of a module whose functions have been split.

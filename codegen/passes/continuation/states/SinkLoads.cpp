@@ -1,4 +1,4 @@
-//===- SinkLoads.cpp - load from the frame where it is needed -------------===//
+//===- SinkLoads.cpp - move loads of the frame to their uses --------------===//
 //
 //   ^entry:                              ^entry:
 //     %c = rtsl.trace_result               %c = rtsl.trace_result
@@ -7,8 +7,8 @@
 //   ^a:                                    %w = rtsl.frame_load "w"[0]
 //     use %w                               use %w
 //
-// Loads of the frame and what is recomputed stand at the beginning of a state. They move down to
-// the block that dominates all their uses, but never into a loop.
+// Loads of the frame and recomputed values are at the beginning of a state. They move down to the
+// block that dominates all their uses, but never into a loop.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -20,9 +20,9 @@
 
 namespace rtsl::continuation {
 
-/// Nothing between its place and its uses changes what it gives.
+/// May the operation move to its uses? Nothing in between changes its result.
 static bool mayMove(mlir::Operation &op) {
-  // Stores stand at the ends of states, behind the beginning of any block; objects are written
+  // Stores are at the ends of states, after the beginning of any block; objects are written
   // anywhere.
   if (llvm::isa<ir::FrameLoadOp>(op))
     return !ir::attr::shared.isOn(&op);

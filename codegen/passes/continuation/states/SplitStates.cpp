@@ -14,8 +14,8 @@
 //     return                                                        rtsl.end %n
 //   }                                                             }
 //
-// Each state gets a copy of all that its beginning reaches before the next trace: what lies on
-// several ways is there several times, as `^loop` here.
+// Each state gets a copy of the blocks that its beginning reaches before the next trace: code on
+// several paths, such as `^loop` here, is duplicated.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -29,7 +29,7 @@ namespace rtsl::continuation {
 
 namespace {
 
-/// A call that is a jump to the first state of what it calls; nothing behind it runs.
+/// A call that is a jump to the first state of the callee; nothing follows it.
 bool isJump(mlir::Operation &op) {
   return ir::attr::tail.isOn(&op);
 }
@@ -76,7 +76,7 @@ llvm::SmallVector<mlir::Block *> Splitter::reachableFrom(mlir::Block *start) {
       stack.pop_back();
       continue;
     }
-    // Last successor first, so that the first one comes first in the end.
+    // Last successor first, so that the first one is first in the reversed order.
     mlir::Block *successor = block->getSuccessor(successors(block) - 1 - next++);
     if (seen.insert(successor).second)
       stack.push_back({successor, 0});
@@ -95,7 +95,7 @@ void Splitter::endState(mlir::OpBuilder &builder, mlir::Location location,
 
 void Splitter::cloneBlock(mlir::Block *from, mlir::IRMapping &mapping) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(mapping.lookup(from));
-  ir::EnterOp call; // the last, which is the suspend's
+  ir::EnterOp call; // the last one is that of the suspend
   for (mlir::Operation &op : *from) {
     if (isJump(op)) {
       std::string callee = llvm::cast<mlir::func::CallOp>(op).getCallee().str();
@@ -178,11 +178,12 @@ llvm::SmallVector<FuncOp> Splitter::run() {
 
 mlir::FailureOr<llvm::SmallVector<FuncOp>> splitStates(FuncOp function) {
   if (function.getNumResults() != 0)
-    return function.emitError() << "`" << function.getSymName()
-                                << "` traces and returns a value, so it has no states";
+    return function.emitError()
+           << "`" << function.getSymName()
+           << "` traces and returns a value, so it cannot be split into states";
   for (ir::SuspendOp suspend : suspendsOf(function))
     if (!suspend.getSaved().empty())
-      return suspend.emitError() << "saves values that have no place in the frame yet";
+      return suspend.emitError() << "saves values that have no slot in the frame yet";
   return Splitter(function).run();
 }
 

@@ -1,6 +1,6 @@
-//===- Steps.h - the cut and what follows ---------------------------------===//
+//===- Steps.h - splitting into states and what follows -------------------===//
 //
-// Each step lies in the file that is named here; Split.cpp calls them.
+// Each step with its file; Split.cpp calls them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,22 +13,21 @@ namespace rtsl::continuation {
 /// each trace.
 mlir::FailureOr<llvm::SmallVector<FuncOp>> splitStates(FuncOp function);
 
-/// ForwardArguments.cpp: an argument of a block to which only one value comes, on whatever way, is
-/// that value.
+/// ForwardArguments.cpp: replaces block arguments that get only one value, on all paths, by that
+/// value.
 void forwardArguments(FuncOp function);
 
-/// CleanStores.cpp: removes stores of what the slot already holds. True if there were any.
+/// CleanStores.cpp: removes stores of values that the slot already holds. True if there were any.
 bool cleanStores(FuncOp state);
 
-/// SinkLoads.cpp: moves loads of the frame, and what is recomputed, to where they are used, never
-/// into a loop. True if any moved.
+/// SinkLoads.cpp: moves loads of the frame, and recomputed values, to their uses, but never into a
+/// loop. True if any moved.
 bool sinkLoads(FuncOp state);
 
-/// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in the order in which they
-/// stand, and makes the functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`,
-/// `@rtsl_ray_kinds` with its tables (RayGraph.h), and `@f_first` for each of machineEntries(), 0
-/// if there is no such function or it does nothing, and for each other exported function that was
-/// split.
+/// Dispatch.cpp: makes the frame a parameter, numbers the states from 1 in order, and makes the
+/// functions that the machine calls: `@rtsl_run_state`, `@rtsl_frame_size`, `@rtsl_ray_kinds` with
+/// its tables (RayGraph.h), and `@f_first` for each of machineEntries(), 0 if there is no such
+/// function or it does nothing, and for each other exported function that was split.
 mlir::LogicalResult makeDispatch(mlir::ModuleOp module);
 
 } // namespace rtsl::continuation

@@ -1,17 +1,17 @@
-//===- CutJoins.cpp - states of their own for code that many states reach -===//
+//===- CutJoins.cpp - states for code that many states reach --------------===//
 //
 //   ^resume1: br ^join       ^resume2: br ^join             ^resume1: br ^cut       ^resume2: br ^cut
 //   ^join:                                          ==>     ^cut: rtsl.suspend ^join {rtsl.join}
 //     rest                                                  ^join: rtsl.trace_returned
 //                                                             rest
 //
-// Each state has a copy of what its beginning reaches before the next trace. Where traces stand in
-// branches one behind the other, the first state has copies of all that follows, the second of one
-// branch less, and so on: code that grows with the square of the program. Where copies would come
-// to far more than the program itself, some joins become the beginnings of states: what is live
-// there goes through the frame, and a jump leads from state to state. No ray is sent.
+// Each state has a copy of the blocks that its beginning reaches before the next trace. If traces
+// are in consecutive branches, the first state has copies of all the following code, the second of
+// one branch less, and so on: code size grows with the square of the program. If the copies would
+// be much larger than the program itself, some joins become the beginnings of states: the values
+// live there go through the frame, and a jump leads from state to state. No ray is sent.
 //
-// Joins in loops are taken only if others do not suffice.
+// Joins in loops are used only if others do not suffice.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/suspend/CutJoins.h"
@@ -65,7 +65,7 @@ JoinCutter::JoinCutter(FuncOp function, const JoinOptions &options)
   }
 }
 
-/// Of all states together; not more than what passes `limit` is counted.
+/// The sum over all states; the count stops when it exceeds `limit`.
 std::size_t JoinCutter::copiedOperations(const Cuts &cuts, std::size_t limit) {
   std::size_t copied = 0;
   llvm::SmallVector<mlir::Block *> beginnings = {order.front()};
@@ -93,7 +93,8 @@ std::size_t JoinCutter::copiedOperations(const Cuts &cuts, std::size_t limit) {
   return copied;
 }
 
-/// By the one beginning that reaches each block, as long as there is only one.
+/// Finds shared blocks: propagates the one beginning that reaches each block until a second one
+/// does.
 void JoinCutter::findShared() {
   llvm::DenseMap<mlir::Block *, mlir::Block *> reachedFrom;
   llvm::SmallVector<mlir::Block *> pending;
@@ -125,7 +126,7 @@ void JoinCutter::findShared() {
   }
 }
 
-/// Joins with at least so many operations between one and the next.
+/// Chooses joins with at least `distance` operations between two of them.
 JoinCutter::Cuts JoinCutter::choose(std::size_t distance, bool inLoops) {
   Cuts cuts;
   std::size_t since = 0;
@@ -147,7 +148,7 @@ void JoinCutter::cut(mlir::Block *join) {
   join->getParent()->getBlocks().insert(join->getIterator(), before);
   for (mlir::BlockArgument argument : join->getArguments())
     argument.replaceAllUsesWith(before->addArgument(argument.getType(), argument.getLoc()));
-  join->replaceAllUsesWith(before); // by those that branch to it
+  join->replaceAllUsesWith(before); // for its predecessors
   join->eraseArguments(0, join->getNumArguments());
 
   const mlir::Location location = join->front().getLoc();

@@ -1,24 +1,24 @@
-//===- CutJoins.h - states of their own for code that many states reach ---===//
+//===- CutJoins.h - states for code that many states reach ----------------===//
 #pragma once
 
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 
 namespace rtsl::continuation {
 
-/// When joins are cut.
+/// Limits for cutting joins.
 struct JoinOptions {
-  /// Copies of operations, over all states, that are always fine.
+  /// Number of copied operations, over all states, that is always accepted.
   std::size_t free = 4000;
-  /// And so many times the operations of the function.
+  /// Also accepted: this factor times the operations of the function.
   std::size_t copies = 4;
-  /// Operations between two cuts, at least.
+  /// Least number of operations between two cuts.
   std::size_t shortest = 16;
 
-  static JoinOptions forPeople() { return {1500, 4, 32}; }
+  static JoinOptions forCpp() { return {1500, 4, 32}; }
 };
 
-/// Gives code that many states would have copies of a state of its own. After insertSuspends() and
-/// endAtLastTraces().
+/// Makes a state of its own of code that would be copied to many states. Runs after
+/// insertSuspends() and endAtTailTraces().
 void cutJoins(FuncOp function, const JoinOptions &options = {});
 
 } // namespace rtsl::continuation

@@ -1,8 +1,8 @@
-//===- Endings.cpp - what ends a chain of rays ----------------------------===//
+//===- Endings.cpp - how chains of rays end -------------------------------===//
 //
-// For the report: a program that traces on every way ends by the limit of depth alone. Others ask
-// something first: the branches are found of whose ways some lead to a trace, whatever comes, and
-// some may lead past all, and what their conditions are made of.
+// For the report: a program that traces on every path ends only by the depth limit. In other
+// programs, this finds the branches with one successor from which every path traces and another
+// from which some path does not, and the sources of their conditions.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/IncomingEdges.h"
@@ -22,13 +22,13 @@ bool traces(mlir::Block &block) {
   return llvm::any_of(block, llvm::IsaPred<ir::TraceOp, ir::TracePayloadOp>);
 }
 
-/// Blocks from whose beginning some way leads to the end of the function without a trace.
+/// Blocks from whose beginning some path leads to the end of the function without a trace.
 llvm::SmallPtrSet<mlir::Block *, 16> blocksThatMayEnd(FuncOp function) {
   llvm::SmallPtrSet<mlir::Block *, 16> mayEnd;
   bool changed = true;
   while (changed) {
     changed = false;
-    for (mlir::Block &block : llvm::reverse(function.getBody())) { // successors mostly stand behind
+    for (mlir::Block &block : llvm::reverse(function.getBody())) { // successors mostly come later
       if (mayEnd.contains(&block) || traces(block))
         continue;
       if (block.getNumSuccessors() == 0 ||
@@ -40,7 +40,7 @@ llvm::SmallPtrSet<mlir::Block *, 16> blocksThatMayEnd(FuncOp function) {
   return mayEnd;
 }
 
-/// What a value is made of, as an author would name it; nothing if it is none of these.
+/// Adds the sources of a value that authors know by name.
 void addSources(mlir::Value value, llvm::SetVector<mlir::Value> &seen,
                 std::vector<std::string> &sources) {
   if (!seen.insert(value))

@@ -7,7 +7,7 @@
 //                                             %c = rtsl.trace_result
 //                                             after
 //
-// A ray with a payload is prepared in front of the suspend, which then names none:
+// A ray with a payload is prepared before the suspend, which then names none:
 //
 //     rtsl.trace_payload %o, %d ...           rtsl.spawn_payload %o, %d ...
 //     after                           ==>     rtsl.suspend ^resume
@@ -15,7 +15,7 @@
 //                                             rtsl.trace_returned
 //                                             after
 //
-// So is a call of a function that has a frame of its own:
+// A call of a function that has its own frame is handled in the same way:
 //
 //     %r = call @f(%v) {rtsl.framed}          rtsl.enter @f(%v)
 //     after                           ==>     rtsl.suspend ^resume
@@ -33,7 +33,7 @@
 
 namespace rtsl::continuation {
 
-/// The call is prepared; what it gives comes where `builder` stands.
+/// Prepares the call; its results are inserted at `builder`.
 static void suspendAtCall(mlir::func::CallOp call, mlir::OpBuilder builder,
                           const WriteSummary &summary) {
   const bool hasObject =

@@ -1,6 +1,6 @@
 //===- Steps.h - blocks end at their traces -------------------------------===//
 //
-// Each step lies in the file that is named here; Split.cpp calls them.
+// Each step with its file; Split.cpp calls them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -12,26 +12,25 @@
 
 namespace rtsl::continuation {
 
-/// What ends a chain of rays but the limit of depth.
+/// What can end a chain of rays other than the depth limit.
 struct Endings {
-  bool alwaysTraces = false;   // on every way: nothing does
-  std::vector<std::string> by; // what conditions are made of: "rand()", "its payload", "rt_Depth"
+  bool alwaysTraces = false;   // on every path: nothing else does
+  std::vector<std::string> by; // sources of conditions: "rand()", "its payload", "rt_Depth"
 };
 
-/// Endings.cpp: of a function that traces, before it is split.
+/// Endings.cpp: for a function that traces, before it is split.
 Endings endingsOf(FuncOp function);
 
 /// InsertSuspends.cpp: ends blocks at their traces.
 void insertSuspends(FuncOp function);
-/// Where the summary is known already: it takes a walk over the module.
+/// With a summary, which takes a walk over the module to compute.
 void insertSuspends(FuncOp function, const WriteSummary &summary);
 
-/// LastTraces.cpp: a method ends at a trace behind which nothing happens; its ray takes the place
-/// of this one. Gives where these traces stood.
-llvm::SmallVector<mlir::Location> endAtLastTraces(FuncOp function);
+/// TailTraces.cpp: ends a method at a trace that nothing follows; its ray replaces this one.
+/// Returns the locations of these traces.
+llvm::SmallVector<mlir::Location> endAtTailTraces(FuncOp function);
 
-/// LastTraces.cpp: whether nothing happens behind a trace but sums and products of what it brings
-/// back.
+/// TailTraces.cpp: whether a trace is followed only by sums and products of its result.
 bool onlyScalesAndAdds(ir::SuspendOp suspend);
 
 } // namespace rtsl::continuation

@@ -1,7 +1,7 @@
 // What the verifiers say.
 // RUN: rtsl-opt %s -split-input-file -verify-diagnostics
 
-// expected-error @below {{has root "Material", which is no `rt_` class}}
+// expected-error @below {{has root "Material", which is not an `rt_` class}}
 rtsl.class @Glass root "Material" {
 }
 
@@ -15,7 +15,7 @@ rtsl.class @Glass root "rt_Material" {
 // -----
 
 rtsl.class @Glass root "rt_Material" {
-  // expected-error @below {{has type 'f64', which memory does not hold}}
+  // expected-error @below {{has type 'f64', which cannot be stored in memory}}
   rtsl.member_decl @eta : f64 access "public"
 }
 
@@ -50,7 +50,7 @@ rtsl.class @Glass root "rt_Material" {
   rtsl.member_decl @n : vector<3xf32> access "scratch"
 }
 func.func @scratch(%self: !rtsl.ref<"Glass">) {
-  // expected-error @below {{names scratch member "n", which lies in no record; use `rtsl.attribute`}}
+  // expected-error @below {{names the scratch member "n", which is not in the record; use `rtsl.attribute`}}
   %p = rtsl.member %self["n"] : !rtsl.ref<"Glass"> -> !rtsl.ptr<vector<3xf32>>
   rtsl.return
 }
@@ -69,7 +69,7 @@ func.func @noClass(%self: !rtsl.ref<"Clay">) {
 
 // -----
 
-// expected-error @below {{what a pointer points to cannot be 'f64': memory holds f32, i32, i1}}
+// expected-error @below {{the pointee cannot be 'f64': memory holds f32, i32, i1}}
 func.func private @f(!rtsl.ptr<f64>)
 
 // -----
@@ -114,7 +114,7 @@ func.func @f(%p: !rtsl.ptr<!rtsl.array<2 x f32>>) {
 // -----
 
 func.func @f() {
-  // expected-error @below {{names "rt_RayOrigin", which is no state variable; leave out `rt_`}}
+  // expected-error @below {{names "rt_RayOrigin", which is not a state variable; leave out `rt_`}}
   %p = rtsl.state "rt_RayOrigin" : !rtsl.ptr<vector<3xf32>>
   rtsl.return
 }
@@ -130,7 +130,7 @@ func.func @f() {
 // -----
 
 func.func @f() {
-  // expected-error @below {{gives a color for "SampleColor", not 'f32'}}
+  // expected-error @below {{must give a color for "SampleColor", not 'f32'}}
   %q = rtsl.state "SampleColor" : !rtsl.ptr<f32>
   rtsl.return
 }
@@ -146,7 +146,7 @@ func.func @f(%b: !rtsl.ptr<!rtsl.buffer<f32, 2>>, %i: i32) {
 // -----
 
 func.func @f(%b: !rtsl.ptr<!rtsl.buffer<f32, 2>>) {
-  // expected-error @below {{asks for dimension 2 of 2}}
+  // expected-error @below {{queries dimension 2 of 2}}
   %n = rtsl.buffer_length %b, 2 : !rtsl.ptr<!rtsl.buffer<f32, 2>>
   rtsl.return
 }
@@ -162,7 +162,7 @@ func.func @f(%x: f32) {
 // -----
 
 func.func @f() {
-  // expected-error @below {{stands in no loop, illuminance or switch}}
+  // expected-error @below {{is in no loop, illuminance or switch}}
   rtsl.break
 }
 
@@ -171,7 +171,7 @@ func.func @f() {
 func.func @f(%v: i32) {
   rtsl.switch %v : i32 {
     arm [1] {
-      // expected-error @below {{stands in no loop or illuminance}}
+      // expected-error @below {{is in no loop or illuminance}}
       rtsl.continue
     }
   }
@@ -183,7 +183,7 @@ func.func @f(%v: i32) {
 func.func @f(%c: i1) {
   rtsl.loop cond {
     rtsl.if %c {
-      // expected-error @below {{stands in a loop's `cond` or `step`; it belongs into the body}}
+      // expected-error @below {{is in a loop's `cond` or `step`; it is only for the body}}
       rtsl.return
     }
     rtsl.condition %c
@@ -248,7 +248,7 @@ func.func @f(%x: f32) {
 
 // -----
 
-// expected-error @below {{`rtsl.class` is to be a string}}
+// expected-error @below {{`rtsl.class` must be a string}}
 func.func private @f() attributes {rtsl.class}
 
 // -----
@@ -263,7 +263,7 @@ func.func private @f() attributes {rtsl.export = "f"}
 
 // -----
 
-// expected-error @below {{`rtsl.frame_size` is to be an integer}}
+// expected-error @below {{`rtsl.frame_size` must be an integer}}
 func.func private @f() attributes {rtsl.frame_size = "16"}
 
 // -----
@@ -287,7 +287,7 @@ func.func @f() {
 rtsl.class @A root "rt_Texture" {
 }
 func.func @f() {
-  // expected-error @below {{holds numbers, and}}
+  // expected-error @below {{may hold only numbers, not}}
   %t = rtsl.table "t" [0] : !rtsl.ptr<!rtsl.array<1 x !rtsl.ref<"A">>>
   return
 }

@@ -86,8 +86,8 @@ TEST(HitErrors, WhatNothingBoundsIsAWarning) {
       {"float t[4]; t[int(center.x)] = center.y / 3.0; hit(t[int(center.z)]);",
        "hit(t[int(center.z)])", "an array"},
       {"hit(1.0 + rand());", "hit(1.0 + rand())", "`rand`"},
-      {"hit(floor(center.x / 3.0));", "hit(floor(center.x / 3.0))", "may jump"},
-      {"hit(float(int(center.x / 3.0)));", "hit(float(int(center.x / 3.0)))", "may jump"},
+      {"hit(floor(center.x / 3.0));", "hit(floor(center.x / 3.0))", "changes in steps"},
+      {"hit(float(int(center.x / 3.0)));", "hit(float(int(center.x / 3.0)))", "changes in steps"},
       {"hit(pow(center.x, center.y / 3.0));", "hit(pow(center.x, center.y / 3.0))", "exponent"},
   };
   for (const auto &one : cases) {

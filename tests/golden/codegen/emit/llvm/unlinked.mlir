@@ -2,7 +2,7 @@
 // RUN: rtsl-opt %s --rtsl-to-llvm -split-input-file -verify-diagnostics
 
 func.func @f() {
-  // expected-error @below {{attribute `n` has no `offset`: linking has not given it a place}}
+  // expected-error @below {{attribute `n` has no `offset`: linking has not set it}}
   %p = rtsl.attribute "n" : !rtsl.ptr<f32>
   return
 }
@@ -10,7 +10,7 @@ func.func @f() {
 // -----
 
 func.func @f(%t: !rtsl.ref<"rt_Texture">) {
-  // expected-error @below {{`lookup` is a dispatch slot that no linking has resolved}}
+  // expected-error @below {{`lookup` is a dispatch slot that linking has not resolved}}
   rtsl.call_method "lookup" on %t() : !rtsl.ref<"rt_Texture">, () -> ()
   return
 }

@@ -1,7 +1,7 @@
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-rematerialise --rtsl-save-live --rtsl-layout-frame --rtsl-split-states \
 // RUN:   --split-input-file -verify-diagnostics
 
-// expected-error @below {{`f` traces and returns a value, so it has no states}}
+// expected-error @below {{`f` traces and returns a value, so it cannot be split into states}}
 func.func @f(%o: vector<3xf32>) -> vector<3xf32> {
   %c = rtsl.trace %o, %o : vector<3xf32>
   return %c : vector<3xf32>
@@ -11,7 +11,7 @@ func.func @f(%o: vector<3xf32>) -> vector<3xf32> {
 
 // The address of an argument of the caller's is known to nobody behind the trace.
 func.func @f(%o: vector<3xf32>, %p: !rtsl.ptr<f32>) {
-  // expected-error @below {{the address `argument` is used after a trace and cannot be computed again there}}
+  // expected-error @below {{the address `argument` is used after a trace and cannot be recomputed there}}
   %c = rtsl.trace %o, %o : vector<3xf32>
   %x = vector.extract %c[0] : f32 from vector<3xf32>
   rtsl.store %x, %p : !rtsl.ptr<f32>
@@ -48,7 +48,7 @@ func.func @f() {
 // -----
 
 func.func @f() {
-  // expected-error @below {{names a bit for a bool, and for a bool only}}
+  // expected-error @below {{has a bit exactly if the value is a bool}}
   %w = rtsl.frame_load "w"[0] : i1
   return
 }
@@ -56,7 +56,7 @@ func.func @f() {
 // -----
 
 func.func @f() {
-  // expected-error @below {{names a state for `trace` and `jump`, and none otherwise}}
+  // expected-error @below {{names a state exactly if it is a `trace` or a `jump`}}
   %n = rtsl.next done @g
   return
 }

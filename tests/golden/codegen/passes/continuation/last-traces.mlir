@@ -7,7 +7,7 @@
 // CHECK-NEXT:    return {rtsl.last}
 // CHECK-NOT:     trace_result
 // REPORT-LABEL: plain: 1 state, frame of 0 bytes
-// REPORT-NEXT:    trace at {{.*}}, the last: its ray takes the place of this one, so recursion runs as a loop
+// REPORT-NEXT:    trace at {{.*}}, a tail trace: its ray replaces this one, so recursion runs as a loop
 func.func @plain(%self: !rtsl.ref<"M">) {
   %p = rtsl.state "HitPoint" : !rtsl.ptr<vector<3xf32>>
   %o = rtsl.load %p : !rtsl.ptr<vector<3xf32>>
@@ -24,7 +24,7 @@ func.func @plain(%self: !rtsl.ref<"M">) {
 // CHECK:         rtsl.suspend
 // REPORT-LABEL: product: 2 states
 // REPORT:         saved          4 bytes
-// REPORT:         then           sums and products alone
+// REPORT:         then           only sums and products
 func.func @product(%self: !rtsl.ref<"M">) {
   %p = rtsl.state "HitPoint" : !rtsl.ptr<vector<3xf32>>
   %o = rtsl.load %p : !rtsl.ptr<vector<3xf32>>

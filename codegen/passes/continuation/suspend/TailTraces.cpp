@@ -1,4 +1,4 @@
-//===- LastTraces.cpp - tail traces ---------------------------------------===//
+//===- TailTraces.cpp - tail traces ---------------------------------------===//
 //
 //     rtsl.suspend %o, %d, ^resume
 //   ^resume:                                     rtsl.spawn %o, %d last
@@ -6,13 +6,13 @@
 //     rtsl.store %c, SampleColor
 //     return
 //
-// What the ray brings back is what this one brings back, so it takes its place: no frame, no level
-// more, and recursion runs as a loop. The colors are those of recursion bit for bit, for nothing is
-// computed on the way back.
+// The color that the traced ray returns is the color that this ray returns, so it replaces this
+// one: there is no frame and no further level, and recursion runs as a loop. The colors are the
+// same bits as with recursion, because nothing is computed after the trace.
 //
-// The same for a payload that is the one that this ray was given, or becomes it when the ray is
-// back: the copy in the frame was made of these parts, and all of them return to where they came
-// from. They are put there before, and the ray gets that address.
+// The same is done for a payload that is the one of this ray, or a copy that is stored back after
+// the trace: the copy in the frame was made of its parts, and all of them are stored back to where
+// they came from. They are stored there before the trace, and the ray gets that address.
 //
 //     rtsl.store %a, %copy["x"]                  rtsl.store %a, %own["x"]
 //     rtsl.spawn_payload ... carries %copy ==>   rtsl.spawn_payload ... carries %own last
@@ -22,8 +22,8 @@
 //     rtsl.store %x, %own["x"]
 //     return
 //
-// Sums and products behind a trace are not moved in front of it, although they could be collected
-// there: that is another order of rounding. Such a ray keeps what they need and nothing else.
+// Sums and products after a trace are not moved before it, although that would be possible: it
+// would change the order of rounding. Such a ray saves their operands and nothing else.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -52,13 +52,12 @@ using mlir::Value;
 
 namespace {
 
-/// An address as the variable that it lies in and the way to it; no variable if an index is not
-/// constant.
-struct Place {
+/// An address as a base and the path to it; no base if an index is not constant.
+struct AddressPath {
   mlir::Operation *base = nullptr;
   std::string path;
 
-  explicit Place(Value address) {
+  explicit AddressPath(Value address) {
     while (mlir::Operation *op = address.getDefiningOp()) {
       if (auto field = llvm::dyn_cast<ir::FieldOp>(op)) {
         path = "." + field.getField().str() + path;
@@ -80,7 +79,7 @@ struct Place {
   }
 };
 
-/// How many parts of a type can be stored one by one.
+/// The number of parts of a type that can be stored separately.
 std::size_t partsOf(mlir::Type type) {
   std::size_t parts = 0;
   if (auto fields = llvm::dyn_cast<ir::StructType>(type)) {
@@ -93,9 +92,9 @@ std::size_t partsOf(mlir::Type type) {
   return 1;
 }
 
-/// Calls `visit` for what runs from `op` on until the method is over, where that is one way; it
-/// gives the operation and what stands for arguments of blocks. False if there are several ways, or
-/// if `visit` says so.
+/// Calls `visit` for the operations from `op` to the end of the method, if there is only one path,
+/// with the operation and the values of block arguments. False if there are several paths, or if
+/// `visit` returns false.
 bool walkToTheEnd(mlir::Operation *op,
                   llvm::function_ref<bool(mlir::Operation *, const mlir::IRMapping &)> visit) {
   mlir::IRMapping arguments;
@@ -123,30 +122,31 @@ bool walkToTheEnd(mlir::Operation *op,
 // A color
 //===----------------------------------------------------------------------===//
 
-/// Is the result of this trace what is left in SampleColor, and does nothing else happen?
-bool isLastColor(ir::TraceResultOp result) {
+/// Is the result of this trace the final value of SampleColor, and does nothing else happen?
+bool isTailColor(ir::TraceResultOp result) {
   Value color;
-  const bool isOneWay = walkToTheEnd(result->getNextNode(),
-                                     [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
-                                       if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
-                                         color = arguments.lookupOrDefault(store.getValue());
-                                         return Place(store.getAddress()).isSampleColor();
-                                       }
-                                       return mlir::isMemoryEffectFree(op);
-                                     });
-  return isOneWay && color == result.getResult();
+  const bool hasOnePath = walkToTheEnd(result->getNextNode(),
+                                       [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
+                                         if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
+                                           color = arguments.lookupOrDefault(store.getValue());
+                                           return AddressPath(store.getAddress()).isSampleColor();
+                                         }
+                                         return mlir::isMemoryEffectFree(op);
+                                       });
+  return hasOnePath && color == result.getResult();
 }
 
 //===----------------------------------------------------------------------===//
 // A payload
 //===----------------------------------------------------------------------===//
 
-/// A copy of the payload that this ray was given, and what becomes of it.
-class LastPayload {
+/// A copy of this ray's payload, and its uses.
+class TailPayload {
 public:
-  explicit LastPayload(ir::SpawnPayloadOp spawn) : spawn(spawn) {}
+  explicit TailPayload(ir::SpawnPayloadOp spawn) : spawn(spawn) {}
 
-  /// Whether the copy is made part by part right before the ray is sent, and goes back whole.
+  /// Whether the copy is made part by part right before the ray is sent, and stored back
+  /// completely.
   bool find();
   void forward();
 
@@ -156,22 +156,22 @@ private:
 
   ir::SpawnPayloadOp spawn;
   ir::VarOp copy;
-  llvm::MapVector<Value, Place> addresses;       // in the copy
+  llvm::MapVector<Value, AddressPath> addresses; // in the copy
   std::map<std::string, ir::StoreOp> sent;       // the last store of each part
-  llvm::SmallVector<mlir::Operation *> gone;     // the copy's users, as they stand
-  llvm::SmallPtrSet<mlir::Operation *, 8> loads; // of the copy, that were not met behind the ray
+  llvm::SmallVector<mlir::Operation *> users;    // users of the copy, in order
+  llvm::SmallPtrSet<mlir::Operation *, 8> loads; // of the copy, not yet found after the ray
   std::set<std::string> returned;
 };
 
 /// All users of the copy are known, and those before the ray only store.
-bool LastPayload::findStores() {
+bool TailPayload::findStores() {
   llvm::SmallVector<Value> worklist = {copy.getResult()};
   while (!worklist.empty()) {
     const Value address = worklist.pop_back_val();
-    addresses.insert({address, Place(address)});
+    addresses.insert({address, AddressPath(address)});
     for (mlir::Operation *user : address.getUsers()) {
       if (llvm::isa<ir::FieldOp, ir::ElementOp>(user)) {
-        if (!Place(user->getResult(0)).base)
+        if (!AddressPath(user->getResult(0)).base)
           return false;
         worklist.push_back(user->getResult(0));
       } else if (auto store = llvm::dyn_cast<ir::StoreOp>(user);
@@ -181,7 +181,7 @@ bool LastPayload::findStores() {
         ir::StoreOp &last = sent[addresses.find(address)->second.path];
         if (!last || last->isBeforeInBlock(store))
           last = store;
-        gone.push_back(store);
+        users.push_back(store);
       } else if (llvm::isa<ir::LoadOp>(user)) {
         loads.insert(user);
       } else if (user != spawn) {
@@ -193,11 +193,11 @@ bool LastPayload::findStores() {
   return sent.size() == partsOf(type);
 }
 
-/// Behind the ray each part goes to the same place of the payload of its own, and nothing else
+/// After the ray, each part is stored to the same part of this ray's own payload, and nothing else
 /// happens.
-bool LastPayload::findReturn() {
+bool TailPayload::findReturn() {
   auto suspend = llvm::cast<ir::SuspendOp>(spawn->getBlock()->back());
-  const bool isOneWay =
+  const bool hasOnePath =
       walkToTheEnd(suspend.getResume()->front().getNextNode(),
                    [&](mlir::Operation *op, const mlir::IRMapping &arguments) {
                      if (auto load = llvm::dyn_cast<ir::LoadOp>(op))
@@ -205,30 +205,30 @@ bool LastPayload::findReturn() {
                      auto store = llvm::dyn_cast<ir::StoreOp>(op);
                      if (!store)
                        return mlir::isMemoryEffectFree(op);
-                     const Place place(store.getAddress());
-                     auto payload = llvm::dyn_cast_or_null<ir::PayloadOp>(place.base);
+                     const AddressPath target(store.getAddress());
+                     auto payload = llvm::dyn_cast_or_null<ir::PayloadOp>(target.base);
                      auto load =
                          arguments.lookupOrDefault(store.getValue()).getDefiningOp<ir::LoadOp>();
                      if (!payload || payload.getType() != copy.getType() || !load)
                        return false;
                      const auto *from = addresses.find(load.getAddress());
-                     if (from == addresses.end() || from->second.path != place.path)
+                     if (from == addresses.end() || from->second.path != target.path)
                        return false;
-                     returned.insert(place.path);
+                     returned.insert(target.path);
                      return true;
                    });
-  return isOneWay && loads.empty() && returned.size() == sent.size();
+  return hasOnePath && loads.empty() && returned.size() == sent.size();
 }
 
-bool LastPayload::find() {
+bool TailPayload::find() {
   copy = spawn.getPayload().getDefiningOp<ir::VarOp>();
   return copy && findStores() && findReturn();
 }
 
-/// The stores go to the payload itself, once all that is read of it has been read.
-void LastPayload::forward() {
+/// Redirects the stores to the payload itself, after all loads from it.
+void TailPayload::forward() {
   mlir::OpBuilder builder(spawn);
-  mlir::IRMapping mapping; // addresses in the payload may be computed behind the ray only
+  mlir::IRMapping mapping; // addresses in the payload may be computed only after the ray
   mapping.map(copy.getResult(),
               ir::PayloadOp::create(builder, spawn.getLoc(), copy.getType()).getResult());
   std::function<Value(Value)> inOwn = [&](Value address) {
@@ -243,12 +243,12 @@ void LastPayload::forward() {
   for (auto &[path, store] : sent)
     ir::StoreOp::create(builder, store.getLoc(), store.getValue(), inOwn(store.getAddress()));
   spawn.getPayloadMutable().assign(mapping.lookup(copy.getResult()));
-  for (mlir::Operation *store : gone)
+  for (mlir::Operation *store : users)
     store->erase();
 }
 
 //===----------------------------------------------------------------------===//
-// The change
+// Rewriting
 //===----------------------------------------------------------------------===//
 
 ir::SpawnPayloadOp spawnBefore(ir::SuspendOp suspend) {
@@ -270,32 +270,32 @@ void endAt(ir::SuspendOp suspend) {
 
 } // namespace
 
-llvm::SmallVector<mlir::Location> endAtLastTraces(FuncOp function) {
-  llvm::SmallVector<mlir::Location> places;
-  if (function.getNumResults() != 0 || isFramed(function)) // the caller is not over
-    return places;
+llvm::SmallVector<mlir::Location> endAtTailTraces(FuncOp function) {
+  llvm::SmallVector<mlir::Location> locations;
+  if (function.getNumResults() != 0 || isFramed(function)) // the caller continues
+    return locations;
   for (ir::SuspendOp suspend : suspendsOf(function)) {
     if (auto result = llvm::dyn_cast<ir::TraceResultOp>(suspend.getResume()->front())) {
-      if (!isLastColor(result))
+      if (!isTailColor(result))
         continue;
     } else {
       auto spawn = spawnBefore(suspend);
       if (!spawn)
         continue;
-      LastPayload payload(spawn);
+      TailPayload payload(spawn);
       if (!payload.find())
         continue;
       payload.forward();
     }
-    places.push_back(suspend.getLoc());
+    locations.push_back(suspend.getLoc());
     endAt(suspend);
   }
-  if (!places.empty()) {
+  if (!locations.empty()) {
     mlir::IRRewriter rewriter(function.getContext());
     (void)mlir::eraseUnreachableBlocks(rewriter, function->getRegions());
     (void)mlir::runRegionDCE(rewriter, function->getRegions());
   }
-  return places;
+  return locations;
 }
 
 //===----------------------------------------------------------------------===//
@@ -304,8 +304,8 @@ llvm::SmallVector<mlir::Location> endAtLastTraces(FuncOp function) {
 
 namespace {
 
-/// Whether `op` is a sum or product of what the trace brought back: of one operand at most, or,
-/// where it adds, of any.
+/// Whether `op` is a sum or product of the trace's result: at most one factor depends on the
+/// result, or any number of summands.
 bool isAffine(mlir::Operation *op, llvm::function_ref<bool(Value)> isTraced) {
   if (llvm::isa<mlir::arith::AddFOp, mlir::arith::SubFOp, mlir::arith::NegFOp,
                 mlir::vector::BroadcastOp, mlir::vector::FromElementsOp, mlir::vector::ShuffleOp>(
@@ -333,16 +333,16 @@ bool onlyScalesAndAdds(ir::SuspendOp suspend) {
   if (auto result = llvm::dyn_cast<ir::TraceResultOp>(first))
     traced.insert(result.getResult());
   else if (auto spawn = spawnBefore(suspend))
-    payload = Place(spawn.getPayload()).base;
+    payload = AddressPath(spawn.getPayload()).base;
   return walkToTheEnd(first->getNextNode(), [&](mlir::Operation *op,
                                                 const mlir::IRMapping &arguments) {
     auto isTraced = [&](Value value) { return traced.contains(arguments.lookupOrDefault(value)); };
     if (auto store = llvm::dyn_cast<ir::StoreOp>(op)) {
-      const Place place(store.getAddress());
-      return place.isSampleColor() || llvm::isa_and_nonnull<ir::PayloadOp>(place.base);
+      const AddressPath target(store.getAddress());
+      return target.isSampleColor() || llvm::isa_and_nonnull<ir::PayloadOp>(target.base);
     }
     if (auto load = llvm::dyn_cast<ir::LoadOp>(op);
-        load && payload && Place(load.getAddress()).base == payload) {
+        load && payload && AddressPath(load.getAddress()).base == payload) {
       traced.insert(load.getResult());
       return true;
     }

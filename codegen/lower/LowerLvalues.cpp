@@ -1,4 +1,4 @@
-//===- LowerPlaces.cpp - places in memory: what can be read and assigned --===//
+//===- LowerLvalues.cpp - lvalues: their addresses, loads and stores ------===//
 #include "codegen/lower/Lowering.h"
 #include "language/formulas/Common.h"
 #include "sema/typed/Analysis.h"
@@ -37,11 +37,11 @@ void FunctionLowering::storeTo(const Parts &parts, Value address, const Type *ty
 }
 
 //===----------------------------------------------------------------------===//
-// Finding places
+// Addresses of lvalues
 //===----------------------------------------------------------------------===//
 
-Place FunctionLowering::place(const typed::Expr &expr) {
-  Place result;
+Lvalue FunctionLowering::lowerLvalue(const typed::Expr &expr) {
+  Lvalue result;
   result.type = expr.type;
   switch (expr.kind) {
   case ExprKind::Variable: {
@@ -71,7 +71,7 @@ Place FunctionLowering::place(const typed::Expr &expr) {
   }
   case ExprKind::Field: {
     const auto &field = cast<typed::FieldExpr>(expr);
-    Place base = place(*field.base);
+    Lvalue base = lowerLvalue(*field.base);
     result.guard = base.guard;
     result.address =
         emitter.field(base.address, field.base->type->structure->fields[field.field].name);
@@ -79,7 +79,7 @@ Place FunctionLowering::place(const typed::Expr &expr) {
   }
   case ExprKind::Swizzle: {
     const auto &swizzle = cast<typed::SwizzleExpr>(expr);
-    Place base = place(*swizzle.base);
+    Lvalue base = lowerLvalue(*swizzle.base);
     result.address = base.address;
     result.guard = base.guard;
     result.isPartOfVector = true;
@@ -88,11 +88,11 @@ Place FunctionLowering::place(const typed::Expr &expr) {
     return result;
   }
   case ExprKind::Index:
-    return indexPlace(cast<typed::IndexExpr>(expr));
+    return indexLvalue(cast<typed::IndexExpr>(expr));
   default:
     break;
   }
-  // A value: give it a place of its own.
+  // Not an lvalue: store the value in a temporary.
   Parts parts = lower(expr);
   if (isAggregate(expr.type)) {
     result.address = parts.front();
@@ -108,12 +108,12 @@ static std::optional<std::int64_t> constantIndex(const typed::Expr &index, std::
   return value && *value >= 0 && *value < count ? value : std::nullopt;
 }
 
-Place FunctionLowering::indexPlace(const typed::IndexExpr &expr) {
+Lvalue FunctionLowering::indexLvalue(const typed::IndexExpr &expr) {
   const Type *type = expr.base->type;
   if (type->is(TypeKind::Buffer))
-    return bufferPlace(expr);
-  Place base = place(*expr.base);
-  Place result;
+    return bufferLvalue(expr);
+  Lvalue base = lowerLvalue(*expr.base);
+  Lvalue result;
   result.type = expr.type;
   result.guard = base.guard;
   std::optional<std::int64_t> constant = constantIndex(*expr.index, type->count);
@@ -141,9 +141,9 @@ Place FunctionLowering::indexPlace(const typed::IndexExpr &expr) {
   return result;
 }
 
-// All indices of `buffer[i][j]`. An element of an empty buffer does not exist: it reads as zero and
-// takes no store.
-Place FunctionLowering::bufferPlace(const typed::IndexExpr &expr) {
+// All indices of `buffer[i][j]`. An element of an empty buffer does not exist: it reads as zero,
+// and stores to it do nothing.
+Lvalue FunctionLowering::bufferLvalue(const typed::IndexExpr &expr) {
   llvm::SmallVector<const typed::Expr *, 3> indices;
   const typed::Expr *base = &expr;
   while (auto *index = dynCast<typed::IndexExpr>(base)) {
@@ -152,12 +152,12 @@ Place FunctionLowering::bufferPlace(const typed::IndexExpr &expr) {
     indices.insert(indices.begin(), index->index.get());
     base = index->base.get();
   }
-  Place buffer = place(*base);
-  Place result;
+  Lvalue buffer = lowerLvalue(*base);
+  Lvalue result;
   result.type = expr.type;
   result.guard = buffer.guard;
   if (indices.size() != base->type->count) {
-    // Rows have no values that anything could be done with: `rows[i];` does what `i` does.
+    // Rows cannot be used as values: `rows[i];` only has the side effects of `i`.
     for (const typed::Expr *index : indices)
       (void)value(*index);
     result.address = temporary("row", expr.type);
@@ -182,7 +182,7 @@ Value FunctionLowering::clampedIndex(const typed::Expr &index, std::uint32_t cou
   return clampedIndex(index, emitter.intConstant(count));
 }
 
-// A negative count cannot be; of 0 the index is 0, or 2^32 - 1 unsigned, behind a guard.
+// The count is never negative. If it is 0 the index is 0, or 2^32 - 1 unsigned, but guarded.
 Value FunctionLowering::clampedIndex(const typed::Expr &index, Value count) {
   Num result = number(index);
   if (!module.options.checkIndices)
@@ -201,44 +201,44 @@ Value FunctionLowering::clampedIndex(const typed::Expr &index, Value count) {
 // Reading and writing
 //===----------------------------------------------------------------------===//
 
-Parts FunctionLowering::load(const Place &place) {
-  if (place.guard) {
-    // Reads zero where there is nothing.
-    Place unguarded = place;
+Parts FunctionLowering::load(const Lvalue &lvalue) {
+  if (lvalue.guard) {
+    // Reads zero if the element does not exist.
+    Lvalue unguarded = lvalue;
     unguarded.guard = nullptr;
-    Value result = temporary("element", place.type);
-    emitter.ifThen(place.guard, [&] { storeTo(load(unguarded), result, place.type); });
-    return loadFrom(result, place.type);
+    Value result = temporary("element", lvalue.type);
+    emitter.ifThen(lvalue.guard, [&] { storeTo(load(unguarded), result, lvalue.type); });
+    return loadFrom(result, lvalue.type);
   }
-  if (!place.isPartOfVector)
-    return loadFrom(place.address, place.type);
-  Value vector = emitter.load(place.address);
-  if (place.component)
-    return {emitter.extract(vector, place.component)};
-  if (place.components.size() == 1)
-    return {emitter.extract(vector, place.components.front())};
-  llvm::SmallVector<std::int64_t, 4> components(place.components.begin(), place.components.end());
+  if (!lvalue.isPartOfVector)
+    return loadFrom(lvalue.address, lvalue.type);
+  Value vector = emitter.load(lvalue.address);
+  if (lvalue.component)
+    return {emitter.extract(vector, lvalue.component)};
+  if (lvalue.components.size() == 1)
+    return {emitter.extract(vector, lvalue.components.front())};
+  llvm::SmallVector<std::int64_t, 4> components(lvalue.components.begin(), lvalue.components.end());
   return {emitter.shuffle(vector, components)};
 }
 
-void FunctionLowering::store(const Parts &parts, const Place &place) {
-  if (place.guard) {
-    Place unguarded = place;
+void FunctionLowering::store(const Parts &parts, const Lvalue &lvalue) {
+  if (lvalue.guard) {
+    Lvalue unguarded = lvalue;
     unguarded.guard = nullptr;
-    emitter.ifThen(place.guard, [&] { store(parts, unguarded); });
+    emitter.ifThen(lvalue.guard, [&] { store(parts, unguarded); });
     return;
   }
-  if (!place.isPartOfVector)
-    return storeTo(parts, place.address, place.type);
-  Value vector = emitter.load(place.address);
-  if (place.component)
-    vector = emitter.insert(vector, parts.front(), place.component);
-  else if (place.components.size() == 1)
-    vector = emitter.insert(vector, parts.front(), place.components.front());
+  if (!lvalue.isPartOfVector)
+    return storeTo(parts, lvalue.address, lvalue.type);
+  Value vector = emitter.load(lvalue.address);
+  if (lvalue.component)
+    vector = emitter.insert(vector, parts.front(), lvalue.component);
+  else if (lvalue.components.size() == 1)
+    vector = emitter.insert(vector, parts.front(), lvalue.components.front());
   else
-    for (unsigned i = 0; i < place.components.size(); ++i)
-      vector = emitter.insert(vector, emitter.extract(parts.front(), i), place.components[i]);
-  emitter.store(vector, place.address);
+    for (unsigned i = 0; i < lvalue.components.size(); ++i)
+      vector = emitter.insert(vector, emitter.extract(parts.front(), i), lvalue.components[i]);
+  emitter.store(vector, lvalue.address);
 }
 
 } // namespace rtsl::lowering
