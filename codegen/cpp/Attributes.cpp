@@ -12,8 +12,6 @@
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
-#include <fmt/format.h>
-
 namespace rtsl::cpp {
 
 const typed::Class &ModulePrinter::top(const typed::Class &definition) const {
@@ -51,26 +49,33 @@ bool ModulePrinter::hasScratch(const typed::Class &definition) {
   return *(known = found);
 }
 
-std::string ModulePrinter::scratchStructure(const typed::Class &definition) {
+std::optional<Declaration> ModulePrinter::scratchStructure(const typed::Class &definition) {
   if (!hasScratch(definition) || &top(definition) != &definition)
-    return {};
-  std::string text = "struct Scratch : rtsl::Scratch {\n";
-  std::string visits;
+    return std::nullopt;
+  Struct made = {"Scratch", "rtsl::Scratch", false, {}};
+  Statements visits;
   std::set<std::string> known, placed; // classes may have one of the same name and type each
   for (const typed::Class *at : family(definition))
     for (const auto &member : at->members) {
       if (member->access != ast::Access::Scratch)
         continue;
-      const std::string &name = names.of(member.get());
-      if (known.insert(name).second)
-        text += this->member(*member);
+      const std::string &own = names.of(member.get());
+      if (known.insert(own).second)
+        made.members.push_back(this->member(*member));
       const auto place = facts.attributeWords.find(member.get());
-      if (place != facts.attributeWords.end() && placed.insert(name).second)
-        visits += fmt::format("at({}, {});\n", place->second, name);
+      if (place != facts.attributeWords.end() && placed.insert(own).second)
+        visits.push_back(statement(call("at", {integer(place->second), cpp::name(own)})));
     }
-  if (!visits.empty())
-    text += "\ntemplate <typename Visit>\nvoid visit(Visit at) {\n" + visits + "}\n";
-  return text + "};\n";
+  if (!visits.empty()) {
+    Function visit;
+    visit.templateParameters = "typename Visit";
+    visit.result = "void";
+    visit.name = "visit";
+    visit.parameters = {byValue("Visit", "at")};
+    visit.body = std::move(visits);
+    appendApart(made.members, declare(std::move(visit)));
+  }
+  return declare(std::move(made));
 }
 
 } // namespace rtsl::cpp

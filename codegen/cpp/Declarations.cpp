@@ -31,10 +31,6 @@ void ModulePrinter::unsupported(SourceRange range, const std::string &what) {
   failed = true;
 }
 
-std::string ModulePrinter::commentText(const std::string &comment) const {
-  return comment.empty() ? comment : comment + "\n";
-}
-
 std::optional<SourcePlace> ModulePrinter::lineDirective(SourceRange range) const {
   return lineDirective(range, range.isValid() ? notes.line(range) : 0);
 }
@@ -43,10 +39,6 @@ std::optional<SourcePlace> ModulePrinter::lineDirective(SourceRange range, unsig
   if (!options.lineDirectives || !range.isValid())
     return std::nullopt;
   return SourcePlace{notes.file(range), line};
-}
-
-static std::string text(const std::optional<SourcePlace> &place) {
-  return place ? print(*place) : std::string();
 }
 
 //===----------------------------------------------------------------------===//
@@ -123,11 +115,6 @@ Code ModulePrinter::colorOf(std::vector<Code> components) {
     return call(withParameters("rtsl::rgb", {std::to_string(options.colorComponents)}),
                 std::move(components));
   return construct("Color", std::move(components));
-}
-
-/// A variable of this type, as it is declared: `name = value`.
-static std::string declarator(const std::string &type, const std::string &name, const Code &value) {
-  return print(Declarator{name, value}, type);
 }
 
 //===----------------------------------------------------------------------===//
@@ -212,72 +199,80 @@ std::string ModulePrinter::parameterName(const typed::Function &function,
   return name.empty() ? fmt::format("unnamed{}", number + 1) : name;
 }
 
-std::string ModulePrinter::signature(const typed::Function &function, bool isMethod) {
-  std::set<const typed::Variable *> mentioned, read;
-  std::set<const typed::Expr *> onlyWritten;
-  bool mentionsRay = false, mentionsScratch = false;
-  if (function.body) {
-    const Effects own = effects.statement(*function.body);
-    mentionsRay = own.usesRay;
-    mentionsScratch = own.usesScratch || own.reportsHit;
-    effects.forEachEvaluated(*function.body, [&](const typed::Expr &expr) {
-      if (auto *assign = dynCast<typed::AssignExpr>(&expr))
-        onlyWritten.insert(assign->target.get());
-      if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
-        onlyWritten.insert(incDec->target.get());
-      if (auto *variable = dynCast<typed::VariableExpr>(&expr)) {
-        mentioned.insert(variable->variable);
-        if (!onlyWritten.count(&expr))
-          read.insert(variable->variable);
-      }
-      if (auto *call = dynCast<typed::CallExpr>(&expr)) {
-        mentionsRay |= takesState(*call->function);
-        mentionsScratch |= takesScratch(*call->function);
-      }
-    });
-  }
+/// What the body of a function does with what it is given.
+struct ModulePrinter::Mentions {
+  std::set<const typed::Variable *> variables, read;
+  bool ray = false, scratch = false;
+};
 
-  std::vector<std::string> parameters;
+ModulePrinter::Mentions ModulePrinter::mentionsOf(const typed::Function &function) {
+  Mentions found;
+  if (!function.body)
+    return found;
+  const Effects own = effects.statement(*function.body);
+  found.ray = own.usesRay;
+  found.scratch = own.usesScratch || own.reportsHit;
+  std::set<const typed::Expr *> onlyWritten;
+  effects.forEachEvaluated(*function.body, [&](const typed::Expr &expr) {
+    if (auto *assign = dynCast<typed::AssignExpr>(&expr))
+      onlyWritten.insert(assign->target.get());
+    if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
+      onlyWritten.insert(incDec->target.get());
+    if (auto *variable = dynCast<typed::VariableExpr>(&expr)) {
+      found.variables.insert(variable->variable);
+      if (!onlyWritten.count(&expr))
+        found.read.insert(variable->variable);
+    }
+    if (auto *call = dynCast<typed::CallExpr>(&expr)) {
+      found.ray |= takesState(*call->function);
+      found.scratch |= takesScratch(*call->function);
+    }
+  });
+  return found;
+}
+
+Parameter ModulePrinter::parameter(const typed::Function &function, std::size_t number,
+                                   const Mentions &mentions) {
+  const typed::Variable &source = *function.parameters[number];
+  const bool isSet = beginsAsZero(source, function);
+  Parameter made =
+      byValue(type(source.type), isSet ? parameterName(function, number) : names.of(&source));
+  if (source.direction != ast::Direction::In)
+    made.pass = Parameter::Pass::Reference;
+  else if (isByReference(source, function))
+    made = byConstReference(made.type, made.name);
+  else
+    made.isConst = source.isConst;
+  made.isCommented = !mentions.variables.count(&source) && !isSet;
+  made.isUnread =
+      !made.isCommented && !mentions.read.count(&source) && source.direction == ast::Direction::In;
+  return made;
+}
+
+Function ModulePrinter::signature(const typed::Function &function, bool isMethod) {
+  const Mentions mentions = mentionsOf(function);
+  Function made;
+  made.result = type(function.returnType);
+  made.name = names.of(&function);
   if (takesState(function))
-    parameters.push_back(mentionsRay ? "State &rt" : "State &");
+    made.parameters.push_back(byReference("State", mentions.ray ? "rt" : ""));
   if (takesScratch(function)) {
     const Effects &inside = effects.function(function);
     const bool writes = inside.writesScratch || inside.reportsHit || function.name == "intersect";
-    const std::string scratch = function.owner ? "Scratch" : "rtsl::Scratch";
-    parameters.push_back(std::string(writes ? "" : "const ") + scratch +
-                         (mentionsScratch ? " &scratch" : " &"));
+    Parameter scratch = byReference(function.owner ? "Scratch" : "rtsl::Scratch",
+                                    mentions.scratch ? "scratch" : "");
+    scratch.isConst = !writes;
+    made.parameters.push_back(scratch);
   }
-  for (std::size_t number = 0; number != function.parameters.size(); ++number) {
-    const auto &parameter = function.parameters[number];
-    std::string name = names.of(parameter.get());
-    std::string text = type(parameter->type);
-    const bool isSet = beginsAsZero(*parameter, function);
-    if (isSet)
-      name = parameterName(function, number);
-    if (parameter->direction != ast::Direction::In)
-      text += " &";
-    else if (isByReference(*parameter, function))
-      text = "const " + text + " &";
-    else
-      text = (parameter->isConst ? "const " : "") + text + " ";
-    if (!mentioned.count(parameter.get()) && !isSet)
-      name = name.empty() ? "" : "/*" + name + "*/";
-    else if (!read.count(parameter.get()) && parameter->direction == ast::Direction::In)
-      text = "[[maybe_unused]] " + text;
-    parameters.push_back(text + name);
-  }
-
-  std::string text =
-      type(function.returnType) + " " + names.of(&function) + "(" + join(parameters, ", ") + ")";
+  for (std::size_t number = 0; number != function.parameters.size(); ++number)
+    made.parameters.push_back(parameter(function, number, mentions));
   if (isMethod) {
-    if (!function.isConstructor && !effects.function(function).writesMembers)
-      text += " const";
-    if (overrides(function))
-      text += " override";
-    else if (isOverridden(function))
-      text = "virtual " + text;
+    made.isConst = !function.isConstructor && !effects.function(function).writesMembers;
+    made.isOverride = overrides(function);
+    if (!made.isOverride && isOverridden(function))
+      made.specifiers = "virtual";
   }
-  return text;
+  return made;
 }
 
 bool ModulePrinter::overrides(const typed::Function &function) const {
@@ -306,46 +301,67 @@ bool ModulePrinter::isOverridden(const typed::Function &function) const {
   return false;
 }
 
-std::string ModulePrinter::function(const typed::Function &function, bool isMethod) {
-  std::string text = commentText(function.comment) + cpp::text(lineDirective(function.range));
+Declaration ModulePrinter::function(const typed::Function &function, bool isMethod) {
+  Function made = signature(function, isMethod);
   if (!isMethod)
-    text += "inline ";
-  text += signature(function, isMethod) + " ";
-  FunctionPrinter printer(*this, &function);
-  return text + "{\n" + print(printer.body()) + "}\n";
+    made.specifiers = "inline";
+  made.body = FunctionPrinter(*this, &function).body();
+  Declaration declared = declare(std::move(made), function.comment);
+  declared.place = lineDirective(function.range);
+  return declared;
 }
 
 //===----------------------------------------------------------------------===//
 // Structs and constants
 //===----------------------------------------------------------------------===//
 
-std::string ModulePrinter::structure(const typed::Struct &structure) {
-  std::string text = commentText(structure.comment) + "struct " + names.of(&structure) + " {\n" +
-                     rayType(structure);
+/// `friend bool operator==(const Ray &a, const Ray &b)` with this value.
+static Declaration comparison(const std::string &type, const char *name, Code value) {
+  Function made;
+  made.specifiers = "friend";
+  made.result = "bool";
+  made.name = name;
+  made.parameters = {byConstReference(type, "a"), byConstReference(type, "b")};
+  made.body = Statements{returning(std::move(value))};
+  return declare(std::move(made));
+}
+
+/// The operators == and != of a struct.
+static Declarations comparisons(const Names &names, const typed::Struct &structure) {
+  const Code a = name("a"), b = name("b");
+  Code equal;
+  for (const typed::Field &field : structure.fields) {
+    const std::string &own = names.of(&field);
+    const Code part = binary(Operator::Equal, member(a, own), member(b, own));
+    equal = equal ? binary(Operator::And, equal, part) : part;
+  }
+  const std::string &type = names.of(&structure);
+  return {comparison(type, "operator==", equal),
+          comparison(type, "operator!=", unary(UnaryOperator::Not, binary(Operator::Equal, a, b)))};
+}
+
+Declaration ModulePrinter::structure(const typed::Struct &structure) {
+  Struct made;
+  made.name = names.of(&structure);
+  if (std::optional<Declaration> type = rayType(structure))
+    made.members.push_back(std::move(*type));
+  const bool hasRayType = !made.members.empty();
   for (std::size_t i = 0; i < structure.fields.size(); ++i) {
     const typed::Field &field = structure.fields[i];
-    if (i > 0 && notes.followsEmptyLine(field.range, structure.fields[i - 1].range))
-      text += "\n";
     const Code initial = field.type->is(TypeKind::Bool) ? list("", {}) : zero(field.type);
-    text += commentText(field.comment) + memoryType(field.type) + " " +
-            declarator(memoryType(field.type), names.of(&field), initial) + ";";
-    const std::string trailing = notes.trailingComment(field.range);
-    text += trailing.empty() ? "\n" : " " + trailing + "\n";
+    Declaration declared =
+        declare(Variable{{}, memoryType(field.type), {names.of(&field), initial}}, field.comment);
+    declared.trailing = notes.trailingComment(field.range);
+    declared.hasSpace =
+        i == 0 ? hasRayType : notes.followsEmptyLine(field.range, structure.fields[i - 1].range);
+    made.members.push_back(std::move(declared));
   }
-  const Type *self = nullptr;
-  for (const Type *compared : comparedStructs)
-    if (compared->structure == &structure)
-      self = compared;
-  if (self) {
-    std::vector<std::string> parts;
-    for (const typed::Field &field : structure.fields)
-      parts.push_back(fmt::format("a.{0} == b.{0}", names.of(&field)));
-    text +=
-        fmt::format("\nfriend bool operator==(const {0} &a, const {0} &b) {{ return {1}; }}\n"
-                    "friend bool operator!=(const {0} &a, const {0} &b) {{ return !(a == b); }}\n",
-                    names.of(&structure), join(parts, " && "));
-  }
-  return text + "};\n";
+  const bool isCompared =
+      std::any_of(comparedStructs.begin(), comparedStructs.end(),
+                  [&](const Type *compared) { return compared->structure == &structure; });
+  if (isCompared)
+    appendApart(made.members, comparisons(names, structure));
+  return declare(std::move(made), structure.comment);
 }
 
 /// Whether C++ takes the initialiser for a constant expression: numbers, constants that it takes
@@ -379,20 +395,21 @@ bool ModulePrinter::isConstexpr(const Type *type, const typed::Constant *value,
   return isPlain;
 }
 
-std::string ModulePrinter::constant(const typed::Variable &constant) {
+Declaration ModulePrinter::constant(const typed::Variable &constant) {
   FunctionPrinter printer(*this, nullptr);
   const std::string &name = names.of(&constant);
   const Code initialiser = printer.initialiser(*constant.init);
   const bool isPlain = isConstexpr(constant.type, constant.constant.get(), name, initialiser) ||
                        printer.isTable(*constant.init);
-  std::string text = commentText(constant.comment) + "inline " +
-                     (isPlain ? "constexpr " : "const ") + type(constant.type) + " " +
-                     declarator(type(constant.type), name, initialiser) + ";";
-  const std::string trailing = notes.trailingComment(constant.init->range);
-  return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
+  Declaration declared = declare(Variable{isPlain ? "inline constexpr" : "inline const",
+                                          type(constant.type),
+                                          {name, initialiser}},
+                                 constant.comment);
+  declared.trailing = notes.trailingComment(constant.init->range);
+  return declared;
 }
 
-std::string ModulePrinter::freeFunctions() {
+Declarations ModulePrinter::freeFunctions() {
   // Prototypes for those that are called above their definition.
   std::set<const typed::Function *> defined, asked;
   std::vector<const typed::Function *> prototypes;
@@ -407,62 +424,60 @@ std::string ModulePrinter::freeFunctions() {
     });
     defined.insert(function.get());
   }
-  std::string text;
+  Declarations functions;
   for (const typed::Function *function : prototypes)
     if (!isPartOfStates(*function))
-      text += signature(*function, false) + ";\n";
+      functions.push_back(declare(signature(*function, false)));
   for (const auto &function : module.functions)
     if (function->body && !isPartOfStates(*function))
-      text += "\n" + this->function(*function, false);
-  return text;
+      appendApart(functions, this->function(*function, false));
+  return functions;
 }
 
 //===----------------------------------------------------------------------===//
 // Classes
 //===----------------------------------------------------------------------===//
 
-std::string ModulePrinter::member(const typed::Member &member) {
+Declaration ModulePrinter::member(const typed::Member &member) {
   FunctionPrinter printer(*this, nullptr, member.owner);
-  std::string text = commentText(member.comment);
-  const std::string &name = names.of(&member);
+  Variable made;
+  Code value = member.init ? printer.initialiser(*member.init) : zero(member.type);
   if (member.isConst) {
-    const Code initialiser = member.init ? printer.initialiser(*member.init) : zero(member.type);
-    const bool isPlain = isConstexpr(member.type, member.constant.get(), name, initialiser) ||
-                         (member.init && printer.isTable(*member.init));
-    text += std::string(isPlain ? "static constexpr " : "inline static const ") +
-            type(member.type) + " " + declarator(type(member.type), name, initialiser) + ";";
+    const bool isPlain =
+        isConstexpr(member.type, member.constant.get(), names.of(&member), value) ||
+        (member.init && printer.isTable(*member.init));
+    made.qualifiers = isPlain ? "static constexpr" : "inline static const";
+    made.type = type(member.type);
   } else {
-    Code value = member.init ? printer.initialiser(*member.init) : zero(member.type);
     if (member.type->is(TypeKind::Bool)) // converts in braces
       value = member.init ? list("", {value}) : list("", {});
-    text += memoryType(member.type) + " " + declarator(memoryType(member.type), name, value) + ";";
+    made.type = memoryType(member.type);
   }
-  const std::string trailing =
-      notes.trailingComment(member.init ? member.init->range : member.range);
-  return text + (trailing.empty() ? "\n" : " " + trailing + "\n");
+  made.declarator = {names.of(&member), value};
+  Declaration declared = declare(std::move(made), member.comment);
+  declared.trailing = notes.trailingComment(member.init ? member.init->range : member.range);
+  return declared;
 }
 
-std::string ModulePrinter::classDefinition(const typed::Class &definition) {
-  std::string text = commentText(definition.comment) + cpp::text(lineDirective(definition.range));
-  const std::string base =
-      definition.base ? names.of(definition.base) : "rtsl::" + nameOfRoot(definition.root);
-  std::vector<std::string> parts; // with an empty line between them
-  std::string members;
+/// Members but for the scratch members, in the author's groups.
+Declarations ModulePrinter::ownMembers(const typed::Class &definition) {
+  Declarations members;
   SourceRange previous;
   for (const auto &member : definition.members) {
     if (member->access == ast::Access::Scratch)
       continue;
-    if (!members.empty() && notes.followsEmptyLine(member->range, previous))
-      members += "\n";
+    Declaration declared = this->member(*member);
+    declared.hasSpace = notes.followsEmptyLine(member->range, previous);
     previous = member->range;
-    members += this->member(*member);
+    members.push_back(std::move(declared));
   }
-  if (!members.empty())
-    parts.push_back(members);
-  if (const std::string scratch = scratchStructure(definition); !scratch.empty())
-    parts.push_back(scratch);
+  return members;
+}
 
-  // Overloads of a base's functions do not hide the others. States may have other names.
+/// `using Base::method;` for methods of bases that overloads in the class would hide. States may
+/// have other names.
+Declarations ModulePrinter::methodsOfBases(const typed::Class &definition) {
+  Declarations named;
   std::set<std::string> shown;
   for (const auto &function : definition.functions)
     for (const typed::Class *at = definition.base; at; at = at->base)
@@ -471,106 +486,144 @@ std::string ModulePrinter::classDefinition(const typed::Class &definition) {
             !isPartOfStates(*function) &&
             (!isSplit(*at, *method) || nameOfMachine(*at, *method) == names.of(method.get())) &&
             !typed::sameParameters(*method, *function) && shown.insert(method->name).second)
-          parts.push_back("using " + names.of(at) + "::" + names.of(method.get()) + ";\n");
+          appendApart(named, declare(Using{names.of(at) + "::" + names.of(method.get())}));
+  return named;
+}
+
+Declaration ModulePrinter::classDefinition(const typed::Class &definition) {
+  Struct made;
+  made.name = names.of(&definition);
+  made.base = definition.base ? names.of(definition.base) : "rtsl::" + nameOfRoot(definition.root);
+  made.members = ownMembers(definition);
+  if (std::optional<Declaration> scratch = scratchStructure(definition))
+    appendApart(made.members, std::move(*scratch));
+  appendApart(made.members, methodsOfBases(definition));
   for (const auto &function : definition.functions) {
-    const bool isMachine = function->body && isSplit(definition, *function);
-    if (function->body && (isMachine || !isPartOfStates(*function)))
-      parts.push_back(isMachine ? stateMachine(definition, *function)
-                                : this->function(*function, true));
+    if (!function->body)
+      continue;
+    if (isSplit(definition, *function))
+      appendApart(made.members, stateMachine(definition, *function));
+    else if (!isPartOfStates(*function))
+      appendApart(made.members, this->function(*function, true));
   }
-  for (std::string &machine : inheritedStateMachines(definition))
-    parts.push_back(std::move(machine));
-  return text + "struct " + names.of(&definition) + " : " + base + " {\n" + join(parts, "\n") +
-         "};\n";
+  appendApart(made.members, inheritedStateMachines(definition));
+  Declaration declared = declare(std::move(made), definition.comment);
+  declared.place = lineDirective(definition.range);
+  return declared;
 }
 
 //===----------------------------------------------------------------------===//
 // The file
 //===----------------------------------------------------------------------===//
 
-std::string ModulePrinter::run() {
-  // From the inside out: what functions ask for is known when they have been printed.
-  std::string constants;
-  for (const auto &constant : module.constants)
-    constants += this->constant(*constant);
-  const std::string functions = freeFunctions();
-  std::string classes;
-  for (const auto &definition : module.classes)
-    classes += "\n" + classDefinition(*definition);
-  const std::string hitErrors = this->hitErrors();
-  std::string entries;
-  if (!module.classes.empty()) {
-    entries = slots();
-    entries += description();
+/// What stands above the namespace: how the file was made, macros and includes.
+Declarations ModulePrinter::heading() const {
+  Declarations all;
+  if (options.fast) {
+    all.push_back(declare(OnlyComment{},
+                          "// Made by rtslc --emit=cpp --fp=fast: what it computes differs in the "
+                          "last digits with the compiler\n// and its options."));
+    all.push_back(declare(Define{"RTSL_FAST"}));
+  } else {
+    all.push_back(declare(OnlyComment{},
+                          "// Made by rtslc --emit=cpp. Compiled with any options but -ffast-math "
+                          "it computes what rtslc's own\n// machine code computes, to the last "
+                          "bit."));
   }
-  std::string structs;
-  for (const auto &structure : module.structs)
-    structs += "\n" + this->structure(*structure);
-  const std::string methods = referenceMethods();
-  const std::string references = this->references();
-
-  std::string text = options.fast ? "// Made by rtslc --emit=cpp --fp=fast: what it computes "
-                                    "differs in the last digits with the compiler\n"
-                                    "// and its options.\n#define RTSL_FAST\n"
-                                  : "// Made by rtslc --emit=cpp. Compiled with any options but "
-                                    "-ffast-math it computes what rtslc's own\n"
-                                    "// machine code computes, to the last bit.\n";
   if (!options.whyCalls.empty())
-    text += "//\n// Rays are calls, not the ends of states: " + options.whyCalls + ".\n";
-  if (!options.checkIndices)
-    text += "#define RTSL_UNCHECKED // indices are trusted (--unchecked)\n";
-  text += "#include <rtsl/shader.h>\n\n";
-  text += "namespace " + options.name + " {\n\n";
-  text += fmt::format("using State = rtsl::State<{0}>;\nusing Color = rtsl::Color<{0}>;\n",
-                      options.colorComponents);
-  auto add =
-      [&](const std::string &part) { // with an empty line above; of two the formatter makes one
-        if (!part.empty())
-          text += "\n" + part;
-      };
-  if (!calledMethods.empty()) // what they are given says where they begin
-    add(stepNumbers());
-  add(references);
-  add(structs);
-  add(constants);
-  add(functions);
-  if (!module.classes.empty()) // what is called once only is inlined then, however long it is
-    add("namespace {\n");
-  if (!module.classes.empty() && (!methods.empty() || !entries.empty()))
-    add(fmt::format("enum class Id : std::uint32_t {{ {} }};\n", [&] {
-      std::vector<std::string> ids;
-      unsigned next = 1;
-      for (const auto &definition : module.classes)
-        ids.push_back(fmt::format("{} = {}", names.of(definition.get()), next++));
-      return join(ids, ", ");
-    }()));
-  if (calledMethods.empty())
-    add(stepNumbers());
-  add(classes);
-  if (!module.classes.empty())
-    add("} // namespace\n");
-  add(methods);
-  add(hitErrors);
-  add(entries);
-  text += "\n} // namespace " + options.name + "\n";
-  if (!module.classes.empty())
-    text += fmt::format(
-        "\n/// For rtsl::program in C++, and rtslSceneCreate in C.\n"
-        "extern \"C\" const RtslShaders *{0}_shaders();\n"
-        "const RtslShaders *{0}_shaders() {{\n"
-        "  static const RtslShaders shaders = {0}::describe();\n  return &shaders;\n}}\n",
-        options.name);
-  return format(text);
+    all.push_back(declare(
+        OnlyComment{}, "//\n// Rays are calls, not the ends of states: " + options.whyCalls + "."));
+  if (!options.checkIndices) {
+    all.push_back(declare(Define{"RTSL_UNCHECKED"}));
+    all.back().trailing = "// indices are trusted (--unchecked)";
+  }
+  all.push_back(declare(Include{"rtsl/shader.h"}));
+  return all;
+}
+
+/// `extern "C" const RtslShaders *name_shaders()`: its declaration and its definition.
+Declarations ModulePrinter::exported() const {
+  Function made;
+  made.specifiers = "extern \"C\"";
+  made.result = "const RtslShaders *";
+  made.name = options.name + "_shaders";
+  Declarations both = {declare(made, "/// For rtsl::program in C++, and rtslSceneCreate in C.")};
+  made.specifiers = {};
+  made.body = Statements{
+      declaration("static const", "RtslShaders", "shaders", call(options.name + "::describe", {})),
+      returning(unary(UnaryOperator::Address, cpp::name("shaders")))};
+  both.push_back(declare(std::move(made)));
+  return both;
+}
+
+/// Numbers of the classes, from 1.
+Declaration ModulePrinter::classNumbers() const {
+  Enum ids = {"Id", "std::uint32_t", {}};
+  unsigned next = 1;
+  for (const auto &definition : module.classes)
+    ids.values.push_back({names.of(definition.get()), next++});
+  return declare(std::move(ids));
+}
+
+Declarations ModulePrinter::file() {
+  // From the inside out: what functions require of the rest is complete when all are made.
+  Declarations constants, classes, structs, entryPoints;
+  for (const auto &constant : module.constants)
+    constants.push_back(this->constant(*constant));
+  Declarations functions = freeFunctions();
+  for (const auto &definition : module.classes)
+    appendApart(classes, classDefinition(*definition));
+  Declarations hitErrors = this->hitErrors();
+  const bool hasClasses = !module.classes.empty();
+  if (hasClasses) {
+    entryPoints = slots();
+    append(entryPoints, description());
+  }
+  for (const auto &structure : module.structs)
+    appendApart(structs, this->structure(*structure));
+  Declarations methods = referenceMethods();
+  Declarations references = this->references();
+
+  Namespace space;
+  space.name = options.name;
+  const std::string components = std::to_string(options.colorComponents);
+  Declarations &inside = space.members;
+  inside.push_back(declare(Alias{"State", withParameters("rtsl::State", {components})}));
+  inside.push_back(declare(Alias{"Color", withParameters("rtsl::Color", {components})}));
+  if (!calledMethods.empty()) // the structs of their arguments name their first states
+    appendApart(inside, stepNumbers());
+  appendApart(inside, std::move(references));
+  appendApart(inside, std::move(structs));
+  appendApart(inside, std::move(constants));
+  appendApart(inside, std::move(functions));
+  if (hasClasses) { // unnamed: a function that is called once is inlined then, however long it is
+    Namespace own;
+    if (!methods.empty() || !entryPoints.empty())
+      appendApart(own.members, classNumbers());
+    if (calledMethods.empty())
+      appendApart(own.members, stepNumbers());
+    appendApart(own.members, std::move(classes));
+    appendApart(inside, declare(std::move(own)));
+  }
+  appendApart(inside, std::move(methods));
+  appendApart(inside, std::move(hitErrors));
+  appendApart(inside, std::move(entryPoints));
+
+  Declarations all = heading();
+  appendApart(all, declare(std::move(space)));
+  if (hasClasses)
+    appendApart(all, exported());
+  return all;
 }
 
 std::optional<std::string> print(const typed::Module &module, const ModuleFacts &facts,
                                  const Options &options, Diagnostics &diagnostics,
                                  const StateProgram *states) {
   ModulePrinter printer(module, facts, options, diagnostics, states);
-  std::string text = printer.run();
+  const Declarations file = printer.file();
   if (printer.failed || diagnostics.hasErrors())
     return std::nullopt;
-  return text;
+  return format(print(file));
 }
 
 } // namespace rtsl::cpp

@@ -23,7 +23,7 @@ namespace {
 
 struct Need {
   std::uint32_t bit;
-  const char *word;
+  const char *flag;
 };
 constexpr Need allNeeds[] = {{RTSL_NEEDS_NORMALS, "RTSL_NEEDS_NORMALS"},
                              {RTSL_NEEDS_TEXTURE_COORDINATES, "RTSL_NEEDS_TEXTURE_COORDINATES"},
@@ -38,13 +38,23 @@ constexpr Need allNeeds[] = {{RTSL_NEEDS_NORMALS, "RTSL_NEEDS_NORMALS"},
                              {RTSL_NEEDS_ANY_HIT, "RTSL_NEEDS_ANY_HIT"},
                              {RTSL_NEEDS_HIT_ERRORS, "RTSL_NEEDS_HIT_ERRORS"}};
 
-/// `.needs(RTSL_NEEDS_NORMALS | RTSL_NEEDS_TIME)`; empty where nothing is needed.
-std::string callOfNeeds(const char *function, std::uint32_t needs) {
-  std::vector<std::string> words;
+/// `RTSL_NEEDS_NORMALS | RTSL_NEEDS_TIME`; nothing where nothing is needed.
+Code flagsOfNeeds(std::uint32_t needs) {
+  Code flags;
   for (const Need &need : allNeeds)
     if (needs & need.bit)
-      words.emplace_back(need.word);
-  return words.empty() ? "" : std::string(function) + "(" + join(words, " | ") + ")";
+      flags = flags ? binary(Operator::BitOr, flags, name(need.flag)) : name(need.flag);
+  return flags;
+}
+
+/// `&Class::member`
+Code addressOf(const std::string &className, const std::string &member) {
+  return unary(UnaryOperator::Address, name(className + "::" + member));
+}
+
+/// `program.function(arguments);`
+Statement onProgram(const std::string &function, std::vector<Code> arguments) {
+  return statement(callMember(name("program"), function, std::move(arguments)));
 }
 
 } // namespace
@@ -62,7 +72,7 @@ static void structsOf(const Type *type, std::vector<const typed::Struct *> &foun
 }
 
 /// What a scene sets: the structs of members and of constructors' parameters.
-std::string ModulePrinter::describeStructs() {
+Declarations ModulePrinter::describeStructs() {
   std::vector<const typed::Struct *> described;
   for (const auto &definition : module.classes) {
     for (const auto &member : definition->members)
@@ -73,98 +83,126 @@ std::string ModulePrinter::describeStructs() {
         for (const auto &parameter : function->parameters)
           structsOf(parameter->type, described);
   }
-  std::string text;
+  Declarations functions;
   for (const typed::Struct *structure : described) {
-    text += fmt::format("\ninline void describeFields(rtsl::StructDescription<{0}> &fields) "
-                        "{{\nfields.name = \"{1}\";\n",
-                        names.of(structure), structure->name);
+    const Code fields = name("fields");
+    Function made;
+    made.specifiers = "inline";
+    made.result = "void";
+    made.name = "describeFields";
+    made.parameters = {
+        byReference(withParameters("rtsl::StructDescription", {names.of(structure)}), "fields")};
+    made.body = Statements{statement(assign(cpp::member(fields, "name"), string(structure->name)))};
     for (const typed::Field &field : structure->fields)
-      text += fmt::format("fields.add(\"{}\", &{}::{});\n", field.name, names.of(structure),
-                          names.of(&field));
-    text += "}\n";
+      made.body->push_back(statement(callMember(
+          fields, "add", {string(field.name), addressOf(names.of(structure), names.of(&field))})));
+    appendApart(functions, declare(std::move(made)));
   }
-  return text;
+  return functions;
 }
 
-std::string ModulePrinter::describeConstructor(const typed::Function &constructor) {
-  std::vector<std::string> parameters;
+/// `described.constructor<&Class::Class>({"parameter", ...})`
+Code ModulePrinter::describeConstructor(const Code &described,
+                                        const typed::Function &constructor) const {
+  std::vector<Code> parameters;
   for (std::size_t i = 0; i < constructor.parameters.size(); ++i) {
     const std::string &parameter = constructor.parameters[i]->name;
-    parameters.push_back(
-        fmt::format("\"{}\"", parameter.empty() ? "unnamed" + std::to_string(i) : parameter));
+    parameters.push_back(string(parameter.empty() ? "unnamed" + std::to_string(i) : parameter));
   }
-  return fmt::format(".constructor<&{}::{}>({{{}}})", names.of(constructor.owner),
-                     names.of(&constructor), join(parameters, ", "));
+  const std::string address = "&" + names.of(constructor.owner) + "::" + names.of(&constructor);
+  return callMember(described, withParameters("constructor", {address}),
+                    {list("", std::move(parameters))});
 }
 
 /// The methods that a class has, inherited ones too: `shade`, `closestHit(Radiance)`.
-static std::set<std::string> shownMethods(const typed::Class &definition) {
+static std::vector<Code> shownMethods(const typed::Class &definition) {
   std::set<std::string> methods;
   for (const typed::Class *at = &definition; at; at = at->base)
     for (const auto &function : at->functions)
-      methods.insert(typed::takesPayload(*function)
-                         ? fmt::format("\"{}({})\"", function->name,
-                                       toString(function->parameters.front()->type))
-                         : "\"" + function->name + "\"");
-  return methods;
+      methods.insert(
+          typed::takesPayload(*function)
+              ? fmt::format("{}({})", function->name, toString(function->parameters.front()->type))
+              : function->name);
+  std::vector<Code> shown;
+  for (const std::string &method : methods)
+    shown.push_back(string(method));
+  return shown;
 }
 
-std::string ModulePrinter::describeClass(const typed::Class &definition) {
-  const std::string &name = names.of(&definition);
-  std::string text = fmt::format(
-      "program.add<{0}>(static_cast<std::uint32_t>(Id::{0}), \"{1}\", \"{2}\", \"{3}\")", name,
-      definition.name, definition.base ? definition.base->name : definition.root, definition.root);
-  for (const typed::Member *member : allMembers(definition)) {
-    if (member->isConst || member->access == ast::Access::Scratch)
-      continue;
-    text +=
-        fmt::format(".member(\"{}\", &{}::{}, rtsl::Access::{}{})", member->name, name,
-                    names.of(member), member->access == ast::Access::Public ? "Public" : "Private",
-                    member->init || member->isOptional ? ", rtsl::Default::Given" : "");
-  }
+/// `described.member("name", &Class::name, rtsl::Access::Public)`
+Code ModulePrinter::describeMember(const Code &described, const std::string &className,
+                                   const typed::Member &member) const {
+  const bool isPublic = member.access == ast::Access::Public;
+  std::vector<Code> arguments = {
+      string(member.name), addressOf(className, names.of(&member)),
+      cpp::name(isPublic ? "rtsl::Access::Public" : "rtsl::Access::Private")};
+  if (member.init || member.isOptional)
+    arguments.push_back(cpp::name("rtsl::Default::Given"));
+  return callMember(described, "member", std::move(arguments));
+}
+
+Statement ModulePrinter::describeClass(const typed::Class &definition) {
+  const std::string &own = names.of(&definition);
+  const std::string &base = definition.base ? definition.base->name : definition.root;
+  Code described = callMember(cpp::name("program"), withParameters("add", {own}),
+                              {staticCast("std::uint32_t", cpp::name("Id::" + own)),
+                               string(definition.name), string(base), string(definition.root)});
+  for (const typed::Member *member : allMembers(definition))
+    if (!member->isConst && member->access != ast::Access::Scratch)
+      described = describeMember(described, own, *member);
   if (const typed::Function *constructor = findConstructor(definition))
-    text += describeConstructor(*constructor);
-  if (const std::set<std::string> methods = shownMethods(definition); !methods.empty())
-    text += fmt::format(".methods({{{}}})", fmt::join(methods, ", "));
-  text += callOfNeeds(".needs", facts.needsOfClass.at(&definition));
-  std::vector<std::string> asked;
+    described = describeConstructor(described, *constructor);
+  if (std::vector<Code> methods = shownMethods(definition); !methods.empty())
+    described = callMember(described, "methods", {list("", std::move(methods))});
+  if (const Code needs = flagsOfNeeds(facts.needsOfClass.at(&definition)))
+    described = callMember(described, "needs", {needs});
+  std::vector<std::string> queried;
   for (const typed::Function *anyHit : payloadMethods(definition, "anyHit"))
-    asked.push_back(names.of(anyHit->parameters.front()->type->structure));
-  if (!asked.empty())
-    text += fmt::format(".asks<{}>()", fmt::join(asked, ", "));
-  return text + ";\n";
+    queried.push_back(names.of(anyHit->parameters.front()->type->structure));
+  if (!queried.empty())
+    described = callMember(described, withParameters("asks", queried), {});
+  return statement(described);
 }
 
-std::string ModulePrinter::describeFeatures() const {
-  std::vector<std::string> features;
-  if (options.exceptions)
-    features.emplace_back("RTSL_FEATURE_EXCEPTIONS");
-  if (options.prints)
-    features.emplace_back("RTSL_FEATURE_PRINT");
-  if (options.undefined & RTSL_FEATURE_UNDEFINED_BYTES)
-    features.emplace_back("RTSL_FEATURE_UNDEFINED_BYTES");
-  if (options.undefined & RTSL_FEATURE_UNDEFINED_NAN)
-    features.emplace_back("RTSL_FEATURE_UNDEFINED_NAN");
-  return features.empty() ? "" : "program.features(" + join(features, " | ") + ");\n";
+Statements ModulePrinter::describeFeatures() const {
+  Code features;
+  auto add = [&](bool isOn, const char *flag) {
+    if (isOn)
+      features = features ? binary(Operator::BitOr, features, name(flag)) : name(flag);
+  };
+  add(options.exceptions, "RTSL_FEATURE_EXCEPTIONS");
+  add(options.prints, "RTSL_FEATURE_PRINT");
+  add(options.undefined & RTSL_FEATURE_UNDEFINED_BYTES, "RTSL_FEATURE_UNDEFINED_BYTES");
+  add(options.undefined & RTSL_FEATURE_UNDEFINED_NAN, "RTSL_FEATURE_UNDEFINED_NAN");
+  return features ? Statements{onProgram("features", {features})} : Statements();
 }
 
-std::string ModulePrinter::description() {
-  std::string text = describeStructs();
-  text += fmt::format("\nstatic RtslShaders describe() {{\nrtsl::Program<{}> program;\n",
-                      options.colorComponents);
+Declarations ModulePrinter::description() {
+  Declarations all = describeStructs();
+  Function made;
+  made.specifiers = "static";
+  made.result = "RtslShaders";
+  made.name = "describe";
+  Statements &body = made.body.emplace();
+  const std::string components = std::to_string(options.colorComponents);
+  body.push_back(cpp::declaration(withParameters("rtsl::Program", {components}), "program", {}));
   for (const auto &definition : module.classes)
-    text += describeClass(*definition);
-  if (const std::string needs = callOfNeeds("program.needs", facts.needs); !needs.empty())
-    text += needs + ";\n";
+    body.push_back(describeClass(*definition));
+  if (const Code needs = flagsOfNeeds(facts.needs))
+    body.push_back(onProgram("needs", {needs}));
   for (const auto &[base, method] : filledSlots)
-    text += fmt::format("program.slots().{0}_{1} = &slots::{1};\n", base, method);
-  text += describeFeatures();
+    body.push_back(setSlot(base + "_" + method, method));
+  append(body, describeFeatures());
   const std::vector<const typed::Class *> generations = classesBelow("rt_RayGeneration");
   if (std::any_of(generations.begin(), generations.end(), [](const typed::Class *definition) {
         return slotMethod(*definition, "generate") != nullptr;
       }))
-    text += "program.engine(rtsl::runtime::Engine::Either);\n";
-  return text + describePayloads() + describeStates() + "return program.finish();\n}\n";
+    body.push_back(onProgram("engine", {cpp::name("rtsl::runtime::Engine::Either")}));
+  append(body, describePayloads());
+  append(body, describeStates());
+  body.push_back(returning(callMember(cpp::name("program"), "finish", {})));
+  appendApart(all, declare(std::move(made)));
+  return all;
 }
 
 } // namespace rtsl::cpp

@@ -5,8 +5,6 @@
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
-#include <fmt/format.h>
-
 namespace rtsl::cpp {
 
 void ModulePrinter::useThroughReference(const std::string &className, const std::string &method,
@@ -82,19 +80,37 @@ Code ModulePrinter::storedScratch(const typed::Class &definition) const {
 // References
 //===----------------------------------------------------------------------===//
 
-static std::string parameterList(ModulePrinter &printer, const typed::Function &function) {
-  std::vector<std::string> parameters = {"State &rt"};
+static std::vector<Parameter> parametersOf(ModulePrinter &printer,
+                                           const typed::Function &function) {
+  std::vector<Parameter> parameters = {byReference("State", "rt")};
   for (std::size_t i = 0; i != function.parameters.size(); ++i) {
     const typed::Variable &parameter = *function.parameters[i];
-    parameters.push_back(printer.type(parameter.type) +
-                         (parameter.direction == ast::Direction::In ? " " : " &") +
-                         printer.parameterName(function, i));
+    const bool isIn = parameter.direction == ast::Direction::In;
+    const std::string type = printer.type(parameter.type),
+                      name = printer.parameterName(function, i);
+    parameters.push_back(isIn ? byValue(type, name) : byReference(type, name));
   }
-  return join(parameters, ", ");
+  return parameters;
 }
 
-std::string ModulePrinter::references() {
-  std::string text;
+/// The method of a type of references; a prototype without a body.
+Function ModulePrinter::referenceMethod(const ThroughReference &through) {
+  Function made;
+  made.isConst = true;
+  if (through.function) {
+    made.result = type(through.function->returnType);
+    made.name = names.of(through.function);
+    made.parameters = parametersOf(*this, *through.function);
+  } else {
+    made.result = through.method == "lookup" ? "Color" : "float";
+    made.name = through.method;
+    made.parameters = {byReference("State", "rt")};
+  }
+  return made;
+}
+
+Declarations ModulePrinter::references() {
+  Declarations all;
   for (const CalledMethod &called : calledMethods)
     referenced.try_emplace(called.definition->name);
   bool mentionsStructs = !calledMethods.empty();
@@ -103,23 +119,18 @@ std::string ModulePrinter::references() {
       mentionsStructs |= through.function != nullptr;
   for (const auto &structure : module.structs)
     if (mentionsStructs)
-      text += "struct " + names.of(structure.get()) + ";\n";
+      all.push_back(declareStruct(names.of(structure.get())));
   for (const auto &[className, methods] : referenced) {
-    text += "\n/// Any `" + className + "` of the scene.\nstruct " + names.reference(className) +
-            " : rtsl::Reference {\nusing Reference::Reference;\nstatic constexpr const char "
-            "*className = \"" +
-            className + "\";\n";
-    for (const ThroughReference &through : methods) {
-      if (through.function)
-        text += type(through.function->returnType) + " " + names.of(through.function) + "(" +
-                parameterList(*this, *through.function) + ") const;\n";
-      else
-        text += std::string(through.method == "lookup" ? "Color" : "float") + " " + through.method +
-                "(State &rt) const;\n";
-    }
-    text += callStructures(className) + "};\n";
+    Struct made = {names.reference(className), "rtsl::Reference", false, {}};
+    made.members.push_back(declare(Using{"Reference::Reference"}));
+    made.members.push_back(
+        declare(Variable{"static constexpr", "const char *", {"className", string(className)}}));
+    for (const ThroughReference &through : methods)
+      made.members.push_back(declare(referenceMethod(through)));
+    append(made.members, callStructures(className));
+    appendApart(all, declare(std::move(made), "/// Any `" + className + "` of the scene."));
   }
-  return text;
+  return all;
 }
 
 /// `const rtsl::NestedLookup nested(rt);`: what a texture wrote is there again afterwards.
@@ -130,68 +141,73 @@ static Statement nestedLookup() {
   return made;
 }
 
-std::string ModulePrinter::referenceMethods() {
-  std::string text;
-  for (const auto &[className, methods] : referenced) {
-    const std::vector<const typed::Class *> classes = classesBelow(className);
+/// The body of `lookup` or `lookupFloat` of a type of references.
+Statements ModulePrinter::lookUp(const std::string &className, bool isColor) {
+  Statements body = {lookupsNest ? nestedLookup()
+                                 : statement(call("rtsl::clearTexture", {cpp::name("rt")}))};
+  append(body, dispatch(
+                   classesBelow(className),
+                   [&](const typed::Class &definition) -> Statements {
+                     const typed::Function *lookup = definition.findMethod("lookup");
+                     if (!lookup)
+                       return {};
+                     return {statement(
+                         callMember(objectOf(definition), names.of(lookup), {cpp::name("rt")}))};
+                   },
+                   mayReferToNothing));
+  body.push_back(
+      returning(cpp::member(cpp::name("rt"), isColor ? "TextureColor" : "FloatTextureValue")));
+  return body;
+}
+
+/// The body of a method of a type of references: calls that of the object's class.
+Statements ModulePrinter::callThroughReference(const std::string &className,
+                                               const typed::Function &function) {
+  const std::vector<const typed::Class *> classes = classesBelow(className);
+  const bool isVoid = function.returnType->is(TypeKind::Void);
+  Statements body = dispatch(
+      classes,
+      [&](const typed::Class &definition) -> Statements {
+        const typed::Function *method = findMethod(definition, function);
+        if (!method)
+          return {};
+        std::vector<Code> args;
+        if (takesState(*method))
+          args.push_back(cpp::name("rt"));
+        if (takesScratch(*method)) // what the hit so far has stored
+          args.push_back(storedScratch(definition));
+        for (std::size_t i = 0; i != function.parameters.size(); ++i)
+          args.push_back(cpp::name(parameterName(function, i)));
+        const Code made = callMember(objectOf(definition), names.of(method), std::move(args));
+        return {isVoid ? statement(made) : returning(made)};
+      },
+      mayReferToNothing);
+  if (classes.size() == 1 && !body.empty() && !mayReferToNothing)
+    return body;
+  Statements zeros; // the results of a call without an object
+  for (std::size_t i = 0; i != function.parameters.size(); ++i)
+    if (const typed::Variable &parameter = *function.parameters[i];
+        parameter.direction == ast::Direction::Out)
+      zeros.push_back(
+          statement(assign(cpp::name(parameterName(function, i)), zero(parameter.type))));
+  if (!isVoid)
+    zeros.push_back(returning(list("", {})));
+  body.insert(isVoid ? body.begin() : body.end(), zeros.begin(), zeros.end());
+  return body;
+}
+
+Declarations ModulePrinter::referenceMethods() {
+  Declarations all;
+  for (const auto &[className, methods] : referenced)
     for (const ThroughReference &through : methods) {
-      if (!through.function) {
-        const bool isColor = through.method == "lookup";
-        const Code state =
-            cpp::member(cpp::name("rt"), isColor ? "TextureColor" : "FloatTextureValue");
-        Statements body = {lookupsNest ? nestedLookup()
-                                       : statement(call("rtsl::clearTexture", {cpp::name("rt")}))};
-        append(body, dispatch(
-                         classes,
-                         [&](const typed::Class &definition) -> Statements {
-                           const typed::Function *lookup = definition.findMethod("lookup");
-                           if (!lookup)
-                             return {};
-                           return {statement(callMember(objectOf(definition), names.of(lookup),
-                                                        {cpp::name("rt")}))};
-                         },
-                         mayReferToNothing));
-        body.push_back(returning(state));
-        text += fmt::format("\ninline {} {}::{}(State &rt) const {{\n{}}}\n",
-                            isColor ? "Color" : "float", names.reference(className), through.method,
-                            print(body));
-        continue;
-      }
-      const typed::Function &function = *through.function;
-      const bool isVoid = function.returnType->is(TypeKind::Void);
-      Statements body = dispatch(
-          classes,
-          [&](const typed::Class &definition) -> Statements {
-            const typed::Function *method = findMethod(definition, function);
-            if (!method)
-              return {};
-            std::vector<Code> args;
-            if (takesState(*method))
-              args.push_back(cpp::name("rt"));
-            if (takesScratch(*method)) // what the hit so far has stored
-              args.push_back(storedScratch(definition));
-            for (std::size_t i = 0; i != function.parameters.size(); ++i)
-              args.push_back(cpp::name(parameterName(function, i)));
-            const Code made = callMember(objectOf(definition), names.of(method), std::move(args));
-            return {isVoid ? statement(made) : returning(made)};
-          },
-          mayReferToNothing);
-      const bool isDirect = classes.size() == 1 && !body.empty() && !mayReferToNothing;
-      Statements zeros; // what the method of no object gives
-      for (std::size_t i = 0; i != function.parameters.size() && !isDirect; ++i)
-        if (const typed::Variable &parameter = *function.parameters[i];
-            parameter.direction == ast::Direction::Out)
-          zeros.push_back(
-              statement(assign(cpp::name(parameterName(function, i)), zero(parameter.type))));
-      if (!isVoid && !isDirect)
-        zeros.push_back(returning(list("", {})));
-      body.insert(isVoid ? body.begin() : body.end(), zeros.begin(), zeros.end());
-      text += fmt::format("\ninline {} {}::{}({}) const {{\n{}}}\n", type(function.returnType),
-                          names.reference(className), names.of(&function),
-                          parameterList(*this, function), print(body));
+      Function made = referenceMethod(through);
+      made.specifiers = "inline";
+      made.name = names.reference(className) + "::" + made.name;
+      made.body = through.function ? callThroughReference(className, *through.function)
+                                   : lookUp(className, through.method == "lookup");
+      appendApart(all, declare(std::move(made)));
     }
-  }
-  return text;
+  return all;
 }
 
 //===----------------------------------------------------------------------===//
@@ -228,40 +244,57 @@ Statements ModulePrinter::withState(const Statements &body) const {
   return all;
 }
 
-std::string ModulePrinter::slots() {
-  std::string text =
-      "\n//===----------------------------------------------------------------------===//\n"
-      "// What the runtime asks for\n"
-      "//===----------------------------------------------------------------------===//\n"
-      "\nnamespace slots {\n";
+Function slotFunction(const std::string &name, Statements body) {
+  Function made;
+  made.specifiers = "inline";
+  made.result = "void";
+  made.name = name;
+  made.parameters = {byPointer("RtslState", "ray"), byValue("RtslRef", "object")};
+  made.body = std::move(body);
+  return made;
+}
+
+/// Calls the method of a slot on the object, if the class has it.
+Statements ModulePrinter::callSlotMethod(const typed::Class &definition, const char *name) {
+  const Code object = objectOf(definition), rt = cpp::name("rt");
+  if (name == hitErrorMethod) {
+    if (withHitErrors.count(&definition) == 0)
+      return {};
+    return {statement(call("boundHitError", {rt, object}))};
+  }
+  const typed::Function *method = slotMethod(definition, name);
+  if (!method)
+    return {};
+  if (takesScratch(*method) && method->name == "intersect")
+    return {statement(call("rtsl::intersect", {rt, object}))};
+  std::vector<Code> arguments = {rt};
+  if (takesScratch(*method))
+    arguments.push_back(storedScratch(definition));
+  return {statement(callMember(object, names.of(method), std::move(arguments)))};
+}
+
+Declarations ModulePrinter::slots() {
+  Namespace made = {"slots", {}};
   for (const Slot &slot : allSlots) {
     if (isRunBySteps(slot.method))
       continue;
-    const std::vector<const typed::Class *> classes = classesBelow(slot.base);
-    const Statements body = dispatch(classes, [&](const typed::Class &definition) -> Statements {
-      if (slot.method == hitErrorMethod) {
-        if (withHitErrors.count(&definition) == 0)
-          return {};
-        return {statement(call("boundHitError", {cpp::name("rt"), objectOf(definition)}))};
-      }
-      const typed::Function *method = slotMethod(definition, slot.method);
-      if (!method)
-        return {};
-      const Code object = objectOf(definition), rt = cpp::name("rt");
-      if (takesScratch(*method) && method->name == "intersect")
-        return {statement(call("rtsl::intersect", {rt, object}))};
-      const std::vector<Code> arguments = takesScratch(*method)
-                                              ? std::vector<Code>{rt, storedScratch(definition)}
-                                              : std::vector<Code>{rt};
-      return {statement(callMember(object, names.of(method), arguments))};
+    const Statements body = dispatch(classesBelow(slot.base), [&](const typed::Class &definition) {
+      return callSlotMethod(definition, slot.method);
     });
     if (body.empty())
       continue;
-    text += fmt::format("\ninline void {}(RtslState *ray, RtslRef object) {{\n{}}}\n", slot.method,
-                        print(withState(body)));
+    appendApart(made.members, declare(slotFunction(slot.method, withState(body))));
     filledSlots.emplace_back(slot.base, slot.method);
   }
-  return text + payloadSlots() + runState() + "\n} // namespace slots\n";
+  appendApart(made.members, payloadSlots());
+  appendApart(made.members, runState());
+  Declarations all = {
+      declare(OnlyComment{},
+              "//===----------------------------------------------------------------------===//\n"
+              "// What the runtime asks for\n"
+              "//===----------------------------------------------------------------------===//")};
+  appendApart(all, declare(std::move(made)));
+  return all;
 }
 
 } // namespace rtsl::cpp

@@ -48,26 +48,29 @@ std::vector<const typed::Function *> ModulePrinter::payloadMethods(const typed::
   return methods;
 }
 
-/// RTSL_FIRST_HIT and others, as the header names them.
-static std::vector<std::string> searchWords(std::uint32_t search) {
-  std::vector<std::string> words;
-  for (const auto &[bit, word] :
+/// RTSL_FIRST_HIT and others, as the header names them, combined; nothing if there are none.
+static Code searchFlags(std::uint32_t search) {
+  Code flags;
+  for (const auto &[bit, flag] :
        {std::pair(RTSL_FIRST_HIT, "rtsl::firstHit"), std::pair(RTSL_ASK_ANY_HIT, "rtsl::askAnyHit"),
         std::pair(RTSL_IN_ORDER, "rtsl::inOrder")})
     if (search & bit)
-      words.emplace_back(word);
-  return words;
+      flags = flags ? binary(Operator::BitOr, flags, name(flag)) : name(flag);
+  return flags;
 }
 
-std::string ModulePrinter::rayType(const typed::Struct &structure) const {
+std::optional<Declaration> ModulePrinter::rayType(const typed::Struct &structure) const {
   for (const RayTypeFacts &type : facts.rayTypes)
     if (type.payload == &structure) {
-      const std::string search = join(searchWords(type.search), " | ");
-      return fmt::format("// The type of the rays that carry it.\nstatic constexpr rtsl::RayType "
-                         "rayType{{{}{}}};\n\n",
-                         type.number, search.empty() ? "" : ", " + search);
+      std::vector<Code> parts = {integer(type.number)};
+      if (const Code search = searchFlags(type.search))
+        parts.push_back(search);
+      return declare(Variable{"static constexpr",
+                              "rtsl::RayType",
+                              {"rayType", list("rtsl::RayType", std::move(parts))}},
+                     "// The type of the rays that carry it.");
     }
-  return {};
+  return std::nullopt;
 }
 
 //===----------------------------------------------------------------------===//
@@ -85,42 +88,48 @@ constexpr PayloadSlot payloadSlotTable[] = {
 };
 } // namespace
 
-std::string ModulePrinter::payloadSlots() {
-  std::string text;
+/// The slot's methods, each called for the rays that carry the payload that it takes.
+Statements ModulePrinter::callPayloadMethods(const char *base, const char *name) {
+  Statements tests; // from the last type to the first
+  const std::vector<const typed::Class *> classes = classesBelow(base);
+  for (auto type = facts.rayTypes.rbegin(); type != facts.rayTypes.rend(); ++type) {
+    Statements body = dispatch(classes, [&](const typed::Class &definition) -> Statements {
+      for (const typed::Function *method : payloadMethods(definition, name))
+        if (payloadOf(*method) == type->payload) {
+          std::vector<Code> arguments = {cpp::name("rt")};
+          if (takesScratch(*method))
+            arguments.push_back(storedScratch(definition));
+          arguments.push_back(cpp::name("payload"));
+          return {
+              statement(callMember(objectOf(definition), names.of(method), std::move(arguments)))};
+        }
+      return {};
+    });
+    if (body.empty())
+      continue;
+    body.insert(body.begin(), cpp::declaration("auto &", "payload", payloadAt(*type->payload)));
+    Statement test = branch(carries(*type->payload), std::move(body), /*hasBraces=*/true);
+    test.otherwise = std::move(tests);
+    tests = {std::move(test)};
+  }
+  return tests;
+}
+
+Declarations ModulePrinter::payloadSlots() {
+  Declarations slots;
   for (const PayloadSlot &slot : payloadSlotTable) {
-    if (!firstCalls.empty() && std::string(slot.method) != "anyHit")
-      continue;       // runState has them
-    Statements tests; // from the last type to the first
-    const std::vector<const typed::Class *> classes = classesBelow(slot.base);
-    for (auto type = facts.rayTypes.rbegin(); type != facts.rayTypes.rend(); ++type) {
-      Statements body = dispatch(classes, [&](const typed::Class &definition) -> Statements {
-        for (const typed::Function *method : payloadMethods(definition, slot.method))
-          if (payloadOf(*method) == type->payload) {
-            std::vector<Code> arguments = {cpp::name("rt")};
-            if (takesScratch(*method))
-              arguments.push_back(storedScratch(definition));
-            arguments.push_back(cpp::name("payload"));
-            return {statement(
-                callMember(objectOf(definition), names.of(method), std::move(arguments)))};
-          }
-        return {};
-      });
-      if (body.empty())
-        continue;
-      body.insert(body.begin(), declaration("auto &", "payload", payloadAt(*type->payload)));
-      Statement test = branch(carries(*type->payload), std::move(body), /*hasBraces=*/true);
-      test.otherwise = std::move(tests);
-      tests = {std::move(test)};
-    }
+    const bool isAnyHit = std::string(slot.method) == "anyHit";
+    if (!firstCalls.empty() && !isAnyHit)
+      continue; // runState has them
+    const Statements tests = callPayloadMethods(slot.base, slot.method);
     if (tests.empty())
       continue;
-    const bool isCaught = throwsFromAnyHit && std::string(slot.method) == "anyHit";
-    text +=
-        fmt::format("\ninline void {}WithPayload(RtslState *ray, RtslRef object) {}{{\n{}}}{}\n",
-                    slot.method, isCaught ? "try " : "", print(withState(tests)),
-                    isCaught ? " catch (const rtsl::EndOfAnyHit &) {\n}" : "");
+    Function made = slotFunction(slot.method + std::string("WithPayload"), withState(tests));
+    if (throwsFromAnyHit && isAnyHit)
+      made.caught = "rtsl::EndOfAnyHit";
+    appendApart(slots, declare(std::move(made)));
   }
-  return text;
+  return slots;
 }
 
 Code ModulePrinter::payloadAt(const typed::Struct &payload) const {
@@ -131,17 +140,23 @@ Code ModulePrinter::carries(const typed::Struct &payload) const {
   return call(withParameters("rtsl::carries", {names.of(&payload)}), {cpp::name("ray")});
 }
 
-std::string ModulePrinter::describePayloads() {
-  std::string text;
+/// `program.slots().base_name = &slots::function;`
+Statement setSlot(const std::string &name, const std::string &function) {
+  return statement(assign(member(callMember(cpp::name("program"), "slots", {}), name),
+                          unary(UnaryOperator::Address, cpp::name("slots::" + function))));
+}
+
+Statements ModulePrinter::describePayloads() {
+  Statements all;
   for (const PayloadSlot &slot : payloadSlotTable)
     for (const typed::Class *definition : classesBelow(slot.base))
       if ((firstCalls.empty() || std::string(slot.method) == "anyHit") &&
           !payloadMethods(*definition, slot.method).empty()) {
-        text += fmt::format("program.slots().{0}_{1}_payload = &slots::{1}WithPayload;\n",
-                            slot.base, slot.method);
+        all.push_back(setSlot(fmt::format("{}_{}_payload", slot.base, slot.method),
+                              slot.method + std::string("WithPayload")));
         break;
       }
-  return text;
+  return all;
 }
 
 //===----------------------------------------------------------------------===//

@@ -9,6 +9,7 @@
 
 #include "codegen/cpp/Effects.h"
 #include "codegen/cpp/EmitCpp.h"
+#include "codegen/cpp/Literals.h"
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/SourceNotes.h"
 #include "codegen/cpp/tree/Print.h"
@@ -60,7 +61,7 @@ public:
   /// `states`: what traces, split; null: traces are calls.
   ModulePrinter(const typed::Module &module, const ModuleFacts &facts, const Options &options,
                 Diagnostics &diagnostics, const StateProgram *states);
-  std::string run();
+  Declarations file();
 
   /// `inMemory`: as it lies in a record, a struct or an array, where a bool has 32 bits.
   std::string type(const Type *type, bool inMemory = false);
@@ -95,7 +96,6 @@ public:
   const std::set<std::string> &namesInFile() const;
   std::set<std::string> namesInClass(const typed::Class &definition) const;
 
-  std::string commentText(const std::string &comment) const;
   /// Where the text stands, if that is to be printed.
   std::optional<SourcePlace> lineDirective(SourceRange range) const;
   std::optional<SourcePlace> lineDirective(SourceRange ofFile, unsigned line) const;
@@ -116,21 +116,30 @@ private:
   std::unordered_set<std::string> constexprNames;
 
   // Declarations.cpp
-  std::string structure(const typed::Struct &structure);
-  std::string constant(const typed::Variable &constant);
+  Declaration structure(const typed::Struct &structure);
+  Declaration constant(const typed::Variable &constant);
   bool isConstexpr(const Type *type, const typed::Constant *value, const std::string &name,
                    const Code &initialiser);
-  std::string freeFunctions();
-  std::string signature(const typed::Function &function, bool isMethod);
-  std::string function(const typed::Function &function, bool isMethod);
-  std::string classDefinition(const typed::Class &definition);
-  std::string member(const typed::Member &member);
-  std::string scratchStructure(const typed::Class &definition);
+  Declarations freeFunctions();
+  struct Mentions;
+  Mentions mentionsOf(const typed::Function &function);
+  Parameter parameter(const typed::Function &function, std::size_t number,
+                      const Mentions &mentions);
+  Function signature(const typed::Function &function, bool isMethod);
+  Declaration function(const typed::Function &function, bool isMethod);
+  Declaration classDefinition(const typed::Class &definition);
+  Declarations ownMembers(const typed::Class &definition);
+  Declarations methodsOfBases(const typed::Class &definition);
+  Declaration member(const typed::Member &member);
+  std::optional<Declaration> scratchStructure(const typed::Class &definition);
+  Declarations heading() const;
+  Declarations exported() const;
+  Declaration classNumbers() const;
   bool isOverridden(const typed::Function &function) const;
   bool overrides(const typed::Function &function) const;
 
   // HitErrors.cpp
-  std::string hitErrors();
+  Declarations hitErrors();
 
   // Attributes.cpp
   const typed::Class &top(const typed::Class &definition) const;
@@ -144,19 +153,22 @@ private:
   bool isPartOfStates(const typed::Function &function) const;
   /// The name in C++ of the first state of a method that rays start, or others call.
   std::string nameOfMachine(const typed::Class &definition, const typed::Function &method) const;
-  std::string stateMachine(const typed::Class &definition, const typed::Function &method);
+  Declarations stateMachine(const typed::Class &definition, const typed::Function &method);
   Machine machineOf(const typed::Class &definition, const typed::Function &method,
                     std::set<std::string> &taken);
-  std::string frameStructure(Machine &machine, std::set<std::string> &taken);
-  std::string stateFunction(const Machine &machine, StateWriter &writer, std::size_t number);
+  std::optional<Declaration> frameStructure(Machine &machine, std::set<std::string> &taken);
+  void nameGiven(const Machine &machine, Statements &body);
+  Declaration stateFunction(const Machine &machine, StateWriter &writer, std::size_t number);
   bool differsIn(const typed::Class &derived, const typed::Function &method) const;
-  std::vector<std::string> inheritedStateMachines(const typed::Class &definition);
+  Declarations inheritedStateMachines(const typed::Class &definition);
   std::string meaningOf(const typed::Function &method, const FrameField &field);
 
   // RunState.cpp
-  std::string stepNumbers() const;
-  std::string runState();
-  std::string describeStates() const;
+  Declarations stepNumbers() const;
+  Statements beginMethod(const typed::Class &definition, const typed::Function &method,
+                         const typed::Struct *payload);
+  Declarations runState();
+  Statements describeStates() const;
   bool isRunBySteps(const std::string &slot) const; // "shade" and "miss", if anything traces
 
   // CalledMethods.cpp
@@ -165,20 +177,29 @@ private:
   std::string stepName(const typed::Class &definition, const std::string &function);
   const CalledMethod *calledMethod(const typed::Class &definition,
                                    const typed::Function &method) const;
-  std::string callStructures(const std::string &className);
+  Declarations callStructures(const std::string &className);
   Statements runCalledMethod(const CalledMethod &called);
 
   // Payloads.cpp
-  std::string rayType(const typed::Struct &structure) const;
+  std::optional<Declaration> rayType(const typed::Struct &structure) const;
   std::vector<const typed::Function *> payloadMethods(const typed::Class &definition,
                                                       const std::string &name) const;
-  std::string payloadSlots();
-  std::string describePayloads();
+  Statements callPayloadMethods(const char *base, const char *name);
+  Declarations payloadSlots();
+  Statements describePayloads();
 
   // Entries.cpp
-  std::string references();
-  std::string referenceMethods();
-  std::string slots();
+  struct ThroughReference {
+    std::string method;
+    const typed::Function *function; // null: lookup, lookupFloat
+  };
+  Declarations references();
+  Function referenceMethod(const ThroughReference &through);
+  Statements lookUp(const std::string &className, bool isColor);
+  Statements callThroughReference(const std::string &className, const typed::Function &function);
+  Declarations referenceMethods();
+  Statements callSlotMethod(const typed::Class &definition, const char *name);
+  Declarations slots();
   std::vector<const typed::Class *> classesBelow(const std::string &className) const;
   Statements dispatch(const std::vector<const typed::Class *> &classes,
                       const std::function<Statements(const typed::Class &)> &run,
@@ -196,11 +217,13 @@ private:
                                     const typed::Function &like) const;
 
   // Description.cpp
-  std::string description(); // of what slots() and others have printed
-  std::string describeStructs();
-  std::string describeClass(const typed::Class &definition);
-  std::string describeConstructor(const typed::Function &constructor);
-  std::string describeFeatures() const;
+  Declarations description(); // of what slots() and others have printed
+  Declarations describeStructs();
+  Statement describeClass(const typed::Class &definition);
+  Code describeConstructor(const Code &described, const typed::Function &constructor) const;
+  Code describeMember(const Code &described, const std::string &className,
+                      const typed::Member &member) const;
+  Statements describeFeatures() const;
 
   /// `shadeAfterTrace1(rt, frame)`, on an object.
   struct MethodCall {
@@ -230,10 +253,6 @@ private:
   std::map<std::tuple<std::string, std::string, bool>, std::vector<mlir::func::FuncOp>> statesOf;
   mutable std::set<std::string> fileNames, fileTypes; // that namesInFile() and typeNames() give
   Diagnostics &diagnostics;
-  struct ThroughReference {
-    std::string method;
-    const typed::Function *function; // null: lookup, lookupFloat
-  };
   std::map<std::string, std::vector<ThroughReference>> referenced; // by class
   std::map<const typed::Class *, std::optional<bool>> scratchOfFamily;
   std::set<const typed::Class *> withHitErrors; // that hitErrors() has printed
@@ -378,14 +397,15 @@ private:
   friend class StateWriter;
 };
 
+/// `inline void name(RtslState *ray, RtslRef object)`, which the runtime calls.
+Function slotFunction(const std::string &name, Statements body);
+/// `program.slots().name = &slots::function;`
+Statement setSlot(const std::string &name, const std::string &function);
 /// The method that a class has for a slot of language/Slots.def or SamplingSlots.def; null: none.
 const typed::Function *slotMethod(const typed::Class &definition, const char *name);
 /// Does it lie in a record, a struct or an array, where bools have 32 bits?
 bool isInMemory(const typed::Expr &expr);
 std::string join(const std::vector<std::string> &parts, const char *between);
-/// The shortest literal of a number that reads back as it.
-Code floatLiteral(float value);
-Code doubleLiteral(double value);
 bool endsInReturn(const Statements &statements);
 /// `for (rtsl::Lights lights(rt, arguments); lights.next();)`, without what it runs.
 Statement lightLoop(const std::string &lights, std::vector<Code> arguments);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace rtsl::cpp {
 
 namespace {
@@ -38,12 +40,13 @@ bool ModulePrinter::isRunBySteps(const std::string &slot) const {
          (slot == "shade" || slot == "miss" || slot == "generate" || slot == "closestHit");
 }
 
-std::string ModulePrinter::stepNumbers() const {
+Declarations ModulePrinter::stepNumbers() const {
   if (firstCalls.empty())
     return {};
-  std::vector<std::string> numbers, begin;
+  Enum made = {"Step", "rtsl::Next", {}};
+  std::vector<std::string> begin;
   auto add = [&](const std::string &step) {
-    numbers.push_back(numbers.empty() ? step + " = 1" : step);
+    made.values.push_back({step, made.values.empty() ? std::optional(1u) : std::nullopt});
     begin.push_back(fmt::format("`{}`", step));
   };
   for (const Beginning &one : beginnings)
@@ -52,45 +55,63 @@ std::string ModulePrinter::stepNumbers() const {
   for (const CalledMethod &called : calledMethods)
     add(called.step);
   for (const Step &step : steps)
-    numbers.push_back(step.name);
+    made.values.push_back({step.name, std::nullopt});
   const std::string last = begin.back();
   begin.pop_back();
-  return fmt::format(
-      "// Where a method goes on: {}{} begin{}, the others run when a ray is back{}.\n"
-      "enum class Step : rtsl::Next {{ {} }};\n",
-      begin.empty() ? "" : join(begin, ", ") + " and ", last, begin.empty() ? "s" : "",
-      calledMethods.empty() ? "" : " or a call over", join(numbers, ", "));
+  return {declare(std::move(made),
+                  fmt::format("// Where a method goes on: {}{} begin{}, the others run when a ray "
+                              "is back{}.",
+                              begin.empty() ? "" : join(begin, ", ") + " and ", last,
+                              begin.empty() ? "s" : "",
+                              calledMethods.empty() ? "" : " or a call over"))};
 }
 
-std::string ModulePrinter::runState() {
+/// The method of a class with which the machine begins, for rays that carry this payload; null: it
+/// has none.
+static const typed::Function *methodOf(const typed::Class &definition, const Beginning &one,
+                                       const typed::Struct *payload) {
+  auto takes = [&](const typed::Function &function) {
+    return payload ? typed::takesPayload(function) &&
+                         function.parameters.front()->type->structure == payload
+                   : function.parameters.empty();
+  };
+  for (const typed::Class *at = &definition; at; at = at->base) {
+    const auto found =
+        std::find_if(at->functions.begin(), at->functions.end(), [&](const auto &function) {
+          return function->isStateMethod && function->body && function->name == one.method &&
+                 takes(*function);
+        });
+    if (found != at->functions.end())
+      return found->get();
+  }
+  return nullptr;
+}
+
+/// Runs the first state of a class's method, or all of it if it does not trace.
+Statements ModulePrinter::beginMethod(const typed::Class &definition, const typed::Function &method,
+                                      const typed::Struct *payload) {
+  // States of its own class, or of one between it and the method's: a base has others.
+  for (const typed::Class *at = &definition; at != method.owner->base; at = at->base)
+    if (auto first = firstCalls.find({at, typed::slotName(module, method)});
+        first != firstCalls.end())
+      return {returning(first->second.on(objectOf(definition)))};
+  std::vector<Code> arguments = {cpp::name("rt")};
+  if (takesScratch(method))
+    arguments.push_back(storedScratch(definition));
+  if (payload)
+    arguments.push_back(payloadAt(*payload));
+  return {statement(callMember(objectOf(definition), names.of(&method), std::move(arguments))),
+          returning(cpp::name("rtsl::done"))};
+}
+
+Declarations ModulePrinter::runState() {
   if (firstCalls.empty())
     return {};
   const Statement done = returning(cpp::name("rtsl::done"));
-  // The first state of a method, or all of it if it does not trace.
   auto begin = [&](const Beginning &one, const typed::Struct *payload) {
     return dispatch(classesBelow(one.base), [&](const typed::Class &definition) -> Statements {
-      const typed::Function *method = nullptr;
-      for (const typed::Class *at = &definition; at && !method; at = at->base)
-        for (const auto &function : at->functions)
-          if (function->isStateMethod && function->body && function->name == one.method &&
-              (payload ? typed::takesPayload(*function) &&
-                             function->parameters.front()->type->structure == payload
-                       : function->parameters.empty()))
-            method = function.get();
-      if (!method)
-        return {};
-      // States of its own class, or of one between it and the method's: a base has others.
-      for (const typed::Class *at = &definition; at != method->owner->base; at = at->base)
-        if (auto first = firstCalls.find({at, typed::slotName(module, *method)});
-            first != firstCalls.end())
-          return {returning(first->second.on(objectOf(definition)))};
-      std::vector<Code> arguments = {cpp::name("rt")};
-      if (takesScratch(*method))
-        arguments.push_back(storedScratch(definition));
-      if (payload)
-        arguments.push_back(payloadAt(*payload));
-      return {statement(callMember(objectOf(definition), names.of(method), std::move(arguments))),
-              done};
+      const typed::Function *method = methodOf(definition, one, payload);
+      return method ? beginMethod(definition, *method, payload) : Statements();
     });
   };
   Statement choice = simple(StatementKind::Switch);
@@ -117,22 +138,35 @@ std::string ModulePrinter::runState() {
   for (const Step &step : steps)
     add(step.name, {returning(step.call.on(objectOf(*step.definition)))});
   Statements body = withState({choice, done});
-  return fmt::format("\ninline rtsl::Next runState(RtslState *ray, rtsl::Next step, RtslRef "
-                     "object, void *{}) {{\n{}}}\n",
-                     mentions(body, "frame") ? "frame" : "/*frame*/", print(body));
+  Parameter frame = byPointer("void", "frame");
+  frame.isCommented = !mentions(body, "frame");
+  Function made;
+  made.specifiers = "inline";
+  made.result = "rtsl::Next";
+  made.name = "runState";
+  made.parameters = {byPointer("RtslState", "ray"), byValue("rtsl::Next", "step"),
+                     byValue("RtslRef", "object"), frame};
+  made.body = std::move(body);
+  return {declare(std::move(made))};
 }
 
-std::string ModulePrinter::describeStates() const {
+Statements ModulePrinter::describeStates() const {
   if (firstCalls.empty())
     return {};
-  std::string text = fmt::format("program.states<{}>(&slots::runState);\n", join(frames, ", "));
+  const Code program = name("program");
+  Statements all = {
+      statement(callMember(program, withParameters("states", frames),
+                           {unary(UnaryOperator::Address, name("slots::runState"))}))};
   if (!calledMethods.empty())
-    text += fmt::format("program.calls<{}>({});\n", join(calledFrames, ", "), calledMethods.size());
+    all.push_back(
+        statement(callMember(program, withParameters("calls", calledFrames),
+                             {integer(static_cast<std::int64_t>(calledMethods.size()))})));
   for (const Beginning &one : beginnings)
     if (isThere(classesBelow(one.base), one))
-      text += fmt::format("program.slots().states.{} = static_cast<rtsl::Next>(Step::{});\n",
-                          one.slot, one.step);
-  return text;
+      all.push_back(statement(
+          assign(cpp::member(cpp::member(callMember(program, "slots", {}), "states"), one.slot),
+                 staticCast("rtsl::Next", name("Step::" + std::string(one.step))))));
+  return all;
 }
 
 } // namespace rtsl::cpp

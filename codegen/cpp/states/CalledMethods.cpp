@@ -112,25 +112,29 @@ static bool isAddress(const typed::Variable *given) {
          given->type->is(TypeKind::Array) || given->type->isMatrix();
 }
 
-std::string ModulePrinter::callStructures(const std::string &className) {
-  std::string text;
+Declarations ModulePrinter::callStructures(const std::string &className) {
+  Declarations all;
   for (const CalledMethod &called : calledMethods) {
     if (called.definition->name != className)
       continue;
-    text += fmt::format(
-        "\n// What `{}` is given{}.\nstruct {} {{\nstatic constexpr Step begin = Step::{};\n",
-        names.of(called.function), called.returned.empty() ? "" : ", and what it returns",
-        called.structure, called.step);
+    Struct made;
+    made.name = called.structure;
+    made.members.push_back(declare(
+        Variable{"static constexpr", "Step", {"begin", cpp::name("Step::" + called.step)}}));
     for (std::size_t i = 0; i < called.given.size(); ++i) {
       const typed::Variable *given = called.given[i];
-      const Type *of = given ? given->type : called.function->returnType;
-      text += fmt::format("{}{}{};\n", type(of), isAddress(given) ? " *" : " ", called.fields[i]);
+      const std::string of = type(given ? given->type : called.function->returnType);
+      made.members.push_back(
+          declare(Variable{{}, isAddress(given) ? of + " *" : of, {called.fields[i], {}}}));
     }
     if (!called.returned.empty())
-      text += fmt::format("{} {}{{}};\n", type(called.function->returnType), called.returned);
-    text += "};\n";
+      made.members.push_back(declare(
+          Variable{{}, type(called.function->returnType), {called.returned, list("", {})}}));
+    appendApart(all, declare(std::move(made),
+                             fmt::format("// What `{}` is given{}.", names.of(called.function),
+                                         called.returned.empty() ? "" : ", and what it returns")));
   }
-  return text;
+  return all;
 }
 
 /// The method of an object's class begins, or runs at once if that does not trace.

@@ -294,18 +294,19 @@ Machine ModulePrinter::machineOf(const typed::Class &definition, const typed::Fu
   return machine;
 }
 
-/// The struct of what a method has in its frame; empty: nothing that is not given.
-std::string ModulePrinter::frameStructure(Machine &machine, std::set<std::string> &taken) {
+/// The struct of what a method has in its frame; nothing: there is only what it is given.
+std::optional<Declaration> ModulePrinter::frameStructure(Machine &machine,
+                                                         std::set<std::string> &taken) {
   if (machine.frame.empty()) {
     if (machine.called)
       machine.frameStruct = machine.frameType = structureOf(*machine.called);
-    return {};
+    return std::nullopt;
   }
   machine.frameStruct = unique(capitalised(machine.name) + "Frame", taken, namesInFile());
   machine.frameType = names.of(machine.definition) + "::" + machine.frameStruct;
-  std::string text =
-      fmt::format("// What `{}` needs when its rays come back.\nstruct {}{} {{\n", machine.name,
-                  machine.frameStruct, machine.called ? " : " + structureOf(*machine.called) : "");
+  Struct made;
+  made.name = machine.frameStruct;
+  made.base = machine.called ? structureOf(*machine.called) : "";
   const auto isBool = [](const FrameField &field) {
     return field.type && field.type->is(TypeKind::Bool) && !field.isObject;
   };
@@ -317,11 +318,14 @@ std::string ModulePrinter::frameStructure(Machine &machine, std::set<std::string
                   fmt::format("`{}` in the frame of a method in C++", field.slot));
       continue;
     }
-    text += fmt::format("{} {}{}; // needed by line {}: {}\n", type(field.type), field.name,
-                        packs && isBool(field) ? " : 1" : "", field.neededBy,
-                        meaningOf(*machine.method, field));
+    Variable variable = {{}, type(field.type), {field.name, {}}};
+    variable.bits = packs && isBool(field) ? 1 : 0;
+    made.members.push_back(declare(std::move(variable)));
+    made.members.back().trailing =
+        fmt::format("// needed by line {}: {}", field.neededBy, meaningOf(*machine.method, field));
   }
-  return text + "};\n\n";
+  return declare(std::move(made),
+                 fmt::format("// What `{}` needs when its rays come back.", machine.name));
 }
 
 /// Does a state write what is in its frame?
@@ -345,39 +349,48 @@ static std::string headingOf(const Machine &machine, mlir::func::FuncOp state) {
   });
   const std::string symbol = state.getSymName().str();
   if (line == 0)
-    return "\n";
+    return {};
   if (machine.joins.count(symbol) != 0)
-    return fmt::format("\n// From line {} on, whatever came before.\n", line);
+    return fmt::format("// From line {} on, whatever came before.", line);
   if (machine.callBefore.count(symbol) != 0)
-    return fmt::format("\n// When the call of line {} is over.\n", line);
-  return fmt::format("\n// When the ray of line {} is back.\n", line);
+    return fmt::format("// When the call of line {} is over.", line);
+  return fmt::format("// When the ray of line {} is back.", line);
 }
 
-/// One state as a function, whose parameters are what its body mentions; notes how it is called.
-std::string ModulePrinter::stateFunction(const Machine &machine, StateWriter &writer,
-                                         std::size_t number) {
-  const typed::Class &definition = *machine.definition;
-  const typed::Function &method = *machine.method;
-  mlir::func::FuncOp state = machine.states[number];
-  Statements body = writer.body(state);
-  for (std::size_t at = 0; machine.called && at < machine.called->given.size();
-       ++at) // under the author's name
+/// Names for what a called method is given by its address, above the body that mentions them.
+void ModulePrinter::nameGiven(const Machine &machine, Statements &body) {
+  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
     if (const std::string address = machine.addressName(*this, at); mentions(body, address)) {
       const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
       body.insert(body.begin(), cpp::declaration(type(machine.givenType(at)) + " &", address,
                                                  unary(UnaryOperator::Dereference, given)));
     }
+}
 
-  std::vector<std::string> parameters = {mentions(body, "rt") ? "State &rt" : "State &"};
+/// One state as a function, whose parameters are what its body mentions; records how it is called.
+Declaration ModulePrinter::stateFunction(const Machine &machine, StateWriter &writer,
+                                         std::size_t number) {
+  const typed::Class &definition = *machine.definition;
+  const typed::Function &method = *machine.method;
+  mlir::func::FuncOp state = machine.states[number];
+  Statements body = writer.body(state);
+  nameGiven(machine, body);
+
+  Function made;
+  made.result = "rtsl::Next";
+  made.name = machine.functions[number];
+  made.isConst = true;
+  std::vector<Parameter> &parameters = made.parameters;
+  parameters = {byReference("State", mentions(body, "rt") ? "rt" : "")};
   std::vector<Code> arguments = {cpp::name("rt")};
   const typed::Variable *payload =
       typed::takesPayload(method) ? method.parameters.front().get() : nullptr;
   if (payload && mentions(body, names.of(payload))) {
-    parameters.push_back(names.of(payload->type->structure) + " &" + names.of(payload));
+    parameters.push_back(byReference(names.of(payload->type->structure), names.of(payload)));
     arguments.push_back(payloadAt(*payload->type->structure));
   }
   if (writer.usesScratch) {
-    parameters.emplace_back("const Scratch &scratch");
+    parameters.push_back(byConstReference("Scratch", "scratch"));
     arguments.push_back(storedScratch(definition));
   }
   const Code bottom = cpp::name("frame");
@@ -388,46 +401,47 @@ std::string ModulePrinter::stateFunction(const Machine &machine, StateWriter &wr
                       {bottom})
           : bottom;
   if (mentions(body, machine.frameName)) {
-    parameters.push_back((writesFrame(state) ? "" : "const ") + machine.frameStruct + " &" +
-                         machine.frameName);
+    parameters.push_back(byReference(machine.frameStruct, machine.frameName));
+    parameters.back().isConst = !writesFrame(state);
     arguments.push_back(frame);
   }
   const std::string symbol = state.getSymName().str();
   const auto before = machine.callBefore.find(symbol);
   if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
     const std::string given = structureOf(*before->second);
-    parameters.push_back("const " + given + " &" + machine.callName);
+    parameters.push_back(byConstReference(given, machine.callName));
     arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {given}), {frame}));
   }
+  made.body = std::move(body);
 
-  std::string text;
-  const MethodCall call = {machine.functions[number], std::move(arguments)};
+  const MethodCall call = {made.name, std::move(arguments)};
+  Declaration declared = declare(std::move(made));
   if (number == 0) {
     firstCalls[{&definition, machine.slot}] = call;
-    text = commentText(method.comment);
-    if (const auto place = lineDirective(method.range))
-      text += print(*place);
+    declared.comment = method.comment;
+    declared.place = lineDirective(method.range);
   } else {
     steps.push_back({machine.stepOf.at(symbol), &definition, &method, call});
-    text = headingOf(machine, state);
+    declared.comment = headingOf(machine, state);
   }
-  return text + fmt::format("rtsl::Next {}({}) const {{\n{}}}\n", call.method,
-                            join(parameters, ", "), print(body));
+  return declared;
 }
 
-std::string ModulePrinter::stateMachine(const typed::Class &definition,
-                                        const typed::Function &method) {
+Declarations ModulePrinter::stateMachine(const typed::Class &definition,
+                                         const typed::Function &method) {
   // what is printed beside the author's own stands behind it
   std::set<std::string> taken = namesInClass(definition);
   Machine machine = machineOf(definition, method, taken);
   StateWriter writer(*this, states->source, machine);
   collectFrame(machine, writer, typeNames());
-  std::string text = frameStructure(machine, taken);
+  Declarations all;
+  if (std::optional<Declaration> frame = frameStructure(machine, taken))
+    all.push_back(std::move(*frame));
   if (machine.hasFrame())
     (machine.called ? calledFrames : frames).push_back(machine.frameType);
   for (std::size_t number = 0; number < machine.states.size(); ++number)
-    text += stateFunction(machine, writer, number);
-  return text;
+    appendApart(all, stateFunction(machine, writer, number));
+  return all;
 }
 
 /// Has something that the method calls on its own object, and that has become part of its states,
@@ -453,8 +467,8 @@ bool ModulePrinter::differsIn(const typed::Class &derived, const typed::Function
   return differs;
 }
 
-std::vector<std::string> ModulePrinter::inheritedStateMachines(const typed::Class &definition) {
-  std::vector<std::string> machines;
+Declarations ModulePrinter::inheritedStateMachines(const typed::Class &definition) {
+  Declarations machines;
   if (!states)
     return machines;
   std::set<std::string> known;
@@ -464,7 +478,7 @@ std::vector<std::string> ModulePrinter::inheritedStateMachines(const typed::Clas
     for (const auto &method : at->functions)
       if (known.insert(typed::slotName(module, *method)).second && isSplit(definition, *method) &&
           differsIn(definition, *method))
-        machines.push_back(stateMachine(definition, *method));
+        appendApart(machines, stateMachine(definition, *method));
   return machines;
 }
 
