@@ -1,6 +1,6 @@
 #include "codegen/cpp/errors/HitErrorWriter.h"
 
-#include "codegen/cpp/Literals.h"
+#include "codegen/cpp/functions/Literals.h"
 
 #include "mlir/IR/Matchers.h"
 

@@ -63,7 +63,7 @@ static bool isPlain(mlir::Type type) {
           (!vector && scalar.isIndex()));
 }
 
-/// The first operation that the writer of C++ does not show (codegen/cpp/HitErrors.cpp); null if
+/// The first operation that the writer of C++ does not show (codegen/cpp/errors); null if
 /// there is none. Machine code does without such a function too, so that both have the same bounds.
 static mlir::Operation *findNotShown(FuncOp function) {
   mlir::Operation *found = nullptr;

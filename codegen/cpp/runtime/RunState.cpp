@@ -1,6 +1,7 @@
-//===- RunState.cpp - all states of a program, by number ------------------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/runtime/RunState.h"
 
+#include "codegen/cpp/runtime/Dispatch.h"
+#include "codegen/cpp/states/CalledMethods.h"
 #include "sema/typed/Analysis.h"
 
 #include <fmt/format.h>
@@ -35,13 +36,13 @@ static bool isThere(const std::vector<const typed::Class *> &classes, const Begi
   return false;
 }
 
-bool ModulePrinter::isRunBySteps(const std::string &slot) const {
-  return !firstCalls.empty() &&
+bool isRunBySteps(const StateEntries &entries, const std::string &slot) {
+  return !entries.empty() &&
          (slot == "shade" || slot == "miss" || slot == "generate" || slot == "closestHit");
 }
 
-Declarations ModulePrinter::stepNumbers() const {
-  if (firstCalls.empty())
+Declarations RunState::stepNumbers() const {
+  if (entries.empty())
     return {};
   Enum made = {"Step", "rtsl::Next", {}};
   std::vector<std::string> begin;
@@ -50,20 +51,21 @@ Declarations ModulePrinter::stepNumbers() const {
     begin.push_back(fmt::format("`{}`", step));
   };
   for (const Beginning &one : beginnings)
-    if (isThere(classesBelow(one.base), one))
+    if (isThere(classesBelow(context.module, one.base), one))
       add(one.step);
-  for (const CalledMethod &called : calledMethods)
+  for (const CalledMethod &called : context.split.calledMethods)
     add(called.step);
-  for (const Step &step : steps)
+  for (const Step &step : entries.steps)
     made.values.push_back({step.name, std::nullopt});
   const std::string last = begin.back();
   begin.pop_back();
-  return {declare(std::move(made),
-                  fmt::format("// Where a method goes on: {}{} begin{}, the others run when a ray "
-                              "is back{}.",
-                              begin.empty() ? "" : join(begin, ", ") + " and ", last,
-                              begin.empty() ? "s" : "",
-                              calledMethods.empty() ? "" : " or a call over"))};
+  return {
+      declare(std::move(made),
+              fmt::format("// Where a method goes on: {}{}{} begin{}, the others run when a ray "
+                          "is back{}.",
+                          fmt::join(begin, ", "), begin.empty() ? "" : " and ", last,
+                          begin.empty() ? "s" : "",
+                          context.split.calledMethods.empty() ? "" : " or a call over"))};
 }
 
 /// The method of a class with which the machine begins, for rays that carry this payload; null: it
@@ -88,31 +90,33 @@ static const typed::Function *methodOf(const typed::Class &definition, const Beg
 }
 
 /// Runs the first state of a class's method, or all of it if it does not trace.
-Statements ModulePrinter::beginMethod(const typed::Class &definition, const typed::Function &method,
-                                      const typed::Struct *payload) {
+Statements RunState::begin(const typed::Class &definition, const typed::Function &method,
+                           const typed::Struct *payload) {
   // States of its own class, or of one between it and the method's: a base has others.
   for (const typed::Class *at = &definition; at != method.owner->base; at = at->base)
-    if (auto first = firstCalls.find({at, typed::slotName(module, method)});
-        first != firstCalls.end())
-      return {returning(first->second.on(objectOf(definition)))};
+    if (auto first = entries.firstCalls.find({at, typed::slotName(context.module, method)});
+        first != entries.firstCalls.end())
+      return {returning(first->second.on(objectOf(context.names, definition)))};
   std::vector<Code> arguments = {cpp::name("rt")};
-  if (takesScratch(method))
-    arguments.push_back(storedScratch(definition));
+  if (context.signatures.takesScratch(method))
+    arguments.push_back(storedScratch(context.names, definition));
   if (payload)
-    arguments.push_back(payloadAt(*payload));
-  return {statement(callMember(objectOf(definition), names.of(&method), std::move(arguments))),
+    arguments.push_back(payloadAt(context.names, *payload));
+  return {statement(callMember(objectOf(context.names, definition), context.names.of(&method),
+                               std::move(arguments))),
           returning(cpp::name("rtsl::done"))};
 }
 
-Declarations ModulePrinter::runState() {
-  if (firstCalls.empty())
+Declarations RunState::function() {
+  if (entries.empty())
     return {};
   const Statement done = returning(cpp::name("rtsl::done"));
   auto begin = [&](const Beginning &one, const typed::Struct *payload) {
-    return dispatch(classesBelow(one.base), [&](const typed::Class &definition) -> Statements {
-      const typed::Function *method = methodOf(definition, one, payload);
-      return method ? beginMethod(definition, *method, payload) : Statements();
-    });
+    return dispatch(context.names, classesBelow(context.module, one.base),
+                    [&](const typed::Class &definition) -> Statements {
+                      const typed::Function *method = methodOf(definition, one, payload);
+                      return method ? this->begin(definition, *method, payload) : Statements();
+                    });
   };
   Statement choice = simple(StatementKind::Switch);
   choice.value = staticCast("Step", cpp::name("step"));
@@ -121,23 +125,24 @@ Declarations ModulePrinter::runState() {
     choice.arms.push_back({{cpp::name("Step::" + step)}, false, declares, std::move(body)});
   };
   for (const Beginning &one : beginnings) {
-    if (!isThere(classesBelow(one.base), one))
+    if (!isThere(classesBelow(context.module, one.base), one))
       continue;
     Statements body;
     if (!one.hasPayload)
       body = begin(one, nullptr);
-    for (const RayTypeFacts &type : facts.rayTypes)
+    for (const RayTypeFacts &type : context.facts.rayTypes)
       if (Statements run = one.hasPayload ? begin(one, type.payload) : Statements(); !run.empty())
-        body.push_back(branch(carries(*type.payload), std::move(run), /*hasBraces=*/true));
+        body.push_back(
+            branch(carries(context.names, *type.payload), std::move(run), /*hasBraces=*/true));
     if (!endsInReturn(body))
       body.push_back(done);
     add(one.step, std::move(body));
   }
-  for (const CalledMethod &called : calledMethods)
-    add(called.step, runCalledMethod(called));
-  for (const Step &step : steps)
-    add(step.name, {returning(step.call.on(objectOf(*step.definition)))});
-  Statements body = withState({choice, done});
+  for (const CalledMethod &called : context.split.calledMethods)
+    add(called.step, runCalledMethod(context, entries, called));
+  for (const Step &step : entries.steps)
+    add(step.name, {returning(step.call.on(objectOf(context.names, *step.definition)))});
+  Statements body = withState(context.options, {choice, done});
   Parameter frame = byPointer("void", "frame");
   frame.isCommented = !mentions(body, "frame");
   Function made;
@@ -150,19 +155,19 @@ Declarations ModulePrinter::runState() {
   return {declare(std::move(made))};
 }
 
-Statements ModulePrinter::describeStates() const {
-  if (firstCalls.empty())
+Statements RunState::describe() const {
+  if (entries.empty())
     return {};
   const Code program = name("program");
   Statements all = {
-      statement(callMember(program, withParameters("states", frames),
+      statement(callMember(program, withParameters("states", entries.frames),
                            {unary(UnaryOperator::Address, name("slots::runState"))}))};
-  if (!calledMethods.empty())
-    all.push_back(
-        statement(callMember(program, withParameters("calls", calledFrames),
-                             {integer(static_cast<std::int64_t>(calledMethods.size()))})));
+  if (!context.split.calledMethods.empty())
+    all.push_back(statement(
+        callMember(program, withParameters("calls", entries.calledFrames),
+                   {integer(static_cast<std::int64_t>(context.split.calledMethods.size()))})));
   for (const Beginning &one : beginnings)
-    if (isThere(classesBelow(one.base), one))
+    if (isThere(classesBelow(context.module, one.base), one))
       all.push_back(statement(
           assign(cpp::member(cpp::member(callMember(program, "slots", {}), "states"), one.slot),
                  staticCast("rtsl::Next", name("Step::" + std::string(one.step))))));

@@ -1,14 +1,8 @@
-//===- Description.cpp - what the runtime is told of a program ------------===//
-//
-//   static RtslShaders describe() {
-//     rtsl::Program<3> program;
-//     program.add<Glass>(static_cast<std::uint32_t>(Id::Glass), "Glass", ...).member(...).needs(...);
-//     program.slots().rt_Material_shade = &slots::shade;
-//     ...
-//
-//===----------------------------------------------------------------------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/runtime/Description.h"
 
+#include "codegen/cpp/runtime/Dispatch.h"
+#include "codegen/cpp/runtime/Payloads.h"
+#include "codegen/cpp/runtime/RunState.h"
 #include "codegen/link/Members.h"
 #include "runtime/device/ray/Abi.h"
 #include "sema/typed/Analysis.h"
@@ -72,9 +66,9 @@ static void structsOf(const Type *type, std::vector<const typed::Struct *> &foun
 }
 
 /// What a scene sets: the structs of members and of constructors' parameters.
-Declarations ModulePrinter::describeStructs() {
+static Declarations describeStructs(const Context &context) {
   std::vector<const typed::Struct *> described;
-  for (const auto &definition : module.classes) {
+  for (const auto &definition : context.module.classes) {
     for (const auto &member : definition->members)
       if (!member->isConst && member->access != ast::Access::Scratch)
         structsOf(member->type, described);
@@ -90,20 +84,21 @@ Declarations ModulePrinter::describeStructs() {
     made.specifiers = "inline";
     made.result = "void";
     made.name = "describeFields";
-    made.parameters = {
-        byReference(withParameters("rtsl::StructDescription", {names.of(structure)}), "fields")};
+    made.parameters = {byReference(
+        withParameters("rtsl::StructDescription", {context.names.of(structure)}), "fields")};
     made.body = Statements{statement(assign(cpp::member(fields, "name"), string(structure->name)))};
     for (const typed::Field &field : structure->fields)
       made.body->push_back(statement(callMember(
-          fields, "add", {string(field.name), addressOf(names.of(structure), names.of(&field))})));
+          fields, "add",
+          {string(field.name), addressOf(context.names.of(structure), context.names.of(&field))})));
     appendApart(functions, declare(std::move(made)));
   }
   return functions;
 }
 
 /// `described.constructor<&Class::Class>({"parameter", ...})`
-Code ModulePrinter::describeConstructor(const Code &described,
-                                        const typed::Function &constructor) const {
+static Code describeConstructor(const Names &names, const Code &described,
+                                const typed::Function &constructor) {
   std::vector<Code> parameters;
   for (std::size_t i = 0; i < constructor.parameters.size(); ++i) {
     const std::string &parameter = constructor.parameters[i]->name;
@@ -130,8 +125,8 @@ static std::vector<Code> shownMethods(const typed::Class &definition) {
 }
 
 /// `described.member("name", &Class::name, rtsl::Access::Public)`
-Code ModulePrinter::describeMember(const Code &described, const std::string &className,
-                                   const typed::Member &member) const {
+static Code describeMember(const Names &names, const Code &described, const std::string &className,
+                           const typed::Member &member) {
   const bool isPublic = member.access == ast::Access::Public;
   std::vector<Code> arguments = {
       string(member.name), addressOf(className, names.of(&member)),
@@ -141,30 +136,30 @@ Code ModulePrinter::describeMember(const Code &described, const std::string &cla
   return callMember(described, "member", std::move(arguments));
 }
 
-Statement ModulePrinter::describeClass(const typed::Class &definition) {
-  const std::string &own = names.of(&definition);
+static Statement describeClass(const Context &context, const typed::Class &definition) {
+  const std::string &own = context.names.of(&definition);
   const std::string &base = definition.base ? definition.base->name : definition.root;
   Code described = callMember(cpp::name("program"), withParameters("add", {own}),
                               {staticCast("std::uint32_t", cpp::name("Id::" + own)),
                                string(definition.name), string(base), string(definition.root)});
   for (const typed::Member *member : allMembers(definition))
     if (!member->isConst && member->access != ast::Access::Scratch)
-      described = describeMember(described, own, *member);
+      described = describeMember(context.names, described, own, *member);
   if (const typed::Function *constructor = findConstructor(definition))
-    described = describeConstructor(described, *constructor);
+    described = describeConstructor(context.names, described, *constructor);
   if (std::vector<Code> methods = shownMethods(definition); !methods.empty())
     described = callMember(described, "methods", {list("", std::move(methods))});
-  if (const Code needs = flagsOfNeeds(facts.needsOfClass.at(&definition)))
+  if (const Code needs = flagsOfNeeds(context.facts.needsOfClass.at(&definition)))
     described = callMember(described, "needs", {needs});
   std::vector<std::string> queried;
   for (const typed::Function *anyHit : payloadMethods(definition, "anyHit"))
-    queried.push_back(names.of(anyHit->parameters.front()->type->structure));
+    queried.push_back(context.names.of(anyHit->parameters.front()->type->structure));
   if (!queried.empty())
     described = callMember(described, withParameters("asks", queried), {});
   return statement(described);
 }
 
-Statements ModulePrinter::describeFeatures() const {
+static Statements describeFeatures(const Options &options) {
   Code features;
   auto add = [&](bool isOn, const char *flag) {
     if (isOn)
@@ -177,29 +172,31 @@ Statements ModulePrinter::describeFeatures() const {
   return features ? Statements{onProgram("features", {features})} : Statements();
 }
 
-Declarations ModulePrinter::description() {
-  Declarations all = describeStructs();
+Declarations description(Context &context, const StateEntries &entries,
+                         const std::vector<FilledSlot> &filled) {
+  Declarations all = describeStructs(context);
   Function made;
   made.specifiers = "static";
   made.result = "RtslShaders";
   made.name = "describe";
   Statements &body = made.body.emplace();
-  const std::string components = std::to_string(options.colorComponents);
+  const std::string components = std::to_string(context.options.colorComponents);
   body.push_back(cpp::declaration(withParameters("rtsl::Program", {components}), "program", {}));
-  for (const auto &definition : module.classes)
-    body.push_back(describeClass(*definition));
-  if (const Code needs = flagsOfNeeds(facts.needs))
+  for (const auto &definition : context.module.classes)
+    body.push_back(describeClass(context, *definition));
+  if (const Code needs = flagsOfNeeds(context.facts.needs))
     body.push_back(onProgram("needs", {needs}));
-  for (const auto &[base, method] : filledSlots)
+  for (const auto &[base, method] : filled)
     body.push_back(setSlot(base + "_" + method, method));
-  append(body, describeFeatures());
-  const std::vector<const typed::Class *> generations = classesBelow("rt_RayGeneration");
+  append(body, describeFeatures(context.options));
+  const std::vector<const typed::Class *> generations =
+      classesBelow(context.module, "rt_RayGeneration");
   if (std::any_of(generations.begin(), generations.end(), [](const typed::Class *definition) {
         return slotMethod(*definition, "generate") != nullptr;
       }))
     body.push_back(onProgram("engine", {cpp::name("rtsl::runtime::Engine::Either")}));
-  append(body, describePayloads());
-  append(body, describeStates());
+  append(body, describePayloads(context, entries));
+  append(body, RunState(context, entries).describe());
   body.push_back(returning(callMember(cpp::name("program"), "finish", {})));
   appendApart(all, declare(std::move(made)));
   return all;

@@ -1,32 +1,32 @@
 #include "codegen/cpp/HitErrors.h"
 
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/Context.h"
 #include "codegen/cpp/errors/HitErrorWriter.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 
 namespace rtsl::cpp {
 
-/// `boundHitError(rt, self)` for each primitive that has one.
-Declarations ModulePrinter::hitErrors() {
+Declarations hitErrors(Context &context, std::set<const typed::Class *> &printed) {
   Declarations all;
-  if (!options.hitErrors)
+  if (!context.options.hitErrors)
     return all;
-  mlir::ModuleOp ir = options.hitErrors->ir;
-  for (const auto &definition : module.classes) {
+  mlir::ModuleOp ir = context.options.hitErrors->ir;
+  for (const auto &definition : context.module.classes) {
     auto source =
         ir.lookupSymbol<mlir::func::FuncOp>(definition->name + "." + hitErrorMethod.str());
     if (!source)
       continue;
-    withHitErrors.insert(definition.get());
+    printed.insert(definition.get());
     Function made;
     made.specifiers = "inline";
     made.result = "void";
     made.name = "boundHitError";
-    Parameter self = byConstReference(names.of(definition.get()), "self");
+    Parameter self = byConstReference(context.names.of(definition.get()), "self");
     self.isUnread = true;
     made.parameters = {byReference("State", "rt"), self};
-    made.body = HitErrorWriter(names, *definition).body(source);
-    failed |= !made.body;
+    made.body = HitErrorWriter(context.names, *definition).body(source);
+    if (!made.body)
+      context.fail();
     appendApart(all, declare(std::move(made),
                              "/// Bounds the error of HitDistance where `intersect` of `" +
                                  definition->name + "` has found it: running error analysis."));
