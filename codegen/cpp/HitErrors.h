@@ -6,7 +6,12 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "codegen/cpp/tree/Declaration.h"
+#include "sema/typed/TypedAst.h"
+
 #include "mlir/IR/BuiltinOps.h"
+
+#include <set>
 
 namespace rtsl::cpp {
 
@@ -14,5 +19,10 @@ namespace rtsl::cpp {
 struct HitErrorFunctions {
   mlir::ModuleOp ir;
 };
+
+class Context;
+
+/// `boundHitError(rt, self)` for each primitive that has one; `printed` gets their classes.
+Declarations hitErrors(Context &context, std::set<const typed::Class *> &printed);
 
 } // namespace rtsl::cpp

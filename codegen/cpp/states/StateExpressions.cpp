@@ -34,12 +34,12 @@ Code StateWriter::use(mlir::Value value, const Type *type) {
 
 // C++ requires both values to be of one type, and a vector of bools has another where it lies in
 // memory.
-Code choose(ModulePrinter &module, Code condition, Code first, Code second, const Type *type) {
+Code choose(Context &context, Code condition, Code first, Code second, const Type *type) {
   const bool isBools = type && type->isVector() && type->element->is(TypeKind::Bool);
   const auto side = [&](const Code &value) {
     const bool isMade =
-        !isBools || (value->is(ExpressionKind::Construct) && value->name == module.type(type));
-    return isMade ? value : construct(module.type(type), {value});
+        !isBools || (value->is(ExpressionKind::Construct) && value->name == context.types.of(type));
+    return isMade ? value : construct(context.types.of(type), {value});
   };
   return conditional(std::move(condition), side(first), side(second));
 }
@@ -59,7 +59,7 @@ Code StateWriter::constant(mlir::Value value, const Type *type) {
   mlir::Attribute attribute;
   if (!mlir::matchPattern(value, mlir::m_Constant(&attribute))) {
     if (value.getDefiningOp<ir::NullRefOp>())
-      return list(type ? module.type(type) : "", {});
+      return list(type ? context.types.of(type) : "", {});
     if (value.getDefiningOp())
       unsupported(*value.getDefiningOp());
     return integer(0);
@@ -69,7 +69,7 @@ Code StateWriter::constant(mlir::Value value, const Type *type) {
   if (!dense)
     return number(attribute, isUnsigned);
   mlir::Type element = dense.getElementType();
-  const std::string vector = type ? module.type(type)
+  const std::string vector = type ? context.types.of(type)
                                   : fmt::format("glm::{}vec{}",
                                                 element.isF32()        ? ""
                                                 : element.isInteger(1) ? "b"
@@ -95,14 +95,14 @@ Code StateWriter::place(mlir::Value address) {
       if (field.isObject && field.slot == object.getName())
         return frameField(field.name);
   if (auto argument = address.getDefiningOp<ir::CallArgumentOp>())
-    return name(machine.addressName(module, machine.given(argument)));
+    return name(machine.addressName(context, machine.given(argument)));
   if (address.getDefiningOp<ir::PayloadOp>())
-    return name(module.names.of(machine.method->parameters.front().get()));
+    return name(context.names.of(machine.method->parameters.front().get()));
   if (auto field = address.getDefiningOp<ir::FieldOp>())
     if (const Type *base = declaredType(field.getBase()); base && base->is(TypeKind::Struct))
       for (const typed::Field &part : base->structure->fields)
         if (part.name == field.getField())
-          return member(place(field.getBase()), module.names.of(&part));
+          return member(place(field.getBase()), context.names.of(&part));
   if (auto element = address.getDefiningOp<ir::ElementOp>())
     return subscript(place(element.getBase()), elementIndices[element]);
   unsupported(*address.getDefiningOp());

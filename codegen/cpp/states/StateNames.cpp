@@ -28,17 +28,17 @@ const Type *Machine::givenType(std::size_t number) const {
   return given ? given->type : method->returnType;
 }
 
-std::string Machine::addressName(const ModulePrinter &printer, std::size_t number) const {
+std::string Machine::addressName(const Context &context, std::size_t number) const {
   if (!called->given[number])
     return called->fields[number];
   const std::size_t before = called->given.size() - method->parameters.size();
-  const std::string &name = printer.names.of(method->parameters[number - before].get());
+  const std::string &name = context.names.of(method->parameters[number - before].get());
   return name.empty() ? called->fields[number] : name;
 }
 
 /// To make types that the author has not named: nothing changes but what is known.
-static TypeContext &typesOf(const ModulePrinter &printer) {
-  return const_cast<TypeContext &>(printer.module.types);
+static TypeContext &typesOf(const Context &context) {
+  return const_cast<TypeContext &>(context.module.types);
 }
 
 /// The type of a state variable; null: the name is none's.
@@ -54,7 +54,7 @@ static const Type *stateType(TypeContext &types, llvm::StringRef name) {
 }
 
 const Type *StateWriter::vec3() {
-  return typesOf(module).vector(typesOf(module).floatType, 3);
+  return typesOf(context).vector(typesOf(context).floatType, 3);
 }
 
 std::string StateWriter::spelling(llvm::StringRef name) {
@@ -65,7 +65,7 @@ std::string StateWriter::spelling(llvm::StringRef name) {
     else if (name[at] != ']' && (at + 1 == name.size() || !llvm::isDigit(name[at + 1])))
       spelled += '_';
   const auto isAuthors = [&](const auto &variable) { return variable->name == name; };
-  if (!stateType(typesOf(module), name) || llvm::any_of(machine.method->locals, isAuthors) ||
+  if (!stateType(typesOf(context), name) || llvm::any_of(machine.method->locals, isAuthors) ||
       llvm::any_of(machine.method->parameters, isAuthors))
     return spelled;
   spelled[0] = llvm::toLower(spelled[0]);
@@ -147,9 +147,9 @@ std::string StateWriter::nameOfValue(mlir::Value value) {
   if (!callee)
     return name;
   unsigned number = 1; // `bounce1` is what the first call of `bounce` gives
-  while (taken.count(module.names.of(callee) + std::to_string(number)))
+  while (taken.count(context.names.of(callee) + std::to_string(number)))
     ++number;
-  return module.names.of(callee) + std::to_string(number);
+  return context.names.of(callee) + std::to_string(number);
 }
 
 /// Of a number in the IR, which does not say whether it is unsigned; null: it is none.
@@ -210,12 +210,12 @@ const Type *StateWriter::varType(ir::VarOp variable) {
           store && !type && isMadeOfParts(store.getValue()) == ofParts)
         type = typeOf(store.getValue());
   if (!type)
-    type = scalarType(typesOf(module), llvm::cast<ir::PtrType>(variable.getType()).getPointee());
+    type = scalarType(typesOf(context), llvm::cast<ir::PtrType>(variable.getType()).getPointee());
   return variableTypes[variable] = type;
 }
 
 const Type *StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
-  TypeContext &types = typesOf(module);
+  TypeContext &types = typesOf(context);
   auto vector = llvm::dyn_cast<mlir::VectorType>(type);
   const mlir::Type scalar = vector ? vector.getElementType() : type;
   const auto width = vector ? static_cast<unsigned>(vector.getNumElements()) : 1u;
@@ -234,9 +234,9 @@ const Type *StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
       }
   };
   look(*machine.method);
-  for (const auto &function : module.module.functions)
+  for (const auto &function : context.module.functions)
     look(*function);
-  for (const auto &definition : module.module.classes)
+  for (const auto &definition : context.module.classes)
     for (const auto &function : definition->functions)
       look(*function);
   const bool isKnown = scalar.isF32() || scalar.isInteger(1); // the rest may be unsigned
@@ -247,7 +247,7 @@ const Type *StateWriter::typeOfSlot(const std::string &slot, mlir::Type type) {
 }
 
 const Type *StateWriter::typeOf(mlir::Value value) {
-  TypeContext &types = typesOf(module);
+  TypeContext &types = typesOf(context);
   mlir::Operation *op = value.getDefiningOp();
   if (!op)
     return nullptr;
@@ -267,7 +267,7 @@ const Type *StateWriter::typeOf(mlir::Value value) {
         if (auto variable = load.getAddress().getDefiningOp<ir::VarOp>())
           return varType(variable);
         if (auto state = load.getAddress().getDefiningOp<ir::StateOp>())
-          return stateType(typesOf(module), state.getName());
+          return stateType(typesOf(context), state.getName());
         const Type *declared = declaredType(load.getAddress());
         return declared ? declared : scalarType(types, value.getType());
       })

@@ -116,7 +116,7 @@ StateWriter::Line &StateWriter::emit(Lines &out, Statement statement) {
   }
   statement.hasSpace = !out.empty() && spaces.erase(currentLine) != 0;
   if (currentLine != 0)
-    statement.place = module.lineDirective(machine.method->range, currentLine);
+    statement.place = context.lineDirective(machine.method->range, currentLine);
   Line &line = out.emplace_back();
   line.statement = std::move(statement);
   return line;
@@ -163,7 +163,7 @@ void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
   declared[value] = own;
   latest[wanted] = value;
   if (!isAgain) {
-    const std::string typeName = type ? module.type(type) : std::string();
+    const std::string typeName = type ? context.types.of(type) : std::string();
     emit(out, declaration(typeName, own, whole ? whole->vector : waiting.code)).made = value;
   } else if (!whole) {
     emit(out, assignment(name(own), waiting.code, value));

@@ -144,7 +144,7 @@ void StateWriter::choice(ir::IfOp op, Lines &out) {
     else if (isBoolean(second, false))
       value = binary(Operator::And, condition, first);
     else
-      value = choose(module, condition, first, second, varType(llvm::cast<ir::VarOp>(target)));
+      value = choose(context, condition, first, second, varType(llvm::cast<ir::VarOp>(target)));
     emit(out, assign(name(nameOf(llvm::cast<ir::VarOp>(target))), value)).assigns = target;
     return;
   }
@@ -201,8 +201,8 @@ std::optional<Statement> StateWriter::counter(ir::LoopOp op, const Code &conditi
   if (outside != 1 || isContinued)
     return std::nullopt;
   Statement made = simple(StatementKind::For);
-  made.init = {
-      declaration(module.type(varType(variable)), own->name, assignedValue(out.back().statement))};
+  made.init = {declaration(context.types.of(varType(variable)), own->name,
+                           assignedValue(out.back().statement))};
   made.value = condition;
   made.step = unary(UnaryOperator::Increment, own);
   out.pop_back();
@@ -362,14 +362,15 @@ void StateWriter::joinDeclarations(Lines &lines) {
     const Type *type = varType(variable);
     if (!type)
       unsupported(*variable);
-    const std::string typeName = type ? module.type(type) : std::string();
+    const std::string typeName = type ? context.types.of(type) : std::string();
     const std::string &own = nameOf(variable);
     const auto at = lines.begin() + static_cast<std::ptrdiff_t>(i);
     const auto first = std::find_if(
         at + 1, lines.end(), [&](const Line &line) { return mentions(line.statement, own); });
     if (first != lines.end() && first->assigns != variable.getOperation()) {
       const bool isNumber = type && type->isScalar() && !type->is(TypeKind::UInt);
-      at->statement = declaration(typeName, own, isNumber ? module.zero(type) : list("", {}));
+      at->statement =
+          declaration(typeName, own, isNumber ? context.types.zero(type) : list("", {}));
       at->declares = nullptr;
       continue;
     }
@@ -400,9 +401,9 @@ Statements StateWriter::body(mlir::func::FuncOp state) {
   currentLine = 0;
   forEachStmt(*machine.method->body, [&](const typed::Stmt &stmt) {
     if (!stmt.comment.empty())
-      comments[module.notes.line(stmt.range)] = stmt.comment;
-    if (module.notes.followsEmptyLine(stmt.range, {}))
-      spaces.insert(module.notes.line(stmt.range));
+      comments[context.notes.line(stmt.range)] = stmt.comment;
+    if (context.notes.followsEmptyLine(stmt.range, {}))
+      spaces.insert(context.notes.line(stmt.range));
   });
   elementIndices.clear();
   constants.clear();
@@ -412,7 +413,7 @@ Statements StateWriter::body(mlir::func::FuncOp state) {
   for (const typed::Variable *constant : constants)
     statements.push_back(
         declaration(printer.isTable(*constant->init) ? "static constexpr" : "const",
-                    module.type(constant->type), module.names.of(constant),
+                    context.types.of(constant->type), context.names.of(constant),
                     printer.initialiser(*constant->init)));
   for (Line &line : lines)
     statements.push_back(std::move(line.statement));

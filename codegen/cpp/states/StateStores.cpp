@@ -45,7 +45,7 @@ static bool clears(const Statement &statement, const Code &target) {
 /// Variables that stay whole are read and written where they lie, by the author's expression.
 void StateWriter::write(ir::EvaluateOp op, Lines &out) {
   const SourceTable::Entry &entry = source.entries[op.getSource()];
-  usesScratch |= module.effects.expression(*entry.expr).usesScratch;
+  usesScratch |= context.effects.expression(*entry.expr).usesScratch;
   const bool isWrite =
       op.getNumResults() == 0 && entry.kind == SourceTable::Kind::Value &&
       (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);
@@ -95,7 +95,7 @@ void StateWriter::write(ir::ClearOp op, Lines &out) {
   const Code target = place(op.getAddress());
   flush(touchesOf(op), out);
   const Type *type = declaredType(op.getAddress());
-  Line &line = emit(out, assign(target, type ? module.zero(type) : list("", {})));
+  Line &line = emit(out, assign(target, type ? context.types.zero(type) : list("", {})));
   if (variable)
     line.assigns = variable;
 }
@@ -166,7 +166,7 @@ void StateWriter::joinFields(mlir::Value address, Lines &out) {
         statement.value->compound)
       return;
     const Code &target = statement.value->parts[0], &value = statement.value->parts[1];
-    const std::string &own = module.names.of(&fields[i]);
+    const std::string &own = context.names.of(&fields[i]);
     if (!same(target, member(whole, own)))
       return;
     const bool isCopy = first[static_cast<std::ptrdiff_t>(i)].copies == type &&

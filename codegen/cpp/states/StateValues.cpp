@@ -64,14 +64,14 @@ void StateWriter::write(vector::FromElementsOp op, Lines &out) {
   std::vector<Code> parts;
   for (mlir::Value part : op.getElements())
     parts.push_back(use(part));
-  make(*op, construct(module.type(type), std::move(parts)), out);
+  make(*op, construct(context.types.of(type), std::move(parts)), out);
 }
 
 void StateWriter::write(vector::BroadcastOp op, Lines &out) {
   const Type *type = typeOf(op.getResult());
   if (!type || !op.getSourceType().isIntOrFloat())
     return unsupported(*op);
-  make(*op, construct(module.type(type), {use(op.getSource())}), out);
+  make(*op, construct(context.types.of(type), {use(op.getSource())}), out);
 }
 
 void StateWriter::write(vector::ShuffleOp op, Lines &out) {
@@ -85,7 +85,7 @@ void StateWriter::write(vector::ShuffleOp op, Lines &out) {
   for (std::int64_t at : op.getMask())
     parts.push_back(component(at < width ? first : second,
                               static_cast<std::size_t>(at < width ? at : at - width)));
-  make(*op, construct(module.type(type), std::move(parts)), out);
+  make(*op, construct(context.types.of(type), std::move(parts)), out);
 }
 
 //===----------------------------------------------------------------------===//
@@ -128,7 +128,7 @@ void StateWriter::write(arith::SelectOp op, Lines &out) {
   const Type *type = typeOf(op.getResult());
   const Code condition = use(op.getCondition());
   const Code first = use(op.getTrueValue(), type);
-  make(*op, choose(module, condition, first, use(op.getFalseValue(), type), type), out);
+  make(*op, choose(context, condition, first, use(op.getFalseValue(), type), type), out);
 }
 
 } // namespace rtsl::cpp

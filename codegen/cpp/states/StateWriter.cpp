@@ -27,12 +27,12 @@ unsigned lineOf(mlir::Location location, llvm::StringRef file) {
   return 0;
 }
 
-StateWriter::StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine)
-    : module(module), source(source), machine(machine), printer(module, machine.method) {
+StateWriter::StateWriter(Context &context, const SourceTable &source, Machine &machine)
+    : context(context), source(source), machine(machine), printer(context, machine.method) {
   printer.isNested = false;
-  always = module.namesInClass(*machine.definition);
+  always = context.namesInClass(*machine.definition);
   for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
-    always.insert(machine.addressName(module, at));
+    always.insert(machine.addressName(context, at));
   for (std::string *name : {&machine.frameName, &machine.callName}) {
     while (isAlways(*name))
       *name += '_';
@@ -48,9 +48,9 @@ void StateWriter::unsupported(mlir::Operation &op) {
   if (llvm::isa<ir::VarOp, ir::TableOp>(op))
     what = "an array or a struct";
   const unsigned line = lineOf(op.getLoc(), machine.file);
-  module.unsupported(machine.method->range,
-                     fmt::format("{} in states in C++{} (--trace=recurse keeps `trace` as a call)",
-                                 what, line ? fmt::format(", of line {}", line) : ""));
+  context.unsupported(machine.method->range,
+                      fmt::format("{} in states in C++{} (--trace=recurse keeps `trace` as a call)",
+                                  what, line ? fmt::format(", of line {}", line) : ""));
 }
 
 //===----------------------------------------------------------------------===//
@@ -168,7 +168,7 @@ void StateWriter::write(ir::FrameStoreOp op, Lines &out) {
 void StateWriter::write(ir::ExpressionOp op, Lines &out) {
   const SourceTable::Entry &entry = source.entries[op.getSource()];
   const Code code = expression(entry, op->getOperands());
-  usesScratch |= module.effects.expression(*entry.expr).usesScratch;
+  usesScratch |= context.effects.expression(*entry.expr).usesScratch;
   make(*op, code, out);
 }
 
@@ -241,7 +241,8 @@ Code StateWriter::call(ir::ReturnOp op) {
   while (at && !llvm::isa<ir::EnterOp>(at))
     at = at->getPrevNode();
   auto enter = llvm::dyn_cast_or_null<ir::EnterOp>(at);
-  const CalledMethod *called = enter ? module.calledMethod(enter.getCallee().str()) : nullptr;
+  const CalledMethod *called =
+      enter ? context.split.calledMethod(enter.getCallee().str()) : nullptr;
   if (!called) {
     unsupported(*op);
     return {};
@@ -255,7 +256,7 @@ Code StateWriter::call(ir::ReturnOp op) {
     given.push_back(llvm::isa<ir::PtrType>(value.getType())
                         ? unary(UnaryOperator::Address, place(value))
                         : use(value, variable->type));
-  arguments.push_back(list(module.structureOf(*called), std::move(given)));
+  arguments.push_back(list(context.split.structureOf(*called), std::move(given)));
   return cpp::call("rtsl::callThen", std::move(arguments));
 }
 

@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 #include "codegen/cpp/states/States.h"
 #include "codegen/ir/Rtsl.h"
 
@@ -58,7 +58,7 @@ struct Machine {
   /// The author's type of what is given.
   const Type *givenType(std::size_t number) const;
   /// The name for what is given by its address.
-  std::string addressName(const ModulePrinter &printer, std::size_t number) const;
+  std::string addressName(const Context &context, std::size_t number) const;
 };
 
 /// Does the evaluation write what lies at the address that it is given as this operand?
@@ -79,11 +79,11 @@ std::string nameFor(mlir::Value value);
 bool isOwnName(llvm::StringRef name);
 
 /// `condition ? first : second`, of values of a type.
-Code choose(ModulePrinter &module, Code condition, Code first, Code second, const Type *type);
+Code choose(Context &context, Code condition, Code first, Code second, const Type *type);
 
 class StateWriter {
 public:
-  StateWriter(ModulePrinter &module, const SourceTable &source, Machine &machine);
+  StateWriter(Context &context, const SourceTable &source, Machine &machine);
 
   /// The statements of a state.
   Statements body(mlir::func::FuncOp state);
@@ -237,13 +237,13 @@ private:
   const std::string &nameOf(ir::VarOp variable);
   std::string freshName(const std::string &wanted);
 
-  ModulePrinter &module;
+  Context &context;
   const SourceTable &source;
   Machine &machine;
   FunctionPrinter printer;
   std::set<std::string> taken, always;
   bool isAlways(const std::string &name) const {
-    return always.count(name) || module.namesInFile().count(name);
+    return always.count(name) || context.namesInFile().count(name);
   }
   llvm::MapVector<mlir::Value, Pending> pending;
   llvm::DenseMap<mlir::Value, std::string> declared;

@@ -84,6 +84,10 @@ Code member(Code base, std::string name) {
   return Code(node(ExpressionKind::Member, std::move(name), {std::move(base)}));
 }
 
+Code memberOfPointer(Code base, std::string name) {
+  return Code(node(ExpressionKind::MemberOfPointer, std::move(name), {std::move(base)}));
+}
+
 Code component(Code base, std::size_t number) {
   return member(std::move(base), std::string(1, "xyzw"[number]));
 }

@@ -89,25 +89,26 @@ private:
 
 struct ExpressionNode {
   enum class Kind : std::uint8_t {
-    Name,        // `x`, `rtsl::infinity`, `Step::shade`
-    Literal,     // `1.0f`, `true`
-    String,      // the text, without quotes
-    Member,      // parts[0].name
-    Subscript,   // parts[0][parts[1]]
-    Call,        // parts[0](parts[1], ...)
-    Construct,   // name(parts...), name being a type
-    List,        // name{parts...}; without a type where `name` is empty
-    Array,       // name{{parts...}}
-    Cast,        // static_cast<name>(parts[0])
-    Unary,       // unary parts[0]
-    Postfix,     // parts[0] unary
-    Binary,      // parts[0] op parts[1]
-    Assign,      // parts[0] = parts[1], or parts[0] op= parts[1] if `compound`
-    Conditional, // parts[0] ? parts[1] : parts[2]
-    Comma,       // parts[0], parts[1]
-    Parentheses, // the author's own round parts[0]
-    Lambda,      // [&] { statements }()
-    Remark,      // /*name*/parts[0]
+    Name,            // `x`, `rtsl::infinity`, `Step::shade`
+    Literal,         // `1.0f`, `true`
+    String,          // the text, without quotes
+    Member,          // parts[0].name
+    MemberOfPointer, // parts[0]->name
+    Subscript,       // parts[0][parts[1]]
+    Call,            // parts[0](parts[1], ...)
+    Construct,       // name(parts...), name being a type
+    List,            // name{parts...}; without a type where `name` is empty
+    Array,           // name{{parts...}}
+    Cast,            // static_cast<name>(parts[0])
+    Unary,           // unary parts[0]
+    Postfix,         // parts[0] unary
+    Binary,          // parts[0] op parts[1]
+    Assign,          // parts[0] = parts[1], or parts[0] op= parts[1] if `compound`
+    Conditional,     // parts[0] ? parts[1] : parts[2]
+    Comma,           // parts[0], parts[1]
+    Parentheses,     // the author's own round parts[0]
+    Lambda,          // [&] { statements }()
+    Remark,          // /*name*/parts[0]
   };
   Kind kind = Kind::Name;
   std::string name; // or the spelling of a literal
@@ -133,6 +134,8 @@ Code boolean(bool value);
 Code integer(std::int64_t value);
 Code string(std::string text);
 Code member(Code base, std::string name);
+/// `base->name`
+Code memberOfPointer(Code base, std::string name);
 /// Component 0 to 3 of a vector: `base.x`.
 Code component(Code base, std::size_t number);
 Code subscript(Code base, Code index);

@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/cpp/tree/Statement.h"
+#include "codegen/cpp/tree/Declaration.h"
 
 namespace rtsl::cpp {
 
@@ -15,6 +15,8 @@ std::string print(const Code &code, Binding atLeast = Binding::Comma);
 std::string print(const std::vector<Code> &codes); // a, b, c
 std::string print(const Statement &statement);
 std::string print(const Statements &statements);
+std::string print(const Declaration &declaration);
+std::string print(const Declarations &declarations);
 /// `#line 7 "file"`, and the end of the line.
 std::string print(const SourcePlace &place);
 /// `name = value`, `name{...}` or `name(...)`, in a declaration of this type.

@@ -16,6 +16,7 @@ struct Declarator {
   std::string name;
   Code value;            // empty: none
   bool isDirect = false; // `name(arguments)`, of a Construct node
+  bool isCArray = false; // `name[] = {elements}`
 };
 
 /// A part of a `switch`, with its labels.

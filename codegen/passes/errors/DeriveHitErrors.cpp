@@ -63,7 +63,7 @@ static bool isPlain(mlir::Type type) {
           (!vector && scalar.isIndex()));
 }
 
-/// The first operation that the C++ printer does not support (codegen/cpp/HitErrors.cpp); null if
+/// The first operation that the C++ printer does not support (codegen/cpp/errors); null if
 /// there is none. Machine code omits the function then too, so that both have the same bounds.
 static mlir::Operation *findNotShown(FuncOp function) {
   mlir::Operation *found = nullptr;

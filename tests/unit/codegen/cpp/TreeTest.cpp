@@ -34,6 +34,7 @@ TEST(TreeExpressions, HaveTheParenthesesThatTheirOperatorsNeed) {
   EXPECT_EQ(text(sum(a, sum(b, c))), "a + (b + c)");
   EXPECT_EQ(text(binary(Operator::Subtract, a, binary(Operator::Subtract, b, c))), "a - (b - c)");
   EXPECT_EQ(text(member(sum(a, b), "x")), "(a + b).x");
+  EXPECT_EQ(text(memberOfPointer(call("f", {a}), "x")), "f(a)->x");
   EXPECT_EQ(text(subscript(a, sum(b, c))), "a[b + c]");
   EXPECT_EQ(text(call("f", {sum(a, b), comma(b, c)})), "f(a + b, (b, c))");
   EXPECT_EQ(text(sum(conditional(a, b, c), a)), "(a ? b : c) + a");
@@ -104,7 +105,7 @@ TEST(TreeExpressions, KnowZerosAndOpposites) {
   EXPECT_EQ(text(negated(both(a, b))), "!(a && b)");
 }
 
-TEST(TreeDeclarations, DoNotNameATypeTwice) {
+TEST(TreeVariables, DoNotNameATypeTwice) {
   EXPECT_EQ(print(declaration("Ray", "r", list("Ray", {a, b}))), "Ray r{a, b};\n");
   EXPECT_EQ(print(declaration("Ray", "r", list("", {}))), "Ray r{};\n");
   EXPECT_EQ(print(declaration("Ray", "r", member(list("Ray", {a}), "x"))), "Ray r = Ray{a}.x;\n");
@@ -113,6 +114,12 @@ TEST(TreeDeclarations, DoNotNameATypeTwice) {
                               array("rtsl::array<int, 2>", {integer(1), integer(2)}))),
             "static constexpr rtsl::array<int, 2> t{{1, 2}};\n");
   EXPECT_EQ(print(declaration("float", "x", comma(a, b))), "float x = (a, b);\n");
+}
+
+TEST(TreeVariables, AreArraysOfC) {
+  Statement table = declaration("static constexpr", "int", "t", list("", {integer(1), integer(2)}));
+  table.declarators.front().isCArray = true;
+  EXPECT_EQ(print(table), "static constexpr int t[] = {1, 2};\n");
 }
 
 TEST(TreeStatements, HaveBracesWhereTheyNeedThem) {
@@ -169,6 +176,90 @@ TEST(TreeStatements, SayWhatTheyAssign) {
   EXPECT_EQ(text(assignedValue(statement(assign(Operator::Add, a, b)))), "a + b");
   EXPECT_TRUE(mentions(branch(c, {statement(assign(a, b))}), "b"));
   EXPECT_FALSE(mentions(declaration("int", "i", b), "i")) << "a declaration makes the name";
+}
+
+TEST(TreeDeclarations, PrintFunctions) {
+  Function made;
+  made.specifiers = "inline";
+  made.result = "float";
+  made.name = "f";
+  Parameter unread = byValue("int", "i");
+  unread.isUnread = true;
+  Parameter unnamed = byPointer("void", "p");
+  unnamed.isCommented = true;
+  made.parameters = {byReference("State", "rt"), byConstReference("Ray", "ray"), unread, unnamed};
+  const std::string head = "inline float f(State &rt, const Ray &ray, [[maybe_unused]] int i, "
+                           "void */*p*/)";
+  EXPECT_EQ(print(declare(made)), head + ";\n") << "a prototype";
+  made.body = Statements{returning(a)};
+  EXPECT_EQ(print(declare(made)), head + " {\nreturn a;\n}\n");
+  made.caught = "rtsl::EndOfAnyHit";
+  EXPECT_EQ(print(declare(made)),
+            head + " try {\nreturn a;\n} catch (const rtsl::EndOfAnyHit &) {\n}\n");
+}
+
+TEST(TreeDeclarations, PrintMethodsAndTemplates) {
+  Function method;
+  method.specifiers = "virtual";
+  method.result = "void";
+  method.name = "g";
+  method.isConst = method.isOverride = true;
+  EXPECT_EQ(print(declare(method)), "virtual void g() const override;\n");
+  Function made;
+  made.templateParameters = "typename Visit";
+  made.result = "void";
+  made.name = "visit";
+  made.parameters = {byValue("Visit", "at")};
+  made.body = Statements{statement(call("at", {integer(3), a}))};
+  EXPECT_EQ(print(declare(made)),
+            "template <typename Visit>\nvoid visit(Visit at) {\nat(3, a);\n}\n");
+}
+
+TEST(TreeDeclarations, PrintStructs) {
+  Struct made;
+  made.name = "Ray";
+  EXPECT_EQ(print(declareStruct("Ray")), "struct Ray;\n");
+  EXPECT_EQ(print(declare(made)), "struct Ray {\n};\n");
+  made.base = "Base";
+  made.members = {declare(Using{"Base::Base"}),
+                  declare(Variable{"static constexpr", "const char *", {"name", string("x")}})};
+  Variable flag = {{}, "bool", {"isLit", {}}};
+  flag.bits = 1;
+  appendApart(made.members, declare(flag));
+  made.members.back().trailing = "// of line 3";
+  EXPECT_EQ(print(declare(made, "// A ray.")),
+            "// A ray.\nstruct Ray : Base {\nusing Base::Base;\n"
+            "static constexpr const char * name = \"x\";\n\nbool isLit : 1; // of line 3\n};\n");
+}
+
+TEST(TreeDeclarations, PrintEnumsAndNamespaces) {
+  const Declaration ids = declare(Enum{"Id", "unsigned", {{"A", 1u}, {"B", std::nullopt}}});
+  EXPECT_EQ(print(ids), "enum class Id : unsigned { A = 1, B };\n");
+  EXPECT_EQ(print(declare(Namespace{"shaders", {declare(Alias{"Color", "rtsl::Color<3>"})}})),
+            "namespace shaders {\n\nusing Color = rtsl::Color<3>;\n\n} // namespace shaders\n");
+  EXPECT_EQ(print(declare(Namespace{"", {ids}})),
+            "namespace {\n\n" + print(ids) + "\n} // namespace\n");
+}
+
+TEST(TreeDeclarations, PrintWhatStandsAboveAFile) {
+  Declarations file = {declare(OnlyComment{}, "// Made by rtslc."), declare(Define{"RTSL_FAST"}),
+                       declare(Include{"rtsl/shader.h"})};
+  file[1].trailing = "// why";
+  appendApart(file, declareStruct("Ray"));
+  file.back().comment = "/// Rays.";
+  file.back().place = SourcePlace{"a.rtsl", 2};
+  EXPECT_EQ(print(file), "// Made by rtslc.\n#define RTSL_FAST // why\n#include <rtsl/shader.h>\n\n"
+                         "/// Rays.\n#line 2 \"a.rtsl\"\nstruct Ray;\n");
+}
+
+TEST(TreeDeclarations, ArePutApartByEmptyLines) {
+  Declarations all;
+  appendApart(all, Declarations());
+  EXPECT_TRUE(all.empty());
+  appendApart(all, {declareStruct("A"), declareStruct("B")});
+  appendApart(all, {declareStruct("C"), declareStruct("D")});
+  append(all, {declareStruct("E")});
+  EXPECT_EQ(print(all), "struct A;\nstruct B;\n\nstruct C;\nstruct D;\nstruct E;\n");
 }
 
 } // namespace

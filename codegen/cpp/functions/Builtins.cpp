@@ -1,5 +1,5 @@
 //===- Builtins.cpp - built-in functions ----------------------------------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/typed/Casting.h"
 
@@ -42,7 +42,7 @@ Code FunctionPrinter::withOutputs(const std::string &callee, const typed::Builti
       continue;
     }
     const std::string result = temporaryName("result");
-    before->push_back(cpp::declaration(module.type(expr.args[i]->type), result, list("", {})));
+    before->push_back(cpp::declaration(context.types.of(expr.args[i]->type), result, list("", {})));
     codes.push_back(name(result));
     if (isBindable) {
       after.push_back(statement(cpp::assign(place(*expr.args[i], true), name(result))));
@@ -75,9 +75,9 @@ Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
     if (i == at)
       continue;
     inputs.push_back(expr.args[i].get());
-    const Effects effects = module.effects.expression(*expr.args[i]);
+    const Effects effects = context.effects.expression(*expr.args[i]);
     isChanged |= conflicts(effects, indices) ||
-                 (i > at && conflicts(effects, module.effects.expression(payload)));
+                 (i > at && conflicts(effects, context.effects.expression(payload)));
   }
   auto trace = [](std::vector<Code> codes) {
     codes.insert(codes.begin(), name("rt"));
@@ -98,7 +98,7 @@ Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
     }
     where = place(payload, true);
     const std::string copy = temporaryName("payload");
-    before->push_back(cpp::declaration(module.type(payload.type), copy, where));
+    before->push_back(cpp::declaration(context.types.of(payload.type), copy, where));
     codes.push_back(name(copy));
   }
   before->push_back(statement(trace(codes)));
@@ -122,17 +122,18 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::Illuminate:
     return with({name("rt")});
   case Builtin::Hit:
-    return function && module.takesScratch(*function) ? with({name("rt"), name("scratch")})
-                                                      : with({name("rt")});
+    return function && context.signatures.takesScratch(*function)
+               ? with({name("rt"), name("scratch")})
+               : with({name("rt")});
   case Builtin::TracePayload:
     return tracePayload(expr);
   case Builtin::IgnoreIntersection:
   case Builtin::TerminateRay:
     return endOfAnyHit(expr);
   case Builtin::Print:
-    return module.options.prints ? print(expr) : Code{};
+    return context.options.prints ? print(expr) : Code{};
   case Builtin::VisitChild:
-    module.unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "` in C++");
+    context.unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "` in C++");
     return integer(0);
   default:
     if (typed::info(expr.builtin).effect == typed::BuiltinEffect::Outputs)

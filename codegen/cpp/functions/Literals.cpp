@@ -1,5 +1,5 @@
 //===- Literals.cpp - numbers, constants and the names that authors gave them //
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/typed/Casting.h"
 
@@ -70,7 +70,7 @@ static bool sameValue(const typed::Constant &a, const typed::Constant &b) {
 const void *FunctionPrinter::namedConstant(const typed::LiteralExpr &expr) const {
   if (!expr.spelling.empty())
     return nullptr;
-  const std::string name = module.notes.identifier(expr.range);
+  const std::string name = context.notes.identifier(expr.range);
   if (name.empty() || name == "true" || name == "false")
     return nullptr;
   auto isIt = [&](const auto &constant) {
@@ -85,7 +85,7 @@ const void *FunctionPrinter::namedConstant(const typed::LiteralExpr &expr) const
     for (const auto &member : at->members)
       if (isIt(*member))
         return member.get();
-  for (const auto &constant : module.module.constants)
+  for (const auto &constant : context.module.constants)
     if (isIt(*constant))
       return constant.get();
   return nullptr;
@@ -143,12 +143,12 @@ Code FunctionPrinter::literal(const Type *type, const typed::Constant &constant,
     if (at->is(TypeKind::Struct)) {
       for (const typed::Field &field : at->structure->fields)
         parts.push_back(inMemory(field.type, part(field.type)));
-      return list(module.type(at), std::move(parts));
+      return list(context.types.of(at), std::move(parts));
     }
     if (at->is(TypeKind::Array)) {
       for (unsigned i = 0; i < at->count; ++i)
         parts.push_back(inMemory(at->element, part(at->element)));
-      return array(module.type(at), std::move(parts));
+      return array(context.types.of(at), std::move(parts));
     }
     const std::size_t count =
         at->is(TypeKind::Color) ? constant.scalars.size() : at->componentCount();
@@ -157,8 +157,8 @@ Code FunctionPrinter::literal(const Type *type, const typed::Constant &constant,
       parts.push_back(scalar ? scalarLiteral(scalar, constant.scalars[next++], "")
                              : floatLiteral(constant.scalars[next++].f));
     if (at->is(TypeKind::Color))
-      return module.colorOf(std::move(parts));
-    return cpp::construct(module.type(at), std::move(parts));
+      return context.types.color(std::move(parts));
+    return cpp::construct(context.types.of(at), std::move(parts));
   };
   return part(type);
 }

@@ -1,5 +1,5 @@
 //===- Statements.cpp - statements ----------------------------------------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "math/Elementary.h"
 #include "sema/typed/Analysis.h"
@@ -23,7 +23,7 @@ Statements FunctionPrinter::body() {
   const auto &statements = cast<typed::CompoundStmt>(*function->body).body;
   // Which variables does anybody read? Compilers complain of the others.
   std::set<const typed::Expr *> onlyWritten;
-  module.effects.forEachEvaluated(*function->body, [&](const typed::Expr &expr) {
+  context.effects.forEachEvaluated(*function->body, [&](const typed::Expr &expr) {
     auto skip = [&](const typed::Expr *place) {
       while (auto *swizzle = dynCast<typed::SwizzleExpr>(place))
         place = swizzle->base.get();
@@ -45,9 +45,9 @@ Statements FunctionPrinter::body() {
   Statements all;
   for (std::size_t i = 0; i != function->parameters.size(); ++i)
     if (const typed::Variable &parameter = *function->parameters[i];
-        module.beginsAsZero(parameter, *function))
-      all.push_back(statement(
-          cpp::assign(name(module.parameterName(*function, i)), module.zero(parameter.type))));
+        context.signatures.beginsAsZero(parameter, *function))
+      all.push_back(statement(cpp::assign(name(context.signatures.parameterName(*function, i)),
+                                          context.types.zero(parameter.type))));
   print(statements, all);
   return all;
 }
@@ -61,7 +61,7 @@ void FunctionPrinter::print(const std::vector<typed::StmtPtr> &statements, State
     const SourceRange previous =
         i > 0 && statements[i - 1] ? statements[i - 1]->range : SourceRange();
     if (i > 0 && first < out.size() &&
-        module.notes.followsEmptyLine(statements[i]->range, previous))
+        context.notes.followsEmptyLine(statements[i]->range, previous))
       out[first].hasSpace = true;
   }
 }
@@ -131,8 +131,8 @@ void FunctionPrinter::print(const typed::Stmt &stmt, Statements &out) {
   before = outer;
   all.insert(all.end(), own.begin(), own.end());
   if (!own.empty() && endsWithLine(stmt.kind))
-    all.back().trailing = module.notes.trailingComment(stmt.range);
-  std::optional<SourcePlace> place = module.lineDirective(stmt.range);
+    all.back().trailing = context.notes.trailingComment(stmt.range);
+  std::optional<SourcePlace> place = context.lineDirective(stmt.range);
   if (all.empty() && stmt.comment.empty() && !place)
     return;
   if (all.empty())
@@ -146,7 +146,7 @@ Statements FunctionPrinter::nested(const typed::StmtPtr &stmt, bool &hasBraces) 
   hasBraces = !stmt || (stmt->kind == StmtKind::Compound && stmt->comment.empty());
   if (!stmt)
     return {};
-  if (hasBraces && !module.lineDirective(stmt->range))
+  if (hasBraces && !context.lineDirective(stmt->range))
     return block(cast<typed::CompoundStmt>(*stmt).body);
   Statements inner;
   print(*stmt, inner);
@@ -170,8 +170,9 @@ Statements FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, bool
   for (const typed::Variable *variable : stmt.variables) {
     Statements hoisted;
     before = &hoisted;
-    const std::string &own = module.names.of(variable);
-    const Code value = variable->init ? argument(*variable->init) : module.zero(variable->type);
+    const std::string &own = context.names.of(variable);
+    const Code value =
+        variable->init ? argument(*variable->init) : context.types.zero(variable->type);
     before = outer;
     // What goes before must not overtake the others.
     Statements &above = all.empty() ? *outer : all;
@@ -194,7 +195,7 @@ Statements FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, bool
       all.back().declarators.push_back({own, value}); // declarators of one type share a line
       continue;
     }
-    all.push_back(cpp::declaration(qualifiers, module.type(variable->type), own, value));
+    all.push_back(cpp::declaration(qualifiers, context.types.of(variable->type), own, value));
     lineType = isUnread ? nullptr : variable->type;
   }
   if (inHeader && !all.empty() && !all.back().is(StatementKind::Declaration))
@@ -235,7 +236,7 @@ Statements FunctionPrinter::expressionStatement(const typed::Expr &expr) {
                        expr.kind == ExprKind::Builtin) &&
                       code->is(ExpressionKind::Call);
   const bool isUnused =
-      !expr.type->is(TypeKind::Void) && (!isCall || module.effects.expression(expr).isPure());
+      !expr.type->is(TypeKind::Void) && (!isCall || context.effects.expression(expr).isPure());
   return {statement(isUnused ? discarded(code) : code)};
 }
 
@@ -248,7 +249,7 @@ Statement FunctionPrinter::ifStatement(const typed::IfStmt &stmt) {
   made.value = operand(*stmt.condition, Binding::Comma);
   // The comment behind the opening brace of the author's.
   if (stmt.thenStmt && stmt.thenStmt->kind == StmtKind::Compound)
-    made.trailing = module.notes.trailingComment(
+    made.trailing = context.notes.trailingComment(
         {stmt.range.file, stmt.condition->range.begin, stmt.condition->range.end});
   nest(stmt.thenStmt, made);
   if (stmt.elseStmt)
@@ -306,7 +307,7 @@ Code FunctionPrinter::stepOf(const typed::Expr &expr) {
   if (auto *assignment = dynCast<typed::AssignExpr>(&expr))
     return assign(*assignment, false);
   const Code code = argument(expr);
-  return module.effects.expression(expr).isPure() ? discarded(code) : code;
+  return context.effects.expression(expr).isPure() ? discarded(code) : code;
 }
 
 Statement FunctionPrinter::forStatement(const typed::ForStmt &stmt) {
@@ -391,8 +392,8 @@ Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
             continue;
           }
           hoistedDeclarations.insert(variable);
-          declared.push_back(cpp::declaration(module.type(variable->type),
-                                              module.names.of(variable), list("", {})));
+          declared.push_back(cpp::declaration(context.types.of(variable->type),
+                                              context.names.of(variable), list("", {})));
         }
   made.value = operand(*stmt.value, Binding::Comma);
   const bool isUnsigned = stmt.value->type->is(TypeKind::UInt);

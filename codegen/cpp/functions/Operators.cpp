@@ -5,7 +5,7 @@
 // the runtime header, unless it is plain from the operands that nothing can happen.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
@@ -238,7 +238,7 @@ std::string FunctionPrinter::functionFor(BinaryOp op, const typed::Expr &left,
 void FunctionPrinter::compareStructs(const Type *type) {
   if (type->is(TypeKind::Array))
     return compareStructs(type->element);
-  if (!type->is(TypeKind::Struct) || !module.comparedStructs.insert(type).second)
+  if (!type->is(TypeKind::Struct) || !context.required.comparedStructs.insert(type).second)
     return;
   for (const typed::Field &field : type->structure->fields)
     compareStructs(field.type);
@@ -278,7 +278,7 @@ Code FunctionPrinter::binary(BinaryOp op, const typed::Expr &left, const typed::
   }
 
   std::vector<Code> both;
-  if (conflicts(module.effects.expression(left), module.effects.expression(right)))
+  if (conflicts(context.effects.expression(left), context.effects.expression(right)))
     both = operands({&left, &right}, bindingOf(own));
   else
     both = {operand(left, bindingOf(own)), operand(right, bindingOf(own))};
@@ -287,7 +287,7 @@ Code FunctionPrinter::binary(BinaryOp op, const typed::Expr &left, const typed::
     Code &stored = both[isInMemory(left) ? 0 : 1];
     if (left.type->isVector() && left.type->element->is(TypeKind::Bool) &&
         isInMemory(left) != isInMemory(right))
-      stored = cpp::construct(module.type(left.type), {stored});
+      stored = cpp::construct(context.types.of(left.type), {stored});
   }
   const bool compares = bindingOf(own) == Binding::Equality || bindingOf(own) == Binding::Relation;
   if (compares && left.type->scalar() && same(both[0], both[1])) { // compilers find `x == x` odd
@@ -364,7 +364,7 @@ Code FunctionPrinter::stepped(const Code &value, const Type *scalar, bool increm
 }
 
 Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
-  const Effects value = module.effects.expression(*expr.value);
+  const Effects value = context.effects.expression(*expr.value);
   const typed::Expr *vector = nullptr;
   const std::vector<std::uint8_t> parts = components(*expr.target, vector);
   const Effects indices = indexEffects(*expr.target);
@@ -374,14 +374,15 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   // changes it.
   Code stored, old;
   const bool changesOld =
-      expr.compound && conflicts(module.effects.expression(*expr.target), value);
+      expr.compound && conflicts(context.effects.expression(*expr.target), value);
   if (expr.compound && (changesOld || !indices.isPure())) {
     stored = place(parts.size() > 1 ? *vector : *expr.target, true);
     std::vector<Code> codes;
     for (std::uint8_t part : parts)
       codes.push_back(component(stored, part));
     old = hoist(expr.target->type, "value",
-                parts.size() > 1 ? cpp::construct(module.type(expr.target->type), codes) : stored);
+                parts.size() > 1 ? cpp::construct(context.types.of(expr.target->type), codes)
+                                 : stored);
   }
 
   const std::optional<Operator> plain =
@@ -391,7 +392,7 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
       // `a = b = c` stays as it is; an assignment anywhere else becomes a statement of its own.
       auto *inner = dynCast<typed::AssignExpr>(expr.value);
       if (inner && !replaced.count(inner) &&
-          !conflicts(module.effects.expression(*expr.target), module.effects.expression(*inner)))
+          !conflicts(context.effects.expression(*expr.target), context.effects.expression(*inner)))
         return assign(*inner, true);
       return argument(*expr.value);
     }
@@ -405,10 +406,10 @@ Code FunctionPrinter::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   if (parts.size() > 1) { // `v.zx = ...`: component by component
     const Code target = stored ? stored : place(*vector, storeIndices);
     const bool isFree = !expr.compound && isSimple(*expr.value) &&
-                        !conflicts(module.effects.expression(*vector), value);
+                        !conflicts(context.effects.expression(*vector), value);
     Code from = combined();
     // A simple value that is no part of the target can be named again and again.
-    std::set<const void *> written = module.effects.expression(expr).writes;
+    std::set<const void *> written = context.effects.expression(expr).writes;
     const bool overlaps = std::any_of(written.begin(), written.end(),
                                       [&](const void *at) { return value.reads.count(at) != 0; });
     if (!isFree || overlaps)

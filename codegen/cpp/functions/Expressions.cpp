@@ -1,5 +1,5 @@
 //===- Expressions.cpp - expressions, conversions, constructors -----------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
@@ -12,19 +12,15 @@ namespace rtsl::cpp {
 
 using typed::ExprKind;
 
-std::string join(const std::vector<std::string> &parts, const char *between) {
-  return fmt::format("{}", fmt::join(parts, between));
-}
-
-FunctionPrinter::FunctionPrinter(ModulePrinter &module, const typed::Function *function,
+FunctionPrinter::FunctionPrinter(Context &context, const typed::Function *function,
                                  const typed::Class *owner)
-    : module(module), function(function), owner(function ? function->owner : owner) {
+    : context(context), function(function), owner(function ? function->owner : owner) {
   if (!function)
     return;
   for (const auto &parameter : function->parameters)
-    usedNames.insert(module.names.of(parameter.get()));
+    usedNames.insert(context.names.of(parameter.get()));
   for (const auto &local : function->locals)
-    usedNames.insert(module.names.of(local.get()));
+    usedNames.insert(context.names.of(local.get()));
 }
 
 Code FunctionPrinter::initialiser(const typed::Expr &expr) {
@@ -47,7 +43,7 @@ std::string FunctionPrinter::temporaryName(const std::string &hint) {
 
 Code FunctionPrinter::hoist(const Type *type, const std::string &hint, Code value) {
   const std::string variable = temporaryName(hint);
-  before->push_back(cpp::declaration("const", module.type(type), variable, std::move(value)));
+  before->push_back(cpp::declaration("const", context.types.of(type), variable, std::move(value)));
   return name(variable);
 }
 
@@ -74,7 +70,7 @@ std::vector<Code> FunctionPrinter::operands(const std::vector<const typed::Expr 
   std::vector<Effects> all;
   bool anyEffects = false;
   for (const typed::Expr *expr : exprs) {
-    all.push_back(module.effects.expression(*expr));
+    all.push_back(context.effects.expression(*expr));
     anyEffects |= !all.back().isPure();
   }
   anyEffects &= isNested;
@@ -112,7 +108,7 @@ Code FunctionPrinter::operand(const typed::Expr &expr, Binding atLeast) {
   Code code = this->expr(expr);
   // The author's own parentheses stay, where there is something to hold together.
   const bool keeps = code && atLeast > Binding::Or && bindingOf(code) < Binding::Unary &&
-                     module.notes.inParentheses(expr.range);
+                     context.notes.inParentheses(expr.range);
   return keeps ? parentheses(code) : code;
 }
 
@@ -141,7 +137,7 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
   case ExprKind::Literal: {
     const auto &value = cast<typed::LiteralExpr>(expr);
     if (const void *constant = namedConstant(value))
-      return name(module.names.of(constant));
+      return name(context.names.of(constant));
     return literal(expr.type, value.value, value.spelling);
   }
   case ExprKind::Variable:
@@ -152,7 +148,7 @@ Code FunctionPrinter::lowered(const typed::Expr &expr) {
   case ExprKind::Index: {
     const auto &part = cast<typed::IndexExpr>(expr);
     const bool changes =
-        conflicts(module.effects.expression(*part.base), module.effects.expression(*part.index));
+        conflicts(context.effects.expression(*part.base), context.effects.expression(*part.index));
     if (!part.base->type->isVector() || !changes)
       return place(expr);
     return element(part, hoist(part.base->type, "value", argument(*part.base)),
@@ -222,7 +218,8 @@ Code FunctionPrinter::conditional(const typed::ConditionalExpr &expr) {
   auto choice = [&](const typed::Expr &value) {
     Code code = apart(value, Binding::Assignment);
     const bool isBools = value.type->isVector() && value.type->element->is(TypeKind::Bool);
-    return isBools && isInMemory(value) ? cpp::construct(module.type(value.type), {code}) : code;
+    return isBools && isInMemory(value) ? cpp::construct(context.types.of(value.type), {code})
+                                        : code;
   };
   Code condition = operand(*expr.condition, Binding::Or);
   Code whenTrue = choice(*expr.whenTrue);
@@ -237,8 +234,8 @@ Code FunctionPrinter::convert(const typed::ConvertExpr &expr) {
   const typed::Expr &operand = *expr.operand;
   const Type *from = operand.type, *to = expr.type;
   if (to->is(TypeKind::Class)) {
-    const std::string target = module.type(to);
-    if (target == module.type(from))
+    const std::string target = context.types.of(to);
+    if (target == context.types.of(from))
       return this->expr(operand);
     return cpp::construct(target, {member(this->expr(operand), "object")});
   }
@@ -271,7 +268,7 @@ Code FunctionPrinter::convert(const typed::ConvertExpr &expr) {
   if (fromScalar->is(TypeKind::Float))
     return cpp::call(toScalar->is(TypeKind::Int) ? "rtsl::toInt" : "rtsl::toUint",
                      {argument(operand)});
-  return cpp::construct(module.type(to), {argument(operand)});
+  return cpp::construct(context.types.of(to), {argument(operand)});
 }
 
 //===----------------------------------------------------------------------===//
@@ -280,7 +277,7 @@ Code FunctionPrinter::convert(const typed::ConvertExpr &expr) {
 
 Code FunctionPrinter::construct(const typed::ConstructExpr &expr) {
   const Type *type = expr.type;
-  const std::string typeName = type->is(TypeKind::Class) ? "" : module.type(type);
+  const std::string typeName = type->is(TypeKind::Class) ? "" : context.types.of(type);
   const typed::Expr &first = *expr.args.front();
 
   // Braces promise the order.
@@ -304,7 +301,7 @@ Code FunctionPrinter::construct(const typed::ConstructExpr &expr) {
   }
   std::vector<Code> args = arguments(expr.args);
   if (type->is(TypeKind::Color))
-    return module.colorOf(std::move(args));
+    return context.types.color(std::move(args));
 
   std::size_t scalars = 0;
   bool hasMatrix = false, onlyScalars = true, onlyColumns = type->isMatrix();
@@ -334,7 +331,7 @@ Code FunctionPrinter::swizzle(const typed::SwizzleExpr &expr) {
   if (base.type->isScalar()) {
     if (expr.components.size() == 1)
       return this->expr(base);
-    return cpp::construct(module.type(expr.type), {argument(base)});
+    return cpp::construct(context.types.of(expr.type), {argument(base)});
   }
   const typed::Expr *vector = nullptr;
   std::vector<std::uint8_t> parts = components(expr, vector);
@@ -347,7 +344,7 @@ Code FunctionPrinter::swizzle(const typed::SwizzleExpr &expr) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     isPrefix &= parts[i] == i;
   if (isPrefix)
-    return cpp::construct(module.type(expr.type), {argument(*vector)});
+    return cpp::construct(context.types.of(expr.type), {argument(*vector)});
   if (parts.size() == 1 && !dynCast<typed::ConvertExpr>(vector))
     return component(operand(*vector, Binding::Primary), parts[0]);
   if (isSimple(*vector)) {
@@ -358,7 +355,7 @@ Code FunctionPrinter::swizzle(const typed::SwizzleExpr &expr) {
       if (codes.empty() || !isRepeated)
         codes.push_back(component(place(*vector), part));
     return parts.size() == 1 ? codes.front()
-                             : cpp::construct(module.type(expr.type), std::move(codes));
+                             : cpp::construct(context.types.of(expr.type), std::move(codes));
   }
   std::vector<std::string> numbers;
   for (std::uint8_t part : parts)

@@ -1,5 +1,5 @@
 //===- Places.cpp - variables, members, elements, parts of vectors --------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/fold/ConstantFold.h"
 #include "sema/typed/Analysis.h"
@@ -68,7 +68,7 @@ Effects FunctionPrinter::indexEffects(const typed::Expr &place) {
     } else if (auto *swizzle = dynCast<typed::SwizzleExpr>(at)) {
       at = swizzle->base.get();
     } else if (auto *index = dynCast<typed::IndexExpr>(at)) {
-      effects.add(module.effects.expression(*index->index));
+      effects.add(context.effects.expression(*index->index));
       at = index->base.get();
     } else {
       return effects;
@@ -81,19 +81,19 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
     return found->second;
   switch (expr.kind) {
   case ExprKind::Variable:
-    return name(module.names.of(cast<typed::VariableExpr>(expr).variable));
+    return name(context.names.of(cast<typed::VariableExpr>(expr).variable));
   case ExprKind::State:
     return member(name("rt"), typed::name(cast<typed::StateExpr>(expr).variable));
   case ExprKind::Member: {
     const typed::Member &found = *cast<typed::MemberExpr>(expr).member;
-    const std::string &own = module.names.of(&found);
+    const std::string &own = context.names.of(&found);
     return found.access == ast::Access::Scratch ? member(name("scratch"), own) : name(own);
   }
   case ExprKind::Field: {
     const auto &field = cast<typed::FieldExpr>(expr);
     const Code base = typed::isPlace(*field.base) ? place(*field.base, storeIndices)
                                                   : operand(*field.base, Binding::Primary);
-    return member(base, module.names.of(&field.base->type->structure->fields[field.field]));
+    return member(base, context.names.of(&field.base->type->structure->fields[field.field]));
   }
   case ExprKind::Swizzle: {
     const typed::Expr *vector = nullptr;
@@ -122,8 +122,8 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
       return cpp::call("rtsl::at", {place(*vector, storeIndices), number});
     }
     // An outer index comes first.
-    const bool changes = isNested && conflicts(module.effects.expression(*index.base),
-                                               module.effects.expression(*index.index));
+    const bool changes = isNested && conflicts(context.effects.expression(*index.base),
+                                               context.effects.expression(*index.index));
     const Code base = typed::isPlace(*index.base) ? place(*index.base, storeIndices || changes)
                       : changes ? hoist(index.base->type, "value", argument(*index.base))
                                 : operand(*index.base, Binding::Primary);
@@ -144,7 +144,7 @@ Code FunctionPrinter::index(const typed::IndexExpr &expr, bool storeIndices) {
 
 // Outside of functions there is no sample that could end.
 Code FunctionPrinter::checked(Code index, Code count) const {
-  const bool raises = function && module.options.exceptions && module.options.checkIndices;
+  const bool raises = function && context.options.exceptions && context.options.checkIndices;
   return raises ? cpp::call("rtsl::checked", {name("rt"), std::move(index), std::move(count)})
                 : index;
 }
@@ -195,7 +195,7 @@ Code FunctionPrinter::length(const typed::LengthExpr &expr) {
   while (auto *index = dynCast<typed::IndexExpr>(base)) {
     if (!index->base->type->is(TypeKind::Buffer))
       break;
-    if (!module.effects.expression(*index->index).isPure())
+    if (!context.effects.expression(*index->index).isPure())
       before->push_back(statement(argument(*index->index)));
     base = index->base.get();
     ++dimension;

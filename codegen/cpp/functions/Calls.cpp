@@ -4,7 +4,7 @@
 // place itself where that cannot be told apart: nobody else looks at the place during the call.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/cpp/Printer.h"
+#include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
@@ -43,7 +43,7 @@ static bool meet(const std::set<const void *> &a, const std::set<const void *> &
 Code FunctionPrinter::callWith(const Code &callee, std::vector<Code> first,
                                const typed::Function &target,
                                const std::vector<typed::ExprPtr> &args, const Type *result) {
-  EffectsOf &effects = module.effects;
+  EffectsOf &effects = context.effects;
   const Effects &inside = effects.function(target);
   auto isOutput = [&](std::size_t i) {
     return target.parameters[i]->direction != ast::Direction::In;
@@ -72,8 +72,8 @@ Code FunctionPrinter::callWith(const Code &callee, std::vector<Code> first,
       bool changes = meet(facts[i].reads, inside.writes);
       for (std::size_t j = 0; j < args.size(); ++j)
         changes |= isOutput(j) && meet(facts[i].reads, roots[j]);
-      if (!shows && changes && module.isByReference(parameter, target))
-        code = cpp::construct(module.type(parameter.type), {code});
+      if (!shows && changes && context.signatures.isByReference(parameter, target))
+        code = cpp::construct(context.types.of(parameter.type), {code});
       codes.push_back(code);
       continue;
     }
@@ -96,7 +96,7 @@ Code FunctionPrinter::callWith(const Code &callee, std::vector<Code> first,
     const bool isPart = parts.size() > 1;
     const Code where = place(isPart ? *vector : *args[i], !indexEffects(*args[i]).isPure());
     const Code old = !readsOld ? list("", {}) : isPart ? argument(*args[i]) : where;
-    before->push_back(cpp::declaration(module.type(parameter.type), variable, old));
+    before->push_back(cpp::declaration(context.types.of(parameter.type), variable, old));
     codes.push_back(name(variable));
     if (isPart)
       assignComponents(where, parts, codes.back(), after);
@@ -105,7 +105,7 @@ Code FunctionPrinter::callWith(const Code &callee, std::vector<Code> first,
   }
 
   const Code call = cpp::call(callee, std::move(codes));
-  const bool mayEnd = mayEndAnyHit() && module.mayAnswerHit(target);
+  const bool mayEnd = mayEndAnyHit() && context.signatures.mayAnswerHit(target);
   if (after.empty() && !mayEnd)
     return call;
   const Code value = valueThen(result, target.name, call, after);
@@ -129,23 +129,23 @@ Code FunctionPrinter::valueThen(const Type *type, const std::string &hint, const
 Code FunctionPrinter::call(const typed::CallExpr &expr) {
   const typed::Function &target = *expr.function;
   std::vector<Code> first;
-  if (module.takesState(target))
+  if (context.signatures.takesState(target))
     first.push_back(name("rt"));
-  if (module.takesScratch(target))
+  if (context.signatures.takesScratch(target))
     first.push_back(name("scratch"));
-  const std::string base = expr.isOfBase ? module.names.of(target.owner) + "::" : std::string();
-  return callWith(name(base + module.names.of(&target)), std::move(first), target, expr.args,
+  const std::string base = expr.isOfBase ? context.names.of(target.owner) + "::" : std::string();
+  return callWith(name(base + context.names.of(&target)), std::move(first), target, expr.args,
                   expr.type);
 }
 
 Code FunctionPrinter::methodCall(const typed::MethodCallExpr &expr) {
   const Type *type = expr.receiver->type;
   const std::string className = type->classType ? type->classType->name : type->builtinClass;
-  module.useThroughReference(className, expr.method, expr.function);
+  context.required.callThroughReference(className, expr.method, expr.function);
   const Code receiver = operand(*expr.receiver, Binding::Primary);
   if (!expr.function)
     return callMember(receiver, expr.method, {name("rt")});
-  return callWith(member(receiver, module.names.of(expr.function)), {name("rt")}, *expr.function,
+  return callWith(member(receiver, context.names.of(expr.function)), {name("rt")}, *expr.function,
                   expr.args, expr.type);
 }
 

@@ -1,0 +1,136 @@
+#include "codegen/cpp/states/SplitMethods.h"
+
+#include "codegen/ir/Attributes.h"
+#include "codegen/passes/continuation/calls/Steps.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
+#include "sema/typed/Analysis.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace rtsl::cpp {
+
+SplitMethods::SplitMethods(const typed::Module &module, const Names &names,
+                           const StateProgram *program)
+    : program(program), module(module), names(names) {
+  for (const auto &structure : module.structs)
+    fileTypes.insert(names.of(structure.get()));
+  for (const auto &definition : module.classes)
+    fileTypes.insert(names.of(definition.get()));
+  if (!program)
+    return;
+  findStates();
+  findCalledMethods();
+}
+
+const std::vector<mlir::func::FuncOp> &SplitMethods::statesOf(const typed::Class &definition,
+                                                              const std::string &slot,
+                                                              bool isCalled) const {
+  return states.at({definition.name, slot, isCalled});
+}
+
+void SplitMethods::findStates() {
+  mlir::ModuleOp ir = program->ir;
+  for (auto function : ir.getOps<mlir::func::FuncOp>()) {
+    auto ofClass = ir::attr::className.of(function);
+    auto ofMethod = ir::attr::methodName.of(function);
+    if (ir::attr::state.isOn(function) && ofClass && ofMethod)
+      states[{ofClass.str(), ofMethod.str(), continuation::isFramed(function)}].push_back(function);
+  }
+}
+
+bool SplitMethods::isSplit(const typed::Class &definition, const typed::Function &method) const {
+  return program && method.sends.traced &&
+         (method.isStateMethod || calledMethod(definition, method)) &&
+         states.count({definition.name, typed::slotName(module, method), !method.isStateMethod}) !=
+             0;
+}
+
+bool SplitMethods::isPartOfStates(const typed::Function &function) const {
+  return program && !function.isStateMethod && function.sends.traced;
+}
+
+std::string SplitMethods::nameOfMachine(const typed::Class &definition,
+                                        const typed::Function &method) const {
+  const bool isOneOfMany = typed::takesPayload(method) &&
+                           std::count_if(definition.functions.begin(), definition.functions.end(),
+                                         [&](const auto &other) {
+                                           return other->name == method.name;
+                                         }) > 1; // there is one for each
+  return names.of(&method) +
+         (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
+}
+
+std::string SplitMethods::stepName(const typed::Class &definition, const std::string &function) {
+  return unique(names.of(&definition) + "_" + function, stepNames);
+}
+
+void SplitMethods::findCalledMethods() {
+  std::map<const typed::Class *, std::set<std::string>> structures;
+  mlir::ModuleOp ir = program->ir;
+  for (auto declaration : ir.getOps<mlir::func::FuncOp>()) {
+    auto ofClass = ir::attr::className.of(declaration);
+    auto slot = ir::attr::methodName.of(declaration);
+    if (!declaration.isExternal() || !ofClass || !slot)
+      continue;
+    CalledMethod called;
+    called.symbol = declaration.getSymName().str();
+    called.slot = slot.getValue().str();
+    for (const auto &definition : module.classes)
+      for (const auto &function : definition->functions)
+        if (definition->name == ofClass.getValue() &&
+            typed::slotName(module, *function) == called.slot) {
+          called.definition = definition.get();
+          called.function = function.get();
+        }
+    if (!called.function)
+      continue;
+    const std::string &name = names.of(called.function);
+    called.step = stepName(*called.definition, name);
+    called.structure = name;
+    called.structure[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+    structures.try_emplace(called.definition, typeNames()); // which it would hide
+    called.structure = unique(called.structure, structures[called.definition]);
+
+    // As the IR has them: where a result goes that stays whole, and the parameters.
+    const mlir::FunctionType type = declaration.getFunctionType();
+    const continuation::CallLayout layout =
+        continuation::layoutCall(type.getInputs().drop_front(), type.getResults());
+    called.offsets.assign(layout.arguments.begin(), layout.arguments.end());
+    std::set<std::string> fields = {"begin"};
+    if (called.offsets.size() > called.function->parameters.size()) {
+      called.given.push_back(nullptr);
+      called.fields.push_back(unique("returned", fields));
+    }
+    for (const auto &parameter : called.function->parameters) {
+      const std::string &given = names.of(parameter.get());
+      called.given.push_back(parameter.get());
+      called.fields.push_back(unique(given.empty() ? "unnamed" : given, fields));
+    }
+    if (type.getNumResults() != 0)
+      called.returned = unique("returned", fields);
+    calledMethods.push_back(std::move(called));
+  }
+}
+
+const CalledMethod *SplitMethods::calledMethod(const std::string &symbol) const {
+  for (const CalledMethod &called : calledMethods)
+    if (called.symbol == symbol)
+      return &called;
+  return nullptr;
+}
+
+const CalledMethod *SplitMethods::calledMethod(const typed::Class &definition,
+                                               const typed::Function &method) const {
+  for (const CalledMethod &called : calledMethods)
+    if ((&definition == called.definition || definition.derivesFrom(called.definition)) &&
+        !method.isStateMethod && typed::slotName(module, method) == called.slot)
+      return &called;
+  return nullptr;
+}
+
+std::string SplitMethods::structureOf(const CalledMethod &called) const {
+  return names.reference(called.definition->name) + "::" + called.structure;
+}
+
+} // namespace rtsl::cpp

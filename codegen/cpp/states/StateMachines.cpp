@@ -1,0 +1,385 @@
+#include "codegen/cpp/states/StateMachines.h"
+
+#include "codegen/cpp/states/StateWriter.h"
+#include "codegen/ir/Attributes.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace rtsl::cpp {
+
+//===----------------------------------------------------------------------===//
+// One method
+//===----------------------------------------------------------------------===//
+
+static std::string capitalised(std::string word) {
+  word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
+static std::string uncapitalised(std::string word) {
+  word[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
+/// The first line that asks for what lies at an address.
+static unsigned lineOfAccess(mlir::Value address, llvm::StringRef file) {
+  unsigned line = 0;
+  for (mlir::Operation *user : address.getUsers()) {
+    const bool isPart = llvm::isa<ir::FieldOp, ir::ElementOp>(user);
+    const unsigned at =
+        isPart ? lineOfAccess(user->getResult(0), file) : lineOf(user->getLoc(), file);
+    if (at != 0 && (line == 0 || at < line))
+      line = at;
+  }
+  return line;
+}
+
+/// The line where what is in the frame is needed: that of the first thing that is made of it.
+static unsigned lineOfUse(ir::FrameLoadOp load, llvm::StringRef file) {
+  unsigned line = 0;
+  for (mlir::Operation *user : load->getUsers())
+    if (unsigned at = lineOf(user->getLoc(), file); at != 0 && (line == 0 || at < line))
+      line = at;
+  return line;
+}
+
+/// The states that others of the method go on in at once.
+static std::set<std::string> joinsOf(const std::vector<mlir::func::FuncOp> &states) {
+  std::set<std::string> symbols, joins;
+  for (mlir::func::FuncOp state : states)
+    if (state != states.front()) // where calls begin
+      symbols.insert(state.getSymName().str());
+  for (mlir::func::FuncOp state : states)
+    state.walk([&](ir::NextOp next) {
+      if (next.getTransition() == ir::Transition::Jump && next.getState() &&
+          symbols.count(next.getState()->str()))
+        joins.insert(next.getState()->str());
+    });
+  return joins;
+}
+
+/// The fields of the frame, in the order in which they are saved first; none is called as a type.
+static void collectFrame(Machine &machine, StateWriter &writer,
+                         const std::set<std::string> &types) {
+  std::set<std::string> taken;
+  if (machine.called) {
+    taken.insert(machine.called->fields.begin(), machine.called->fields.end());
+    taken.insert({"begin", machine.called->returned});
+  }
+  std::map<std::pair<std::string, bool>, std::size_t> fields; // in the frame
+  auto field = [&](llvm::StringRef slot, bool isObject = false,
+                   mlir::Value value = {}) -> FrameField & {
+    const auto [at, isNew] = fields.try_emplace({slot.str(), isObject}, machine.frame.size());
+    if (!isNew)
+      return machine.frame[at->second];
+    std::string name = writer.spelling(slot);
+    if (name == "evaluate" || name == "expression" ||
+        name == "call_returned") // what the IR calls it
+      name = value ? writer.nameOfValue(value) : "value";
+    machine.frame.push_back(
+        {slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
+    return machine.frame.back();
+  };
+  for (mlir::func::FuncOp state : machine.states)
+    state.walk([&](ir::FrameObjectOp object) {
+      FrameField &saved = field(object.getName(), /*isObject=*/true);
+      saved.type = writer.typeOf(object.getResult());
+      saved.madeIn = lineOf(object.getLoc(), machine.file);
+      const unsigned line = lineOfAccess(object, machine.file);
+      if (state != machine.states.front() && line != 0 &&
+          (saved.neededBy == 0 || line < saved.neededBy))
+        saved.neededBy = line;
+    });
+  for (mlir::func::FuncOp state : machine.states) {
+    state.walk([&](ir::FrameStoreOp store) {
+      FrameField &saved = field(store.getName(), /*isObject=*/false, store.getValue());
+      if (unsigned line = lineOf(store.getLoc(), machine.file); saved.madeIn == 0)
+        saved.madeIn = line;
+      saved.isTraced &= store.getValue().getDefiningOp<ir::TraceResultOp>() != nullptr;
+      saved.isReturned &= store.getValue().getDefiningOp<ir::CallReturnedOp>() != nullptr;
+    });
+    state.walk([&](ir::FrameLoadOp load) {
+      FrameField &saved = field(load.getName());
+      if (unsigned line = lineOfUse(load, machine.file);
+          line != 0 && (saved.neededBy == 0 || line < saved.neededBy))
+        saved.neededBy = line;
+    });
+  }
+  for (bool changed = true; changed;) { // a value may be loaded and saved again
+    changed = false;
+    for (mlir::func::FuncOp state : machine.states)
+      state.walk([&](ir::FrameStoreOp store) {
+        FrameField &saved = field(store.getName());
+        if (saved.type)
+          return;
+        saved.type = writer.typeOf(store.getValue());
+        changed |= saved.type != nullptr;
+      });
+  }
+  auto name = [&](llvm::StringRef slot, mlir::Type type) {
+    if (FrameField &saved = field(slot); !saved.type)
+      saved.type = writer.typeOfSlot(saved.slot, type);
+  };
+  for (mlir::func::FuncOp state : machine.states) {
+    state.walk([&](ir::FrameStoreOp store) { name(store.getName(), store.getValue().getType()); });
+    state.walk([&](ir::FrameLoadOp load) { name(load.getName(), load.getType()); });
+  }
+  for (FrameField &saved : machine.frame)
+    if (saved.neededBy == 0) // by what is called
+      saved.neededBy = saved.madeIn;
+  std::stable_partition(machine.frame.begin(), machine.frame.end(), [](const FrameField &saved) {
+    return !saved.type || !saved.type->is(TypeKind::Bool);
+  });
+}
+
+/// What a field of the frame is, in the author's words: the comment at its declaration, or the line
+/// that makes it.
+std::string StateMachines::meaningOf(const typed::Function &method, const FrameField &field) {
+  if (field.isTraced)
+    return fmt::format("what the ray of line {} brought back", field.madeIn);
+  if (field.isReturned)
+    return fmt::format("what the call of line {} returned", field.madeIn);
+  for (const auto &local : method.locals)
+    if (local->name == field.slot)
+      if (std::string comment =
+              context.notes.trailingComment(local->init ? local->init->range : local->range);
+          comment.compare(0, 3, "// ") == 0)
+        return comment.substr(3);
+  std::string line = context.notes.textOfLine(method.range, field.madeIn);
+  // On one line with the declaration, at 100 columns.
+  const std::size_t room =
+      64 - std::min<std::size_t>(context.types.of(field.type).size() + field.name.size(), 40);
+  if (line.size() > room)
+    line = line.substr(0, line.rfind(' ', room - 4)) + " ...";
+  return line.empty() ? field.slot : "`" + line + "`";
+}
+
+/// The states of a method, with the names that they have in C++.
+Machine StateMachines::machineOf(const typed::Class &definition, const typed::Function &method,
+                                 std::set<std::string> &taken) {
+  Machine machine;
+  machine.definition = &definition;
+  machine.method = &method;
+  machine.file = context.notes.shownFile(method.range);
+  machine.called = method.isStateMethod ? nullptr : context.split.calledMethod(definition, method);
+  machine.slot = typed::slotName(context.module, method);
+  machine.states = context.split.statesOf(definition, machine.slot, machine.called != nullptr);
+  machine.name = context.split.nameOfMachine(definition, method);
+  if (machine.called &&
+      machine.called->structure != capitalised(machine.name)) // there are others of the name
+    machine.name = uncapitalised(machine.called->structure);
+  for (mlir::func::FuncOp state : machine.states)
+    state.walk([&](ir::EnterOp call) {
+      machine.callBefore[call.getResume().value_or("").str()] =
+          context.split.calledMethod(call.getCallee().str());
+    });
+  machine.joins = joinsOf(machine.states);
+  machine.functions = {machine.name};
+  for (std::size_t i = 1; i < machine.states.size(); ++i) {
+    const std::string symbol = machine.states[i].getSymName().str();
+    const char *begin = machine.joins.count(symbol)        ? "FromJoin"
+                        : machine.callBefore.count(symbol) ? "AfterCall"
+                                                           : "AfterTrace";
+    machine.functions.push_back(
+        unique(fmt::format("{}{}{}", machine.name, begin, i), taken, context.namesInFile()));
+    machine.stepOf[symbol] = context.split.stepName(definition, machine.functions.back());
+  }
+  return machine;
+}
+
+/// The struct of what a method has in its frame; nothing: there is only what it is given.
+std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
+                                                         std::set<std::string> &taken) {
+  if (machine.frame.empty()) {
+    if (machine.called)
+      machine.frameStruct = machine.frameType = context.split.structureOf(*machine.called);
+    return std::nullopt;
+  }
+  machine.frameStruct = unique(capitalised(machine.name) + "Frame", taken, context.namesInFile());
+  machine.frameType = context.names.of(machine.definition) + "::" + machine.frameStruct;
+  Struct made;
+  made.name = machine.frameStruct;
+  made.base = machine.called ? context.split.structureOf(*machine.called) : "";
+  const auto isBool = [](const FrameField &field) {
+    return field.type && field.type->is(TypeKind::Bool) && !field.isObject;
+  };
+  // bools share a byte
+  const bool packs = std::count_if(machine.frame.begin(), machine.frame.end(), isBool) > 1;
+  for (const FrameField &field : machine.frame) {
+    if (!field.type) {
+      context.unsupported(machine.method->range,
+                          fmt::format("`{}` in the frame of a method in C++", field.slot));
+      continue;
+    }
+    Variable variable = {{}, context.types.of(field.type), {field.name, {}}};
+    variable.bits = packs && isBool(field) ? 1 : 0;
+    made.members.push_back(declare(std::move(variable)));
+    made.members.back().trailing =
+        fmt::format("// needed by line {}: {}", field.neededBy, meaningOf(*machine.method, field));
+  }
+  return declare(std::move(made),
+                 fmt::format("// What `{}` needs when its rays come back.", machine.name));
+}
+
+/// Does a state write what is in its frame?
+static bool writesFrame(mlir::func::FuncOp state) {
+  bool writes = false;
+  state.walk([&](mlir::Operation *op) {
+    writes |= llvm::isa<ir::FrameStoreOp, ir::CallResultOp>(op);
+    if (llvm::isa<ir::FrameObjectOp>(op))
+      for (mlir::Operation *user : op->getUsers())
+        writes |= writesTo(user, op->getResult(0));
+  });
+  return writes;
+}
+
+/// Where a state begins, in the author's lines.
+static std::string headingOf(const Machine &machine, mlir::func::FuncOp state) {
+  unsigned line = 0;
+  state.walk([&](mlir::Operation *op) {
+    if (llvm::isa<ir::TraceResultOp, ir::TraceReturnedOp, ir::CallReturnedOp>(op) && line == 0)
+      line = lineOf(op->getLoc(), machine.file);
+  });
+  const std::string symbol = state.getSymName().str();
+  if (line == 0)
+    return {};
+  if (machine.joins.count(symbol) != 0)
+    return fmt::format("// From line {} on, whatever came before.", line);
+  if (machine.callBefore.count(symbol) != 0)
+    return fmt::format("// When the call of line {} is over.", line);
+  return fmt::format("// When the ray of line {} is back.", line);
+}
+
+/// Names for what a called method is given by its address, above the body that mentions them.
+void StateMachines::nameGiven(const Machine &machine, Statements &body) {
+  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
+    if (const std::string address = machine.addressName(context, at); mentions(body, address)) {
+      const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
+      body.insert(body.begin(),
+                  cpp::declaration(context.types.of(machine.givenType(at)) + " &", address,
+                                   unary(UnaryOperator::Dereference, given)));
+    }
+}
+
+/// One state as a function, whose parameters are what its body mentions; records how it is called.
+Declaration StateMachines::stateFunction(const Machine &machine, StateWriter &writer,
+                                         std::size_t number) {
+  const typed::Class &definition = *machine.definition;
+  const typed::Function &method = *machine.method;
+  mlir::func::FuncOp state = machine.states[number];
+  Statements body = writer.body(state);
+  nameGiven(machine, body);
+
+  Function made;
+  made.result = "rtsl::Next";
+  made.name = machine.functions[number];
+  made.isConst = true;
+  std::vector<Parameter> &parameters = made.parameters;
+  parameters = {byReference("State", mentions(body, "rt") ? "rt" : "")};
+  std::vector<Code> arguments = {cpp::name("rt")};
+  const typed::Variable *payload =
+      typed::takesPayload(method) ? method.parameters.front().get() : nullptr;
+  if (payload && mentions(body, context.names.of(payload))) {
+    parameters.push_back(
+        byReference(context.names.of(payload->type->structure), context.names.of(payload)));
+    arguments.push_back(payloadAt(context.names, *payload->type->structure));
+  }
+  if (writer.usesScratch) {
+    parameters.push_back(byConstReference("Scratch", "scratch"));
+    arguments.push_back(storedScratch(context.names, definition));
+  }
+  const Code bottom = cpp::name("frame");
+  const Code frame =
+      machine.hasFrame()
+          ? cpp::call(withParameters(machine.called ? "rtsl::calledFrameAt" : "rtsl::frameAt",
+                                     {machine.frameType}),
+                      {bottom})
+          : bottom;
+  if (mentions(body, machine.frameName)) {
+    parameters.push_back(byReference(machine.frameStruct, machine.frameName));
+    parameters.back().isConst = !writesFrame(state);
+    arguments.push_back(frame);
+  }
+  const std::string symbol = state.getSymName().str();
+  const auto before = machine.callBefore.find(symbol);
+  if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
+    const std::string given = context.split.structureOf(*before->second);
+    parameters.push_back(byConstReference(given, machine.callName));
+    arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {given}), {frame}));
+  }
+  made.body = std::move(body);
+
+  const MethodCall call = {made.name, std::move(arguments)};
+  Declaration declared = declare(std::move(made));
+  if (number == 0) {
+    entries.firstCalls[{&definition, machine.slot}] = call;
+    declared.comment = method.comment;
+    declared.place = context.lineDirective(method.range);
+  } else {
+    entries.steps.push_back({machine.stepOf.at(symbol), &definition, &method, call});
+    declared.comment = headingOf(machine, state);
+  }
+  return declared;
+}
+
+Declarations StateMachines::of(const typed::Class &definition, const typed::Function &method) {
+  // what is printed beside the author's own stands behind it
+  std::set<std::string> taken = context.namesInClass(definition);
+  Machine machine = machineOf(definition, method, taken);
+  StateWriter writer(context, context.split.program->source, machine);
+  collectFrame(machine, writer, context.split.typeNames());
+  Declarations all;
+  if (std::optional<Declaration> frame = frameStructure(machine, taken))
+    all.push_back(std::move(*frame));
+  if (machine.hasFrame())
+    (machine.called ? entries.calledFrames : entries.frames).push_back(machine.frameType);
+  for (std::size_t number = 0; number < machine.states.size(); ++number)
+    appendApart(all, stateFunction(machine, writer, number));
+  return all;
+}
+
+/// Has something that the method calls on its own object, and that has become part of its states,
+/// another definition in the derived class?
+bool StateMachines::differsIn(const typed::Class &derived, const typed::Function &method) const {
+  std::set<const typed::Function *> seen = {&method};
+  std::vector<const typed::Function *> open = {&method};
+  bool differs = false;
+  while (!open.empty()) {
+    const typed::Function *function = open.back();
+    open.pop_back();
+    forEachExpr(*function->body, [&](const typed::Expr &expr) {
+      auto *call = dynCast<typed::CallExpr>(&expr);
+      if (!call || !call->onSelf)
+        return;
+      const typed::Function &here = typed::resolve(*call, &derived);
+      const typed::Function &above = typed::resolve(*call, method.owner);
+      differs |= &here != &above &&
+                 (context.split.isPartOfStates(here) || context.split.isPartOfStates(above));
+      if (here.body && seen.insert(&here).second)
+        open.push_back(&here);
+    });
+  }
+  return differs;
+}
+
+Declarations StateMachines::inherited(const typed::Class &definition) {
+  Declarations machines;
+  if (!context.split.program)
+    return machines;
+  std::set<std::string> known;
+  for (const auto &own : definition.functions)
+    known.insert(typed::slotName(context.module, *own));
+  for (const typed::Class *at = definition.base; at; at = at->base)
+    for (const auto &method : at->functions)
+      if (known.insert(typed::slotName(context.module, *method)).second &&
+          context.split.isSplit(definition, *method) && differsIn(definition, *method))
+        appendApart(machines, of(definition, *method));
+  return machines;
+}
+
+} // namespace rtsl::cpp
