@@ -412,9 +412,9 @@ Statements StateWriter::body(mlir::func::FuncOp state) {
   Statements statements;
   for (const typed::Variable *constant : constants)
     statements.push_back(
-        declaration(printer.isTable(*constant->init) ? "static constexpr" : "const",
+        declaration(printer.literals.isTable(*constant->init) ? "static constexpr" : "const",
                     context.types.of(constant->type), context.names.of(constant),
-                    printer.initialiser(*constant->init)));
+                    printer.expressions.initialiser(*constant->init)));
   for (Line &line : lines)
     statements.push_back(std::move(line.statement));
   return statements;

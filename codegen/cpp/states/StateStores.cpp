@@ -57,7 +57,7 @@ void StateWriter::write(ir::EvaluateOp op, Lines &out) {
   Code code;
   if (isWrite) {
     replaceLeaves(entry, op.getOperands());
-    written = printer.expressionStatement(*entry.expr);
+    written = printer.statements.expressionStatement(*entry.expr);
   } else {
     code = expression(entry, op.getOperands());
   }
