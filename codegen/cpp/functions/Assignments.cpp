@@ -25,7 +25,7 @@ Code Assignments::incDec(const typed::IncDecExpr &expr, bool resultIsUsed) {
     return expr.prefix ? changed : old;
   }
   const Code target = printer.lvalues.of(*expr.target);
-  // Where the value is used a printer.function is plainer to compilers, which warn of `x = x++ + 1`.
+  // Compilers warn of `x = x++ + 1`, but not of a function.
   bool isSafe = !scalar->is(TypeKind::Int) && !resultIsUsed;
   if (auto *variable = dynCast<typed::VariableExpr>(expr.target))
     isSafe |= printer.counters.count(variable->variable) != 0;
@@ -92,7 +92,7 @@ Code Assignments::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
     const bool isFree = !expr.compound && printer.lvalues.isSimple(*expr.value) &&
                         !conflicts(context.effects.expression(*vector), value);
     Code from = combined();
-    // A simple value that is no part of the target can be named again and again.
+    // A simple value that is no part of the target can be named more than once.
     std::set<const void *> written = context.effects.expression(expr).writes;
     const bool overlaps = std::any_of(written.begin(), written.end(),
                                       [&](const void *at) { return value.reads.count(at) != 0; });

@@ -68,7 +68,7 @@ Code Builtins::print(const typed::BuiltinExpr &expr) {
 
 // The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax,
 // payload, root...)`. The ray may write it in its place, for nothing else reads it meanwhile,
-// unless what stands behind it changes it first.
+// unless what follows it changes it first.
 Code Builtins::tracePayload(const typed::BuiltinExpr &expr) {
   constexpr std::size_t at = 4;
   const typed::Expr &payload = *expr.args[at];

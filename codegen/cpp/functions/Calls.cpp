@@ -11,7 +11,7 @@ namespace rtsl::cpp {
 
 using typed::ExprKind;
 
-/// What an assignment to the place would write: what it is part of.
+/// What an assignment to the lvalue would write: all that it is part of.
 static std::set<const void *> writesOf(EffectsOf &effects, const typed::Expr &place) {
   return effects.expression(typed::wholeOf(place)).reads;
 }
@@ -48,7 +48,7 @@ Code Calls::callWith(const Code &callee, std::vector<Code> first, const typed::F
       Code code = printer.expressions.argument(*args[i]);
       if (shows)
         code = printer.hoist(args[i]->type, "argument", code);
-      // By reference, beside something that the call changes.
+      // By reference, to something that the call changes.
       bool changes = meet(facts[i].reads, inside.writes);
       for (std::size_t j = 0; j < args.size(); ++j)
         changes |= isOutput(j) && meet(facts[i].reads, roots[j]);

@@ -89,7 +89,7 @@ Code Expressions::expr(const typed::Expr &expr) {
     return found->second;
   if (printer.before)
     return lowered(expr);
-  // Nothing can go printer.before this expression: what must, goes into a printer.function that is called at once.
+  // No statement can go before this expression: those go into a lambda that is called at once.
   Statements statements;
   const bool outer = printer.isInLambda;
   printer.before = &statements;

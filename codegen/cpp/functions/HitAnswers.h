@@ -1,8 +1,8 @@
 //===- HitAnswers.h - the ends of `anyHit` -------------------------------===//
 //
 // `ignoreIntersection()` and `terminateRay()` end `anyHit` at once, from functions that it calls
-// too: in C++ each `return`s, and so does its caller. Where C++ has no `return`, in the middle of an
-// expression, an exception ends them all.
+// too: in C++ each `return`s, and so does its caller. In the middle of an expression, where C++ has
+// no `return`, an exception ends them all.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

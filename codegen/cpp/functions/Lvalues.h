@@ -27,7 +27,7 @@ public:
 
 private:
   Code index(const typed::IndexExpr &expr, bool storeIndices);
-  /// With --exceptions: the index, after the state was told if it is out of range.
+  /// With --exceptions: the index, which is reported to the state if it is out of range.
   Code checked(Code index, Code count) const;
   Code bufferElement(const typed::IndexExpr &expr);
   Code lengthOf(const Code &buffer, std::optional<std::size_t> dimension);

@@ -15,7 +15,7 @@ using typed::ExprKind;
 
 static constexpr std::int64_t intMin = std::numeric_limits<std::int32_t>::min();
 
-/// The operator of C++ that is spelled alike.
+/// The operator of C++ with the same spelling.
 static Operator operatorFor(BinaryOp op) {
   static constexpr Operator all[] = {
       Operator::Multiply,   Operator::Divide,       Operator::Remainder,

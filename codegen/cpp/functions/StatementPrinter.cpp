@@ -20,7 +20,7 @@ using typed::ExprKind;
 
 Statements StatementPrinter::body() {
   const auto &statements = cast<typed::CompoundStmt>(*printer.function->body).body;
-  // Which variables does anybody read? Compilers complain of the others.
+  // Which variables are read? Compilers warn of the others.
   std::set<const typed::Expr *> onlyWritten;
   context.effects.forEachEvaluated(*printer.function->body, [&](const typed::Expr &expr) {
     auto skip = [&](const typed::Expr *place) {
@@ -124,7 +124,7 @@ static bool endsWithLine(StmtKind kind) {
 }
 
 void StatementPrinter::print(const typed::Stmt &stmt, Statements &out) {
-  Statements all; // what goes printer.before it, then the statement
+  Statements all; // what goes before it, then the statement
   Statements *outer = printer.before;
   printer.before = &all;
   const Statements own = construct(stmt);
@@ -174,7 +174,7 @@ Statements StatementPrinter::declaration(const typed::DeclarationStmt &stmt, boo
     const Code value = variable->init ? printer.expressions.argument(*variable->init)
                                       : context.types.zero(variable->type);
     printer.before = outer;
-    // What goes printer.before must not overtake the others.
+    // What goes before must not overtake the others.
     Statements &above = all.empty() ? *outer : all;
     above.insert(above.end(), hoisted.begin(), hoisted.end());
     if (!hoisted.empty())
@@ -249,7 +249,7 @@ Statements StatementPrinter::expressionStatement(const typed::Expr &expr) {
 Statement StatementPrinter::ifStatement(const typed::IfStmt &stmt) {
   Statement made = simple(StatementKind::If);
   made.value = printer.expressions.operand(*stmt.condition, Binding::Comma);
-  // The comment behind the opening brace of the author's.
+  // The comment after the author's opening brace.
   if (stmt.thenStmt && stmt.thenStmt->kind == StmtKind::Compound)
     made.trailing = context.notes.trailingComment(
         {stmt.range.file, stmt.condition->range.begin, stmt.condition->range.end});
@@ -348,7 +348,7 @@ Statement StatementPrinter::forStatement(const typed::ForStmt &stmt) {
   return cpp::block(std::move(outside));
 }
 
-/// May control reach what stands behind the statements?
+/// May control reach what follows the statements?
 static bool mayComplete(const std::vector<typed::StmtPtr> &statements);
 static bool mayComplete(const typed::Stmt *stmt) {
   if (!stmt)
@@ -373,8 +373,8 @@ static bool mayComplete(const std::vector<typed::StmtPtr> &statements) {
                      [](const typed::StmtPtr &stmt) { return mayComplete(stmt.get()); });
 }
 
-// A variable that is declared in one arm is in sight in those below, which C++ lets nobody jump to:
-// such variables are declared before the switch. If nobody below looks, the arm gets braces.
+// A variable that is declared in one arm is in scope in those below, to which C++ allows no jump:
+// such variables are declared before the switch. If no arm below mentions it, the arm gets braces.
 Statement StatementPrinter::switchStatement(const typed::SwitchStmt &stmt) {
   Statement made = simple(StatementKind::Switch);
   Statements declared;

@@ -1,4 +1,4 @@
-//===- StateExpressions.cpp - places and expressions of a state -----------===//
+//===- StateExpressions.cpp - lvalues and expressions of a state ----------===//
 //
 // An expression is the author's tree (codegen/lower/SourceTable.h), whose leaves are what the IR
 // has computed.
