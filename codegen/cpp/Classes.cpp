@@ -13,7 +13,7 @@ static Declaration definitionOf(Context &context, const typed::Function &functio
   Function made = context.signatures.of(function, isMethod);
   if (!isMethod)
     made.specifiers = "inline";
-  made.body = FunctionPrinter(context, &function).body();
+  made.body = FunctionPrinter(context, &function).statements.body();
   Declaration declared = declare(std::move(made), function.comment);
   declared.place = context.lineDirective(function.range);
   return declared;

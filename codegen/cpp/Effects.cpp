@@ -51,7 +51,7 @@ bool EffectsOf::isSilent(const typed::Expr &expr) const {
 
 EffectsOf::EffectsOf(const typed::Module &module, bool prints, bool raises)
     : module(module), prints(prints), raises(raises) {
-  // Textures call one another, so what they do is found before any `lookup` is asked about.
+  // Textures call one another, so their effects are found before those of any `lookup`.
   for (const auto &definition : module.classes)
     if (definition->root == "rt_Texture")
       for (const auto &method : definition->functions)
@@ -74,8 +74,8 @@ const typed::Function &overridden(const typed::Function &function) {
   return *top;
 }
 
-// All methods of the name are alike, whichever class has them: they have one signature, and a call
-// may run any of them.
+// Methods of the name in all classes are treated as one: they have one signature, and a call may
+// run any of them.
 Effects EffectsOf::ofBodies(const typed::Function &function) {
   Effects effects;
   std::set<const void *> locals;
@@ -105,7 +105,7 @@ Effects EffectsOf::ofBodies(const typed::Function &function) {
 const Effects &EffectsOf::function(const typed::Function &named) {
   const typed::Function &function = overridden(named);
   if (auto found = known.find(&function); found != known.end()) {
-    comesRound |= open.count(&function) != 0;
+    hasCycle |= open.count(&function) != 0;
     return found->second;
   }
   known[&function]; // a method through a reference may lead back here
@@ -114,12 +114,12 @@ const Effects &EffectsOf::function(const typed::Function &named) {
   open.erase(&function);
   known[&function] = std::move(effects);
   // Where functions call one another round about, each does what all of them do.
-  while (comesRound && open.empty()) {
-    comesRound = false;
+  while (hasCycle && open.empty()) {
+    hasCycle = false;
     for (auto &[other, effectsSoFar] : known)
       if (Effects now = ofBodies(*other); !(now == effectsSoFar)) {
         effectsSoFar = std::move(now);
-        comesRound = true;
+        hasCycle = true;
       }
   }
   return known[&function];

@@ -1,6 +1,6 @@
 //===- Effects.h - what evaluation reads and writes -----------------------===//
 //
-// RTSL evaluates operands from left to right, C++ in any order. So the printer must know which
+// RTSL evaluates operands from left to right, C++ in any order. The printer therefore finds which
 // operands depend on the order; the same facts decide which functions take the ray's state and
 // which methods are const, and reflection prints them. These are properties of the author's
 // expressions as C++ evaluates them, which the IR does not represent. Which rays an expression
@@ -18,7 +18,7 @@
 
 namespace rtsl::cpp {
 
-/// Places, each a variable, a member or a state variable; `random` is the sequence of random
+/// Lvalues, each a variable, a member or a state variable; `random` is the sequence of random
 /// numbers, `nearest` the hit so far.
 struct Effects {
   std::set<const void *> reads, writes;
@@ -43,7 +43,7 @@ const typed::Function &overridden(const typed::Function &function);
 
 class EffectsOf {
 public:
-  /// `prints`: does `print` print? `raises`: does an index ask the state whether it is in range?
+  /// `prints`: does `print` print? `raises`: does an index out of range use the state?
   explicit EffectsOf(const typed::Module &module, bool prints = false, bool raises = false);
 
   /// All expressions that are evaluated: not what a `print` would print that prints nothing.
@@ -62,7 +62,7 @@ public:
   /// A `print` that does nothing.
   bool isSilent(const typed::Expr &expr) const;
 
-  /// What a call does beside reading its arguments and writing its results: on members, the state
+  /// What a call does besides reading its arguments and writing its results: on members, the state
   /// and random numbers. Of a method that others override, what any of them does.
   const Effects &function(const typed::Function &named);
   Effects expression(const typed::Expr &expr);
@@ -87,7 +87,7 @@ private:
   bool prints, raises;
   std::map<const typed::Function *, Effects> known;
   std::set<const typed::Function *> open; // of which the effects are being found
-  bool comesRound = false;                // one of these was looked at meanwhile
+  bool hasCycle = false;                  // one of these was reached again
   bool texturesDraw = false;              // some texture's `lookup` draws random numbers
 };
 

@@ -2,7 +2,7 @@
 //
 // Prints RTSL as one file of C++17 on GLM and rtsl/shader.h. It is printed from the typed tree,
 // which still has the author's loops, expressions and names; docs/cpp-output.md says why, and how
-// the output keeps the bits of the compiler's own machine code. What the runtime is told of the
+// the output keeps the bits of the compiler's own machine code. The description of the
 // program (types of rays, places of attributes, what of a hit is read) comes from linking.
 //
 //===----------------------------------------------------------------------===//
@@ -31,7 +31,7 @@ struct Options {
   bool exceptions = false;           // samples end at what docs/language.md calls an exception
   std::uint32_t undefined = 0;       // RTSL_FEATURE_UNDEFINED_*, for tests
   bool checkIndices = true;
-  // what states cannot show, so that traces are calls though nobody asked; empty: nothing
+  // what cannot be printed as states, so that traces are calls; empty: nothing
   std::string whyCalls;
   bool fast = false; // RTSL_FAST: the C++ compiler may change last digits (docs/fast.md)
   const HitErrorFunctions *hitErrors = nullptr; // HitErrors.h; null: there are none

@@ -8,8 +8,8 @@
 
 namespace rtsl::cpp {
 
-/// To see whether a function is a member, clang-format looks back over all lines before it that are
-/// as deep: in longer texts this takes time that grows with the square of their length.
+/// To find out whether a function is a member, clang-format reads all lines before it that are as
+/// deep: in longer texts this takes time that grows with the square of their length.
 constexpr std::ptrdiff_t longText = 4000;
 
 // The root's .clang-format, and empty lines only where the printer puts them.

@@ -84,8 +84,7 @@ void Names::give(const void *entity, const std::string &name, const std::string 
   std::string result = cleaned(name);
   if (isReserved(result) || avoids(result) || (result != name && all.count(result))) {
     std::string base = result.back() == '_' ? result : result + "_";
-    for (const char *prefix :
-         {"GLM_", "RTSL_", "rtsl_"}) // no name begins so, whatever stands behind it
+    for (const char *prefix : {"GLM_", "RTSL_", "rtsl_"}) // no name begins so, whatever follows
       if (const std::size_t length = std::string(prefix).size();
           base.compare(0, length, prefix) == 0)
         base.erase(length - 1, 1);
@@ -182,7 +181,7 @@ void Names::nameClass(const typed::Class &definition) {
     add(function.get(), function->name);
 }
 
-// A local name must not hide what its function could ask for by the same name in C++: types,
+// A local name must not hide what its function may mention by the same name in C++: types,
 // functions, methods, and for variables (whose initialisers C++ reads in their own scope) members,
 // constants and variables around them.
 void Names::nameLocals(const typed::Function &function) {

@@ -2,7 +2,7 @@
 //
 // A name stays as it is unless C++ gives it another meaning: a keyword, a macro, what generated
 // code itself uses, or another thing of the author's that C++ would confuse with it. Then it gets
-// an underscore behind it, and a number behind that should the result be taken.
+// an underscore after it, and a number after that if the result is taken.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -46,8 +46,8 @@ private:
   std::set<std::string> memberNames; // of all classes, methods too
 };
 
-/// The name, or the name with a number behind it, as none of these and none around them; it is one
-/// of these then. Without two underscores in a row, which C++ keeps for itself.
+/// The name, or the name with a number after it, so that it is none of `taken` and `around`; it is
+/// added to `taken`. Without two underscores in a row, which C++ keeps for itself.
 std::string unique(std::string name, std::set<std::string> &taken,
                    const std::set<std::string> &around = {});
 
@@ -58,7 +58,7 @@ std::string nameOfRoot(const std::string &root);
 /// An identifier made of a file's name: "my-glass.cpp" gives "my_glass".
 std::string identifierOf(const std::string &path);
 
-/// Is the word C++'s own, a macro's, or one that generated code uses?
+/// Is the name C++'s own, a macro's, or one that generated code uses?
 bool isReserved(const std::string &word);
 
 } // namespace rtsl::cpp

@@ -28,7 +28,7 @@ bool ScratchMembers::has(const typed::Class &definition) {
   for (const typed::Class *at : family(root)) {
     for (const auto &member : at->members)
       found |= member->access == ast::Access::Scratch;
-    // A free function that reports hits says so there.
+    // A free function that reports hits takes it as a parameter.
     for (const auto &function : at->functions)
       if (function->body)
         forEachExpr(*function->body, [&](const typed::Expr &expr) {

@@ -170,8 +170,8 @@ bool Signatures::overrides(const typed::Function &function) const {
   return false;
 }
 
-// Only what the author's own code calls on the object itself needs C++'s dispatch: the runtime and
-// references know the class.
+// Only calls in the author's code on the object itself need virtual methods of C++: the runtime and
+// references call methods of a known class.
 bool Signatures::isOverridden(const typed::Function &function) const {
   if (function.isConstructor || !function.owner || function.isStateMethod ||
       split.isPartOfStates(function))

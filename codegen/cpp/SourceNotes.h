@@ -1,7 +1,7 @@
-//===- SourceNotes.h - what only the author's text knows ------------------===//
+//===- SourceNotes.h - what only the author's text has --------------------===//
 //
-// The typed tree has no parentheses, no empty lines and no comments behind a declaration on the
-// same line. Its nodes know where they stand, so the text can be asked.
+// The typed tree has no parentheses, no empty lines and no comments after a declaration on the
+// same line. Its nodes have source ranges, by which the text is read.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

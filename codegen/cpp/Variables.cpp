@@ -98,9 +98,9 @@ bool Variables::isConstexpr(const Type *type, const typed::Constant *value, cons
 Declaration Variables::constant(const typed::Variable &constant) {
   FunctionPrinter printer(context, nullptr);
   const std::string &name = context.names.of(&constant);
-  const Code initialiser = printer.initialiser(*constant.init);
+  const Code initialiser = printer.expressions.initialiser(*constant.init);
   const bool isPlain = isConstexpr(constant.type, constant.constant.get(), name, initialiser) ||
-                       printer.isTable(*constant.init);
+                       printer.literals.isTable(*constant.init);
   Declaration declared = declare(Variable{isPlain ? "inline constexpr" : "inline const",
                                           context.types.of(constant.type),
                                           {name, initialiser}},
@@ -112,11 +112,12 @@ Declaration Variables::constant(const typed::Variable &constant) {
 Declaration Variables::member(const typed::Member &member) {
   FunctionPrinter printer(context, nullptr, member.owner);
   Variable made;
-  Code value = member.init ? printer.initialiser(*member.init) : context.types.zero(member.type);
+  Code value =
+      member.init ? printer.expressions.initialiser(*member.init) : context.types.zero(member.type);
   if (member.isConst) {
     const bool isPlain =
         isConstexpr(member.type, member.constant.get(), context.names.of(&member), value) ||
-        (member.init && printer.isTable(*member.init));
+        (member.init && printer.literals.isTable(*member.init));
     made.qualifiers = isPlain ? "static constexpr" : "inline static const";
     made.type = context.types.of(member.type);
   } else {

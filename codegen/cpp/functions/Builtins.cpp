@@ -1,4 +1,3 @@
-//===- Builtins.cpp - built-in functions ----------------------------------===//
 #include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/typed/Casting.h"
@@ -28,47 +27,52 @@ static std::string nameInCpp(Builtin builtin) {
 }
 
 // Results of `out` parameters follow the operands.
-Code FunctionPrinter::withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
-                                  std::size_t firstOutput) {
+Code Builtins::withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
+                           std::size_t firstOutput) {
   std::vector<const typed::Expr *> inputs;
   for (std::size_t i = 0; i < firstOutput; ++i)
     inputs.push_back(expr.args[i].get());
-  std::vector<Code> codes = operands(inputs, Binding::Assignment);
+  std::vector<Code> codes = printer.expressions.operands(inputs, Binding::Assignment);
   Statements after;
   for (std::size_t i = firstOutput; i < expr.args.size(); ++i) {
-    const bool isBindable = canBind(*expr.args[i]);
+    const bool isBindable = printer.lvalues.canBind(*expr.args[i]);
     if (isBindable && after.empty()) { // later ones are written last
-      codes.push_back(place(*expr.args[i], !indexEffects(*expr.args[i]).isPure()));
+      codes.push_back(
+          printer.lvalues.of(*expr.args[i], !printer.lvalues.indexEffects(*expr.args[i]).isPure()));
       continue;
     }
-    const std::string result = temporaryName("result");
-    before->push_back(cpp::declaration(context.types.of(expr.args[i]->type), result, list("", {})));
+    const std::string result = printer.temporaryName("result");
+    printer.before->push_back(
+        cpp::declaration(context.types.of(expr.args[i]->type), result, list("", {})));
     codes.push_back(name(result));
     if (isBindable) {
-      after.push_back(statement(cpp::assign(place(*expr.args[i], true), name(result))));
+      after.push_back(
+          statement(cpp::assign(printer.lvalues.of(*expr.args[i], true), name(result))));
       continue;
     }
     const typed::Expr *vector = nullptr;
-    const std::vector<std::uint8_t> parts = components(*expr.args[i], vector);
-    assignComponents(place(*vector, true), parts, name(result), after);
+    const std::vector<std::uint8_t> parts = printer.lvalues.components(*expr.args[i], vector);
+    printer.assignments.assignComponents(printer.lvalues.of(*vector, true), parts, name(result),
+                                         after);
   }
   const Code call = cpp::call(callee, std::move(codes));
-  return after.empty() ? call : valueThen(expr.type, typed::name(expr.builtin), call, after);
+  return after.empty() ? call
+                       : printer.calls.valueThen(expr.type, typed::name(expr.builtin), call, after);
 }
 
-Code FunctionPrinter::print(const typed::BuiltinExpr &expr) {
-  std::vector<Code> values = arguments(expr.args);
+Code Builtins::print(const typed::BuiltinExpr &expr) {
+  std::vector<Code> values = printer.expressions.arguments(expr.args);
   values.insert(values.begin(), name("rt"));
   return cpp::call("rtsl::print", std::move(values));
 }
 
 // The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax,
 // payload, root...)`. The ray may write it in its place, for nothing else reads it meanwhile,
-// unless what stands behind it changes it first.
-Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
+// unless what follows it changes it first.
+Code Builtins::tracePayload(const typed::BuiltinExpr &expr) {
   constexpr std::size_t at = 4;
   const typed::Expr &payload = *expr.args[at];
-  const Effects indices = indexEffects(payload);
+  const Effects indices = printer.lvalues.indexEffects(payload);
   bool isChanged = false;
   std::vector<const typed::Expr *> inputs;
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
@@ -84,8 +88,8 @@ Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
     return cpp::call("rtsl::trace", std::move(codes));
   };
   if (!isChanged) {
-    std::vector<Code> codes = operands(inputs, Binding::Assignment);
-    codes.insert(codes.begin() + at, place(payload, !indices.isPure()));
+    std::vector<Code> codes = printer.expressions.operands(inputs, Binding::Assignment);
+    codes.insert(codes.begin() + at, printer.lvalues.of(payload, !indices.isPure()));
     return trace(std::move(codes));
   }
   // One after the other, each in a variable.
@@ -93,23 +97,24 @@ Code FunctionPrinter::tracePayload(const typed::BuiltinExpr &expr) {
   Code where;
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
     if (i != at) {
-      codes.push_back(hoist(expr.args[i]->type, "argument", argument(*expr.args[i])));
+      codes.push_back(printer.hoist(expr.args[i]->type, "argument",
+                                    printer.expressions.argument(*expr.args[i])));
       continue;
     }
-    where = place(payload, true);
-    const std::string copy = temporaryName("payload");
-    before->push_back(cpp::declaration(context.types.of(payload.type), copy, where));
+    where = printer.lvalues.of(payload, true);
+    const std::string copy = printer.temporaryName("payload");
+    printer.before->push_back(cpp::declaration(context.types.of(payload.type), copy, where));
     codes.push_back(name(copy));
   }
-  before->push_back(statement(trace(codes)));
-  before->push_back(statement(cpp::assign(where, codes[at])));
+  printer.before->push_back(statement(trace(codes)));
+  printer.before->push_back(statement(cpp::assign(where, codes[at])));
   return {};
 }
 
-Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
+Code Builtins::builtin(const typed::BuiltinExpr &expr) {
   const std::string callee = "rtsl::" + nameInCpp(expr.builtin);
   auto with = [&](std::vector<Code> codes) {
-    const std::vector<Code> own = arguments(expr.args);
+    const std::vector<Code> own = printer.expressions.arguments(expr.args);
     codes.insert(codes.end(), own.begin(), own.end());
     return cpp::call(callee, std::move(codes));
   };
@@ -122,14 +127,14 @@ Code FunctionPrinter::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::Illuminate:
     return with({name("rt")});
   case Builtin::Hit:
-    return function && context.signatures.takesScratch(*function)
+    return printer.function && context.signatures.takesScratch(*printer.function)
                ? with({name("rt"), name("scratch")})
                : with({name("rt")});
   case Builtin::TracePayload:
     return tracePayload(expr);
   case Builtin::IgnoreIntersection:
   case Builtin::TerminateRay:
-    return endOfAnyHit(expr);
+    return printer.hitAnswers.endOfAnyHit(expr);
   case Builtin::Print:
     return context.options.prints ? print(expr) : Code{};
   case Builtin::VisitChild:

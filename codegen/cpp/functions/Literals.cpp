@@ -1,4 +1,3 @@
-//===- Literals.cpp - numbers, constants and the names that authors gave them //
 #include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/typed/Casting.h"
@@ -67,7 +66,7 @@ static bool sameValue(const typed::Constant &a, const typed::Constant &b) {
 
 // The checker puts values for the names of constants. What the author wrote still stands in the
 // text, and names there what it names in C++: the nearest constant of that name.
-const void *FunctionPrinter::namedConstant(const typed::LiteralExpr &expr) const {
+const void *Literals::namedConstant(const typed::LiteralExpr &expr) const {
   if (!expr.spelling.empty())
     return nullptr;
   const std::string name = context.notes.identifier(expr.range);
@@ -77,11 +76,11 @@ const void *FunctionPrinter::namedConstant(const typed::LiteralExpr &expr) const
     return constant.name == name && constant.isConst && constant.type == expr.type &&
            constant.constant && sameValue(*constant.constant, expr.value);
   };
-  if (function)
-    for (const auto &local : function->locals)
+  if (printer.function)
+    for (const auto &local : printer.function->locals)
       if (isIt(*local))
         return local.get();
-  for (const typed::Class *at = owner; at; at = at->base)
+  for (const typed::Class *at = printer.owner; at; at = at->base)
     for (const auto &member : at->members)
       if (isIt(*member))
         return member.get();
@@ -92,7 +91,7 @@ const void *FunctionPrinter::namedConstant(const typed::LiteralExpr &expr) const
 }
 
 /// Named ones need not be known to C++ while it compiles.
-bool FunctionPrinter::isTable(const typed::Expr &expr) const {
+bool Literals::isTable(const typed::Expr &expr) const {
   auto isNumber = [&](const typed::Expr &element) {
     auto *literal = dynCast<typed::LiteralExpr>(&element);
     return literal && element.type->isScalar() && !namedConstant(*literal) &&
@@ -105,8 +104,8 @@ bool FunctionPrinter::isTable(const typed::Expr &expr) const {
          });
 }
 
-Code FunctionPrinter::scalarLiteral(const Type *type, typed::Constant::Scalar value,
-                                    const std::string &spelling) {
+Code Literals::scalarLiteral(const Type *type, typed::Constant::Scalar value,
+                             const std::string &spelling) {
   switch (type->kind) {
   case TypeKind::Bool:
     return boolean(value.b);
@@ -131,8 +130,8 @@ Code FunctionPrinter::scalarLiteral(const Type *type, typed::Constant::Scalar va
   }
 }
 
-Code FunctionPrinter::literal(const Type *type, const typed::Constant &constant,
-                              const std::string &spelling) {
+Code Literals::literal(const Type *type, const typed::Constant &constant,
+                       const std::string &spelling) {
   if (type->isScalar())
     return scalarLiteral(type, constant.scalars.front(), spelling);
   std::size_t next = 0;
@@ -164,7 +163,7 @@ Code FunctionPrinter::literal(const Type *type, const typed::Constant &constant,
 }
 
 /// An initialiser of a field or an element: a bool needs 32 bits there.
-Code FunctionPrinter::inMemory(const Type *type, Code value) {
+Code Literals::inMemory(const Type *type, Code value) {
   return type->is(TypeKind::Bool) ? cpp::construct("rtsl::Bool", {std::move(value)}) : value;
 }
 

@@ -33,7 +33,7 @@ Function slotFunction(const std::string &name, Statements body);
 /// The statements, with a variable for the ray's state above them.
 Statements withState(const Options &options, Statements body);
 
-/// The method that a class has in the place of `like`; null: none.
+/// The method of a class that `like` is, or that overrides it; null: none.
 const typed::Function *findMethod(const typed::Class &definition, const typed::Function &like);
 /// The method that a class has for a slot of language/Slots.def or SamplingSlots.def; null: none.
 const typed::Function *slotMethod(const typed::Class &definition, const std::string &name);

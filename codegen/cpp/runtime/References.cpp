@@ -62,7 +62,7 @@ Declarations References::types() {
   return all;
 }
 
-/// `const rtsl::NestedLookup nested(rt);`: what a texture wrote is there again afterwards.
+/// `const rtsl::NestedLookup nested(rt);`: restores what a texture wrote when it ends.
 static Statement nestedLookup() {
   Statement made = declaration("const", "rtsl::NestedLookup", "nested",
                                construct("rtsl::NestedLookup", {name("rt")}));

@@ -14,7 +14,7 @@ namespace {
 /// A method with which the machine begins.
 struct Beginning {
   const char *base, *method, *step,
-      *slot; // of the class, of the function, its number in C++, and who asks for it
+      *slot; // names of the class, the function, its number in C++, and its slot
   bool hasPayload;
 };
 constexpr Beginning beginnings[] = {

@@ -1,4 +1,4 @@
-//===- StateExpressions.cpp - places and expressions of a state -----------===//
+//===- StateExpressions.cpp - lvalues and expressions of a state ----------===//
 //
 // An expression is the author's tree (codegen/lower/SourceTable.h), whose leaves are what the IR
 // has computed.
@@ -124,17 +124,17 @@ Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange o
   switch (entry.kind) {
   case SourceTable::Kind::Value:
   case SourceTable::Kind::Into:
-    return printer.expr(*entry.expr);
+    return printer.expressions.expr(*entry.expr);
   case SourceTable::Kind::AngleCosine:
-    return cpp::call("rtsl::cosOfAngle", {printer.argument(*entry.expr)});
+    return cpp::call("rtsl::cosOfAngle", {printer.expressions.argument(*entry.expr)});
   case SourceTable::Kind::Compound: {
     const auto &assign = static_cast<const typed::AssignExpr &>(*entry.expr);
-    return printer.binary(assign.op, *assign.target, *assign.value);
+    return printer.operators.binary(assign.op, *assign.target, *assign.value);
   }
   case SourceTable::Kind::Step: {
     const auto &step = static_cast<const typed::IncDecExpr &>(*entry.expr);
-    return printer.stepped(printer.operand(*step.target, Binding::Sum), step.target->type->scalar(),
-                           step.increment);
+    return printer.assignments.stepped(printer.expressions.operand(*step.target, Binding::Sum),
+                                       step.target->type->scalar(), step.increment);
   }
   }
   return integer(0);
@@ -201,7 +201,7 @@ void StateWriter::nameConstants(const typed::Expr &expr) {
         named && named->variable->isConst && named->variable->kind != typed::Variable::Kind::Global)
       add(*named->variable);
     if (auto *literal = dynCast<typed::LiteralExpr>(&inner)) // the value of one
-      if (const void *named = printer.namedConstant(*literal))
+      if (const void *named = printer.literals.namedConstant(*literal))
         for (const auto &local : machine.method->locals)
           if (local.get() == named)
             add(*local);

@@ -26,7 +26,7 @@ static std::string uncapitalised(std::string word) {
   return word;
 }
 
-/// The first line that asks for what lies at an address.
+/// The first line that accesses the memory at an address.
 static unsigned lineOfAccess(mlir::Value address, llvm::StringRef file) {
   unsigned line = 0;
   for (mlir::Operation *user : address.getUsers()) {
@@ -328,7 +328,7 @@ Declaration StateMachines::stateFunction(const Machine &machine, StateWriter &wr
 }
 
 Declarations StateMachines::of(const typed::Class &definition, const typed::Function &method) {
-  // what is printed beside the author's own stands behind it
+  // names that the printer adds must differ from the author's
   std::set<std::string> taken = context.namesInClass(definition);
   Machine machine = machineOf(definition, method, taken);
   StateWriter writer(context, context.split.program->source, machine);

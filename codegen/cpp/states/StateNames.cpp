@@ -152,7 +152,7 @@ std::string StateWriter::nameOfValue(mlir::Value value) {
   return context.names.of(callee) + std::to_string(number);
 }
 
-/// Of a number in the IR, which does not say whether it is unsigned; null: it is none.
+/// Of a number in the IR, which is not marked as unsigned; null: it is none.
 static const Type *scalarType(TypeContext &types, mlir::Type type) {
   if (type.isF32())
     return types.floatType;
@@ -301,8 +301,7 @@ const Type *StateWriter::typeOf(mlir::Value value) {
       })
       .Case([&](mlir::vector::FromElementsOp made) {
         const Type *scalar = scalarType(types, made.getElements().front().getType());
-        for (mlir::Value part :
-             made.getElements()) // constants do not say whether they are unsigned
+        for (mlir::Value part : made.getElements()) // constants are not marked as unsigned
           if (const Type *type = typeOf(part);
               type && part.getDefiningOp<arith::ConstantOp>() == nullptr)
             scalar = type;

@@ -1,7 +1,7 @@
 //===- StateOrder.cpp - what a state evaluates when ------------------------===//
 //
-// The value of an operation waits until it is used, and is then part of the expression that uses
-// it, unless something in between would change it: then it gets a variable before.
+// The value of an operation is pending until it is used, and is then part of the expression that
+// uses it, unless something in between would change it: then it gets a variable before.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/cpp/states/StateWriter.h"
@@ -25,7 +25,7 @@ void StateWriter::Touches::add(const Touches &other) {
   writesAny |= other.writesAny;
 }
 
-/// Would it show if the two changed places?
+/// Could exchanging the two be noticed?
 bool StateWriter::meet(const Touches &a, const Touches &b) {
   auto common = [](const std::set<Location> &x, const std::set<Location> &y) {
     return std::any_of(x.begin(), x.end(),
@@ -141,8 +141,8 @@ bool StateWriter::isReplacedBy(mlir::Value before, mlir::Value value) {
                        [&](const auto &index) { return mentions(index.second, own); });
 }
 
-/// Gives a value that waits for its use a variable now. `isNew`: it was just made, so no expression
-/// that still reads the variable before it is under way to a statement.
+/// Gives a pending value a variable now. `isNew`: it was just made, so no pending expression
+/// still reads the variable before it.
 void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
   const Pending waiting = std::move(pending[value]);
   pending.erase(value);
@@ -179,7 +179,7 @@ Code StateWriter::named(mlir::Value value, Lines &out) {
   return use(value, typeOf(value));
 }
 
-/// Before something that touches this happens, what waits and would notice is evaluated.
+/// Evaluates pending values that would notice something that touches this, before it happens.
 void StateWriter::flush(const Touches &touches, Lines &out) {
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending)
@@ -189,8 +189,8 @@ void StateWriter::flush(const Touches &touches, Lines &out) {
     materialise(value, out);
 }
 
-/// Before a construct with regions: what an inner statement would change cannot wait for another
-/// region, and nothing that is used once waits to be evaluated in each round of a loop.
+/// Before a construct with regions: values that an inner statement would change are not pending in
+/// another region, and a value that is used once is not evaluated in each iteration of a loop.
 void StateWriter::flushBefore(mlir::Operation &op, Lines &out) {
   const Touches inside = touchesOf(&op);
   const bool isLoop = llvm::isa<ir::LoopOp>(op);
@@ -209,7 +209,7 @@ void StateWriter::flushBefore(mlir::Operation &op, Lines &out) {
     materialise(value, out);
 }
 
-/// An operation has given a value: it waits for its use, or gets a variable.
+/// The value of an operation becomes pending, or gets a variable.
 void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool isPure, Lines &out) {
   mlir::Value value = op.getResult(0);
   const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));

@@ -100,7 +100,7 @@ Statements StateWriter::statementsOf(const Lines &lines) {
   return statements;
 }
 
-/// Does a line without braces under an `if` say it all?
+/// Can the statements stand without braces under an `if`?
 static bool isShort(const Statements &statements) {
   if (statements.size() != 1 || !statements.front().comment.empty() || statements.front().place)
     return false;
@@ -171,7 +171,7 @@ void StateWriter::choice(ir::IfOp op, Lines &out) {
 }
 
 /// The `for` without its body, if the loop is `int i = a; while (i < b) { ...; ++i; }` and nothing
-/// else reads i. What it says is taken out of what stands before the loop, and of the body.
+/// else reads i. The declaration before the loop and the increment in the body are removed.
 std::optional<Statement> StateWriter::counter(ir::LoopOp op, const Code &condition, Lines &out,
                                               Lines &body) {
   if (out.empty() || body.empty() || !out.back().assigns ||
@@ -412,9 +412,9 @@ Statements StateWriter::body(mlir::func::FuncOp state) {
   Statements statements;
   for (const typed::Variable *constant : constants)
     statements.push_back(
-        declaration(printer.isTable(*constant->init) ? "static constexpr" : "const",
+        declaration(printer.literals.isTable(*constant->init) ? "static constexpr" : "const",
                     context.types.of(constant->type), context.names.of(constant),
-                    printer.initialiser(*constant->init)));
+                    printer.expressions.initialiser(*constant->init)));
   for (Line &line : lines)
     statements.push_back(std::move(line.statement));
   return statements;

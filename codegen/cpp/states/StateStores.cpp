@@ -50,14 +50,14 @@ void StateWriter::write(ir::EvaluateOp op, Lines &out) {
       op.getNumResults() == 0 && entry.kind == SourceTable::Kind::Value &&
       (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);
   printer.isNested = ir::attr::nested.isOn(op);
-  if (printer.isNested) // its first part may change what waits for its last
+  if (printer.isNested) // its first part may change a pending operand of its last
     flush(touchesOf(op), out);
   Statements before, written;
   printer.before = &before;
   Code code;
   if (isWrite) {
     replaceLeaves(entry, op.getOperands());
-    written = printer.expressionStatement(*entry.expr);
+    written = printer.statements.expressionStatement(*entry.expr);
   } else {
     code = expression(entry, op.getOperands());
   }
@@ -149,8 +149,8 @@ void StateWriter::write(ir::StoreOp op, Lines &out) {
   joinFields(op.getAddress(), out);
 }
 
-/// Field by field is how passes copy and clear a struct: `a.x = b.x; a.y = b.y;` is `a = b;`. Looks
-/// at what was emitted last.
+/// Field by field is how passes copy and clear a struct: `a.x = b.x; a.y = b.y;` is `a = b;`. Reads
+/// the statements that were emitted last.
 void StateWriter::joinFields(mlir::Value address, Lines &out) {
   auto field = address.getDefiningOp<ir::FieldOp>();
   const Type *type = field ? declaredType(field.getBase()) : nullptr;

@@ -41,7 +41,7 @@ StateWriter::StateWriter(Context &context, const SourceTable &source, Machine &m
 }
 
 void StateWriter::unsupported(mlir::Operation &op) {
-  if (hasRefused) // one message a method says enough
+  if (hasRefused) // one message a method is enough
     return;
   hasRefused = true;
   std::string what = op.getName().stripDialect().str();

@@ -25,7 +25,7 @@ namespace rtsl::cpp {
 struct FrameField {
   std::string slot; // as the IR names it
   std::string name;
-  const Type *type = nullptr; // null: it cannot be told
+  const Type *type = nullptr; // null: it is not known
   unsigned neededBy = 0;      // the first line that reads it
   unsigned madeIn = 0;        // the line of what is saved
   bool isTraced = false;      // a color that a ray brought back
@@ -53,7 +53,7 @@ struct Machine {
   std::set<std::string> joins; // states that begin where others have come together, by symbol
 
   bool hasFrame() const { return called || !frame.empty(); }
-  /// Which of what it is given the operation asks for.
+  /// The number of the argument that the operation reads.
   std::size_t given(ir::CallArgumentOp argument) const;
   /// The author's type of what is given.
   const Type *givenType(std::size_t number) const;
@@ -71,11 +71,10 @@ bool writesTo(mlir::Operation *op, mlir::Value address);
 /// line that calls it. 0: unknown.
 unsigned lineOf(mlir::Location location, llvm::StringRef file);
 
-/// What a value is called among people: as the author calls it, or after the operation that makes
-/// it.
+/// A readable name for a value: the author's, or one after the operation that makes it.
 std::string nameFor(mlir::Value value);
 
-/// Is it the compiler's name for what `&&` or `||` has come to?
+/// Is it the compiler's name for the result of `&&` or `||`?
 bool isOwnName(llvm::StringRef name);
 
 /// `condition ? first : second`, of values of a type.
@@ -87,11 +86,11 @@ public:
 
   /// The statements of a state.
   Statements body(mlir::func::FuncOp state);
-  /// The author's type of a value; null if it cannot be told.
+  /// The author's type of a value; null if it is not known.
   const Type *typeOf(mlir::Value value);
   /// The same by the name that a value has in the frame, where all that is saved are constants.
   const Type *typeOfSlot(const std::string &slot, mlir::Type type);
-  /// What a value is called: as nameFor() says, or in the frame.
+  /// The name of a value: nameFor(), or that of its field in the frame.
   std::string nameOfValue(mlir::Value value);
   /// A name of the IR as C++ writes it: `m[0]` is m0, `ray.origin` ray_origin, and the state's
   /// `HitPoint` hitPoint.
@@ -111,7 +110,7 @@ private:
       return std::tie(kind, name) < std::tie(other.kind, other.name);
     }
   };
-  /// What reading or writing meets; `any` is everything.
+  /// The memory that is read and written; `any` is all of it.
   struct Touches {
     std::set<Location> reads, writes;
     bool readsAny = false, writesAny = false;

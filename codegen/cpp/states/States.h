@@ -20,7 +20,7 @@ struct StateProgram {
   const SourceTable &source;
 };
 
-/// The table for lowering that this printer wants.
+/// The table for lowering that this printer requires.
 SourceTable makeSourceTable(const typed::Module &module);
 
 } // namespace rtsl::cpp

@@ -1,7 +1,7 @@
 //===- Expression.h - expressions of the C++ tree -------------------------===//
 //
-// What is printed as C++ is a tree first: nodes say what they are, and the printer (Print.h) alone
-// knows how they are spelled, which of them need parentheses and where lines end. A node never
+// C++ is a tree before it is printed. Only the printer (Print.h) has the spelling of nodes, and
+// decides which of them need parentheses and where lines end. A node never
 // changes once it is made, so parts are shared freely.
 //
 //===----------------------------------------------------------------------===//
@@ -163,12 +163,12 @@ Code lambda(Statements statements);
 Code remark(std::string text, Code inside);
 
 //===----------------------------------------------------------------------===//
-// Asking about nodes
+// Facts about nodes
 //===----------------------------------------------------------------------===//
 
 /// How tightly it binds.
 Binding bindingOf(const Code &code);
-/// Do both say the same, parentheses aside?
+/// Are both the same expression, parentheses aside?
 bool same(const Code &a, const Code &b);
 /// Without the author's parentheses around it.
 Code bare(Code code);

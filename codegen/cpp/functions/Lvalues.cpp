@@ -1,4 +1,3 @@
-//===- Places.cpp - variables, members, elements, parts of vectors --------===//
 #include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "sema/fold/ConstantFold.h"
@@ -21,7 +20,7 @@ static std::optional<std::uint32_t> constantIndex(const typed::Expr &index, std:
   return literal->value.scalars.front().u;
 }
 
-bool FunctionPrinter::isSimple(const typed::Expr &expr) const {
+bool Lvalues::isSimple(const typed::Expr &expr) const {
   switch (expr.kind) {
   case ExprKind::Variable:
   case ExprKind::State:
@@ -44,8 +43,8 @@ bool FunctionPrinter::isSimple(const typed::Expr &expr) const {
   }
 }
 
-std::vector<std::uint8_t> FunctionPrinter::components(const typed::Expr &place,
-                                                      const typed::Expr *&vector) const {
+std::vector<std::uint8_t> Lvalues::components(const typed::Expr &place,
+                                              const typed::Expr *&vector) const {
   auto *swizzle = dynCast<typed::SwizzleExpr>(&place);
   if (!swizzle || !swizzle->base->type->isVector())
     return {};
@@ -60,7 +59,7 @@ std::vector<std::uint8_t> FunctionPrinter::components(const typed::Expr &place,
   return result;
 }
 
-Effects FunctionPrinter::indexEffects(const typed::Expr &place) {
+Effects Lvalues::indexEffects(const typed::Expr &place) {
   Effects effects;
   for (const typed::Expr *at = &place;;) {
     if (auto *field = dynCast<typed::FieldExpr>(at)) {
@@ -76,8 +75,8 @@ Effects FunctionPrinter::indexEffects(const typed::Expr &place) {
   }
 }
 
-Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
-  if (auto found = replaced.find(&expr); found != replaced.end())
+Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
+  if (auto found = printer.replaced.find(&expr); found != printer.replaced.end())
     return found->second;
   switch (expr.kind) {
   case ExprKind::Variable:
@@ -91,17 +90,18 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
   }
   case ExprKind::Field: {
     const auto &field = cast<typed::FieldExpr>(expr);
-    const Code base = typed::isPlace(*field.base) ? place(*field.base, storeIndices)
-                                                  : operand(*field.base, Binding::Primary);
+    const Code base = typed::isPlace(*field.base)
+                          ? of(*field.base, storeIndices)
+                          : printer.expressions.operand(*field.base, Binding::Primary);
     return member(base, context.names.of(&field.base->type->structure->fields[field.field]));
   }
   case ExprKind::Swizzle: {
     const typed::Expr *vector = nullptr;
     const std::vector<std::uint8_t> parts = components(expr, vector);
     if (parts.size() == 1)
-      return component(place(*vector, storeIndices), parts[0]);
+      return component(of(*vector, storeIndices), parts[0]);
     if (auto *swizzle = dynCast<typed::SwizzleExpr>(&expr); swizzle->base->type->isScalar())
-      return place(*swizzle->base, storeIndices);
+      return of(*swizzle->base, storeIndices);
     break;
   }
   case ExprKind::Index: {
@@ -112,44 +112,46 @@ Code FunctionPrinter::place(const typed::Expr &expr, bool storeIndices) {
     if (const std::vector<std::uint8_t> parts = components(*index.base, vector); !parts.empty()) {
       // `v.zx[i]`: the component that the swizzle names.
       if (auto constant = constantIndex(*index.index, index.base->type->count))
-        return component(place(*vector, storeIndices), parts[*constant]);
+        return component(of(*vector, storeIndices), parts[*constant]);
       std::vector<Code> numbers;
       for (std::uint8_t part : parts)
         numbers.push_back(integer(part));
       const std::string type = withParameters("rtsl::array", {"int", std::to_string(parts.size())});
       const Code number =
           subscript(array(type, std::move(numbers)), this->index(index, storeIndices));
-      return cpp::call("rtsl::at", {place(*vector, storeIndices), number});
+      return cpp::call("rtsl::at", {of(*vector, storeIndices), number});
     }
     // An outer index comes first.
-    const bool changes = isNested && conflicts(context.effects.expression(*index.base),
-                                               context.effects.expression(*index.index));
-    const Code base = typed::isPlace(*index.base) ? place(*index.base, storeIndices || changes)
-                      : changes ? hoist(index.base->type, "value", argument(*index.base))
-                                : operand(*index.base, Binding::Primary);
+    const bool changes = printer.isNested && conflicts(context.effects.expression(*index.base),
+                                                       context.effects.expression(*index.index));
+    const Code base = typed::isPlace(*index.base) ? of(*index.base, storeIndices || changes)
+                      : changes ? printer.hoist(index.base->type, "value",
+                                                printer.expressions.argument(*index.base))
+                                : printer.expressions.operand(*index.base, Binding::Primary);
     return element(index, base, storeIndices);
   }
   default:
     break;
   }
-  return this->expr(expr);
+  return printer.expressions.expr(expr);
 }
 
-Code FunctionPrinter::index(const typed::IndexExpr &expr, bool storeIndices) {
-  Code code = argument(*expr.index);
+Code Lvalues::index(const typed::IndexExpr &expr, bool storeIndices) {
+  Code code = printer.expressions.argument(*expr.index);
   if (storeIndices && expr.index->kind != ExprKind::Literal)
-    code = hoist(expr.index->type, "index", code);
+    code = printer.hoist(expr.index->type, "index", code);
   return checked(code, integer(expr.base->type->count));
 }
 
 // Outside of functions there is no sample that could end.
-Code FunctionPrinter::checked(Code index, Code count) const {
-  const bool raises = function && context.options.exceptions && context.options.checkIndices;
+Code Lvalues::checked(Code index, Code count) const {
+  const bool raises =
+      printer.function && context.options.exceptions && context.options.checkIndices;
   return raises ? cpp::call("rtsl::checked", {name("rt"), std::move(index), std::move(count)})
                 : index;
 }
 
-Code FunctionPrinter::element(const typed::IndexExpr &expr, const Code &base, bool storeIndices) {
+Code Lvalues::element(const typed::IndexExpr &expr, const Code &base, bool storeIndices) {
   const Type *type = expr.base->type;
   if (auto constant = constantIndex(*expr.index, type->count))
     return subscript(base, integer(*constant));
@@ -160,7 +162,7 @@ Code FunctionPrinter::element(const typed::IndexExpr &expr, const Code &base, bo
 }
 
 // All indices of `buffer[i][j]`.
-Code FunctionPrinter::bufferElement(const typed::IndexExpr &expr) {
+Code Lvalues::bufferElement(const typed::IndexExpr &expr) {
   std::vector<const typed::Expr *> indices;
   const typed::Expr *base = &expr;
   while (auto *index = dynCast<typed::IndexExpr>(base)) {
@@ -170,8 +172,8 @@ Code FunctionPrinter::bufferElement(const typed::IndexExpr &expr) {
     base = index->base.get();
   }
   assert(indices.size() == base->type->count && "a part of a buffer is no value");
-  std::vector<Code> codes = operands(indices, Binding::Assignment);
-  const Code buffer = place(*base);
+  std::vector<Code> codes = printer.expressions.operands(indices, Binding::Assignment);
+  const Code buffer = of(*base);
   for (std::size_t i = 0; i < codes.size(); ++i)
     codes[i] =
         checked(codes[i], lengthOf(buffer, codes.size() == 1 ? std::nullopt : std::optional(i)));
@@ -180,7 +182,7 @@ Code FunctionPrinter::bufferElement(const typed::IndexExpr &expr) {
 }
 
 /// Of a buffer, or of one of its dimensions.
-Code FunctionPrinter::lengthOf(const Code &buffer, std::optional<std::size_t> dimension) {
+Code Lvalues::lengthOf(const Code &buffer, std::optional<std::size_t> dimension) {
   std::vector<Code> arguments;
   if (dimension)
     arguments.push_back(integer(static_cast<std::int64_t>(*dimension)));
@@ -189,20 +191,32 @@ Code FunctionPrinter::lengthOf(const Code &buffer, std::optional<std::size_t> di
 
 // `buffer[i].length()` is that of the second dimension; which i does not matter, but what it does
 // is done.
-Code FunctionPrinter::length(const typed::LengthExpr &expr) {
+Code Lvalues::length(const typed::LengthExpr &expr) {
   std::size_t dimension = 0;
   const typed::Expr *base = expr.base.get();
   while (auto *index = dynCast<typed::IndexExpr>(base)) {
     if (!index->base->type->is(TypeKind::Buffer))
       break;
     if (!context.effects.expression(*index->index).isPure())
-      before->push_back(statement(argument(*index->index)));
+      printer.before->push_back(statement(printer.expressions.argument(*index->index)));
     base = index->base.get();
     ++dimension;
   }
   if (!base->type->is(TypeKind::Buffer))
     return integer(base->type->count);
-  return lengthOf(place(*base), dimension ? std::optional(dimension) : std::nullopt);
+  return lengthOf(of(*base), dimension ? std::optional(dimension) : std::nullopt);
+}
+
+bool Lvalues::canBind(const typed::Expr &place) const {
+  const typed::Expr *vector = nullptr;
+  if (components(place, vector).size() > 1)
+    return false;
+  auto *variable = dynCast<typed::VariableExpr>(&place);
+  const bool isBool = place.type->is(TypeKind::Bool) ||
+                      (place.type->isVector() && place.type->element->is(TypeKind::Bool));
+  if (auto *component = dynCast<typed::SwizzleExpr>(&place); component && isBool)
+    return canBind(*component->base);
+  return variable || !isBool;
 }
 
 } // namespace rtsl::cpp

@@ -1,4 +1,3 @@
-//===- Statements.cpp - statements ----------------------------------------===//
 #include "codegen/cpp/functions/FunctionPrinter.h"
 
 #include "math/Elementary.h"
@@ -19,11 +18,11 @@ using typed::ExprKind;
 // The whole body
 //===----------------------------------------------------------------------===//
 
-Statements FunctionPrinter::body() {
-  const auto &statements = cast<typed::CompoundStmt>(*function->body).body;
-  // Which variables does anybody read? Compilers complain of the others.
+Statements StatementPrinter::body() {
+  const auto &statements = cast<typed::CompoundStmt>(*printer.function->body).body;
+  // Which variables are read? Compilers warn of the others.
   std::set<const typed::Expr *> onlyWritten;
-  context.effects.forEachEvaluated(*function->body, [&](const typed::Expr &expr) {
+  context.effects.forEachEvaluated(*printer.function->body, [&](const typed::Expr &expr) {
     auto skip = [&](const typed::Expr *place) {
       while (auto *swizzle = dynCast<typed::SwizzleExpr>(place))
         place = swizzle->base.get();
@@ -34,25 +33,26 @@ Statements FunctionPrinter::body() {
     else if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
       skip(incDec->target.get());
     if (auto *variable = dynCast<typed::VariableExpr>(&expr)) {
-      mentionedVariables.insert(variable->variable);
       if (!onlyWritten.count(&expr))
-        readVariables.insert(variable->variable);
+        printer.readVariables.insert(variable->variable);
     }
     if (auto *literal = dynCast<typed::LiteralExpr>(&expr))
-      if (auto *named = static_cast<const typed::Variable *>(namedConstant(*literal)))
-        readVariables.insert(named);
+      if (auto *named =
+              static_cast<const typed::Variable *>(printer.literals.namedConstant(*literal)))
+        printer.readVariables.insert(named);
   });
   Statements all;
-  for (std::size_t i = 0; i != function->parameters.size(); ++i)
-    if (const typed::Variable &parameter = *function->parameters[i];
-        context.signatures.beginsAsZero(parameter, *function))
-      all.push_back(statement(cpp::assign(name(context.signatures.parameterName(*function, i)),
-                                          context.types.zero(parameter.type))));
+  for (std::size_t i = 0; i != printer.function->parameters.size(); ++i)
+    if (const typed::Variable &parameter = *printer.function->parameters[i];
+        context.signatures.beginsAsZero(parameter, *printer.function))
+      all.push_back(
+          statement(cpp::assign(name(context.signatures.parameterName(*printer.function, i)),
+                                context.types.zero(parameter.type))));
   print(statements, all);
   return all;
 }
 
-void FunctionPrinter::print(const std::vector<typed::StmtPtr> &statements, Statements &out) {
+void StatementPrinter::print(const std::vector<typed::StmtPtr> &statements, Statements &out) {
   for (std::size_t i = 0; i < statements.size(); ++i) {
     if (!statements[i])
       continue;
@@ -66,13 +66,13 @@ void FunctionPrinter::print(const std::vector<typed::StmtPtr> &statements, State
   }
 }
 
-Statements FunctionPrinter::block(const std::vector<typed::StmtPtr> &statements) {
+Statements StatementPrinter::block(const std::vector<typed::StmtPtr> &statements) {
   Statements inner;
   print(statements, inner);
   return inner;
 }
 
-Statements FunctionPrinter::construct(const typed::Stmt &stmt) {
+Statements StatementPrinter::construct(const typed::Stmt &stmt) {
   switch (stmt.kind) {
   case StmtKind::Compound:
     return {cpp::block(block(cast<typed::CompoundStmt>(stmt).body))};
@@ -87,7 +87,7 @@ Statements FunctionPrinter::construct(const typed::Stmt &stmt) {
   case StmtKind::While: {
     const auto &source = cast<typed::WhileStmt>(stmt);
     Statement made = simple(StatementKind::While);
-    made.value = apart(*source.condition, Binding::Comma);
+    made.value = printer.expressions.apart(*source.condition, Binding::Comma);
     nest(source.body, made);
     return {made};
   }
@@ -95,7 +95,7 @@ Statements FunctionPrinter::construct(const typed::Stmt &stmt) {
     const auto &source = cast<typed::DoWhileStmt>(stmt);
     Statement made = simple(StatementKind::DoWhile);
     nest(source.body, made);
-    made.value = apart(*source.condition, Binding::Comma);
+    made.value = printer.expressions.apart(*source.condition, Binding::Comma);
     return {made};
   }
   case StmtKind::Switch:
@@ -106,7 +106,7 @@ Statements FunctionPrinter::construct(const typed::Stmt &stmt) {
     return {simple(StatementKind::Continue)};
   case StmtKind::Return: {
     const auto &value = cast<typed::ReturnStmt>(stmt).value;
-    return {returning(value ? operand(*value, Binding::Assignment) : Code())};
+    return {returning(value ? printer.expressions.operand(*value, Binding::Assignment) : Code())};
   }
   case StmtKind::Illuminance:
     return {illuminance(cast<typed::IlluminanceStmt>(stmt))};
@@ -123,12 +123,12 @@ static bool endsWithLine(StmtKind kind) {
          kind == StmtKind::Continue || kind == StmtKind::Return;
 }
 
-void FunctionPrinter::print(const typed::Stmt &stmt, Statements &out) {
+void StatementPrinter::print(const typed::Stmt &stmt, Statements &out) {
   Statements all; // what goes before it, then the statement
-  Statements *outer = before;
-  before = &all;
+  Statements *outer = printer.before;
+  printer.before = &all;
   const Statements own = construct(stmt);
-  before = outer;
+  printer.before = outer;
   all.insert(all.end(), own.begin(), own.end());
   if (!own.empty() && endsWithLine(stmt.kind))
     all.back().trailing = context.notes.trailingComment(stmt.range);
@@ -142,7 +142,7 @@ void FunctionPrinter::print(const typed::Stmt &stmt, Statements &out) {
   out.insert(out.end(), all.begin(), all.end());
 }
 
-Statements FunctionPrinter::nested(const typed::StmtPtr &stmt, bool &hasBraces) {
+Statements StatementPrinter::nested(const typed::StmtPtr &stmt, bool &hasBraces) {
   hasBraces = !stmt || (stmt->kind == StmtKind::Compound && stmt->comment.empty());
   if (!stmt)
     return {};
@@ -155,7 +155,7 @@ Statements FunctionPrinter::nested(const typed::StmtPtr &stmt, bool &hasBraces) 
   return isEmpty ? Statements() : inner;
 }
 
-void FunctionPrinter::nest(const typed::StmtPtr &stmt, Statement &under) {
+void StatementPrinter::nest(const typed::StmtPtr &stmt, Statement &under) {
   under.body = nested(stmt, under.hasBraces);
 }
 
@@ -163,30 +163,31 @@ void FunctionPrinter::nest(const typed::StmtPtr &stmt, Statement &under) {
 // Declarations and expressions
 //===----------------------------------------------------------------------===//
 
-Statements FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, bool inHeader) {
+Statements StatementPrinter::declaration(const typed::DeclarationStmt &stmt, bool inHeader) {
   Statements all;
   const Type *lineType = nullptr; // of the last declaration, if another variable may join it
-  Statements *const outer = before;
+  Statements *const outer = printer.before;
   for (const typed::Variable *variable : stmt.variables) {
     Statements hoisted;
-    before = &hoisted;
+    printer.before = &hoisted;
     const std::string &own = context.names.of(variable);
-    const Code value =
-        variable->init ? argument(*variable->init) : context.types.zero(variable->type);
-    before = outer;
+    const Code value = variable->init ? printer.expressions.argument(*variable->init)
+                                      : context.types.zero(variable->type);
+    printer.before = outer;
     // What goes before must not overtake the others.
     Statements &above = all.empty() ? *outer : all;
     above.insert(above.end(), hoisted.begin(), hoisted.end());
     if (!hoisted.empty())
       lineType = nullptr;
-    if (hoistedDeclarations.count(variable)) {
+    if (printer.hoistedDeclarations.count(variable)) {
       lineType = nullptr;
       if (variable->init)
         all.push_back(statement(cpp::assign(name(own), value)));
       continue;
     }
-    const bool isUnread = !readVariables.count(variable);
-    const bool isTableOf = variable->isConst && variable->init && isTable(*variable->init);
+    const bool isUnread = !printer.readVariables.count(variable);
+    const bool isTableOf =
+        variable->isConst && variable->init && printer.literals.isTable(*variable->init);
     const std::string constness = isTableOf ? "static constexpr" : variable->isConst ? "const" : "";
     const std::string qualifiers = !isUnread           ? constness
                                    : constness.empty() ? "[[maybe_unused]]"
@@ -203,33 +204,34 @@ Statements FunctionPrinter::declaration(const typed::DeclarationStmt &stmt, bool
   return all;
 }
 
-Statements FunctionPrinter::expressionStatement(const typed::Expr &expr) {
+Statements StatementPrinter::expressionStatement(const typed::Expr &expr) {
   Code code;
   if (auto *value = dynCast<typed::AssignExpr>(&expr)) {
-    code = assign(*value, false);
+    code = printer.assignments.assign(*value, false);
     const bool isToItself = code && !code->compound && same(code->parts[0], code->parts[1]);
     return code && !isToItself ? Statements{statement(code)} : Statements();
   }
   if (auto *value = dynCast<typed::IncDecExpr>(&expr)) {
-    code = incDec(*value, false);
+    code = printer.assignments.incDec(*value, false);
     const typed::Expr *vector = nullptr;
-    return components(*value->target, vector).size() > 1 ? Statements()
-                                                         : Statements{statement(code)};
+    return printer.lvalues.components(*value->target, vector).size() > 1
+               ? Statements()
+               : Statements{statement(code)};
   }
   if (auto *comma = dynCast<typed::CommaExpr>(&expr)) { // two statements
     Statements both = expressionStatement(*comma->left);
-    Statements *outer = before;
+    Statements *outer = printer.before;
     Statements hoisted;
-    before = &hoisted;
+    printer.before = &hoisted;
     const Statements right = expressionStatement(*comma->right);
-    before = outer;
+    printer.before = outer;
     both.insert(both.end(), hoisted.begin(), hoisted.end());
     both.insert(both.end(), right.begin(), right.end());
     return both;
   }
-  if (Statements answer = hitAnswer(expr); !answer.empty())
+  if (Statements answer = printer.hitAnswers.hitAnswer(expr); !answer.empty())
     return answer;
-  code = this->expr(expr);
+  code = printer.expressions.expr(expr);
   if (!code)
     return {};
   const bool isCall = (expr.kind == ExprKind::Call || expr.kind == ExprKind::MethodCall ||
@@ -244,10 +246,10 @@ Statements FunctionPrinter::expressionStatement(const typed::Expr &expr) {
 // Control
 //===----------------------------------------------------------------------===//
 
-Statement FunctionPrinter::ifStatement(const typed::IfStmt &stmt) {
+Statement StatementPrinter::ifStatement(const typed::IfStmt &stmt) {
   Statement made = simple(StatementKind::If);
-  made.value = operand(*stmt.condition, Binding::Comma);
-  // The comment behind the opening brace of the author's.
+  made.value = printer.expressions.operand(*stmt.condition, Binding::Comma);
+  // The comment after the author's opening brace.
   if (stmt.thenStmt && stmt.thenStmt->kind == StmtKind::Compound)
     made.trailing = context.notes.trailingComment(
         {stmt.range.file, stmt.condition->range.begin, stmt.condition->range.end});
@@ -259,7 +261,7 @@ Statement FunctionPrinter::ifStatement(const typed::IfStmt &stmt) {
 }
 
 // A counter that runs over a known interval cannot overflow.
-void FunctionPrinter::noteCounter(const typed::ForStmt &stmt) {
+void StatementPrinter::noteCounter(const typed::ForStmt &stmt) {
   auto *declaration = dynCast<typed::DeclarationStmt>(stmt.init);
   auto *condition = dynCast<typed::BinaryExpr>(stmt.condition);
   auto *step = dynCast<typed::IncDecExpr>(stmt.step);
@@ -279,38 +281,39 @@ void FunctionPrinter::noteCounter(const typed::ForStmt &stmt) {
     return;
   if (stmt.body && assignedVariables(*stmt.body).count(counter->variable))
     return;
-  const std::optional<Interval> first = range(*counter->variable->init);
-  const std::optional<Interval> last = range(*condition->right);
+  const std::optional<Interval> first = printer.ranges.range(*counter->variable->init);
+  const std::optional<Interval> last = printer.ranges.range(*condition->right);
   const bool isConstant = last && last->low == last->high;
   if (condition->op == ast::BinaryOp::Less) {
     // i < n <= INT_MAX
-    counters[counter->variable] = {first ? first->low : std::numeric_limits<std::int32_t>::min(),
-                                   last ? last->high : std::numeric_limits<std::int32_t>::max()};
+    printer.counters[counter->variable] = {
+        first ? first->low : std::numeric_limits<std::int32_t>::min(),
+        last ? last->high : std::numeric_limits<std::int32_t>::max()};
   } else if (condition->op == ast::BinaryOp::LessEqual && last &&
              last->high < std::numeric_limits<std::int32_t>::max()) {
-    counters[counter->variable] = {first ? first->low : std::numeric_limits<std::int32_t>::min(),
-                                   last->high + 1};
+    printer.counters[counter->variable] = {
+        first ? first->low : std::numeric_limits<std::int32_t>::min(), last->high + 1};
   } else if (condition->op == ast::BinaryOp::NotEqual && isConstant && first &&
              first->high <= last->low) {
-    counters[counter->variable] = {first->low, last->high};
+    printer.counters[counter->variable] = {first->low, last->high};
   }
 }
 
 /// The step of a `for`, whose results are not used.
-Code FunctionPrinter::stepOf(const typed::Expr &expr) {
+Code StatementPrinter::stepOf(const typed::Expr &expr) {
   if (auto *comma = dynCast<typed::CommaExpr>(&expr)) {
     const Code left = stepOf(*comma->left);
     return cpp::comma(left, stepOf(*comma->right));
   }
   if (auto *incDec = dynCast<typed::IncDecExpr>(&expr))
-    return this->incDec(*incDec, false);
+    return printer.assignments.incDec(*incDec, false);
   if (auto *assignment = dynCast<typed::AssignExpr>(&expr))
-    return assign(*assignment, false);
-  const Code code = argument(expr);
+    return printer.assignments.assign(*assignment, false);
+  const Code code = printer.expressions.argument(expr);
   return context.effects.expression(expr).isPure() ? discarded(code) : code;
 }
 
-Statement FunctionPrinter::forStatement(const typed::ForStmt &stmt) {
+Statement StatementPrinter::forStatement(const typed::ForStmt &stmt) {
   noteCounter(stmt);
   Statement made = simple(StatementKind::For);
   Statements outside;
@@ -322,16 +325,16 @@ Statement FunctionPrinter::forStatement(const typed::ForStmt &stmt) {
       outside.pop_back();
     }
   } else if (auto *expression = dynCast<typed::ExpressionStmt>(stmt.init)) {
-    made.init = {statement(apart(*expression->expr, Binding::Comma))};
+    made.init = {statement(printer.expressions.apart(*expression->expr, Binding::Comma))};
   }
   if (stmt.condition)
-    made.value = apart(*stmt.condition, Binding::Comma);
+    made.value = printer.expressions.apart(*stmt.condition, Binding::Comma);
   if (stmt.step) {
     Statements hoisted;
-    Statements *outer = before;
-    before = &hoisted;
+    Statements *outer = printer.before;
+    printer.before = &hoisted;
     made.step = stepOf(*stmt.step);
-    before = outer;
+    printer.before = outer;
     if (!hoisted.empty()) {
       if (made.step)
         hoisted.push_back(statement(discarded(made.step)));
@@ -345,7 +348,7 @@ Statement FunctionPrinter::forStatement(const typed::ForStmt &stmt) {
   return cpp::block(std::move(outside));
 }
 
-/// May control reach what stands behind the statements?
+/// May control reach what follows the statements?
 static bool mayComplete(const std::vector<typed::StmtPtr> &statements);
 static bool mayComplete(const typed::Stmt *stmt) {
   if (!stmt)
@@ -370,9 +373,9 @@ static bool mayComplete(const std::vector<typed::StmtPtr> &statements) {
                      [](const typed::StmtPtr &stmt) { return mayComplete(stmt.get()); });
 }
 
-// A variable that is declared in one arm is in sight in those below, which C++ lets nobody jump to:
-// such variables are declared before the switch. If nobody below looks, the arm gets braces.
-Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
+// A variable that is declared in one arm is in scope in those below, to which C++ allows no jump:
+// such variables are declared before the switch. If no arm below mentions it, the arm gets braces.
+Statement StatementPrinter::switchStatement(const typed::SwitchStmt &stmt) {
   Statement made = simple(StatementKind::Switch);
   Statements declared;
   std::vector<bool> needsBraces(stmt.arms.size(), false);
@@ -391,11 +394,11 @@ Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
             needsBraces[i] = true;
             continue;
           }
-          hoistedDeclarations.insert(variable);
+          printer.hoistedDeclarations.insert(variable);
           declared.push_back(cpp::declaration(context.types.of(variable->type),
                                               context.names.of(variable), list("", {})));
         }
-  made.value = operand(*stmt.value, Binding::Comma);
+  made.value = printer.expressions.operand(*stmt.value, Binding::Comma);
   const bool isUnsigned = stmt.value->type->is(TypeKind::UInt);
   for (std::size_t i = 0; i < stmt.arms.size(); ++i) {
     const auto &source = stmt.arms[i];
@@ -405,9 +408,9 @@ Statement FunctionPrinter::switchStatement(const typed::SwitchStmt &stmt) {
                                ? cpp::literal(fmt::format("{}u", static_cast<std::uint32_t>(value)))
                                : integer(value));
     arm.isDefault = source.isDefault;
-    const std::size_t before = temporaries.size();
+    const std::size_t known = printer.temporaries.size();
     arm.body = block(source.body);
-    arm.hasBraces = needsBraces[i] || temporaries.size() != before;
+    arm.hasBraces = needsBraces[i] || printer.temporaries.size() != known;
     if (i + 1 < stmt.arms.size() && mayComplete(source.body))
       arm.body.push_back(simple(StatementKind::Fallthrough));
     else if (arm.body.empty() && i + 1 == stmt.arms.size())
@@ -429,13 +432,13 @@ Statement lightLoop(const std::string &lights, std::vector<Code> arguments) {
   return made;
 }
 
-Statement FunctionPrinter::illuminance(const typed::IlluminanceStmt &stmt) {
+Statement StatementPrinter::illuminance(const typed::IlluminanceStmt &stmt) {
   std::vector<const typed::Expr *> pointers = {stmt.point.get()};
   if (stmt.normal && stmt.angle) {
     pointers.push_back(stmt.normal.get());
     pointers.push_back(stmt.angle.get());
   }
-  std::vector<Code> args = operands(pointers, Binding::Assignment);
+  std::vector<Code> args = printer.expressions.operands(pointers, Binding::Assignment);
   if (stmt.angle)
     if (const auto *angle = dynCast<typed::LiteralExpr>(stmt.angle.get())) {
       constexpr float pi = 3.14159265358979323846F;
