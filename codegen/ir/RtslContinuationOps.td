@@ -1,7 +1,7 @@
 //===- RtslContinuationOps.td - continuations (level 2) -------------------===//
 //
-// What takes the place of `rtsl.trace` when a function is split there. Included by RtslOps.td. In
-// the order in which the passes of codegen/passes/continuation make them.
+// The operations that replace `rtsl.trace` when a function is split there, in the order in which the
+// passes of codegen/passes/continuation make them. Included by RtslOps.td.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CONTINUATION_OPS_TD
@@ -9,18 +9,19 @@
 
 include "mlir/Interfaces/ControlFlowInterfaces.td"
 
-// What is read or written is the frame, memory of the ray's that nothing else touches.
+// The frame: memory that belongs to the ray and that no other operation accesses.
 def Rtsl_FrameResource : Resource<"::rtsl::ir::FrameResource">;
 
 def Rtsl_SuspendOp : Rtsl_Op<"suspend", [Terminator, AttrSizedOperandSegments,
     DeclareOpInterfaceMethods<BranchOpInterface>]> {
-  let summary = "traces a ray and goes on at a block when it comes back";
+  let summary = "traces a ray and resumes at a block when it returns";
   let description = [{
-    Everything that is live in the `resume` block has to survive the trace. What is passed to its arguments is saved and
-    restored; `names` says what each is called in the source, one unique name for one value in the whole function, so that it
-    keeps its slot from trace to trace. The `resume` block begins with `rtsl.trace_result` and has this op as its only
-    predecessor. A ray with a payload was prepared before, by `rtsl.spawn_payload`: then no ray is named here, and the
-    `resume` block begins with `rtsl.trace_returned`. So was a call, by `rtsl.enter`; its block begins with `rtsl.call_returned`.
+    Every value that is live in the `resume` block has to survive the trace. The operands passed to its arguments are
+    saved and restored; `names` gives the name of each in the source. A value has one unique name in the whole function,
+    so that it keeps its slot from trace to trace. The `resume` block begins with `rtsl.trace_result`, and this op is
+    its only predecessor. A ray with a payload is prepared before, by `rtsl.spawn_payload`: then no ray is named here,
+    and the `resume` block begins with `rtsl.trace_returned`. A call is prepared before by `rtsl.enter`; its block
+    begins with `rtsl.call_returned`.
 
     Example: `rtsl.suspend %origin, %direction, ^resume(%i : i32) names ["i"]`
   }];
@@ -34,7 +35,7 @@ def Rtsl_SuspendOp : Rtsl_Op<"suspend", [Terminator, AttrSizedOperandSegments,
 }
 
 def Rtsl_TraceResultOp : Rtsl_Op<"trace_result", []> {
-  let summary = "the color that the traced ray brought back";
+  let summary = "the color that the traced ray returned";
   let description = [{
     The first operation of the block, or of the function, that a suspended trace resumes at.
 
@@ -45,9 +46,9 @@ def Rtsl_TraceResultOp : Rtsl_Op<"trace_result", []> {
 }
 
 def Rtsl_TraceReturnedOp : Rtsl_Op<"trace_returned", []> {
-  let summary = "a ray with a payload has come back";
+  let summary = "a ray with a payload has returned";
   let description = [{
-    Stands where `rtsl.trace_result` would; what came back lies in the payload. It becomes nothing.
+    Used in place of `rtsl.trace_result`; the result is in the payload. It generates no code.
 
     Example: `rtsl.trace_returned`
   }];
@@ -57,7 +58,7 @@ def Rtsl_TraceReturnedOp : Rtsl_Op<"trace_returned", []> {
 def Rtsl_FrameLoadOp : Rtsl_Op<"frame_load", [Rtsl_Named]> {
   let summary = "restores a value from the frame";
   let description = [{
-    The name is the slot's, the number its place in bytes. A bool takes one bit of the word.
+    The name is the slot's, the number its offset in bytes. A bool takes one bit of a word.
 
     Example: `%i = rtsl.frame_load "i"[0] : i32`
     Example: `%inside = rtsl.frame_load "inside"[4] bit 2 : i1`
@@ -79,9 +80,9 @@ def Rtsl_FrameStoreOp : Rtsl_Op<"frame_store", [MemoryEffects<[MemWrite<Rtsl_Fra
 }
 
 def Rtsl_FrameObjectOp : Rtsl_Op<"frame_object", [Pure, Rtsl_Named]> {
-  let summary = "address of a variable that lives in the frame";
+  let summary = "address of a variable in the frame";
   let description = [{
-    A variable that is indexed at run time and alive across a trace has no other place. Its words are its own.
+    For a variable that is indexed at run time and live across a trace. It shares no words with saved values while live.
 
     Example: `%table = rtsl.frame_object "table"[8] : !rtsl.ptr<!rtsl.array<4 x f32>>`
   }];
@@ -93,8 +94,8 @@ def Rtsl_FrameObjectOp : Rtsl_Op<"frame_object", [Pure, Rtsl_Named]> {
 def Rtsl_SpawnOp : Rtsl_Op<"spawn", []> {
   let summary = "prepares the ray that is traced when this state ends";
   let description = [{
-    Followed by the end of the state, with `rtsl.next trace`. With `last` the ray takes the place of the one that sends it:
-    then `rtsl.next last` follows, and nobody comes back here.
+    Followed by the end of the state, with `rtsl.next trace`. With `last` the ray is a tail trace and replaces the one
+    that sends it: then `rtsl.next last` follows, and control does not return here.
 
     Example: `rtsl.spawn %origin, %direction`
   }];
@@ -105,8 +106,8 @@ def Rtsl_SpawnOp : Rtsl_Op<"spawn", []> {
 def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
   let summary = "prepares a ray with a payload, which is traced when this state ends";
   let description = [{
-    Takes what `rtsl.trace_payload` does. The payload lies in the frame; with `last` it is the one that the ray which sends
-    this one was given itself, see `rtsl.spawn`.
+    Has the operands of `rtsl.trace_payload`. The payload is in the frame; with `last`, for a tail trace (see
+    `rtsl.spawn`), it is the payload of the ray that sends this one.
 
     Example: `rtsl.spawn_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
   }];
@@ -120,18 +121,18 @@ def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
   }];
 }
 
-// Calls with a frame of their own. What is called runs on the same ray, on a frame above that of
-// its caller:
+// Calls with a frame of their own. The callee runs for the same ray, on a frame above that of its
+// caller:
 //
-//   bytes 0 to 11   the state in which the caller goes on, the caller's object, and how far its frame begins below this one
-//   from 16 on      arguments, then results, then what the callee saves itself
+//   bytes 0 to 11   the state in which the caller resumes, the caller's object, and how far below this frame its own begins
+//   from 16 on      arguments, then results, then the values that the callee saves
 
 def Rtsl_EnterOp : Rtsl_Op<"enter", []> {
-  let summary = "prepares a call that takes place when this state ends";
+  let summary = "prepares a call that is made when this state ends";
   let description = [{
-    Stands in front of a suspend that names no ray. The object of what is called comes first among the arguments, if it has
-    one; `offsets` are the places of the others in its frame. `writes` names the state variables that the call may change;
-    without it all may. `resume` is the state in which the caller goes on, once it is known.
+    Comes before a suspend that names no ray. If the callee is a method, its object is the first argument; `offsets` are
+    those of the other arguments in its frame. `writes` names the state variables that the call may change; without it,
+    all. `resume` is the state in which the caller resumes, once it is known.
 
     Example: `rtsl.enter @Tint.follow(%tint, %d) at [16] : !rtsl.ref<"Tint">, vector<3xf32>`
   }];
@@ -143,9 +144,9 @@ def Rtsl_EnterOp : Rtsl_Op<"enter", []> {
 }
 
 def Rtsl_CallReturnedOp : Rtsl_Op<"call_returned", []> {
-  let summary = "a call has come back";
+  let summary = "a call has returned";
   let description = [{
-    Stands where `rtsl.trace_result` would; the results lie at `offsets` in the frame of what was called.
+    Used in place of `rtsl.trace_result`; the results are at `offsets` in the frame of the callee.
 
     Example: `%c = rtsl.call_returned at [28] : vector<3xf32>`
   }];
@@ -157,7 +158,7 @@ def Rtsl_CallReturnedOp : Rtsl_Op<"call_returned", []> {
 def Rtsl_CallArgumentOp : Rtsl_Op<"call_argument", [Pure, Rtsl_Named]> {
   let summary = "an argument of a function with a frame of its own";
   let description = [{
-    Nothing writes there while the function runs, so it may be read again at any time.
+    It is not written while the function runs, so it may be read again at any time.
 
     Example: `%d = rtsl.call_argument "d"[16] : vector<3xf32>`
   }];
@@ -167,7 +168,7 @@ def Rtsl_CallArgumentOp : Rtsl_Op<"call_argument", [Pure, Rtsl_Named]> {
 }
 
 def Rtsl_CallResultOp : Rtsl_Op<"call_result", [MemoryEffects<[MemWrite<Rtsl_FrameResource>]>]> {
-  let summary = "leaves a result for the caller";
+  let summary = "stores a result for the caller";
   let description = [{
     Example: `rtsl.call_result %c, [28] : vector<3xf32>`
   }];
@@ -176,7 +177,7 @@ def Rtsl_CallResultOp : Rtsl_Op<"call_result", [MemoryEffects<[MemWrite<Rtsl_Fra
 }
 
 def Rtsl_LeaveOp : Rtsl_Op<"leave", []> {
-  let summary = "goes back to the object and the frame of the caller";
+  let summary = "returns to the object and the frame of the caller";
   let description = [{
     Followed by the end of the state, with `rtsl.next return`.
   }];
@@ -184,9 +185,9 @@ def Rtsl_LeaveOp : Rtsl_Op<"leave", []> {
 }
 
 def Rtsl_MoveFrameOp : Rtsl_Op<"move_frame", []> {
-  let summary = "the ray goes on with another object, on a frame so many bytes further up";
+  let summary = "the ray continues with another object, on a frame this many bytes further up";
   let description = [{
-    What `rtsl.enter` and `rtsl.leave` become.
+    Replaces `rtsl.enter` and `rtsl.leave`.
 
     Example: `rtsl.move_frame %bytes to %object : !rtsl.ref<"Tint">`
   }];
@@ -220,12 +221,12 @@ def Rtsl_Transition : I32Enum<"Transition", "what happens when a state ends", [
 }
 
 def Rtsl_NextOp : Rtsl_Op<"next", [Pure]> {
-  let summary = "what comes after this state, as a number";
+  let summary = "the transition at the end of this state, as a number";
   let description = [{
-    `done`: the method is over. `trace @s`: the spawned ray is traced, then state `@s` runs. `jump @s`: state `@s` runs at
-    once. `last`: the spawned ray is traced and the method is over, all in one. `return`: the caller's state runs at once.
-    Numbers are given when the program is complete: 0 for done, the number of the state for `trace`, its negative for `jump`
-    and `return`, RTSL_NEXT_LAST for `last`.
+    `done`: the method has returned. `trace @s`: the spawned ray is traced, then state `@s` runs. `jump @s`: state `@s`
+    runs at once. `last`: the spawned ray is a tail trace that replaces this one. `return`: the caller's state runs at
+    once. Numbers are assigned when the program is complete: 0 for done, the number of the state for `trace`, its
+    negative for `jump` and `return`, RTSL_NEXT_LAST for `last`.
 
     Example: `%next = rtsl.next trace @Glass.shade.state1`
   }];
@@ -246,9 +247,9 @@ def Rtsl_EndOp : Rtsl_Op<"end", [Pure, Terminator, ReturnLike]> {
 }
 
 def Rtsl_FrameSlotOp : Rtsl_Op<"frame_slot", [Pure]> {
-  let summary = "address of a place in a frame";
+  let summary = "address of a frame slot";
   let description = [{
-    What accesses of the frame become once it is a parameter. The number is the place in bytes.
+    Used by accesses of the frame once it is a parameter. The number is the offset in bytes.
 
     Example: `%p = rtsl.frame_slot %frame[8] : !rtsl.ptr<i32> -> !rtsl.ptr<vector<3xf32>>`
   }];

@@ -1,7 +1,6 @@
 //===- RtslOps.td - operations of the `rtsl` dialect ----------------------===//
 //
-// In the order in which a reader wants them: the module, memory, references, rays, numbers, control
-// flow.
+// In the order of reading: the module, memory, references, rays, numbers, control flow.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_OPS_TD
@@ -19,7 +18,7 @@ include "codegen/ir/RtslTypes.td"
 
 class Rtsl_Op<string opMnemonic, list<Trait> traits = []> : Op<Rtsl_Dialect, opMnemonic, traits>;
 
-// A result that the printer calls after the author's name for it.
+// The printer names the result after the variable in the source.
 defvar Rtsl_Named = DeclareOpInterfaceMethods<OpAsmOpInterface, ["getAsmResultNames"]>;
 defvar Rtsl_Safe = DeclareOpInterfaceMethods<SafeMemorySlotAccessOpInterface>;
 defvar Rtsl_Accessor = DeclareOpInterfaceMethods<DestructurableAccessorOpInterface>;
@@ -32,10 +31,10 @@ defvar Rtsl_SymbolUser = DeclareOpInterfaceMethods<SymbolUserOpInterface>;
 
 def Rtsl_ClassOp : Rtsl_Op<"class", [Symbol, SymbolTable, SingleBlock, NoTerminator, NoRegionArguments,
                                      IsolatedFromAbove, HasParent<"::mlir::ModuleOp">]> {
-  let summary = "a class: what its objects' records hold";
+  let summary = "a class: the members of its objects' records";
   let description = [{
-    Holds a `rtsl.member_decl` for every member, inherited ones first, in the order in which they lie in a record. `root`
-    is the `rt_` class at the end of the chain of bases; `base` another class of the author's.
+    Holds a `rtsl.member_decl` for every member, inherited ones first, in the order of a record. `root`
+    is the `rt_` class at the end of the chain of bases; `base` another class of the source.
 
     ```mlir
     rtsl.class @Glass root "rt_Material" {
@@ -64,8 +63,8 @@ def Rtsl_ClassOp : Rtsl_Op<"class", [Symbol, SymbolTable, SingleBlock, NoTermina
 def Rtsl_MemberDeclOp : Rtsl_Op<"member_decl", [Symbol, HasParent<"ClassOp">]> {
   let summary = "a member of a class";
   let description = [{
-    `access` is "public" (the scene sets it), "private" (the constructor sets it) or "scratch" (a value of the ray's, which
-    takes no room in the record).
+    `access` is "public" (the scene sets it), "private" (the constructor sets it) or "scratch" (a value of the ray, which
+    takes no space in the record).
   }];
   let arguments = (ins SymbolNameAttr:$sym_name, TypeAttr:$type, StrAttr:$access);
   let assemblyFormat = "$sym_name `:` $type `access` $access attr-dict";
@@ -83,7 +82,7 @@ def Rtsl_VarOp : Rtsl_Op<"var", [Rtsl_Named, DeclareOpInterfaceMethods<Promotabl
                                  DeclareOpInterfaceMethods<DestructurableAllocationOpInterface>]> {
   let summary = "a local variable";
   let description = [{
-    Gives the address of a variable that is all zeros at this point, each time that control comes here.
+    Gives the address of a variable that is all zeros at this point, each time that control reaches it.
 
     Example: `%sum = rtsl.var "sum" : !rtsl.ptr<f32>`
   }];
@@ -94,7 +93,7 @@ def Rtsl_VarOp : Rtsl_Op<"var", [Rtsl_Named, DeclareOpInterfaceMethods<Promotabl
 }
 
 def Rtsl_ClearOp : Rtsl_Op<"clear", [Rtsl_MemOp, Rtsl_Accessor, Rtsl_Safe]> {
-  let summary = "makes everything at an address zero";
+  let summary = "sets all memory of the pointee to zero";
   let description = [{
     Example: `rtsl.clear %matrix : !rtsl.ptr<!rtsl.array<3 x vector<3xf32>>>`
   }];
@@ -132,7 +131,7 @@ def Rtsl_StoreOp : Rtsl_Op<"store", [
 def Rtsl_CopyOp : Rtsl_Op<"copy", [AllTypesMatch<["source", "target"]>, Rtsl_Accessor, Rtsl_Safe]> {
   let summary = "copies a whole value in memory";
   let description = [{
-    Source and target are the same place or do not overlap.
+    Source and target are the same or do not overlap.
 
     Example: `rtsl.copy %from to %to : !rtsl.ptr<!rtsl.struct<"Ray", {origin: vector<3xf32>}>>`
   }];
@@ -174,7 +173,7 @@ def Rtsl_ElementOp : Rtsl_Op<"element", [Pure, Rtsl_Accessor, Rtsl_Safe]> {
 def Rtsl_MemberOp : Rtsl_Op<"member", [Pure, Rtsl_Named, Rtsl_SymbolUser]> {
   let summary = "address of a member of an object";
   let description = [{
-    The object must not be null. Members are constant for a launch, but for the constructor of their object.
+    The object must not be null. Members are constant for a launch, except in the constructor of their object.
 
     Example: `%eta = rtsl.member %self["eta"] : !rtsl.ref<"Glass"> -> !rtsl.ptr<f32>`
   }];
@@ -186,8 +185,8 @@ def Rtsl_MemberOp : Rtsl_Op<"member", [Pure, Rtsl_Named, Rtsl_SymbolUser]> {
 def Rtsl_StateOp : Rtsl_Op<"state", [Pure, Rtsl_Named]> {
   let summary = "address of a state variable of the ray";
   let description = [{
-    The names are those of language/StateVariables.def: `RayOrigin` is the source's `rt_RayOrigin`. And `hitError` is
-    that of RtslState, for which the source has no name.
+    The names are those of language/StateVariables.def: `RayOrigin` is `rt_RayOrigin` in the source. `hitError` is that
+    of RtslState, which has no name in the source.
 
     Example: `%o = rtsl.state "RayOrigin" : !rtsl.ptr<vector<3xf32>>`
   }];
@@ -201,8 +200,8 @@ def Rtsl_StateOp : Rtsl_Op<"state", [Pure, Rtsl_Named]> {
 def Rtsl_AttributeOp : Rtsl_Op<"attribute", [Pure, Rtsl_Named]> {
   let summary = "address of a scratch member of the hit";
   let description = [{
-    What `intersect` wrote for the hit that won. The linker matches names between primitives and materials and sets
-    `offset`, in 32-bit words from the start of `RtslState::attributes`; without it there is no code for the op.
+    The value that `intersect` wrote for the nearest hit. The linker matches names between primitives and materials and
+    sets `offset`, in 32-bit words from the start of `RtslState::attributes`; without it the op cannot be compiled.
 
     Example: `%n = rtsl.attribute "n" {offset = 0 : i32} : !rtsl.ptr<vector<3xf32>>`
   }];
@@ -216,7 +215,7 @@ def Rtsl_AttributeOp : Rtsl_Op<"attribute", [Pure, Rtsl_Named]> {
 def Rtsl_TableOp : Rtsl_Op<"table", [Pure, Rtsl_Named]> {
   let summary = "address of a constant struct, array or matrix";
   let description = [{
-    `words` is what lies there, 32 bits each, as Layout.h lays it out. Nothing is ever written there.
+    `words` are its contents, 32 bits each, in the layout of Layout.h. It is never written.
 
     Example: `%w = rtsl.table "weights" [1056964608, 1048576000] : !rtsl.ptr<!rtsl.array<2 x f32>>`
   }];
@@ -229,7 +228,7 @@ def Rtsl_TableOp : Rtsl_Op<"table", [Pure, Rtsl_Named]> {
 def Rtsl_BufferElementOp : Rtsl_Op<"buffer_element", []> {
   let summary = "address of an element of a buffer";
   let description = [{
-    One index a dimension, all in range: lowering clamps them.
+    One index for each dimension, all in range: lowering clamps them.
 
     Example: `%v = rtsl.buffer_element %b[%i] : !rtsl.ptr<!rtsl.buffer<f32, 1>> -> !rtsl.ptr<f32>`
   }];
@@ -256,7 +255,7 @@ def Rtsl_BufferLengthOp : Rtsl_Op<"buffer_length", []> {
 //===----------------------------------------------------------------------===//
 
 def Rtsl_NullRefOp : Rtsl_Op<"null_ref", [Pure]> {
-  let summary = "the reference to nothing";
+  let summary = "the null reference";
   let description = [{
     Example: `%none = rtsl.null_ref : !rtsl.ref<"rt_Texture">`
   }];
@@ -289,7 +288,7 @@ def Rtsl_ClassIdOp : Rtsl_Op<"class_id", [Pure]> {
 }
 
 def Rtsl_EqualRefOp : Rtsl_Op<"equal_ref", [Pure]> {
-  let summary = "whether two references are to the same object, or both to nothing";
+  let summary = "whether two references are to the same object, or both null";
   let description = [{
     Example: `%same = rtsl.equal_ref %a, %b : !rtsl.ref<"A">, !rtsl.ref<"B">`
   }];
@@ -302,7 +301,7 @@ def Rtsl_EqualRefOp : Rtsl_Op<"equal_ref", [Pure]> {
 def Rtsl_CallMethodOp : Rtsl_Op<"call_method"> {
   let summary = "calls the method that the object's class defines";
   let description = [{
-    A dispatch slot: linking, which knows the classes, replaces it by a call of a function that switches over them.
+    A dispatch slot: linking, when all classes are known, replaces it by a call of a function that switches over them.
 
     Example: `%c = rtsl.call_method "weight" on %t(%x) : !rtsl.ref<"rt_Texture">, (f32) -> f32`
   }];
@@ -320,7 +319,7 @@ def Rtsl_CallMethodOp : Rtsl_Op<"call_method"> {
 def Rtsl_TraceOp : Rtsl_Op<"trace"> {
   let summary = "traces a ray and shades what it hits";
   let description = [{
-    The state variables of this ray are what they were when it comes back: the child ray has its own.
+    The state variables of this ray are unchanged when the child ray returns: the child ray has its own.
 
     Example: `%c = rtsl.trace %origin, %direction : vector<3xf32>`
   }];
@@ -332,10 +331,10 @@ def Rtsl_TraceOp : Rtsl_Op<"trace"> {
 def Rtsl_TracePayloadOp : Rtsl_Op<"trace_payload", [AttrSizedOperandSegments]> {
   let summary = "traces a ray that carries a payload";
   let description = [{
-    Hits count from `tmin` to `tmax`. The programs that the ray meets read and write what lies at `payload`, whose type
-    says which programs these are. What is left out of `root`, `mask` and `time` is as it is for this ray. Linking
-    numbers the ray types of a scene and finds out how hits have to be searched for (RTSL_FIRST_HIT ... of
-    runtime/device/ray/Abi.h): `ray_type` and `how`; without them there is no code for the op.
+    Hits count from `tmin` to `tmax`. The methods that run for the ray read and write the payload at `payload`, whose
+    type selects these methods. `root`, `mask` and `time` default to those of this ray. Linking numbers the ray types of
+    a scene and determines how their hits are searched for (RTSL_FIRST_HIT ... of runtime/device/ray/Abi.h): `ray_type`
+    and `how`; without them the op cannot be compiled.
 
     Example: `rtsl.trace_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
   }];
@@ -350,9 +349,9 @@ def Rtsl_TracePayloadOp : Rtsl_Op<"trace_payload", [AttrSizedOperandSegments]> {
 }
 
 def Rtsl_PayloadOp : Rtsl_Op<"payload", [Pure, Rtsl_Named]> {
-  let summary = "address of what this ray carries";
+  let summary = "address of the payload of this ray";
   let description = [{
-    In methods that answer rays of that type. Nothing else points there while the method runs.
+    In methods that run for rays of that type. No other pointer refers to it while the method runs.
 
     Example: `%p = rtsl.payload : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
   }];
@@ -377,7 +376,7 @@ def Rtsl_HitAnswer : I32Enum<"HitAnswer", "what `anyHit` makes of a hit", [
 def Rtsl_AnswerHitOp : Rtsl_Op<"answer_hit"> {
   let summary = "refuses a hit, or accepts it and ends the search";
   let description = [{
-    In `anyHit`, which ends there: lowering puts a return behind it.
+    In `anyHit`, which ends there: lowering adds a return after it.
 
     Example: `rtsl.answer_hit ignore`
   }];
@@ -388,7 +387,7 @@ def Rtsl_AnswerHitOp : Rtsl_Op<"answer_hit"> {
 def Rtsl_HitAnsweredOp : Rtsl_Op<"hit_answered"> {
   let summary = "whether `rtsl.answer_hit` has run for this hit";
   let description = [{
-    Behind calls of functions that may answer.
+    Used after calls of functions that may run `rtsl.answer_hit`.
 
     Example: `%ended = rtsl.hit_answered`
   }];
@@ -397,9 +396,9 @@ def Rtsl_HitAnsweredOp : Rtsl_Op<"hit_answered"> {
 }
 
 def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
-  let summary = "notes that the sample has met an exception";
+  let summary = "records that the sample has raised an exception";
   let description = [{
-    The number is one of RTSL_EXCEPTION_* (runtime/device/ray/Abi.h). The shader goes on; what it computes is thrown away.
+    The number is one of RTSL_EXCEPTION_* (runtime/device/ray/Abi.h). The shader continues; its results are discarded.
 
     Example: `rtsl.raise 3`
   }];
@@ -408,10 +407,10 @@ def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
 }
 
 def Rtsl_PrintOp : Rtsl_Op<"print"> {
-  let summary = "tells the author something";
+  let summary = "prints text and values";
   let description = [{
-    One item after the other: a text, which takes no words, or the name of a type and as many of `values`, all of its
-    scalars in order, as it has words. Linking numbers the prints of a program in `format`.
+    Prints one item after the other: a text, which takes no words, or the name of a type and as many of `values`, all of
+    its scalars in order, as it has words. Linking numbers the prints of a program in `format`.
 
     Example: `rtsl.print ["at", "vec2"] words [0, 2](%x, %y) : f32, f32`
   }];
@@ -466,8 +465,8 @@ def Rtsl_LightCountOp : Rtsl_Op<"light_count", [Pure]> {
 def Rtsl_IlluminateOp : Rtsl_Op<"illuminate", [AttrSizedOperandSegments]> {
   let summary = "lights a point with one light; true if any arrives";
   let description = [{
-    Sets the state variables LightDirection, LightDistance and LightColor (shadows applied). With `normal` and `cos` only
-    a light within that angle of the normal counts. What `rtsl.illuminance` becomes on level 2.
+    Sets the state variables LightDirection, LightDistance and LightColor (shadows applied). With `normal` and `cos`, only
+    for a light within that angle of the normal. Level 2 has it in place of `rtsl.illuminance`.
 
     Example: `%lit = rtsl.illuminate %index, %point normal %n cos %c`
   }];
@@ -504,7 +503,7 @@ def Rtsl_ElementaryOp : Rtsl_Op<"elementary", [Pure, SameOperandsAndResultType]>
   let summary = "an elementary function, component by component";
   let description = [{
     `pow` (base, exponent) and `atan2` (y, x) have two operands, the others one. Correctly rounded: the value does not
-    depend on the machine that compiles or runs, which is why the ops of `math` are not used.
+    depend on the host that compiles or the device that runs it. That is why the ops of `math` are not used.
 
     Example: `%s = rtsl.elementary <sin> %x : vector<3xf32>`
   }];
@@ -525,10 +524,10 @@ def Rtsl_RefractOp : Rtsl_Op<"refract", [Pure, AllTypesMatch<["incident", "norma
 }
 
 def Rtsl_HideOp : Rtsl_Op<"hide", [Pure, SameOperandsAndResultType]> {
-  let summary = "its operand, of which no pass knows anything";
+  let summary = "its operand, opaque to all passes";
   let description = [{
-    With arithmetic in double nothing of single precision folds: constants, and integers that become floats, are hidden until
-    LLVM IR has been widened (codegen/lower/HideConstants.h).
+    If arithmetic is done in double, nothing may be folded in single precision: constants, and integers that become
+    floats, are hidden until LLVM IR has been widened (codegen/lower/HideConstants.h).
 
     Example: `%h = rtsl.hide %c : f32`
   }];
@@ -573,7 +572,7 @@ def Rtsl_URemOp : Rtsl_DivisionOp<"urem", "unsigned remainder">;
 def Rtsl_IfOp : Rtsl_Op<"if", [NoRegionArguments]> {
   let summary = "a choice";
   let description = [{
-    Each region ends in `rtsl.yield` (go on behind the `rtsl.if`), `rtsl.break`, `rtsl.continue` or `rtsl.return`.
+    Each region ends in `rtsl.yield` (continue after the `rtsl.if`), `rtsl.break`, `rtsl.continue` or `rtsl.return`.
 
     ```mlir
     rtsl.if %c {
@@ -592,9 +591,9 @@ def Rtsl_LoopOp : Rtsl_Op<"loop", [NoRegionArguments]> {
   let summary = "a loop";
   let description = [{
     Runs `cond`, which ends in `rtsl.condition`, then, while that is true, `do` and `step`. With `post_test` the test
-    comes behind `step`: `do`, `step`, `cond`, again. A missing `cond` is always true, a missing `step` does nothing.
-    `rtsl.continue` and `rtsl.yield` in the body go to `step`, `rtsl.break` leaves the loop. `cond` and `step` hold
-    neither break nor continue nor return of their own.
+    comes after `step`: `do`, `step`, `cond`, and again. A missing `cond` is always true, a missing `step` does nothing.
+    `rtsl.continue` and `rtsl.yield` in the body go to `step`, `rtsl.break` leaves the loop. `cond` and `step` contain
+    no break, continue or return of their own.
 
     ```mlir
     rtsl.loop cond {
@@ -619,7 +618,7 @@ def Rtsl_LoopOp : Rtsl_Op<"loop", [NoRegionArguments]> {
 def Rtsl_SwitchOp : Rtsl_Op<"switch", [NoRegionArguments]> {
   let summary = "a choice among several by a number";
   let description = [{
-    Control enters at the arm that lists the value, or at `default`, or passes by. An arm that ends in `rtsl.yield`
+    Control enters at the arm that lists the value, or at `default`, or skips the switch. An arm that ends in `rtsl.yield`
     falls into the next (the last one: leaves); `rtsl.break` leaves.
 
     ```mlir
@@ -641,8 +640,8 @@ def Rtsl_SwitchOp : Rtsl_Op<"switch", [NoRegionArguments]> {
   let hasVerifier = 1;
   let skipDefaultBuilders = 1;
   let builders = [
-    // One entry of `values` an arm; each arm gets an empty block. `defaultArm` is the index of an
-    // arm.
+    // `values` has one entry for each arm; each arm gets an empty block. `defaultArm` is the index of
+    // an arm.
     OpBuilder<(ins "::mlir::Value":$value, "::llvm::ArrayRef<::llvm::SmallVector<int32_t>>":$values,
                    "std::optional<unsigned>":$defaultArm)>];
   let extraClassDeclaration = [{
@@ -671,12 +670,12 @@ def Rtsl_IlluminanceOp : Rtsl_Op<"illuminance", [AttrSizedOperandSegments, NoReg
 
 def Rtsl_YieldOp : Rtsl_Op<"yield", [Pure, Terminator,
                                      ParentOneOf<["IfOp", "LoopOp", "SwitchOp", "IlluminanceOp"]>]> {
-  let summary = "end of a region; each structured op says where control goes";
+  let summary = "end of a region; the structured op determines where control goes";
   let assemblyFormat = "attr-dict";
 }
 
 def Rtsl_ConditionOp : Rtsl_Op<"condition", [Pure, Terminator, HasParent<"LoopOp">]> {
-  let summary = "end of a loop's `cond`: goes on if true";
+  let summary = "end of a loop's `cond`: continues if true";
   let arguments = (ins I1:$condition);
   let assemblyFormat = "$condition attr-dict";
 }
@@ -688,7 +687,7 @@ def Rtsl_BreakOp : Rtsl_Op<"break", [Terminator]> {
 }
 
 def Rtsl_ContinueOp : Rtsl_Op<"continue", [Terminator]> {
-  let summary = "goes to the next round of the innermost loop or illuminance";
+  let summary = "goes to the next iteration of the innermost loop or illuminance";
   let assemblyFormat = "attr-dict";
   let hasVerifier = 1;
 }

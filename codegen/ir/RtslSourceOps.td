@@ -1,18 +1,18 @@
-//===- RtslSourceOps.td - expressions that stay as the author wrote them --===//
+//===- RtslSourceOps.td - expressions that stay as they were written ------===//
 //
-// In place of the operations that an expression is made of, where C++ is to be printed from the IR:
-// the passes see what it reads and what it costs, the printer has the author's tree
-// (codegen/lower/SourceTable.h). There is no machine code for these.
+// They replace the operations of an expression if C++ is to be printed from the IR: the passes use
+// its operands and its cost, and the printer finds its tree in codegen/lower/SourceTable.h. They
+// cannot be compiled to machine code.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_SOURCE_OPS_TD
 #define RTSL_SOURCE_OPS_TD
 
 def Rtsl_ExpressionOp : Rtsl_Op<"expression", [Pure]> {
-  let summary = "an expression of the author's that changes nothing";
+  let summary = "an expression of the source without side effects";
   let description = [{
-    `source` is its number in the table. The operands stand for what in it may change: local variables, state variables,
-    and parts that have effects. `cost` is about how many instructions it takes.
+    `source` is its number in the table. The operands are the parts of it whose values may change: local variables,
+    state variables, and parts that have effects. `cost` estimates the number of instructions.
 
     Example: `%w = rtsl.expression 3 cost 2 (%cosine, %ratio) : (f32, f32) -> f32`
   }];
@@ -24,11 +24,11 @@ def Rtsl_ExpressionOp : Rtsl_Op<"expression", [Pure]> {
 def Rtsl_ValueOrPtr : AnyTypeOf<[Rtsl_Value, Rtsl_Ptr]>;
 
 def Rtsl_EvaluateOp : Rtsl_Op<"evaluate"> {
-  let summary = "a call of the author's that may have effects";
+  let summary = "a call in the source that may have side effects";
   let description = [{
-    The operands are what in it may change: values, and addresses of variables that stay whole. `writes` names the state
-    variables that may change; without it all may. Attributes.def explains `rtsl.into`, `rtsl.changes`, `rtsl.plain` and
-    `rtsl.nested`, which say what else happens.
+    The operands are the parts of it whose values may change: values, and addresses of variables that stay whole.
+    `writes` names the state variables that it may change; without it, all. Attributes.def explains `rtsl.into`,
+    `rtsl.changes`, `rtsl.plain` and `rtsl.nested`, which describe its other effects.
 
     Example: `%f = rtsl.evaluate 4 (%x) writes ["LightColor"] : (f32) -> f32`
   }];

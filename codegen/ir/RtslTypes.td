@@ -14,8 +14,8 @@ class Rtsl_Type<string name, string typeMnemonic, list<Trait> traits = []> : Typ
 def Rtsl_RefType : Rtsl_Type<"Ref", "ref"> {
   let summary = "reference to an object of the scene";
   let description = [{
-    Refers to an object of the named class or of one derived from it, or to nothing. In memory it is the byte offset of
-    the object's record, 32 bits; 0 is nothing.
+    Refers to an object of the named class or of one derived from it, or is null. In memory it is the byte offset of
+    the object's record, 32 bits; 0 is null.
 
     Example: `!rtsl.ref<"rt_Texture">`
   }];
@@ -25,7 +25,7 @@ def Rtsl_RefType : Rtsl_Type<"Ref", "ref"> {
 }
 
 def Rtsl_PtrType : Rtsl_Type<"Ptr", "ptr"> {
-  let summary = "address of something in memory";
+  let summary = "address in memory";
   let description = [{
     Example: `!rtsl.ptr<vector<3xf32>>`
   }];
@@ -39,9 +39,9 @@ def Rtsl_PtrType : Rtsl_Type<"Ptr", "ptr"> {
 
 def Rtsl_StructType : Rtsl_Type<"Struct", "struct", [
     DeclareTypeInterfaceMethods<DestructurableTypeInterface>]> {
-  let summary = "struct of the author's";
+  let summary = "struct of the source";
   let description = [{
-    Two structs are the same type if name and fields are. Fields lie in order, each aligned to 4 bytes.
+    Two structs are the same type if their names and fields are the same. Fields are in order, each aligned to 4 bytes.
 
     Example: `!rtsl.struct<"Ray", {origin: vector<3xf32>, mask: i32}>`
   }];
