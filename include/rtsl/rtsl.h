@@ -40,14 +40,24 @@ int rtslMemberObject(RtslScene *scene, const char *member, RtslObject object);
 /* Creates an object of the class with these values, which are then cleared. */
 RtslObject rtslSceneAddObject(RtslScene *scene, const char *className);
 
-/* Geometry that rays can hit. */
+/* Sets the `transform` from object to world space (12 numbers, four columns of three; null: none)
+ * and the mask of the next instance that is added. Fails if a number is not finite. */
+int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask);
+
+/* Geometry that rays can hit: an instance of a primitive's object. */
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material);
-/* A mesh file (OBJ, PLY, glTF), with a `transform`: 12 numbers, four columns of three, or null. */
+/* An instance of a mesh file (OBJ, PLY, glTF), whose vertices are first transformed by `transform`: 12
+ * numbers, four columns of three, or null. */
 int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,
                          RtslObject material);
-/* Triangles: 3 floats per vertex, 3 indices per triangle. */
+/* An instance of triangles: 3 floats per vertex, 3 indices per triangle. */
 int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t vertexCount,
                           const uint32_t *indices, size_t triangleCount, RtslObject material);
+
+/* Loads a mesh file for instances that share it; returns its number, or -1. */
+int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path);
+/* Another instance of a mesh: of rtslSceneLoadMesh's, or of the n-th that was added, from 0. */
+int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material);
 
 int rtslSceneAddLight(RtslScene *scene, RtslObject light);
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);

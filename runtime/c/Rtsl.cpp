@@ -4,14 +4,20 @@
 #include "rtsl/runtime.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <string>
+#include <utility>
 
 namespace runtime = rtsl::runtime;
 
 struct RtslScene {
   runtime::Scene scene;
   std::vector<runtime::NamedValue> arguments, members; // of the next object
+  runtime::Placement placement;                        // of the next instance
+
+  /// The placement of the instance that is being added; the one after it has none.
+  runtime::Placement takePlacement() { return std::exchange(placement, {}); }
 };
 
 namespace {
@@ -40,6 +46,14 @@ runtime::Value valueOf(const double *numbers, std::size_t count) {
   if (count == 1)
     return runtime::Value(numbers[0]);
   return runtime::Value(std::vector<runtime::Value>(numbers, numbers + count));
+}
+
+/// Of 12 numbers, four columns of three.
+runtime::Transform transformOf(const double *numbers) {
+  runtime::Transform transform;
+  for (std::size_t column = 0; column < 4; ++column)
+    std::copy_n(numbers + 3 * column, 3, transform.columns[column].begin());
+  return transform;
 }
 
 runtime::RenderOptions optionsOf(const RtslRenderSettings *settings) {
@@ -128,9 +142,19 @@ RtslObject rtslSceneAddObject(RtslScene *scene, const char *className) {
   });
 }
 
+int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
+  return guarded(0, [&] {
+    if (transform &&
+        !std::all_of(transform, transform + 12, [](double x) { return std::isfinite(x); }))
+      throw rtsl::Error(rtsl::ErrorCode::OutOfRange, "the transform is not finite");
+    scene->placement = {transform ? transformOf(transform) : runtime::Transform(), mask};
+    return 1;
+  });
+}
+
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material) {
   return guarded(0, [&] {
-    scene->scene.addPrimitive(primitive, material);
+    scene->scene.addPrimitive(primitive, material, scene->takePlacement());
     return 1;
   });
 }
@@ -139,13 +163,24 @@ int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *trans
                          RtslObject material) {
   return guarded(0, [&] {
     runtime::Mesh mesh = runtime::loadMesh(path);
-    if (transform) {
-      runtime::Transform map;
-      for (std::size_t column = 0; column < 4; ++column)
-        std::copy_n(transform + 3 * column, 3, map.columns[column].begin());
-      mesh.apply(map);
-    }
-    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh), path), material);
+    if (transform)
+      mesh.apply(transformOf(transform));
+    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh), path), material,
+                                 scene->takePlacement());
+    return 1;
+  });
+}
+
+int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path) {
+  return guarded<int32_t>(-1, [&] {
+    return static_cast<int32_t>(scene->scene.addMesh(runtime::loadMesh(path), path));
+  });
+}
+
+int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material) {
+  return guarded(0, [&] {
+    scene->scene.addMeshInstance(static_cast<std::uint32_t>(mesh), material,
+                                 scene->takePlacement());
     return 1;
   });
 }
@@ -156,7 +191,8 @@ int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t verte
     runtime::Mesh mesh;
     mesh.positions.assign(positions, positions + 3 * vertexCount);
     mesh.indices.assign(indices, indices + 3 * triangleCount);
-    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh)), material);
+    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh)), material,
+                                 scene->takePlacement());
     return 1;
   });
 }

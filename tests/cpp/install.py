@@ -76,5 +76,6 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     same_picture(installed, folder / "c.exr", folder / "jit.exr")
     assert printed == 2 * said["printed"], (printed, said)
     mistakes = run(folder / "c-api").splitlines()
-    for line, word in zip(mistakes, ("no shaders", "Nobody", "nothing", "Code", "reference 0"), strict=True):
+    for line, word in zip(mistakes, ("no shaders", "Nobody", "nothing", "Code", "reference 0", "not finite", "nowhere.obj",
+                                        "no mesh number 7"), strict=True):
         assert word in line, mistakes

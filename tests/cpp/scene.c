@@ -2,6 +2,7 @@
  * output. Without an argument it says what goes wrong. */
 #include <rtsl/rtsl.h>
 
+#include <math.h>
 #include <stdio.h>
 
 const RtslShaders *events_shaders(void);
@@ -17,7 +18,7 @@ static int fail(const char *what) {
 }
 
 static int mistakes(void) {
-  const double one = 1.0;
+  const double one = 1.0, infinite[12] = {HUGE_VAL};
   RtslScene *scene;
   if (rtslSceneCreate(NULL) != NULL)
     return fail("no shaders are shaders");
@@ -38,12 +39,22 @@ static int mistakes(void) {
   if (rtslSceneSetException(scene, 0) != 0)
     return fail("no object as exception program");
   printf("%s\n", rtslError());
+  if (rtslPlace(scene, &infinite[0], 1) != 0)
+    return fail("a transform that is not finite");
+  printf("%s\n", rtslError());
+  if (rtslSceneLoadMesh(scene, "nowhere.obj") != -1)
+    return fail("a mesh that is not there");
+  printf("%s\n", rtslError());
+  if (rtslSceneAddMeshInstance(scene, 7, 0) != 0)
+    return fail("an instance of no mesh");
+  printf("%s\n", rtslError());
   rtslSceneDestroy(scene);
   return 0;
 }
 
 int main(int count, char **arguments) {
   const double curve[] = {0.5, 0.25}, center[] = {0.0, 0.0, 0.0}, radius = 2.0;
+  const double identity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
   RtslRenderSettings settings = rtslRenderDefaults();
   RtslObject eye, code, sphere, endless;
   RtslScene *scene;
@@ -63,7 +74,7 @@ int main(int count, char **arguments) {
   sphere = rtslSceneAddObject(scene, "Sphere");
   endless = rtslSceneAddObject(scene, "Endless");
   if (!rtslSceneSetRayGeneration(scene, eye) || !rtslSceneSetException(scene, code) ||
-      !rtslSceneAddPrimitive(scene, sphere, endless))
+      !rtslPlace(scene, identity, ~0u) || !rtslSceneAddPrimitive(scene, sphere, endless))
     return fail("objects");
   settings.width = settings.height = 4;
   settings.samplesPerPixel = 2;
