@@ -10,12 +10,12 @@
 namespace rtsl::cost {
 
 // Arithmetic, for each component. IEEE division and square root are a short sequence and a rarely
-// taken branch; elementary functions are polynomials.
+// taken branch, so neither is computed in place of a branch; elementary functions are polynomials.
 inline constexpr unsigned arithmetic = 1; // addition, comparison, selection, ...
 inline constexpr unsigned conversionToInt = 4;
 inline constexpr unsigned integerDivision = 12;
-inline constexpr unsigned division = 13;
-inline constexpr unsigned squareRoot = 13;
+inline constexpr unsigned division = 8;
+inline constexpr unsigned squareRoot = 8;
 inline constexpr unsigned elementary = 40; // sin, exp, log, ...
 inline constexpr unsigned power = 100;     // pow, and atan of two arguments
 inline constexpr unsigned refraction = 60; // of a vector

@@ -93,9 +93,11 @@ bool isCheap(const Expr &expr) {
       cost += isDivision || isLarge ? tooMuch : 2;
       break;
     }
-    case ExprKind::Builtin:
-      cost += info(cast<BuiltinExpr>(inner).builtin).cost;
+    case ExprKind::Builtin: {
+      const unsigned ofBuiltin = info(cast<BuiltinExpr>(inner).builtin).cost;
+      cost += ofBuiltin >= cost::squareRoot ? tooMuch : ofBuiltin;
       break;
+    }
     case ExprKind::Construct:
       cost += inner.type->isScalar() || inner.type->isVector() ? 1 : tooMuch;
       break;

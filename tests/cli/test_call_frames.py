@@ -72,7 +72,7 @@ class CallFrames(Case):
         self.scene(3, 2)
         text, _ = self.run_rtslc("explain", "--states", "scene.json")
         self.assertIn("call of dispatch.Filter.follow at shaders.rtsl:", text)
-        self.assertRegex(text, r"stack: \d+ bytes more for each level and each object in the scene's longest chain of references")
+        self.assertRegex(text, r"stack: \d+ more bytes for each level and each object in the scene's longest chain of references")
         report = json.loads(self.run_rtslc("explain", "--states", "--json", "scene.json")[0])
         [filter_] = [function for function in report["functions"] if function["name"] == "dispatch.Filter.follow"]
         self.assertEqual(report["stack"]["levelBytesAReference"], (filter_["frameSize"] + 7) // 8 * 8)

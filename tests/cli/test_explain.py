@@ -214,7 +214,7 @@ class Explain(Case):
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
             shutil.copytree(example.parent, self.folder, dirs_exist_ok=True)
             text = example.read_text()
-            for other in {path for path in json.loads(text)["import"] if path.startswith("../")}:
+            for other in set(re.findall(r'"(\.\./[^"]+)"', text)): # shaders and meshes of other examples
                 shutil.copy(example.parent / other, self.folder)
                 text = text.replace(f'"{other}"', f'"{pathlib.Path(other).name}"')
             self.write("scene.json", text)
