@@ -94,7 +94,7 @@ RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   return guarded<RtslScene *>(nullptr, [&] {
     if (!shaders)
       throw rtsl::Error(rtsl::ErrorCode::IncompleteScene, "there are no shaders");
-    return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}};
+    return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}, {}};
   });
 }
 
