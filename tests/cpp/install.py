@@ -57,6 +57,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
 
     # pkg-config and C.
     environment = dict(os.environ, PKG_CONFIG_PATH=":".join(str(p.parent) for p in prefix.rglob("rtsl.pc")))
+    headers = run("pkg-config", "--cflags", "rtsl", env=environment).split()
     flags = run("pkg-config", "--cflags", "--libs", "rtsl", env=environment).split()
     library = next(prefix.rglob("librtsl.so")).parent
     installed = prefix / "bin/rtslc"
@@ -69,7 +70,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     (folder / "scene.json").write_text(json.dumps(scene))
     run(installed, "compile", *scene["import"], "--emit=cpp", "--print", "--exceptions", "-o", folder / "events.cpp")
     run(cc, "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-c", f"{source}/tests/cpp/scene.c", "-o", folder / "c.o",
-        *flags)
+        *headers)
     run(cxx, "-std=c++17", folder / "events.cpp", folder / "c.o", "-o", folder / "c-api", *flags, f"-Wl,-rpath,{library}")
     printed = run(folder / "c-api", folder / "c.exr").splitlines()
     said = json.loads(run(installed, "render", folder / "scene.json", "-o", folder / "jit.exr", "--json", "--print", "--exceptions"))
