@@ -1,5 +1,6 @@
 #include "scenefile/Graph.h"
 
+#include "runtime/scene/InstanceTransform.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
 #include "support/ClosestName.h"
@@ -38,9 +39,11 @@ struct Node {
   std::string name; // for messages
   Place place;
   Transform transform;
+  Place transformPlace; // if it has one
   std::vector<Edge> children;
   std::optional<GeometryDescription> geometry;
   std::uint64_t instances = 0; // ways down from here to geometries; at most mostInstances + 1
+  bool isReported = false;     // its transform
 };
 
 class GraphReader {
@@ -89,7 +92,7 @@ private:
     // All names first: nodes may mention each other in any order.
     for (const auto &[key, member] : value.members) {
       numbers.emplace(key.text, nodes.size());
-      nodes.push_back({key.text, value.place(key), {}, {}, std::nullopt, 0});
+      nodes.push_back({key.text, value.place(key), {}, {}, {}, std::nullopt, 0});
     }
     for (std::size_t i = 0; i < value.members.size(); ++i)
       attempt([&] { readNode(value.members[i].second, i, "a node"); });
@@ -114,8 +117,10 @@ private:
     } else {
       checkKeys(value, {"child", "children", "transform"}, what);
     }
-    if (const JsonValue *transform = value.find("transform"))
+    if (const JsonValue *transform = value.find("transform")) {
       nodes[number].transform = readTransform(*transform);
+      nodes[number].transformPlace = transform->place();
+    }
     std::vector<Edge> edges; // reading a node in place may move `nodes`
     if (child)
       edges.push_back(readEdge(*child));
@@ -134,7 +139,7 @@ private:
   Edge readEdge(const JsonValue &value) {
     if (value.kind == Kind::Object) {
       const std::size_t number = nodes.size();
-      nodes.push_back({std::string(), value.place(), {}, {}, std::nullopt, 0});
+      nodes.push_back({std::string(), value.place(), {}, {}, {}, std::nullopt, 0});
       readNode(value, number, "a node");
       return {number, value.place()};
     }
@@ -261,8 +266,17 @@ private:
     std::vector<Step> path;
     const auto enter = [&](std::size_t node, const Transform &above) {
       path.push_back({node, 0, nodes[node].transform.then(above)});
-      if (nodes[node].geometry)
+      if (!nodes[node].geometry)
+        return;
+      if (runtime::invertLinear(path.back().toWorld).condition <= runtime::largestCondition) {
         place(*nodes[node].geometry, path.back().toWorld, number);
+        return;
+      }
+      std::size_t worst = node;
+      for (const Step &above : path)
+        if (flatness(above.node) > flatness(worst))
+          worst = above.node;
+      reportFlat(nodes[node], nodes[worst]);
     };
     enter(roots[number].node, {});
     while (!path.empty()) {
@@ -272,6 +286,24 @@ private:
       else
         enter(nodes[step.node].children[step.next++].node, Transform(step.toWorld));
     }
+  }
+
+  double flatness(std::size_t node) const {
+    return runtime::invertLinear(nodes[node].transform).condition;
+  }
+
+  /// The transforms above the geometry flatten it, or nearly so; `worst` has the one to blame. Said
+  /// once.
+  void reportFlat(const Node &geometry, Node &worst) {
+    if (std::exchange(worst.isReported, true))
+      return;
+    errors.add(
+        Error(ErrorCode::DegenerateGeometry,
+              fmt::format("this transform flattens {}, or nearly so: the condition number of the "
+                          "way from the root would be more than {:g}",
+                          geometry.name.empty() ? "its geometry" : "`" + geometry.name + "`",
+                          runtime::largestCondition),
+              worst.transformPlace));
   }
 
   /// What two roots lead to in the same place is one instance.

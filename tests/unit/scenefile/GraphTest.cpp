@@ -115,6 +115,20 @@ TEST(SceneGraph, RefusesCyclesAndTooManyInstances) {
             "s.json:2:62+1: unknownKey: a scene has one `root` or several `roots`, not both");
 }
 
+TEST(SceneGraph, BlamesTheTransformThatFlattens) {
+  EXPECT_EQ(parseError("\"nodes\": {" + leaf + R"(,
+"b": {"child": "a", "transform": {"scale": [1, 1, 1e-6]}},
+"c": {"children": ["b", "b"], "transform":
+  {"scale": [1, 1e-3, 1]}}}, "root": "c")"),
+            "no error");
+  EXPECT_EQ(parseError("\"nodes\": {" + leaf + R"(,
+"b": {"child": "a", "transform": {"scale": [1, 1, 1e-6]}},
+"c": {"children": ["b", "b"], "transform":
+  {"scale": [1e3, 1e3, 1]}}}, "root": "c")"),
+            "s.json:3:34+1: degenerateGeometry: this transform flattens `a`, or nearly so: the "
+            "condition number of the way from the root would be more than 1e+08");
+}
+
 TEST(SceneGraph, WarnsOfNodesOutsideOfTheScene) {
   const SceneDescription scene =
       parse("\"nodes\": {" + leaf + ",\n\"b\": {\"child\": \"a\"}}, \"root\": \"a\"");
