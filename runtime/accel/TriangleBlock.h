@@ -19,8 +19,9 @@ namespace rtsl::runtime {
 struct alignas(32) TriangleBlock {
   static constexpr unsigned lanes = 8;
 
-  float vertices[3][3][lanes];   // [vertex][axis]; an empty lane repeats another one
-  std::uint32_t instance[lanes]; // RTSL_NO_HIT: the lane is empty; device::instanceOf
+  float vertices[3][3][lanes]; // [vertex][axis]; an empty lane repeats another one
+  // RTSL_NO_HIT: the lane is empty. Otherwise 0 in the block of a mesh that instances share
+  std::uint32_t instance[lanes];
   std::uint32_t triangle[lanes];
 
   void setLane(unsigned lane, const device::TriangleVertices &p, std::uint32_t of,

@@ -66,7 +66,7 @@ inline Vec3 vectorToWorld(const RtslTransform &transform, Vec3 v) {
 }
 
 /// The inverse transpose times a vector: not normalised.
-inline Vec3 coverToWorld(const RtslTransform &transform, Vec3 n) {
+inline Vec3 covectorToWorld(const RtslTransform &transform, Vec3 n) {
   const double *m = transform.inverse;
   const double x = double(n.x), y = double(n.y), z = double(n.z);
   return {float(__builtin_fma(m[2], z, __builtin_fma(m[1], y, m[0] * x))),
@@ -75,7 +75,7 @@ inline Vec3 coverToWorld(const RtslTransform &transform, Vec3 n) {
 }
 /// A normal: of length 1, and on the same side of the surface.
 inline Vec3 normalToWorld(const RtslTransform &transform, Vec3 n) {
-  return normalized(coverToWorld(transform, n));
+  return normalized(covectorToWorld(transform, n));
 }
 
 /// Bound of the error, in any component in world space, of a vector whose components in object

@@ -84,8 +84,8 @@ inline void surfaceToWorld(RtslState &state, const RtslTransform &transform, uin
     const Vec3 geometric = load(state.GeometricNormal), shading = load(state.ShadingNormal);
     if (offSurface > 0) {
       // Parallel planes at a distance d have the distance d / |inverse transpose of n|.
-      const Vec3 cover = coverToWorld(transform, normalized(geometric));
-      const float length = squareRoot(dot(cover, cover));
+      const Vec3 covector = covectorToWorld(transform, normalized(geometric));
+      const float length = squareRoot(dot(covector, covector));
       state.hitPointError +=
           length > 0 && length < infinity
               ? offSurface / length
