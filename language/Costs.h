@@ -20,8 +20,8 @@ inline constexpr unsigned elementary = 40; // sin, exp, log, ...
 inline constexpr unsigned power = 100;     // pow, and atan of two arguments
 inline constexpr unsigned refraction = 60; // of a vector
 
-// Calls: of a built-in function of more than a few instructions, of an author's function that is not
-// inlined, of trace()
+// Calls: of a built-in function of more than a few instructions, of an author's function that is
+// not inlined, of trace()
 inline constexpr unsigned builtinCall = 20;
 inline constexpr unsigned functionCall = 50;
 inline constexpr unsigned trace = 1000;

@@ -1,8 +1,8 @@
 //===- HitErrors.cpp - error bounds of the hits of primitives -------------===//
 //
 // Where a ray leaves a primitive with its own `intersect`, the runtime needs a bound of the error
-// of t (runtime/device/ray/HitError.h). It is derived here for the primitives with a material that
-// sends rays; where that is not possible, the author is asked to state it.
+// of t (runtime/device/ray/HitError.h). This step derives it for the primitives with a material
+// that sends rays. If no bound can be derived, a warning asks the author to state one.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"

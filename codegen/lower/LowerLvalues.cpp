@@ -144,14 +144,7 @@ Lvalue FunctionLowering::indexLvalue(const typed::IndexExpr &expr) {
 // All indices of `buffer[i][j]`. An element of an empty buffer does not exist: it reads as zero,
 // and stores to it do nothing.
 Lvalue FunctionLowering::bufferLvalue(const typed::IndexExpr &expr) {
-  llvm::SmallVector<const typed::Expr *, 3> indices;
-  const typed::Expr *base = &expr;
-  while (auto *index = dynCast<typed::IndexExpr>(base)) {
-    if (!index->base->type->is(TypeKind::Buffer))
-      break;
-    indices.insert(indices.begin(), index->index.get());
-    base = index->base.get();
-  }
+  const auto [base, indices] = typed::bufferAccess(expr);
   Lvalue buffer = lowerLvalue(*base);
   Lvalue result;
   result.type = expr.type;

@@ -46,8 +46,8 @@ int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask);
 
 /* Geometry that rays can hit: an instance of a primitive's object. */
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material);
-/* An instance of a mesh file (OBJ, PLY, glTF), whose vertices are first transformed by `transform`: 12
- * numbers, four columns of three, or null. */
+/* An instance of a mesh file (OBJ, PLY, glTF). Its vertices are first transformed by `transform`:
+ * 12 numbers, four columns of three, or null. */
 int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,
                          RtslObject material);
 /* An instance of triangles: 3 floats per vertex, 3 indices per triangle. */

@@ -147,6 +147,12 @@ struct LaneHits {
   return hits;
 }
 
+/// device::movedInto for all lanes.
+inline Lanes movedInto(Lanes near, Lanes far, Lanes t) {
+  const Lanes notBehind = _mm256_blendv_ps(t, far, _mm256_cmp_ps(t, far, _CMP_GT_OQ));
+  return _mm256_blendv_ps(notBehind, near, _mm256_cmp_ps(t, near, _CMP_LT_OQ));
+}
+
 /// moveIntoBox for all lanes. Returns the lanes of `hit` that meet their box.
 [[gnu::always_inline]] inline unsigned moveLanesIntoBoxes(const device::TriangleRay &ray,
                                                           const TriangleBlock &block, Lanes &t) {
@@ -165,10 +171,7 @@ struct LaneHits {
     far = minimum(last * all(inverse), far);
   }
   const Lanes isMet = _mm256_cmp_ps(near, far * all(device::bvhSlack), _CMP_LE_OQ);
-  near = near * all(1.0f - device::rangeShare);
-  far = far * all(1.0f + device::rangeShare);
-  const Lanes notBehind = _mm256_blendv_ps(t, far, _mm256_cmp_ps(t, far, _CMP_GT_OQ));
-  t = _mm256_blendv_ps(notBehind, near, _mm256_cmp_ps(t, near, _CMP_LT_OQ));
+  t = movedInto(near * all(1.0f - device::rangeShare), far * all(1.0f + device::rangeShare), t);
   return unsigned(_mm256_movemask_ps(isMet));
 }
 
@@ -177,9 +180,7 @@ inline Lanes moveLanesIntoInstance(const device::TriangleRay &, Lanes t) {
   return t;
 }
 inline Lanes moveLanesIntoInstance(const device::InstanceRay &ray, Lanes t) {
-  const Lanes near = all(ray.near), far = all(ray.far);
-  const Lanes notBehind = _mm256_blendv_ps(t, far, _mm256_cmp_ps(t, far, _CMP_GT_OQ));
-  return _mm256_blendv_ps(notBehind, near, _mm256_cmp_ps(t, near, _CMP_LT_OQ));
+  return movedInto(all(ray.range.near), all(ray.range.far), t);
 }
 
 /// device::testTriangle for one lane.
@@ -192,8 +193,8 @@ template <typename Ray>
 }
 
 /// Tests all triangles of the block and commits the one that wins. With `anyHit` any hit is
-/// sufficient. `Ray` is a device::TriangleRay, or a device::InstanceRay for the block of a mesh that
-/// instances share.
+/// sufficient. `Ray` is a device::TriangleRay, or a device::InstanceRay for the block of a mesh
+/// that instances share.
 template <typename Ray>
 [[gnu::always_inline]] inline bool testBlock(RtslState &state, const Ray &ray,
                                              const TriangleBlock &block, bool anyHit) {

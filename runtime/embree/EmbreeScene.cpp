@@ -214,18 +214,17 @@ void boundBlock(const RTCBoundsFunctionArguments *arguments) {
   setBounds(arguments, lower, upper);
 }
 
-void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
-  const EmbreeSpace &space = *levelOf(arguments).owner;
-  const RtslInstance &instance =
-      space.scene->instances[space.primitives[arguments->primID].instance];
+void boundItem(const RTCBoundsFunctionArguments *arguments, std::uint32_t number) {
+  const RtslInstance &instance = levelOf(arguments).owner->scene->instances[number];
   setBounds(arguments, instance.lower, instance.upper);
 }
 
+void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
+  boundItem(arguments, levelOf(arguments).owner->primitives[arguments->primID].instance);
+}
+
 void boundInstance(const RTCBoundsFunctionArguments *arguments) {
-  const EmbreeSpace &space = *levelOf(arguments).owner;
-  const RtslInstance &instance =
-      space.scene->instances[space.meshInstances[arguments->primID].instance];
-  setBounds(arguments, instance.lower, instance.upper);
+  boundItem(arguments, levelOf(arguments).owner->meshInstances[arguments->primID].instance);
 }
 
 //===----------------------------------------------------------------------===//

@@ -17,8 +17,9 @@ constexpr double largestCondition = 1e8;
 
 RtslTransform identityTransform();
 
-/// The transform as it is stored, with its inverse. Throws DegenerateGeometry, for the instance of this
-/// name: a number is not finite in single precision, or the condition exceeds largestCondition.
+/// The transform as it is stored, with its inverse. Throws DegenerateGeometry, for the instance of
+/// this name: a number is not finite in single precision, or the condition exceeds
+/// largestCondition.
 RtslTransform roundedTransform(const Transform &transform, const std::string &name,
                                const std::optional<Place> &place);
 

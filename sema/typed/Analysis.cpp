@@ -111,6 +111,17 @@ bool isCheap(const Expr &expr) {
   return cost <= cost::withoutBranch;
 }
 
+BufferAccess bufferAccess(const IndexExpr &expr) {
+  BufferAccess access{&expr, {}};
+  while (auto *index = dynCast<IndexExpr>(access.buffer)) {
+    if (!index->base->type->is(TypeKind::Buffer))
+      break;
+    access.indices.insert(access.indices.begin(), index->index.get());
+    access.buffer = index->base.get();
+  }
+  return access;
+}
+
 bool isPlace(const Expr &expr) {
   switch (expr.kind) {
   case ExprKind::Variable:

@@ -30,6 +30,14 @@ bool hasSideEffects(const Expr &expr);
 /// unconditionally.
 bool isCheap(const Expr &expr);
 
+/// `buffer[i][j]`: the buffer, and its indices from left to right, fewer than it has dimensions if
+/// the expression is a row.
+struct BufferAccess {
+  const Expr *buffer;
+  std::vector<const Expr *> indices;
+};
+BufferAccess bufferAccess(const IndexExpr &expr);
+
 /// The rays that evaluating this expression may send, not counting its operands: it is a built-in
 /// function that sends rays, or a call. For a call that is dispatched: by any class of the module.
 SentRays raysOf(const Expr &expr);

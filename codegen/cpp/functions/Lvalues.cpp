@@ -163,14 +163,7 @@ Code Lvalues::element(const typed::IndexExpr &expr, const Code &base, bool store
 
 // All indices of `buffer[i][j]`.
 Code Lvalues::bufferElement(const typed::IndexExpr &expr) {
-  std::vector<const typed::Expr *> indices;
-  const typed::Expr *base = &expr;
-  while (auto *index = dynCast<typed::IndexExpr>(base)) {
-    if (!index->base->type->is(TypeKind::Buffer))
-      break;
-    indices.insert(indices.begin(), index->index.get());
-    base = index->base.get();
-  }
+  const auto [base, indices] = typed::bufferAccess(expr);
   assert(indices.size() == base->type->count && "a part of a buffer is no value");
   std::vector<Code> codes = printer.expressions.operands(indices, Binding::Assignment);
   const Code buffer = of(*base);

@@ -30,7 +30,14 @@ struct Range {
   float near, far;
 
   bool isEmpty() const { return !(near <= far * bvhSlack); }
+  /// By rangeShare of its distances on both sides: where hits in the box may be.
+  Range widened() const { return {near * (1.0f - rangeShare), far * (1.0f + rangeShare)}; }
 };
+
+/// The point of a range that is nearest to t.
+inline float movedInto(Range range, float t) {
+  return t < range.near ? range.near : t > range.far ? range.far : t;
+}
 
 /// The range of the ray in the box and between tMin and tMax. If a component of the direction is 0,
 /// `inverse` is infinite, and 0 * inf is NaN for an origin in the plane of a side: comparisons are

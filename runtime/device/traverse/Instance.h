@@ -99,7 +99,7 @@ inline float transformedPointError(const RtslTransform &transform, Vec3 size, Ve
 /// A ray in the space of an instance that it has entered.
 struct InstanceRay : TriangleRay {
   uint32_t instance;
-  float near, far; // hits are moved into the ray's range in the instance's box, as in moveIntoBox
+  Range range; // in the instance's box, widened: hits are moved into it, as in moveIntoBox
 };
 
 /// The ray in the object space of an instance with a transform. False if it cannot hit anything
@@ -112,8 +112,8 @@ inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, ui
       rangeInBox(instance.lower, instance.upper, world.origin, world.inverse, 0, infinity);
   if (range.isEmpty())
     return false;
-  const float near = range.near * (1.0f - rangeShare), far = range.far * (1.0f + rangeShare);
-  if (near > limit || far < epsilon)
+  const Range widened = range.widened();
+  if (widened.near > limit || widened.far < epsilon)
     return false;
   const RtslTransform &transform = transformOf(launch, instance);
   const Vec3 origin = pointToObject(transform, world.origin);
@@ -122,8 +122,7 @@ inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, ui
     return false;
   static_cast<TriangleRay &>(entered) = makeTriangleRay(origin, direction);
   entered.instance = number;
-  entered.near = near;
-  entered.far = far;
+  entered.range = widened;
   return true;
 }
 
@@ -140,7 +139,7 @@ inline float moveIntoInstance(const TriangleRay &, float t) {
   return t;
 }
 inline float moveIntoInstance(const InstanceRay &ray, float t) {
-  return t < ray.near ? ray.near : t > ray.far ? ray.far : t;
+  return movedInto(ray.range, t);
 }
 
 /// The state's ray in object space while code of an RTSL primitive runs; world space again when it

@@ -50,8 +50,7 @@ inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float
   Range range = rangeInBox(lower, upper, ray.origin, ray.inverse, 0, infinity);
   if (range.isEmpty())
     return false;
-  float near = range.near * (1.0f - rangeShare), far = range.far * (1.0f + rangeShare);
-  t = t < near ? near : t > far ? far : t;
+  t = movedInto(range.widened(), t);
   return true;
 }
 
@@ -92,14 +91,14 @@ template <typename Intersect>
 bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance &instance,
                    const RtslLeafItem &item, Intersect intersect) {
   Range range = rangeInBox(instance.lower, instance.upper, ray.origin, ray.inverse, 0, infinity);
-  float near = range.near * (1.0f - rangeShare), far = range.far * (1.0f + rangeShare);
-  if (range.isEmpty() || near > state.nearest || far < state.Epsilon)
+  const Range widened = range.widened();
+  if (range.isEmpty() || widened.near > state.nearest || widened.far < state.Epsilon)
     return false;
   const float end = state.HitDistance;
   const uint32_t dimension = state.dimension;
   beginCandidate(state, item.instance, item.primitive);
-  state.candidateNear = near;
-  state.candidateFar = far;
+  state.candidateNear = widened.near;
+  state.candidateFar = widened.far;
   state.dimension = dimensionOf(item.instance, item.primitive);
   {
     const InObjectSpace space(state, instance);
