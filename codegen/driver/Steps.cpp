@@ -138,10 +138,11 @@ void defineFacts(LlvmCode &code, const runtime::Program &program) {
 }
 
 const std::vector<std::string_view> &megakernelCode(bool forGpu) {
-  static const std::vector<std::string_view> host = {runtime::deviceBitcode(),
-                                                     runtime::megakernelBitcode()};
-  static const std::vector<std::string_view> gpu = {runtime::gpuDeviceBitcode(),
-                                                    runtime::gpuMegakernelBitcode()};
+  // Each uses functions of the other.
+  static const std::vector<std::string_view> host = {
+      runtime::deviceBitcode(), runtime::megakernelBitcode(), runtime::deviceBitcode()};
+  static const std::vector<std::string_view> gpu = {
+      runtime::gpuDeviceBitcode(), runtime::gpuMegakernelBitcode(), runtime::gpuDeviceBitcode()};
   return forGpu ? gpu : host;
 }
 

@@ -3,6 +3,7 @@
 
 #include "codegen/emit/Patterns.h"
 #include "codegen/emit/RuntimeFunctions.h"
+#include "codegen/emit/SceneTables.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
@@ -299,6 +300,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     declareRuntimeFunctions(module);
     declareNullRecord(module);
     declareTables(module);
+    defineSceneTables(module);
     llvm::SmallVector<ir::ClassOp> classes(module.getOps<ir::ClassOp>());
     if (mlir::failed(convertOperations(module)))
       return signalPassFailure();
@@ -306,6 +308,9 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
       classOp.erase();
     for (auto function : module.getOps<LLVM::LLVMFuncOp>())
       finish(function);
+    for (const auto &table : {ir::attr::records, ir::attr::instances})
+      table.removeFrom(module);
+    ir::attr::listed.removeFrom(module);
     ir::attr::noted.removeFrom(module);
     ir::attr::holdsPayloads.removeFrom(module);
   }

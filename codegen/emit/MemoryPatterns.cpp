@@ -1,5 +1,6 @@
 //===- MemoryPatterns.cpp - memory and references to LLVM -----------------===//
 #include "codegen/emit/Patterns.h"
+#include "codegen/emit/SceneTables.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
@@ -163,15 +164,22 @@ struct ConvertElement : ConvertOpToLLVMPattern<ir::ElementOp> {
   }
 };
 
+/// The address of the scene's records.
+Value recordsAddress(mlir::OpBuilder &builder, Location location) {
+  if (Value records = sceneRecords(builder, location))
+    return records;
+  Value field = launchAddress(builder, location, offsetof(RtslLaunch, records));
+  return LLVM::LoadOp::create(builder, location, field.getType(), field, alignof(void *), false,
+                              false, /*isInvariant=*/true);
+}
+
 struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::MemberOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
     const int64_t offset = ir::attr::offset.of(op).getInt();
     Location location = op.getLoc();
-    Value field = launchAddress(rewriter, location, offsetof(RtslLaunch, records));
-    Value records = LLVM::LoadOp::create(rewriter, location, field.getType(), field,
-                                         alignof(void *), false, false, /*isInvariant=*/true);
+    Value records = recordsAddress(rewriter, location);
     Value record = indexedAddress(rewriter, location, records,
                                   widen(rewriter, location, adaptor.getObject()), 1);
     rewriter.replaceOp(op,
@@ -340,9 +348,7 @@ struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
                                 ConversionPatternRewriter &rewriter) const override {
     Location location = op.getLoc();
     mlir::Type i32 = rewriter.getI32Type();
-    Value field = launchAddress(rewriter, location, offsetof(RtslLaunch, records));
-    Value records = LLVM::LoadOp::create(rewriter, location, field.getType(), field,
-                                         alignof(void *), false, false, /*isInvariant=*/true);
+    Value records = recordsAddress(rewriter, location);
     // Not `inbounds`: if the reference is null there may be no records at all.
     Value record = LLVM::GEPOp::create(
         rewriter, location, records.getType(), rewriter.getI8Type(), records,

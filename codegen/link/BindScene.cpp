@@ -12,6 +12,7 @@
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/link/BindTables.h"
 #include "codegen/link/UnrollRecursion.h"
 #include "codegen/passes/BindMembers.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -258,6 +259,7 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
     ir::attr::lightCount.set(ir, builder.getI32IntegerAttr(static_cast<std::int32_t>(lights)));
     ir::attr::ambient.set(ir, builder.getDenseF32ArrayAttr(scene.ambient));
   }
+  bindTables(ir, scene, request, findings);
 }
 
 } // namespace rtsl

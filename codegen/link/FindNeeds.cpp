@@ -114,6 +114,11 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
     return needsOf(state.getName()) |
            (isOfCandidate(state.getName(), reader) ? RTSL_NEEDS_CANDIDATE : 0);
   }
+  if (llvm::isa<ir::AttributeOp>(op))
+    return llvm::any_of(op->getUsers(),
+                        [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); })
+               ? RTSL_NEEDS_ATTRIBUTES
+               : 0;
   if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op);
       trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);

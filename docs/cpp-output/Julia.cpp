@@ -131,7 +131,9 @@ static RtslShaders describe() {
       .member("iterations", &Julia::iterations, rtsl::Access::Public, rtsl::Default::Given)
       .member("tolerance", &Julia::tolerance, rtsl::Access::Public, rtsl::Default::Given)
       .methods(
-          {"computeBounds", "computeNormal", "distanceBound", "gradientAt", "intersect", "square"});
+          {"computeBounds", "computeNormal", "distanceBound", "gradientAt", "intersect", "square"})
+      .needs(RTSL_NEEDS_ATTRIBUTES);
+  program.needs(RTSL_NEEDS_ATTRIBUTES);
   program.slots().rt_Primitive_intersect = &slots::intersect;
   program.slots().rt_Primitive_computeBounds = &slots::computeBounds;
   program.slots().rt_Primitive_computeNormal = &slots::computeNormal;

@@ -76,11 +76,19 @@ using PrintFormat = std::vector<PrintItem>;
 
 /// Facts about a scene that the compiler may use after its objects are created.
 struct SceneFacts {
+  /// A scene with more instances does not list them.
+  static constexpr std::size_t mostInstances = 64;
   struct Object {
     std::string className;
     const std::uint8_t *record; // of the class's recordSize bytes
   };
   std::vector<Object> objects;
+  /// The records of all objects, at their references; null: not known.
+  const std::uint8_t *records = nullptr;
+  std::size_t recordBytes = 0;
+  /// Whether some records have buffers, whose addresses are those of this process.
+  bool hasBuffers = false;
+  std::vector<RtslInstance> instances; // empty: not known, or more than mostInstances
   std::uint32_t lightCount = 0;
   std::vector<float> ambient; // one number per component of a color
   std::uint32_t needs = 0;    // RTSL_HAS_*

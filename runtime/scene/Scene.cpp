@@ -156,6 +156,12 @@ SceneFacts Scene::facts() const {
   for (const Objects::Object &object : self->objects.all())
     if (reached.count(object.reference))
       facts.objects.push_back({object.classInfo->name, self->objects.record(object.reference)});
+  const RtslLaunch launch = self->launch();
+  facts.records = launch.records;
+  facts.recordBytes = self->objects.recordBytes();
+  facts.hasBuffers = !self->objects.buffers().empty();
+  if (self->geometry.all().size() <= SceneFacts::mostInstances)
+    facts.instances = self->geometry.all();
   facts.lightCount = self->cameraAndLights.lightCount();
   const float *const ambient = self->cameraAndLights.ambientLight();
   facts.ambient.assign(ambient, ambient + program().colorComponents);

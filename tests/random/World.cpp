@@ -373,6 +373,11 @@ runtime::SceneFacts World::facts() const {
   runtime::SceneFacts facts;
   for (const Object &object : objects)
     facts.objects.push_back({object.info->name, launch.records + object.reference});
+  facts.records = launch.records;
+  facts.recordBytes = records.size() * sizeof(std::uint32_t);
+  facts.hasBuffers = !buffers.empty();
+  if (instances.size() <= runtime::SceneFacts::mostInstances)
+    facts.instances = instances;
   facts.lightCount = launch.lightCount;
   facts.referenceChain = static_cast<std::uint32_t>(objects.size()); // no longer
   facts.ambient.assign(launch.ambient, launch.ambient + code.colorComponents);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace rtsl::cpp {
 
@@ -30,7 +31,14 @@ constexpr Need allNeeds[] = {{RTSL_NEEDS_NORMALS, "RTSL_NEEDS_NORMALS"},
                              {RTSL_NEEDS_SAMPLING, "RTSL_NEEDS_SAMPLING"},
                              {RTSL_NEEDS_CANDIDATE, "RTSL_NEEDS_CANDIDATE"},
                              {RTSL_NEEDS_ANY_HIT, "RTSL_NEEDS_ANY_HIT"},
-                             {RTSL_NEEDS_HIT_ERRORS, "RTSL_NEEDS_HIT_ERRORS"}};
+                             {RTSL_NEEDS_HIT_ERRORS, "RTSL_NEEDS_HIT_ERRORS"},
+                             {RTSL_NEEDS_ATTRIBUTES, "RTSL_NEEDS_ATTRIBUTES"}};
+
+constexpr std::uint32_t bitsOf(const Need *first, const Need *last) {
+  return first == last ? 0 : first->bit | bitsOf(first + 1, last);
+}
+static_assert(bitsOf(std::begin(allNeeds), std::end(allNeeds)) == RTSL_NEEDS_ALL,
+              "a part of a hit has no name");
 
 /// `RTSL_NEEDS_NORMALS | RTSL_NEEDS_TIME`; nothing where nothing is needed.
 Code flagsOfNeeds(std::uint32_t needs) {

@@ -90,7 +90,7 @@ inline Arrival arriveAt(RtslState &state, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
   if (found == RTSL_HIT) {
     describeHit(state);
-    return {Arrival::Surface, launch.instances[state.instance].material};
+    return {Arrival::Surface, instanceAt(launch, state.instance).material};
   }
   if (found == RTSL_MISS) {
     if (launch.background)

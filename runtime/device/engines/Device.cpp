@@ -19,6 +19,12 @@ __attribute__((weak)) uint32_t rtsl_needs(const RtslLaunch *launch) {
 __attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
   return launch->colorComponents;
 }
+__attribute__((weak)) const RtslInstance *rtsl_instances(const RtslLaunch *launch) {
+  return launch->instances;
+}
+__attribute__((weak)) uint32_t rtsl_listed_instances(const RtslLaunch *) {
+  return 0;
+}
 
 uint32_t rtsl_hit(RtslState *state, float t) {
   return device::reportHitWithin(*state, t, device::errorNotStated);

@@ -49,7 +49,7 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
 inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
   if (found == RTSL_HIT) {
-    RtslRef material = launch.instances[state.instance].material;
+    RtslRef material = instanceAt(launch, state.instance).material;
     if (!(how & RTSL_FIRST_HIT)) // otherwise no program reads it
       describeHit(state);
     return {Arrival::Surface, material};

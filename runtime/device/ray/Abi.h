@@ -237,10 +237,11 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_CANDIDATE                                                                       \
   1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
 #define RTSL_NEEDS_HIT_ERRORS 2048u // no state: rays leave hits, so the error of t matters
-#define RTSL_NEEDS_ALL 4095u
+#define RTSL_NEEDS_ATTRIBUTES 4096u // no state: what `intersect` wrote to scratch members
+#define RTSL_NEEDS_ALL 8191u
 // RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
-#define RTSL_HAS_TRANSFORMS 4096u // some instance has a transform
-#define RTSL_HAS_ROOTS 8192u      // some instance is not below root 0, or below another one
+#define RTSL_HAS_TRANSFORMS 8192u // some instance has a transform
+#define RTSL_HAS_ROOTS 16384u     // some instance is not below root 0, or below another one
 #define RTSL_HAS_ALL (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS)
 
 // Results of rtsl_traverse.
@@ -278,10 +279,16 @@ uint32_t rtsl_features(RtslState *state);
 
 /// What all launches of a program share: RtslLaunch::needs, or a superset, and
 /// RtslLaunch::colorComponents.
-/// runtime/device defines both weakly, from the launch. A compiled program defines them as
+/// runtime/device defines them weakly, from the launch. A compiled program defines them as
 /// constants, so that what it does not need is folded away.
 uint32_t rtsl_needs(const RtslLaunch *launch);
 uint32_t rtsl_color_components(const RtslLaunch *launch);
+/// RtslLaunch::instances. A program that was bound to a scene of few instances has a copy of them,
+/// so that what it loads from there at a constant index is a constant.
+const RtslInstance *rtsl_instances(const RtslLaunch *launch);
+/// The number of instances of such a scene if all of them are primitives: the project's own
+/// traversal tests them one after the other. Otherwise 0, and it searches the tree.
+uint32_t rtsl_listed_instances(const RtslLaunch *launch);
 
 //===----------------------------------------------------------------------===//
 // Defined by the runtime, called by compiled programs.

@@ -16,6 +16,10 @@
 
 namespace rtsl::device {
 
+inline const RtslInstance &instanceAt(const RtslLaunch &launch, uint32_t number) {
+  return rtsl_instances(&launch)[number];
+}
+
 /// Does a hit beat the one so far?
 inline bool wins(const RtslState &state, float t, uint32_t instance, uint32_t primitive) {
   if (t < state.nearest)

@@ -42,7 +42,7 @@ float derivedHitError(RtslState &state, RtslRef primitive, float t, Derive deriv
 
 /// The same for the candidate.
 __attribute__((cold, noinline)) inline float derivedErrorOfCandidate(RtslState &state, float t) {
-  const RtslRef primitive = state.launch->instances[state.candidateInstance].primitive;
+  const RtslRef primitive = instanceAt(*state.launch, state.candidateInstance).primitive;
   return derivedHitError(state, primitive, t, rtsl_rt_Primitive_rt_boundHitError);
 }
 

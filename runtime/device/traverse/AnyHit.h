@@ -90,7 +90,7 @@ public:
   }
 
   const RtslInstance &instanceOf(const RtslLeafItem &item) const {
-    return state.launch->instances[item.instance];
+    return instanceAt(*state.launch, item.instance);
   }
 
   /// Tests one leaf item, in its space, and commits it if it wins. It must not be the hit so far.
@@ -124,7 +124,7 @@ public:
   /// Describes the hit that state has and runs `anyHit`. Returns RTSL_ACCEPT, RTSL_IGNORE or
   /// RTSL_TERMINATE.
   uint32_t ask() const {
-    const RtslInstance &instance = state.launch->instances[state.instance];
+    const RtslInstance &instance = instanceAt(*state.launch, state.instance);
     const float end = state.HitDistance;
     state.HitDistance = state.foundDistance;
     describeHit(state, instance.needs, slots);

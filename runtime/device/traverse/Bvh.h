@@ -39,24 +39,40 @@ inline float movedInto(Range range, float t) {
   return t < range.near ? range.near : t > range.far ? range.far : t;
 }
 
+/// The larger of two numbers, or `limit` if the other one is NaN. If both are 0, the sign depends on
+/// the processor; no distance of a hit is 0.
+inline float raised(float limit, float x) {
+#ifdef __NVPTX__
+  return __builtin_fmaxf(limit, x); // one instruction
+#else
+  return x > limit ? x : limit;
+#endif
+}
+/// The smaller one, likewise.
+inline float lowered(float limit, float x) {
+#ifdef __NVPTX__
+  return __builtin_fminf(limit, x);
+#else
+  return x < limit ? x : limit;
+#endif
+}
+
 /// The range of the ray in the box and between tMin and tMax. If a component of the direction is 0,
 /// `inverse` is infinite, and 0 * inf is NaN for an origin in the plane of a side: comparisons are
 /// written so that this leaves the range as it is.
 inline Range rangeInBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
                         float tMin, float tMax) {
   float near = tMin, far = tMax;
-  float x0 = ((inverse.x < 0 ? upper : lower)[0] - origin.x) * inverse.x;
-  float x1 = ((inverse.x < 0 ? lower : upper)[0] - origin.x) * inverse.x;
-  float y0 = ((inverse.y < 0 ? upper : lower)[1] - origin.y) * inverse.y;
-  float y1 = ((inverse.y < 0 ? lower : upper)[1] - origin.y) * inverse.y;
-  float z0 = ((inverse.z < 0 ? upper : lower)[2] - origin.z) * inverse.z;
-  float z1 = ((inverse.z < 0 ? lower : upper)[2] - origin.z) * inverse.z;
-  near = x0 > near ? x0 : near;
-  near = y0 > near ? y0 : near;
-  near = z0 > near ? z0 : near;
-  far = x1 < far ? x1 : far;
-  far = y1 < far ? y1 : far;
-  far = z1 < far ? z1 : far;
+  // All are loaded, so that a GPU can load several at once.
+  const Vec3 low = load(lower), high = load(upper);
+  float x0 = ((inverse.x < 0 ? high.x : low.x) - origin.x) * inverse.x;
+  float x1 = ((inverse.x < 0 ? low.x : high.x) - origin.x) * inverse.x;
+  float y0 = ((inverse.y < 0 ? high.y : low.y) - origin.y) * inverse.y;
+  float y1 = ((inverse.y < 0 ? low.y : high.y) - origin.y) * inverse.y;
+  float z0 = ((inverse.z < 0 ? high.z : low.z) - origin.z) * inverse.z;
+  float z1 = ((inverse.z < 0 ? low.z : high.z) - origin.z) * inverse.z;
+  near = raised(raised(raised(near, x0), y0), z0);
+  far = lowered(lowered(lowered(far, x1), y1), z1);
   return {near, far};
 }
 
@@ -84,7 +100,8 @@ bool traverseBvh(const RtslLaunch &launch, RtslMeshTree root, const TriangleRay 
   Entry current = {root.child, root.count, tMin};
   for (;;) {
     if (current.child >= 0) {
-      const RtslBvhNode &node = launch.nodes[current.child];
+      const auto &node = *static_cast<const RtslBvhNode *>(
+          __builtin_assume_aligned(launch.nodes + current.child, 16));
       float limit = tMax() * cullSlack;
       float near0 = enterBox(node.lower[0], node.upper[0], origin, inverse, tMin, limit);
       float near1 = enterBox(node.lower[1], node.upper[1], origin, inverse, tMin, limit);

@@ -15,7 +15,7 @@ inline void describeBounds(RtslState &state, const RtslInstance &instance) {
 
 /// State of the tested primitive and its transforms that `intersect` may read.
 inline void describeCandidate(RtslState &state) {
-  const RtslInstance &instance = state.launch->instances[state.candidateInstance];
+  const RtslInstance &instance = instanceAt(*state.launch, state.candidateInstance);
   describeBounds(state, instance);
   state.PrimitiveIndex = int32_t(state.candidatePrimitive);
   state.InstanceIndex = int32_t(state.candidateInstance);

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Hit.h"
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
@@ -107,7 +108,7 @@ struct InstanceRay : TriangleRay {
 /// as it then does in every traversal.
 inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, uint32_t number,
                           float epsilon, float limit, InstanceRay &entered) {
-  const RtslInstance &instance = launch.instances[number];
+  const RtslInstance &instance = instanceAt(launch, number);
   const Range range =
       rangeInBox(instance.lower, instance.upper, world.origin, world.inverse, 0, infinity);
   if (range.isEmpty())

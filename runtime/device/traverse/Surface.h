@@ -191,7 +191,7 @@ inline void clearCoordinates(RtslState &state, uint32_t needs) {
 template <typename Slots>
 void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   const RtslLaunch &launch = *state.launch;
-  const RtslInstance &instance = launch.instances[state.instance];
+  const RtslInstance &instance = instanceAt(launch, state.instance);
   state.PrimitiveIndex = int32_t(state.primitive);
   state.InstanceIndex = int32_t(state.instance);
   clearCoordinates(state, needs);
@@ -218,7 +218,7 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
 
 inline void describeHit(RtslState &state) {
   const RtslLaunch &launch = *state.launch;
-  uint32_t needs = launch.instances[state.instance].needs & rtsl_needs(&launch);
+  uint32_t needs = instanceAt(launch, state.instance).needs & rtsl_needs(&launch);
   describeHit(state, needs, LinkedSlots());
 }
 

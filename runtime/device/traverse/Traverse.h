@@ -108,7 +108,7 @@ bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance 
   const bool hasWon = state.instance == item.instance && state.primitive == item.primitive;
   state.dimension = dimension;
   state.HitDistance = end;
-  if (hasHit && !hasWon)
+  if (hasHit && !hasWon && rtsl_needs(state.launch) & RTSL_NEEDS_ATTRIBUTES)
     state.areAttributesLost = 1;
   return hasWon;
 }
@@ -119,7 +119,7 @@ template <typename Intersect>
 void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect intersect) {
   if (!state.areAttributesLost || state.instance == RTSL_NO_HIT)
     return;
-  const RtslInstance &instance = state.launch->instances[state.instance];
+  const RtslInstance &instance = instanceAt(*state.launch, state.instance);
   if (instance.primitive == 0)
     return;
   const RtslLeafItem item = {state.instance, state.primitive};
@@ -132,26 +132,58 @@ void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect inte
 /// mesh with a transform, and commits it if it wins.
 template <typename Ray, typename Intersect>
 bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Intersect intersect) {
-  const RtslInstance &instance = state.launch->instances[item.instance];
+  const RtslInstance &instance = instanceAt(*state.launch, item.instance);
   return instance.primitive == 0 ? testTriangle(state, ray, state.launch->meshes[instance.mesh],
                                                 item.instance, item.primitive)
                                  : testPrimitive(state, ray, instance, item, intersect);
 }
 
-/// The tree of the launch. A tree calls visit(item, ray) for each leaf item that may have hits
-/// before limit(), nearer ones first on the whole, until it returns true. `ray` is the ray in world
-/// space, or the InstanceRay for items of meshes with transforms.
+/// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
+/// before limit(), until it returns true. All boxes are tested first: the lanes of a GPU that have
+/// primitives left then test them together, each its own. Unrolling both loops completely would make all that
+/// they read of the scene constant, and is slower: the program exceeds the instruction cache.
+template <typename Limit, typename Visit>
+void forEachListed(const RtslState &state, uint32_t count, const TriangleRay &ray, Limit limit,
+                   Visit visit) {
+  const RtslInstance *instances = rtsl_instances(state.launch);
+  const float tMin = maximum(state.Epsilon, 0.0f) * (1.0f - 2 * rangeShare);
+  const float tMax = limit() * cullSlack;
+  uint32_t entered = 0; // bit i: instance i
+#ifdef __clang__
+#pragma clang loop unroll_count(2) vectorize(disable)
+#endif
+  for (uint32_t i = 0; i < count; ++i) {
+    const RtslInstance &instance = instances[i];
+    const float near =
+        enterBox(instance.lower, instance.upper, ray.origin, ray.inverse, tMin, tMax);
+    entered |= uint32_t(near < infinity) << i;
+  }
+  while (entered) {
+    const RtslLeafItem item = {uint32_t(__builtin_ctz(entered)), 0};
+    entered &= entered - 1;
+    if (visit(item, ray))
+      return;
+  }
+}
+
+/// The tree of the launch, or the list of its instances. A tree calls visit(item, ray) for each
+/// leaf item that may have hits before limit(), nearer ones first on the whole, until it returns
+/// true. `ray` is the ray in world space, or the InstanceRay for items of meshes with transforms.
 struct LaunchTree {
   template <typename Limit, typename Visit>
   void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Visit visit) const {
     const RtslLaunch &launch = *state.launch;
+    if (const uint32_t count = rtsl_listed_instances(&launch)) {
+      forEachListed(state, count, ray, limit, visit);
+      return;
+    }
     const float tMin = maximum(state.Epsilon, 0.0f);
     const RtslMeshTree world =
         launch.rootIsLeaf ? RtslMeshTree{~0, launch.nodeCount} : RtslMeshTree{0, 0};
     traverseBvh(launch, world, ray, tMin, limit, [&](const RtslLeafItem &item) {
       if (!hasTransforms(launch))
         return visit(item, ray);
-      const RtslInstance &instance = launch.instances[item.instance];
+      const RtslInstance &instance = instanceAt(launch, item.instance);
       if (instance.primitive != 0 || instance.transform == 0)
         return visit(item, ray);
       InstanceRay entered;
@@ -175,7 +207,7 @@ uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree 
   tree.forEach(
       state, ray, [&] { return state.nearest; },
       [&](const RtslLeafItem &item, const auto &inItsSpace) {
-        return isSeen(state, state.launch->instances[item.instance]) &&
+        return isSeen(state, instanceAt(*state.launch, item.instance)) &&
                testItem(state, inItsSpace, item, intersect) && anyHit;
       });
   if (!anyHit)

@@ -102,6 +102,78 @@ TEST(Bind, ABaseWithoutObjectsIsBoundByThoseBelow) {
   EXPECT_EQ(boundTo(linked, "Lens", "index"), std::vector<float>{1.5f});
 }
 
+RtslInstance instanceOf(RtslRef primitive) {
+  RtslInstance instance{};
+  instance.primitive = primitive;
+  return instance;
+}
+
+TEST(Bind, TheTablesOfASmallSceneAreInTheProgram) {
+  Linked linked(lenses, {{"Lens", "Ball"}, {}});
+  const std::vector<std::uint8_t> bytes(48, 1);
+  runtime::SceneFacts facts;
+  facts.records = bytes.data();
+  facts.recordBytes = bytes.size();
+  facts.instances = {instanceOf(16), instanceOf(32)};
+  Findings findings;
+  bindScene(*linked.ir, facts, {}, &findings);
+  EXPECT_EQ(ir::attr::records.of(*linked.ir).size(), 12);
+  EXPECT_EQ(ir::attr::instances.of(*linked.ir).size() * 4, int64_t(2 * sizeof(RtslInstance)));
+  EXPECT_EQ(ir::attr::listed.of(*linked.ir).getInt(), 2);
+  const auto tree = llvm::find_if(findings, [](const auto &one) { return one.item == Item::Tree; });
+  ASSERT_NE(tree, findings.end());
+  EXPECT_FALSE(tree->isNeeded);
+  EXPECT_EQ(tree->reason, "2 primitives, tested one after the other");
+}
+
+TEST(Bind, AMeshNeedsTheTree) {
+  Linked linked(lenses, {{"Lens", "Ball"}, {}});
+  runtime::SceneFacts facts;
+  facts.instances = {instanceOf(16), instanceOf(0)};
+  bindScene(*linked.ir, facts);
+  EXPECT_TRUE(ir::attr::instances.of(*linked.ir));
+  EXPECT_FALSE(ir::attr::listed.of(*linked.ir));
+}
+
+TEST(Bind, ManyPrimitivesNeedTheTree) {
+  Linked linked(lenses, {{"Lens", "Ball"}, {}});
+  runtime::SceneFacts facts;
+  facts.instances.assign(33, instanceOf(16));
+  bindScene(*linked.ir, facts);
+  EXPECT_FALSE(ir::attr::listed.of(*linked.ir));
+}
+
+TEST(Bind, RecordsWithBuffersOrManyRecordsStayInTheScene) {
+  const std::vector<std::uint8_t> bytes(8192, 1);
+  for (const bool hasBuffers : {false, true}) {
+    Linked linked(lenses, {{"Lens", "Ball"}, {}});
+    runtime::SceneFacts facts;
+    facts.records = bytes.data();
+    facts.recordBytes = hasBuffers ? 48 : bytes.size();
+    facts.hasBuffers = hasBuffers;
+    bindScene(*linked.ir, facts);
+    EXPECT_FALSE(ir::attr::records.of(*linked.ir));
+  }
+}
+
+TEST(Bind, WhatIsKeptIsNotInTheTables) {
+  const std::vector<std::uint8_t> bytes(48, 1);
+  runtime::SceneFacts facts;
+  facts.records = bytes.data();
+  facts.recordBytes = bytes.size();
+  facts.instances = {instanceOf(16)};
+  Linked parameters(lenses, {{"Lens", "Ball"}, {}}), tree(lenses, {{"Lens", "Ball"}, {}});
+  LinkRequest request;
+  request.keep = ItemSet::only(Item::Parameters);
+  bindScene(*parameters.ir, facts, request);
+  EXPECT_FALSE(ir::attr::records.of(*parameters.ir));
+  EXPECT_FALSE(ir::attr::instances.of(*parameters.ir));
+  request.keep = ItemSet::only(Item::Tree);
+  bindScene(*tree.ir, facts, request);
+  EXPECT_TRUE(ir::attr::records.of(*tree.ir));
+  EXPECT_FALSE(ir::attr::listed.of(*tree.ir));
+}
+
 TEST(Bind, WhatMakesObjectsAndWhatRendersArePartedFromEachOther) {
   Linked linked(lenses, {{"Lens", "Ball"}, {}});
   const mlir::OwningOpRef<mlir::ModuleOp> constructors = linked.ir->clone();

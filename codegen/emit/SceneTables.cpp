@@ -1,0 +1,68 @@
+#include "codegen/emit/SceneTables.h"
+
+#include "codegen/ir/Attributes.h"
+#include "codegen/ir/Layout.h"
+
+namespace rtsl::codegen {
+
+namespace LLVM = mlir::LLVM;
+
+namespace {
+
+/// A GPU loads four words at once.
+constexpr unsigned tableAlignment = 16;
+
+constexpr llvm::StringLiteral recordsName = "rtsl.records", instancesName = "rtsl.instances";
+
+void defineTable(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef name,
+                 llvm::ArrayRef<std::int32_t> words) {
+  const auto count = static_cast<int64_t>(words.size());
+  auto values = mlir::DenseIntElementsAttr::get(
+      mlir::RankedTensorType::get({count}, builder.getI32Type()), words);
+  auto type = LLVM::LLVMArrayType::get(builder.getI32Type(), static_cast<unsigned>(count));
+  LLVM::GlobalOp::create(builder, location, type, /*isConstant=*/true, LLVM::Linkage::Internal,
+                         name, values, tableAlignment);
+}
+
+/// `type NAME(const RtslLaunch *)`, which returns what `result` makes.
+void defineFunction(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef name,
+                    mlir::Type type, llvm::function_ref<mlir::Value()> result) {
+  auto pointer = LLVM::LLVMPointerType::get(builder.getContext());
+  auto function = LLVM::LLVMFuncOp::create(builder, location, name,
+                                           LLVM::LLVMFunctionType::get(type, {pointer}));
+  function.setAlwaysInline(true);
+  mlir::OpBuilder::InsertionGuard guard(builder);
+  builder.setInsertionPointToStart(function.addEntryBlock(builder));
+  LLVM::ReturnOp::create(builder, location, result());
+}
+
+mlir::Value addressOf(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef name) {
+  return LLVM::AddressOfOp::create(builder, location,
+                                   LLVM::LLVMPointerType::get(builder.getContext()), name);
+}
+
+} // namespace
+
+void defineSceneTables(mlir::ModuleOp module) {
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
+  const mlir::Location location = module.getLoc();
+  if (const auto records = ir::attr::records.of(module))
+    defineTable(builder, location, recordsName, records);
+  if (const auto instances = ir::attr::instances.of(module)) {
+    defineTable(builder, location, instancesName, instances);
+    defineFunction(builder, location, "rtsl_instances",
+                   LLVM::LLVMPointerType::get(builder.getContext()),
+                   [&] { return addressOf(builder, location, instancesName); });
+  }
+  if (const auto listed = ir::attr::listed.of(module))
+    defineFunction(builder, location, "rtsl_listed_instances", builder.getI32Type(), [&] {
+      return LLVM::ConstantOp::create(builder, location, builder.getI32Type(), listed);
+    });
+}
+
+mlir::Value sceneRecords(mlir::OpBuilder &builder, mlir::Location location) {
+  auto module = builder.getInsertionBlock()->getParentOp()->getParentOfType<mlir::ModuleOp>();
+  return ir::attr::records.of(module) ? addressOf(builder, location, recordsName) : mlir::Value();
+}
+
+} // namespace rtsl::codegen

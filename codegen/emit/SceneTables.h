@@ -1,0 +1,23 @@
+//===- SceneTables.h - constants of a bound program -----------------------===//
+//
+// A program that was bound to a small scene has its records and instances as constants:
+//
+//   module attributes {rtsl.records = array<i32: ...>, rtsl.instances = array<i32: ...>,
+//                      rtsl.listed = 16 : i32}
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "mlir/Dialect/LLVMIR/LLVMDialect.h"
+#include "mlir/IR/BuiltinOps.h"
+
+namespace rtsl::codegen {
+
+/// Adds a global variable for each table, and defines rtsl_instances and rtsl_listed_instances
+/// (runtime/device/ray/Abi.h), which otherwise read the launch.
+void defineSceneTables(mlir::ModuleOp module);
+
+/// In a function of such a program, the address of the records; null if they are not constants.
+mlir::Value sceneRecords(mlir::OpBuilder &builder, mlir::Location location);
+
+} // namespace rtsl::codegen

@@ -1,0 +1,75 @@
+//===- BindTables.cpp - the tables of a small scene, in its program -------===//
+//
+// The records and the instances of a small scene are constants of its program: what is loaded from
+// them at a constant place folds. If the scene has only a few primitives, a GPU tests them one
+// after the other: no tree, and `intersect` of each has the members of its object as constants.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/link/BindTables.h"
+
+#include "codegen/ir/Attributes.h"
+
+#include "llvm/ADT/STLExtras.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace rtsl {
+
+namespace {
+
+/// Larger tables would evict data that all shaders share from the caches of a GPU.
+constexpr std::size_t mostRecordBytes = 4096;
+
+/// With more, a tree is faster (docs/gpu.md).
+constexpr std::size_t mostListed = 32;
+
+std::vector<std::int32_t> wordsOf(const void *bytes, std::size_t size) {
+  std::vector<std::int32_t> words(size / 4);
+  std::memcpy(words.data(), bytes, words.size() * 4);
+  return words;
+}
+
+/// Are all instances primitives, few enough for a list?
+bool isListed(const std::vector<RtslInstance> &instances) {
+  return !instances.empty() && instances.size() <= mostListed &&
+         llvm::all_of(instances, [](const RtslInstance &one) { return one.primitive != 0; });
+}
+
+Finding describe(const std::vector<RtslInstance> &instances) {
+  Finding finding = {Item::Tree, "tree", !isListed(instances), {}, {}};
+  if (!finding.isNeeded)
+    finding.reason =
+        instances.size() == 1
+            ? "one primitive, which every ray tests"
+            : fmt::format("{} primitives, tested one after the other", instances.size());
+  else
+    finding.reason = instances.empty() || instances.size() > mostListed
+                         ? fmt::format("there are more than {} instances", mostListed)
+                         : "some instance is a mesh";
+  return finding;
+}
+
+} // namespace
+
+void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request,
+                Findings *findings) {
+  if (findings)
+    findings->push_back(describe(scene.instances));
+  if (request.keep.has(Item::Parameters))
+    return;
+  mlir::Builder builder(ir.getContext());
+  if (scene.records && !scene.hasBuffers && scene.recordBytes <= mostRecordBytes)
+    ir::attr::records.set(ir,
+                          builder.getDenseI32ArrayAttr(wordsOf(scene.records, scene.recordBytes)));
+  if (scene.instances.empty())
+    return;
+  const std::size_t bytes = scene.instances.size() * sizeof(RtslInstance);
+  ir::attr::instances.set(ir, builder.getDenseI32ArrayAttr(wordsOf(scene.instances.data(), bytes)));
+  if (isListed(scene.instances) && !request.keep.has(Item::Tree))
+    ir::attr::listed.set(
+        ir, builder.getI32IntegerAttr(static_cast<std::int32_t>(scene.instances.size())));
+}
+
+} // namespace rtsl
