@@ -58,7 +58,7 @@ BACKGROUNDS = {"GradientSky": {}, "DaylightSky": {}}
 
 def scene(objects, camera=VIEW, lights=LIGHTS, background=SKY, ambient=0.3):
     return {"rtsl": 1, "import": ["std"], "camera": camera, "objects": objects, "lights": lights, "background": background,
-            "ambient": [ambient] * 3, "render": {"size": [160, 120], "spp": 256, "depth": 8}}
+            "ambient": [ambient] * 3, "render": {"size": [128, 96], "spp": 64, "depth": 32}}
 
 
 def scenes():
