@@ -1,6 +1,5 @@
-# cmake --install: the programs, the runtime library with its headers, find_package(rtsl), pkg-config, a man page and
-# completions. Headers keep their folders below include/rtsl, which is an include path of rtsl::runtime.
-include(GNUInstallDirs)
+# cmake --install: the programs, the standard library, the runtime library with its headers, find_package(rtsl),
+# pkg-config, a man page and completions. Headers keep their folders below include/rtsl, which is an include path of rtsl::runtime.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS rtsl LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
@@ -23,6 +22,7 @@ file(RELATIVE_PATH rtslPrefixFromPackage "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/
 configure_file(cmake/rtsl.pc.in "${PROJECT_BINARY_DIR}/rtsl.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/rtsl.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
+install(DIRECTORY library DESTINATION "${CMAKE_INSTALL_DATADIR}/rtslc" FILES_MATCHING PATTERN "*.rtsl")
 install(FILES tools/man/rtslc.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES tools/completion/rtslc.bash DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME rtslc)
 install(FILES tools/completion/_rtslc DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")

@@ -1,6 +1,7 @@
 //===- SourceLoader.cpp - files and their imports -------------------------===//
 #include "codegen/driver/SourceLoader.h"
 
+#include "codegen/driver/StandardLibrary.h"
 #include "frontend/preprocessor/FileSearch.h"
 #include "frontend/source/Expansion.h"
 #include "frontend/syntax/Parser.h"
@@ -11,6 +12,11 @@
 
 namespace rtsl {
 
+/// Whether a canonical path is that of a file of the library.
+static bool isInLibrary(const std::string &path) {
+  return path.rfind(libraryFolder() + "/", 0) == 0;
+}
+
 const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRange importer) {
   std::error_code error;
   const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
@@ -20,19 +26,34 @@ const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRa
 
   // Recorded even if loading fails, so that a missing file is reported once.
   std::unique_ptr<ast::TranslationUnit> &unit = units[key];
-  if (const std::optional<PreprocessedFile> preprocessed = preprocessFile(path, importer)) {
-    if (preprocessed->isUsable) {
-      unit = parse(preprocessed->text, diagnostics);
-    } else {
-      unit = std::make_unique<ast::TranslationUnit>();
-      unit->file = preprocessed->text;
-    }
+  // The library does not depend on the macros and folders of those who import it.
+  const bool isOurs = isInLibrary(key);
+  if (const std::optional<PreprocessedFile> preprocessed =
+          preprocessFile(path, importer, isOurs ? PreprocessorOptions{} : options)) {
+    unit = parseFile(*preprocessed);
+    if (!isOurs)
+      addWords(sources.text(preprocessed->text), words);
   }
   return unit.get();
 }
 
+std::unique_ptr<ast::TranslationUnit>
+SourceLoader::parseFile(const PreprocessedFile &preprocessed) {
+  if (preprocessed.isUsable)
+    return parse(preprocessed.text, diagnostics);
+  auto unit = std::make_unique<ast::TranslationUnit>();
+  unit->file = preprocessed.text;
+  return unit;
+}
+
 std::optional<PreprocessedFile> SourceLoader::preprocessFile(const std::string &path,
                                                              SourceRange importer) {
+  return preprocessFile(path, importer, options);
+}
+
+std::optional<PreprocessedFile>
+SourceLoader::preprocessFile(const std::string &path, SourceRange importer,
+                             const PreprocessorOptions &fileOptions) {
   std::string whyNot;
   const std::optional<FileId> file = sources.addFile(path, whyNot);
   if (!file) {
@@ -40,19 +61,57 @@ std::optional<PreprocessedFile> SourceLoader::preprocessFile(const std::string &
     return std::nullopt;
   }
   addFile(path);
-  PreprocessedFile result = preprocess(*file, sources, options, diagnostics);
+  PreprocessedFile result = preprocess(*file, sources, fileOptions, diagnostics);
   for (const std::string &include : result.includes)
     addFile(include);
   return result;
 }
 
-const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import, FileId importer) {
-  if (!import.isFile) {
-    diagnostics.report(Code::unknownModule, import.range, import.path)
-        .note(
-            "this version has no installed modules; a file is imported as `import \"name.rtsl\";`");
+/// The range of a module's name within that of its import; all of that if a comment is in between.
+static SourceRange rangeOfName(const std::string &name, SourceRange import,
+                               const SourceManager &sources) {
+  if (!import.isValid())
+    return import;
+  const std::string_view text =
+      sources.text(import.file).substr(import.begin, import.end - import.begin);
+  const std::size_t at = text.find(name);
+  if (at == std::string_view::npos)
+    return import;
+  const auto begin = import.begin + static_cast<decltype(import.begin)>(at);
+  return {import.file, begin, begin + static_cast<decltype(import.begin)>(name.size())};
+}
+
+const ast::TranslationUnit *SourceLoader::loadModule(const std::string &name,
+                                                     SourceRange importer) {
+  const ModuleFiles module = findModule(name);
+  if (!module.exists) {
+    const SourceRange range = rangeOfName(name, importer, sources);
+    explainModules(diagnostics.report(Code::unknownModule, range, name), name, range);
     return nullptr;
   }
+  if (!module.file.empty()) {
+    offered.push_back(name);
+    return load(module.file, importer);
+  }
+  // What a folder has is known at once; what is mentioned only when all files have been read.
+  loadImports(false);
+  std::unique_ptr<ast::TranslationUnit> &unit = units["module " + name];
+  if (!unit) {
+    offered.insert(offered.end(), module.parts.begin(), module.parts.end());
+    unit = std::make_unique<ast::TranslationUnit>();
+    for (const std::string &part : module.parts)
+      if (words.count(lastPart(part))) {
+        unit->imports.emplace_back();
+        unit->imports.back().path = part;
+        unit->imports.back().range = importer;
+      }
+  }
+  return unit.get();
+}
+
+const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import, FileId importer) {
+  if (!import.isFile)
+    return loadModule(import.path, import.range);
   // An import in an included file is relative to that file.
   const FileId file = import.range.isValid() ? sources.written(import.range).range.file : importer;
   std::vector<std::string> folders{folderOf(sources.name(file))};
@@ -64,7 +123,7 @@ const ast::TranslationUnit *SourceLoader::resolve(const ast::ImportDecl &import,
   return nullptr;
 }
 
-void SourceLoader::loadImports() {
+void SourceLoader::loadImports(bool withModules) {
   std::vector<const ast::TranslationUnit *> pending, done;
   for (const auto &[path, unit] : units)
     pending.push_back(unit.get());
@@ -75,7 +134,7 @@ void SourceLoader::loadImports() {
       continue;
     done.push_back(unit);
     for (const ast::ImportDecl &import : unit->imports)
-      if (import.isFile)
+      if (import.isFile || withModules)
         pending.push_back(resolve(import, unit->file));
   }
 }

@@ -1,7 +1,8 @@
 //===- SourceLoader.h - files and their imports ---------------------------===//
 //
-// Reads RTSL files, each once however often it is imported, and resolves imports
-// (frontend/preprocessor/FileSearch.h).
+// Reads RTSL files, each once however often it is imported, and resolves imports: files
+// (frontend/preprocessor/FileSearch.h) and modules (StandardLibrary.h). Of a module that is a folder
+// only those files are read whose names the program mentions, so that importing it costs nothing.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -14,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace rtsl {
@@ -31,24 +33,41 @@ public:
   std::optional<PreprocessedFile> preprocessFile(const std::string &path,
                                                  SourceRange importer = {});
 
+  /// Reads and parses what is used of a module of the standard library. Null if there is no such
+  /// module; that is reported at `importer`.
+  const ast::TranslationUnit *loadModule(const std::string &name, SourceRange importer);
+
+  /// Names, such as those of a scene's classes, that count as mentioned by the program.
+  void mention(const std::string &name) { words.insert(name); }
+
   /// The file that an `import` in the file `importer` names; null if there is none, which is
   /// reported.
   const ast::TranslationUnit *resolve(const ast::ImportDecl &import, FileId importer);
 
   /// Loads the imports of the loaded files, transitively. (Checking also loads them on demand.)
-  void loadImports();
+  void loadImports() { loadImports(true); }
 
   /// All files that were read, including imported and included ones, each once, in the order of
   /// reading.
   const std::vector<std::string> &files() const { return read; }
 
+  /// The files of the modules that were imported, `std.cameras.PinholeCamera`, read or not.
+  const std::vector<std::string> &modules() const { return offered; }
+
 private:
   void addFile(const std::string &path);
+  void loadImports(bool withModules);
+  /// The unit of a file, which is empty if it cannot be parsed.
+  std::unique_ptr<ast::TranslationUnit> parseFile(const PreprocessedFile &preprocessed);
+  std::optional<PreprocessedFile> preprocessFile(const std::string &path, SourceRange importer,
+                                                 const PreprocessorOptions &options);
 
   SourceManager &sources;
   Diagnostics &diagnostics;
   PreprocessorOptions options;
   std::vector<std::string> read;
+  std::vector<std::string> offered;
+  std::unordered_set<std::string> words; // of all files but those of the library
   std::map<std::string, std::unique_ptr<ast::TranslationUnit>> units; // by canonical path
 };
 

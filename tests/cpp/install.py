@@ -15,7 +15,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     prefix = folder / "prefix"
     run(cmake, "--install", build, "--prefix", prefix)
     for expected in ("share/man/man1/rtslc.1", "share/bash-completion/completions/rtslc", "share/zsh/site-functions/_rtslc",
-                     "include/rtsl/shader.h", "include/rtsl/rtsl.h"):
+                     "include/rtsl/shader.h", "include/rtsl/rtsl.h", "share/rtslc/library/std/cameras/PinholeCamera.rtsl"):
         assert (prefix / expected).exists(), expected
 
     # find_package and rtsl_add_shaders, with shaders of our own copy so that one can change.
@@ -72,6 +72,12 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     run(cc, "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-c", f"{source}/tests/cpp/scene.c", "-o", folder / "c.o",
         *headers)
     run(cxx, "-std=c++17", folder / "events.cpp", folder / "c.o", "-o", folder / "c-api", *flags, f"-Wl,-rpath,{library}")
+    # The installed program finds the installed library.
+    view = folder / "View.rtsl"
+    view.write_text("import std.cameras;\nclass View : PerspectiveCamera { };\n")
+    run(installed, "compile", view, "--emit=cpp", "-o", folder / "view.cpp", "-MD", "-MF", folder / "view.d")
+    assert f"{prefix.resolve()}/share/rtslc/library/std/cameras/PerspectiveCamera.rtsl" in (folder / "view.d").read_text()
+
     printed = run(folder / "c-api", folder / "c.exr").splitlines()
     said = json.loads(run(installed, "render", folder / "scene.json", "-o", folder / "jit.exr", "--json", "--print", "--exceptions"))
     same_picture(installed, folder / "c.exr", folder / "jit.exr")

@@ -2,6 +2,7 @@
 #include "SceneShaders.h"
 
 #include "Shaders.h"
+#include "codegen/driver/StandardLibrary.h"
 #include "frontend/preprocessor/FileSearch.h"
 #include "runtime/scene/Scene.h"
 #include "scenefile/SceneParts.h"
@@ -72,8 +73,10 @@ namespace {
 
 /// Says which classes of the scene no file has, before any code is made.
 void refuseUnknownClasses(const scene::SceneDescription &description, const typed::Module &module,
-                          Messages &messages) {
+                          const std::vector<std::string> &libraryModules, Messages &messages) {
   std::vector<std::string> names;
+  for (const std::string &name : libraryModules) // classes that nobody mentions were not read
+    names.push_back(lastPart(name));
   for (const auto &one : module.classes)
     names.push_back(one->name);
   for (const scene::LocatedName &mention : scene::classMentions(description)) {
@@ -95,16 +98,18 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
   PreprocessorOptions preprocessor = options.preprocessor;
   preprocessor.includeFolders.push_back(folderOf(description.file));
   Shaders shaders(messages, preprocessor);
-  for (const scene::ImportDescription &import : description.imports) {
-    const SourceRange range = messages.rangeOf(import.name.place);
+  for (const scene::LocatedName &mention : scene::classMentions(description))
+    shaders.mention(mention.text);
+  // What is used of a module is known when all files have been read.
+  for (const scene::ImportDescription &import : description.imports)
+    if (!import.path.empty())
+      shaders.add(import.path, messages.rangeOf(import.name.place));
+  for (const scene::ImportDescription &import : description.imports)
     if (import.path.empty())
-      messages.diagnostics.report(Code::unknownModule, range, import.name.text);
-    else
-      shaders.add(import.path, range);
-  }
+      shaders.addModule(import.name.text, messages.rangeOf(import.name.place));
   std::unique_ptr<typed::Module> module = shaders.check(options.compile);
   if (!messages.diagnostics.hasErrors())
-    refuseUnknownClasses(description, *module, messages);
+    refuseUnknownClasses(description, *module, shaders.modules(), messages);
   if (messages.diagnostics.hasErrors())
     return nullptr;
   if (filesRead) {

@@ -31,6 +31,18 @@ public:
       parsed.push_back(unit);
   }
 
+  /// Reads and parses what is used of a module that was named at `where`.
+  void addModule(const std::string &name, SourceRange where) {
+    if (const ast::TranslationUnit *unit = loader.loadModule(name, where))
+      parsed.push_back(unit);
+  }
+
+  /// Names that count as mentioned by the program.
+  void mention(const std::string &name) { loader.mention(name); }
+
+  /// The classes and modules of functions that were imported, `std.cameras.PinholeCamera`.
+  const std::vector<std::string> &modules() const { return loader.modules(); }
+
   /// Reads files and runs the preprocessor alone.
   std::vector<PreprocessedFile> preprocess(const std::vector<std::string> &files) {
     std::vector<PreprocessedFile> preprocessed;

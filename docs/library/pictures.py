@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""pictures.py RTSLC FOLDER [--quick]: renders a picture of each class of the standard library into FOLDER.
+
+docs/library.md shows them; --quick, for tests, renders few samples of few pixels. Each scene is written beside its
+picture while it is rendered, and removed after."""
+import json
+import pathlib
+import subprocess
+import sys
+
+UP = [0, 1, 0]
+VIEW = {"class": "PerspectiveCamera", "constructor": [[2, 1.7, 4.2], [0, -0.05, 0], UP], "fieldOfView": 30}
+BALL = {"class": "Sphere", "center": [0, 0, 0], "radius": 1}
+TORUS = {"class": "Torus", "constructor": [[0, 0, 0], UP, 0.8, 0.25]}
+FLOOR = {"primitive": {"class": "Parallelogram", "constructor": [[-8, -1, 8], [16, 0, 0], [0, 0, -16]]},
+         "material": {"class": "Lambert", "albedo": {"class": "Checker", "scale": 8, "even": [0.55, 0.55, 0.5], "odd": [0.3, 0.3, 0.33]}}}
+LIGHTS = [{"class": "SphereLight", "center": [4, 6, 4], "radius": 0.8, "radiance": [20, 19, 17]}]
+SKY = {"class": "GradientSky"}
+CLAY = {"class": "Lambert", "albedo": {"class": "Checker", "even": [0.8, 0.4, 0.25], "odd": [0.75, 0.65, 0.5]}}
+MARBLE = {"class": "Marble", "scale": 1.2}
+
+CAMERAS = {name: {"constructor": [[0, 0.8, 5], [0, -0.2, 0], UP], **more} for name, more in {
+    "PerspectiveCamera": {"fieldOfView": 40}, "ThinLensCamera": {"fieldOfView": 40, "focusDistance": 4, "lensRadius": 0.15},
+    "TiltShiftCamera": {"fieldOfView": 40, "focusDistance": 5, "lensRadius": 0.1, "shift": [0, -0.2], "tilt": [0, 60]},
+    "OrthographicCamera": {"height": 3.5}, "FisheyeCamera": {}, "PanoramaCamera": {}}.items()}
+CAMERAS["PinholeCamera"] = {"constructor": {"eye": [0, 0.8, 5], "up": UP, "gaze": [0, -0.2, -1], "uv0": [-0.5, -0.375],
+                                            "uv1": [0.5, 0.375], "d": 1}}
+PRIMITIVES = {
+    "Sphere": {"center": [0, 0, 0]}, "Box": {"low": [-0.8, -0.8, -0.8], "high": [0.8, 0.8, 0.8]},
+    "Disk": {"constructor": [[0, 0, 0], [0.3, 0.6, 0.8], 1, 0.3]},
+    "Parallelogram": {"constructor": [[-0.8, -0.6, 0.2], [1.5, 0.2, -0.3], [0.1, 1.2, -0.4]]},
+    "Cone": {"constructor": [[0, -1, 0], [0, 0.9, 0], 0.8, 0.2]}, "Cylinder": {"constructor": [[0, -1, 0], [0, 0.8, 0], 0.7]},
+    "Capsule": {"constructor": [[-0.5, -0.4, 0], [0.5, 0.3, 0.2], 0.45]}, "Torus": {"constructor": [[0, -0.1, 0], [0.1, 1, 0.6], 0.75, 0.25]},
+    "Quadric": {"coefficients": [1, -0.6, 1], "level": 0.15}, "DistanceField": {}, "Julia": {"extent": 1.5}, "Mandelbulb": {"extent": 1.25, "scale": 0.85}}
+MATERIALS = {
+    "Lambert": {"reflectance": [0.8, 0.4, 0.25]}, "OrenNayar": {"reflectance": [0.8, 0.4, 0.25], "sigma": 1}, "Conductor": {}, "Gold": {},
+    "Silver": {"alpha": 0.02}, "Copper": {"alpha": 0.2}, "Aluminium": {"alpha": 0.3}, "Iron": {"alpha": 0.15},
+    "Dielectric": {"transmission": [0.8, 0.95, 0.85]}, "ThinGlass": {"transmission": [0.5, 0.7, 0.95]}, "Plastic": {"reflectance": [0.1, 0.2, 0.7], "alpha": 0.03},
+    "Ward": {"reflectance": [0.1, 0.1, 0.1], "specular": [0.5, 0.5, 0.5]}, "Velvet": {"reflectance": [0.25, 0.02, 0.08], "sheen": [0.7, 0.4, 0.5]},
+    "Principled": {"baseColor": [0.7, 0.05, 0.05], "roughness": 0.6, "clearcoat": 1}, "Emitter": {"radiance": [1.0, 0.8, 0.5]},
+    "MixMaterial": {"first": {"class": "Conductor"}, "second": {"class": "Lambert", "reflectance": [0.1, 0.1, 0.3]},
+                    "amountMap": {"class": "Checker", "scale": 4}},
+    "TwoSided": {"front": {"class": "Conductor"}, "back": {"class": "Lambert"}},
+    "Cutout": {"material": {"class": "Lambert", "reflectance": [0.3, 0.6, 0.2]}, "opacityMap": {"class": "Checker", "scale": 5}},
+    "NormalMap": {"material": {"class": "Lambert"}, "slopeU": {"class": "Checker", "scale": 5}, "strength": 0.8},
+    "BumpMap": {"material": {"class": "Conductor", "alpha": 0.3}, "height": {"class": "Noise", "kind": 2, "scale": 5}, "scale": 0.1}}
+LIGHT_SCENES = {
+    "PointLight": {"position": [1.5, 2.5, 2], "intensity": [8, 8, 8]},
+    "SpotLight": {"position": [2, 3, 2], "direction": [-2, -3, -2], "angle": 18, "intensity": [14, 14, 14]},
+    "DistantLight": {"direction": [1, 2, 1], "angle": 4}, "RectangleLight": {"corner": [-1, 2.5, -1], "side1": [2, 0, 0], "side2": [0, 0, 2], "radiance": [5, 5, 5]},
+    "DiskLight": {"center": [2, 2.5, 1], "normal": [-2, -2.5, -1], "radiance": [6, 6, 6]}, "SphereLight": {"center": [2, 3, 2], "radiance": [18, 18, 18]},
+    "EnvironmentLight": {"zenith": [0.5, 0.7, 1], "horizon": [0.9, 0.8, 0.7], "nadir": [0.2, 0.2, 0.2]}}
+TEXTURES = {
+    "Solid": {}, "Checker": {"scale": 4}, "Brick": {}, "Noise": {"kind": 3, "scale": 2}, "Marble": MARBLE, "Wood": {}, "Gradient": {},
+    "TransformedPattern": {"pattern": {"class": "Checker", "scale": 4}, "rotation": 30}, "Triplanar": {"pattern": {"class": "Checker", "scale": 2}}}
+BACKGROUNDS = {"GradientSky": {}, "DaylightSky": {}}
+
+
+def scene(objects, camera=VIEW, lights=LIGHTS, background=SKY, ambient=0.3):
+    return {"rtsl": 1, "import": ["std"], "camera": camera, "objects": objects, "lights": lights, "background": background,
+            "ambient": [ambient] * 3, "render": {"size": [128, 96], "spp": 64, "depth": 32}}
+
+
+def scenes():
+    """A scene for each class that the library has objects of, by name."""
+    for name, members in CAMERAS.items():
+        row = [{"primitive": {"class": "Sphere", "center": [1.1 * x, -0.5, -1.4 * x], "radius": 0.5}, "material": CLAY} for x in (-1, 0, 1)]
+        yield name, scene([FLOOR, *row], camera={"class": name, **members})
+    for name, members in PRIMITIVES.items():
+        yield name, scene([FLOOR, {"primitive": {"class": name, **members}, "material": CLAY}])
+    for name, members in MATERIALS.items():
+        form = {"Ward": {"class": "Cylinder", "constructor": [[0, -1, 0], [0, 0.8, 0], 0.8]}, "NormalMap": TORUS, "Velvet": TORUS}.get(name, BALL)
+        yield name, scene([FLOOR, {"primitive": form, "material": {"class": name, **members}}])
+    for name, members in LIGHT_SCENES.items():
+        yield name, scene([FLOOR, {"primitive": BALL, "material": {"class": "Lambert"}}], lights=[{"class": name, **members}],
+                          background=[0, 0, 0], ambient=0.02)
+    for name, members in TEXTURES.items():
+        form = {"class": "Box", "low": [-0.8, -1, -0.8], "high": [0.8, 0.6, 0.8]}
+        yield name, scene([FLOOR, {"primitive": form, "material": {"class": "Lambert", "albedo": {"class": name, **members}}}])
+    for name, members in BACKGROUNDS.items():
+        yield name, scene([FLOOR, {"primitive": BALL, "material": {"class": "Silver", "alpha": 0}}],
+                          camera={"class": "PerspectiveCamera", "constructor": [[0, 0.3, 5], [0, 0.4, 0], UP], "fieldOfView": 50},
+                          background={"class": name, **members})
+
+
+def main():
+    rtslc, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    options = ["--size", "24x18", "--spp", "2"] if "--quick" in sys.argv else []
+    failed = []
+    for name, description in scenes():
+        file = folder / f"{name}.json"
+        file.write_text(json.dumps(description))
+        done = subprocess.run([rtslc, "render", file, "-o", folder / f"{name}.png", "--quiet", *options], capture_output=True, text=True)
+        file.unlink()
+        if done.returncode or done.stderr:
+            failed.append(name)
+            print(name, done.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""reference.py [--check]: writes the tables of docs/library.md from the comments of library/std.
+
+With --check it only fails if they are out of date."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCUMENT = ROOT / "docs/library.md"
+BEGIN, END = "<!-- reference: begin -->\n", "<!-- reference: end -->\n"
+MEMBER = re.compile(r"^ *public (optional )?([\w\[\]]+) (\w+)(?: = (.*?))?;(?: +// (.*))?$", re.M)
+FUNCTION = re.compile(r"((?:^// .*\n)+)^(\w+ \w+\([^)]*\)) \{", re.M)
+
+
+def prose(comment):
+    """The text of comment lines, with paragraphs."""
+    lines = [line[2:].strip() for line in comment.strip().split("\n")]
+    return re.sub(r"\n\n+", "\n\n", "\n".join(lines)).strip().replace("<", "&lt;")
+
+
+def class_section(path):
+    text = path.read_text()
+    head = re.search(r"((?:^//.*\n)+)(?=(?:\n|import .*\n)*(?://.*\n|struct (?:.*\n)*?\};\n|\n|import .*\n)*class )", text, re.M)
+    base = re.search(r"^class \w+ : (\w+)", text, re.M).group(1)
+    constructor = re.search(r"void constructor\(([^)]*)\)", text)
+    yield f"### {path.stem}\n"
+    if (ROOT / f"docs/library/{path.stem}.png").exists():
+        yield f"![{path.stem}](library/{path.stem}.png)\n"
+    yield prose(head.group(1)) + "\n"
+    yield f"A class of `{base}`." + (f" Constructor: `{constructor.group(1)}`." if constructor else "") + "\n"
+    rows = MEMBER.findall(text)
+    if rows:
+        yield "| parameter | type | default | |\n|---|---|---|---|"
+        for optional, kind, name, default, comment in rows:
+            given = f"`{default}`" if default else "none" if optional else "required"
+            yield f"| `{name}` | `{kind}` | {given} | {comment} |"
+        yield ""
+
+
+def reference():
+    library = ROOT / "library/std"
+    for folder in sorted(path for path in library.iterdir() if path.is_dir()):
+        yield f"## std.{folder.name}\n"
+        for path in sorted(folder.glob("*.rtsl")):
+            yield from class_section(path)
+    yield "## Modules of functions\n"
+    for path in sorted(library.glob("*.rtsl")):
+        text = path.read_text()
+        yield f"### std.{path.stem}\n"
+        yield prose(re.match(r"(?://.*\n)+", text).group(0)) + "\n"
+        for comment, signature in FUNCTION.findall(text):
+            yield f"- `{signature}`: " + " ".join(prose(comment).split())
+        yield ""
+
+
+def main():
+    text = DOCUMENT.read_text()
+    before, after = text[:text.index(BEGIN)] + BEGIN, text[text.index(END):]
+    renewed = before + "\n".join(reference()) + "\n" + after
+    if "--check" in sys.argv:
+        if renewed != text:
+            print("docs/library.md is out of date: run docs/library/reference.py")
+        return renewed != text
+    DOCUMENT.write_text(renewed)
+    return 0
+
+
+sys.exit(main())

@@ -1,0 +1,82 @@
+"""Modules of the standard library: which files an import reads, and what is said of modules that do not exist."""
+
+import json
+import pathlib
+import unittest
+
+from harness import RTSLC, Case
+
+LIBRARY = (pathlib.Path(RTSLC).parent.parent / "share/rtslc/library").resolve()
+
+SPHERE = {"primitive": {"class": "Sphere", "center": [0, 0, -3]}, "material": {"class": "Grey"}}
+GREY = "class Grey : rt_Material;\nvoid shade() { rt_SampleColor = color(0.5); }\n"
+
+
+class Library(Case):
+    def classes(self, text, *options):
+        """The classes of a program of one file."""
+        self.write("main.rtsl", text)
+        reflection, _ = self.run_rtslc("compile", "main.rtsl", "--emit=reflection", *options)
+        return sorted(each["name"] for each in json.loads(reflection)["classes"])
+
+    def scene(self, **changes):
+        scene = {"rtsl": 1, "import": ["std.primitives", "std.cameras", "Grey.rtsl"],
+                 "camera": {"class": "PerspectiveCamera", "constructor": [[0, 0, 0], [0, 0, -1], [0, 1, 0]]},
+                 "objects": [SPHERE], "render": {"size": [8, 6], "spp": 1}}
+        scene.update(changes)
+        self.write("Grey.rtsl", GREY)
+        self.write("scene.json", json.dumps(scene))
+
+    def test_only_what_is_mentioned_is_read(self):
+        self.assertEqual(self.classes("import std.cameras;\n" + GREY), ["Grey"])
+        self.assertEqual(self.classes("import std;\nclass Ball : Sphere { };\n"), ["Ball", "Sphere"])
+        self.assertEqual(self.classes("import std.cameras.PinholeCamera;\n" + GREY), ["Grey", "PinholeCamera"])
+
+    def test_files_imported_after_the_module_count_too(self):
+        self.write("ball.rtsl", "class Ball : Sphere { };\n")
+        self.assertEqual(self.classes('import std.primitives;\nimport "ball.rtsl";\n' + GREY), ["Ball", "Grey", "Sphere"])
+
+    def test_a_name_of_the_library_is_free_unless_imported(self):
+        self.assertEqual(self.classes("import std.cameras;\nclass Sphere { int i() { return 1; } };\n"), ["Sphere"])
+        self.write("main.rtsl", "import std.primitives;\nclass Sphere { int i() { return 1; } };\n")
+        messages = self.diagnose("check", "main.rtsl")
+        self.assertEqual([each["code"] for each in messages], ["E0207"], messages)
+
+    def test_macros_do_not_apply(self):
+        self.assertEqual(self.classes("import std.primitives.Sphere;\n", "-Dcenter=2", "-Dradius=3"), ["Sphere"])
+
+    def test_scenes(self):
+        self.scene()
+        self.run_rtslc("render", "scene.json", "-o", "picture.png")
+        self.run_rtslc("pack", "scene.json", "-o", "scene.pack")
+        self.run_rtslc("explain", "scene.json")
+        self.run_rtslc("compile", "scene.json", "--emit=ptx")
+        self.run_rtslc("check", "scene.json", "-MD", "-MF", "scene.d")
+        rule = (self.folder / "scene.d").read_text()
+        self.assertIn(str(LIBRARY / "std/primitives/Sphere.rtsl"), rule)
+        self.assertIn(str(LIBRARY / "std/cameras/ViewCamera.rtsl"), rule)
+        self.assertNotIn("PinholeCamera", rule)
+
+    def test_unknown_modules(self):
+        for text, meant in (("std.cameas", "std.cameras"), ("std.cameras.Pinhole", "std.cameras.PinholeCamera"),
+                            ("PinholeCamera", "std.cameras.PinholeCamera"), ("std.primitives.sphere", "std.primitives.Sphere")):
+            self.write("main.rtsl", f"import {text};\n")
+            messages = self.diagnose("check", "main.rtsl")
+            self.assert_message(messages, "E0126", text, line=1, column=8)
+            self.assertEqual(messages[0]["fixes"][0]["replacement"], meant)
+        for text in ("std.nothing", "other.things"):
+            self.write("main.rtsl", f"import {text};\n")
+            messages = self.diagnose("check", "main.rtsl")
+            self.assertIn("`cameras`", str(messages[0]["notes"]))
+
+    def test_unknown_modules_and_classes_of_scenes(self):
+        self.scene(**{"import": ["std.primitive", "Grey.rtsl"]})
+        messages = self.diagnose("check", "scene.json")
+        self.assert_message([each for each in messages if each["code"] != "E0821"], "E0126", "std.primitive", file="scene.json")
+        self.scene(objects=[{**SPHERE, "primitive": {"class": "Sphre"}}])
+        messages = self.diagnose("check", "scene.json")
+        self.assertIn("Sphere", str(messages[0]["fixes"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
