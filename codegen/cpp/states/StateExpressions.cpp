@@ -32,18 +32,6 @@ Code StateWriter::use(mlir::Value value, const Type *type) {
   return code;
 }
 
-// C++ requires both values to be of one type, and a vector of bools has another where it lies in
-// memory.
-Code choose(Context &context, Code condition, Code first, Code second, const Type *type) {
-  const bool isBools = type && type->isVector() && type->element->is(TypeKind::Bool);
-  const auto side = [&](const Code &value) {
-    const bool isMade =
-        !isBools || (value->is(ExpressionKind::Construct) && value->name == context.types.of(type));
-    return isMade ? value : construct(context.types.of(type), {value});
-  };
-  return conditional(std::move(condition), side(first), side(second));
-}
-
 static Code number(mlir::Attribute attribute, bool isUnsigned) {
   auto integerAttr = llvm::dyn_cast<mlir::IntegerAttr>(attribute);
   if (!integerAttr)

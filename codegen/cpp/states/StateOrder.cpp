@@ -109,7 +109,7 @@ StateWriter::Touches StateWriter::touchesOf(mlir::Operation *op) {
   return touches;
 }
 
-StateWriter::Line &StateWriter::emit(Lines &out, Statement statement) {
+Statement &StateWriter::emit(Statements &out, Statement statement) {
   if (auto comment = comments.find(currentLine); comment != comments.end()) {
     statement.comment = comment->second;
     comments.erase(comment);
@@ -117,9 +117,7 @@ StateWriter::Line &StateWriter::emit(Lines &out, Statement statement) {
   statement.hasSpace = !out.empty() && spaces.erase(currentLine) != 0;
   if (currentLine != 0)
     statement.place = context.lineDirective(machine.method->range, currentLine);
-  Line &line = out.emplace_back();
-  line.statement = std::move(statement);
-  return line;
+  return out.emplace_back(std::move(statement));
 }
 
 /// Can the variable of a value become that of `value`, which the author calls the same? It can if
@@ -143,7 +141,7 @@ bool StateWriter::isReplacedBy(mlir::Value before, mlir::Value value) {
 
 /// Gives a pending value a variable now. `isNew`: it was just made, so no pending expression
 /// still reads the variable before it.
-void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
+void StateWriter::materialise(mlir::Value value, Statements &out, bool isNew) {
   const Pending waiting = std::move(pending[value]);
   pending.erase(value);
   const Type *type = typeOf(value);
@@ -164,7 +162,9 @@ void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
   latest[wanted] = value;
   if (!isAgain) {
     const std::string typeName = type ? context.types.of(type) : std::string();
-    emit(out, declaration(typeName, own, whole ? whole->vector : waiting.code)).made = value;
+    Statement &made = emit(out, declaration(typeName, own, whole ? whole->vector : waiting.code));
+    made.written.identity = value.getAsOpaquePointer();
+    made.written.isTemporary = isOwnName(own);
   } else if (!whole) {
     emit(out, assignment(name(own), waiting.code, value));
   }
@@ -173,14 +173,14 @@ void StateWriter::materialise(mlir::Value value, Lines &out, bool isNew) {
 }
 
 /// A value for an expression that has it more than once.
-Code StateWriter::named(mlir::Value value, Lines &out) {
+Code StateWriter::named(mlir::Value value, Statements &out) {
   if (auto waiting = pending.find(value); waiting != pending.end() && !waiting->second.isTrivial)
     materialise(value, out);
   return use(value, typeOf(value));
 }
 
 /// Evaluates pending values that would notice something that touches this, before it happens.
-void StateWriter::flush(const Touches &touches, Lines &out) {
+void StateWriter::flush(const Touches &touches, Statements &out) {
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending)
     if (meet(waiting.touches, touches))
@@ -191,7 +191,7 @@ void StateWriter::flush(const Touches &touches, Lines &out) {
 
 /// Before a construct with regions: values that an inner statement would change are not pending in
 /// another region, and a value that is used once is not evaluated in each iteration of a loop.
-void StateWriter::flushBefore(mlir::Operation &op, Lines &out) {
+void StateWriter::flushBefore(mlir::Operation &op, Statements &out) {
   const Touches inside = touchesOf(&op);
   const bool isLoop = llvm::isa<ir::LoopOp>(op);
   llvm::SmallVector<mlir::Value> first;
@@ -210,7 +210,8 @@ void StateWriter::flushBefore(mlir::Operation &op, Lines &out) {
 }
 
 /// The value of an operation becomes pending, or gets a variable.
-void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool isPure, Lines &out) {
+void StateWriter::define(mlir::Operation &op, Code code, Touches touches, bool isPure,
+                         Statements &out) {
   mlir::Value value = op.getResult(0);
   const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
   if (uses == 0) {

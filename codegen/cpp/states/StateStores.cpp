@@ -33,17 +33,8 @@ bool writesTo(mlir::Operation *op, mlir::Value address) {
                       [&](mlir::Operation *user) { return writesTo(user, op->getResult(0)); });
 }
 
-/// Is it `target = {};`?
-static bool clears(const Statement &statement, const Code &target) {
-  if (!statement.is(StatementKind::Expression) || !statement.value->is(ExpressionKind::Assign) ||
-      statement.value->compound)
-    return false;
-  const std::vector<Code> &parts = statement.value->parts;
-  return same(parts[0], target) && isZero(parts[1]);
-}
-
 /// Variables that stay whole are read and written where they lie, by the author's expression.
-void StateWriter::write(ir::EvaluateOp op, Lines &out) {
+void StateWriter::write(ir::EvaluateOp op, Statements &out) {
   const SourceTable::Entry &entry = source.entries[op.getSource()];
   usesScratch |= context.effects.expression(*entry.expr).usesScratch;
   const bool isWrite =
@@ -67,17 +58,13 @@ void StateWriter::write(ir::EvaluateOp op, Lines &out) {
   const bool isInto = entry.kind == SourceTable::Kind::Into;
   const Code target = isInto ? place(op.getOperand(0)) : Code();
   flush(touches, out);
-  // Nothing has read what it held before.
-  if (isInto && !out.empty() && !out.back().declares && clears(out.back().statement, target) &&
-      !contains(code, target))
-    out.pop_back();
   for (Statement &statement : before)
     emit(out, std::move(statement));
   if (isInto) {
-    Line &line = emit(out, assign(target, code));
+    Statement &made = emit(out, assign(target, code));
     if (auto variable = op.getOperand(0).getDefiningOp<ir::VarOp>();
         variable && !contains(code, target))
-      line.assigns = variable;
+      made.written = this->written(variable);
     return;
   }
   for (Statement &statement : written)
@@ -90,14 +77,14 @@ void StateWriter::write(ir::EvaluateOp op, Lines &out) {
     emit(out, code);
 }
 
-void StateWriter::write(ir::ClearOp op, Lines &out) {
+void StateWriter::write(ir::ClearOp op, Statements &out) {
   auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
   const Code target = place(op.getAddress());
   flush(touchesOf(op), out);
   const Type *type = declaredType(op.getAddress());
-  Line &line = emit(out, assign(target, type ? context.types.zero(type) : list("", {})));
+  Statement &made = emit(out, assign(target, type ? context.types.zero(type) : list("", {})));
   if (variable)
-    line.assigns = variable;
+    made.written = this->written(variable);
 }
 
 /// `target += y` for `target + y`, where `value` is the whole expression of the source that made
@@ -111,7 +98,7 @@ Code StateWriter::assignment(const Code &target, const Code &value, mlir::Value 
   return assign(target, value);
 }
 
-void StateWriter::write(ir::StoreOp op, Lines &out) {
+void StateWriter::write(ir::StoreOp op, Statements &out) {
   auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
   const Type *declared = variable ? nullptr : declaredType(op.getAddress());
   const Type *type = variable ? varType(variable) : declared ? declared : typeOf(op.getValue());
@@ -135,56 +122,37 @@ void StateWriter::write(ir::StoreOp op, Lines &out) {
     emit(out, assignment(Insertion::place(target, part), part.value, scalar));
     return;
   }
-  // Nothing has read what it held before.
-  if (!out.empty() && !out.back().declares && out.back().statement.comment.empty() &&
-      !out.back().statement.place && clears(out.back().statement, target) &&
-      !contains(value, target))
-    out.pop_back();
-  Line &line = emit(out, assignment(target, value, op.getValue()));
+  Statement &made = emit(out, assignment(target, value, op.getValue()));
   if (variable)
-    line.assigns = variable;
-  auto load = op.getValue().getDefiningOp<ir::LoadOp>();
-  if (auto from = load ? load.getAddress().getDefiningOp<ir::FieldOp>() : ir::FieldOp())
-    line.copies = declaredType(from.getBase());
-  joinFields(op.getAddress(), out);
+    made.written = this->written(variable);
+  made.field = writtenField(op);
+  if (auto field = op.getAddress().getDefiningOp<ir::FieldOp>(); field && !made.field.all.empty())
+    if (auto whole = field.getBase().getDefiningOp<ir::VarOp>())
+      made.written = written(whole);
 }
 
-/// Field by field is how passes copy and clear a struct: `a.x = b.x; a.y = b.y;` is `a = b;`. Reads
-/// the statements that were emitted last.
-void StateWriter::joinFields(mlir::Value address, Lines &out) {
-  auto field = address.getDefiningOp<ir::FieldOp>();
+WrittenVariable StateWriter::written(ir::VarOp variable) {
+  const Type *type = varType(variable);
+  WrittenVariable made;
+  made.identity = variable.getAsOpaquePointer();
+  made.type = type ? context.types.of(type) : std::string();
+  made.isTemporary = isOwnName(variable.getName());
+  made.isVectorOfBools = type && type->isVector() && type->element->is(TypeKind::Bool);
+  return made;
+}
+
+WrittenField StateWriter::writtenField(ir::StoreOp op) {
+  WrittenField made;
+  auto field = op.getAddress().getDefiningOp<ir::FieldOp>();
   const Type *type = field ? declaredType(field.getBase()) : nullptr;
-  if (!type || !type->is(TypeKind::Struct) || out.size() < type->structure->fields.size())
-    return;
-  const std::vector<typed::Field> &fields = type->structure->fields;
-  const Code whole = place(field.getBase());
-  const auto first = out.end() - static_cast<std::ptrdiff_t>(fields.size());
-  Code from; // what the struct gets
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const Statement &statement = first[static_cast<std::ptrdiff_t>(i)].statement;
-    if (!statement.is(StatementKind::Expression) || !statement.value->is(ExpressionKind::Assign) ||
-        statement.value->compound)
-      return;
-    const Code &target = statement.value->parts[0], &value = statement.value->parts[1];
-    const std::string &own = context.names.of(&fields[i]);
-    if (!same(target, member(whole, own)))
-      return;
-    const bool isCopy = first[static_cast<std::ptrdiff_t>(i)].copies == type &&
-                        value->is(ExpressionKind::Member) && value->name == own;
-    const Code of = isZero(value) ? list("", {}) : isCopy ? value->parts[0] : Code();
-    if (!of || (from && !same(from, of)))
-      return;
-    from = of;
-  }
-  Line joined;
-  joined.statement = statement(assign(whole, from));
-  joined.statement.comment = first->statement.comment;
-  if (auto variable = field.getBase().getDefiningOp<ir::VarOp>())
-    joined.assigns = variable;
-  out.erase(first, out.end());
-  if (!out.empty() && !out.back().declares && clears(out.back().statement, whole))
-    out.pop_back();
-  out.push_back(std::move(joined));
+  if (!type || !type->is(TypeKind::Struct))
+    return made;
+  for (const typed::Field &one : type->structure->fields)
+    made.all.push_back(context.names.of(&one));
+  auto load = op.getValue().getDefiningOp<ir::LoadOp>();
+  auto from = load ? load.getAddress().getDefiningOp<ir::FieldOp>() : ir::FieldOp();
+  made.isCopy = from && declaredType(from.getBase()) == type;
+  return made;
 }
 
 } // namespace rtsl::cpp

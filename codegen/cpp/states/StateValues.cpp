@@ -5,6 +5,7 @@
 // has become.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/cpp/cleanup/ConditionalAssignments.h"
 #include "codegen/cpp/states/StateWriter.h"
 
 #include "mlir/IR/Matchers.h"
@@ -25,7 +26,7 @@ static bool isOfOneComponent(Op op) {
   return position.size() == 1 && (op.hasDynamicPosition() || position.front() <= 3);
 }
 
-void StateWriter::write(vector::ExtractOp op, Lines &out) {
+void StateWriter::write(vector::ExtractOp op, Statements &out) {
   if (!isOfOneComponent(op))
     return unsupported(*op);
   const Code from = use(op.getSource());
@@ -35,7 +36,7 @@ void StateWriter::write(vector::ExtractOp op, Lines &out) {
     make(*op, component(from, static_cast<std::size_t>(op.getStaticPosition().front())), out);
 }
 
-void StateWriter::write(vector::InsertOp op, Lines &out) {
+void StateWriter::write(vector::InsertOp op, Statements &out) {
   if (!isOfOneComponent(op))
     return unsupported(*op);
   Insertion whole;
@@ -57,7 +58,7 @@ void StateWriter::write(vector::InsertOp op, Lines &out) {
   make(*op, whole.code(), out);
 }
 
-void StateWriter::write(vector::FromElementsOp op, Lines &out) {
+void StateWriter::write(vector::FromElementsOp op, Statements &out) {
   const Type *type = typeOf(op.getResult());
   if (!type)
     return unsupported(*op);
@@ -67,14 +68,14 @@ void StateWriter::write(vector::FromElementsOp op, Lines &out) {
   make(*op, construct(context.types.of(type), std::move(parts)), out);
 }
 
-void StateWriter::write(vector::BroadcastOp op, Lines &out) {
+void StateWriter::write(vector::BroadcastOp op, Statements &out) {
   const Type *type = typeOf(op.getResult());
   if (!type || !op.getSourceType().isIntOrFloat())
     return unsupported(*op);
   make(*op, construct(context.types.of(type), {use(op.getSource())}), out);
 }
 
-void StateWriter::write(vector::ShuffleOp op, Lines &out) {
+void StateWriter::write(vector::ShuffleOp op, Statements &out) {
   const Type *type = typeOf(op.getResult());
   if (!type)
     return unsupported(*op);
@@ -92,7 +93,7 @@ void StateWriter::write(vector::ShuffleOp op, Lines &out) {
 // Conditions and choices
 //===----------------------------------------------------------------------===//
 
-void StateWriter::infix(mlir::Operation &op, Operator sign, Lines &out) {
+void StateWriter::infix(mlir::Operation &op, Operator sign, Statements &out) {
   const Code left = use(op.getOperand(0));
   make(op, binary(sign, left, use(op.getOperand(1))), out);
 }
@@ -101,34 +102,38 @@ static bool isBool(mlir::Operation *op) {
   return op->getResult(0).getType().isInteger(1);
 }
 
-void StateWriter::write(arith::XOrIOp op, Lines &out) {
+void StateWriter::write(arith::XOrIOp op, Statements &out) {
   if (!isBool(op) || !mlir::matchPattern(op.getRhs(), mlir::m_One()))
     return unsupported(*op);
   make(*op, opposite(op.getLhs(), use(op.getLhs())), out);
 }
 
-void StateWriter::write(arith::AndIOp op, Lines &out) {
+void StateWriter::write(arith::AndIOp op, Statements &out) {
   isBool(op) ? infix(*op, Operator::And, out) : unsupported(*op);
 }
 
-void StateWriter::write(arith::OrIOp op, Lines &out) {
+void StateWriter::write(arith::OrIOp op, Statements &out) {
   isBool(op) ? infix(*op, Operator::Or, out) : unsupported(*op);
 }
 
-void StateWriter::write(arith::AddIOp op, Lines &out) { // of a light's number
+void StateWriter::write(arith::AddIOp op, Statements &out) { // of a light's number
   infix(*op, Operator::Add, out);
 }
 
-void StateWriter::write(arith::CmpIOp op, Lines &out) {
+void StateWriter::write(arith::CmpIOp op, Statements &out) {
   op.getPredicate() == arith::CmpIPredicate::ult ? infix(*op, Operator::Less, out)
                                                  : unsupported(*op);
 }
 
-void StateWriter::write(arith::SelectOp op, Lines &out) {
+void StateWriter::write(arith::SelectOp op, Statements &out) {
   const Type *type = typeOf(op.getResult());
   const Code condition = use(op.getCondition());
   const Code first = use(op.getTrueValue(), type);
-  make(*op, choose(context, condition, first, use(op.getFalseValue(), type), type), out);
+  const bool isBools = type && type->isVector() && type->element->is(TypeKind::Bool);
+  make(*op,
+       choose(condition, first, use(op.getFalseValue(), type),
+              isBools ? context.types.of(type) : std::string(), isBools),
+       out);
 }
 
 } // namespace rtsl::cpp

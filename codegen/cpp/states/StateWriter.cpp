@@ -61,7 +61,7 @@ static Code onState(const char *function) {
   return cpp::call(function, {name("rt")});
 }
 
-void StateWriter::operation(mlir::Operation &op, Lines &out) {
+void StateWriter::operation(mlir::Operation &op, Statements &out) {
   consumed = {};
   if (unsigned line = lineOf(op.getLoc(), machine.file))
     currentLine = line;
@@ -101,11 +101,11 @@ void StateWriter::operation(mlir::Operation &op, Lines &out) {
       .Default([&](mlir::Operation *) { unsupported(op); });
 }
 
-void StateWriter::make(mlir::Operation &op, Code code, Lines &out) {
+void StateWriter::make(mlir::Operation &op, Code code, Statements &out) {
   define(op, std::move(code), consumed, true, out);
 }
 
-void StateWriter::makeAnywhere(mlir::Operation &op, Code code, Lines &out) {
+void StateWriter::makeAnywhere(mlir::Operation &op, Code code, Statements &out) {
   define(op, std::move(code), {}, true, out);
 }
 
@@ -113,13 +113,14 @@ void StateWriter::makeAnywhere(mlir::Operation &op, Code code, Lines &out) {
 // Variables, and the frame
 //===----------------------------------------------------------------------===//
 
-void StateWriter::write(ir::VarOp op, Lines &out) {
-  Line line;
-  line.declares = op;
-  out.push_back(std::move(line));
+void StateWriter::write(ir::VarOp op, Statements &out) {
+  Statement open = simple(StatementKind::Declaration); // named at the end of the block
+  open.isOpen = true;
+  open.written.identity = op;
+  out.push_back(std::move(open));
 }
 
-void StateWriter::write(ir::LoadOp op, Lines &out) {
+void StateWriter::write(ir::LoadOp op, Statements &out) {
   const Code code = place(op.getAddress());
   Touches touches;
   note(op.getAddress(), touches, false);
@@ -127,14 +128,14 @@ void StateWriter::write(ir::LoadOp op, Lines &out) {
   define(*op, code, touches, true, out);
 }
 
-void StateWriter::write(ir::CopyOp op, Lines &out) {
+void StateWriter::write(ir::CopyOp op, Statements &out) {
   const Code from = place(op.getSource()), to = place(op.getTarget());
   flush(touchesOf(op), out);
   if (!same(from, to))
     emit(out, assign(to, from));
 }
 
-void StateWriter::write(ir::ElementOp op, Lines &) {
+void StateWriter::write(ir::ElementOp op, Statements &) {
   elementIndices[op] = use(op.getIndex());
 }
 
@@ -146,7 +147,7 @@ const FrameField *StateWriter::savedField(llvm::StringRef slot) const {
   return nullptr;
 }
 
-void StateWriter::write(ir::FrameLoadOp op, Lines &out) {
+void StateWriter::write(ir::FrameLoadOp op, Statements &out) {
   const FrameField *from = savedField(op.getName());
   if (!from)
     return;
@@ -155,7 +156,7 @@ void StateWriter::write(ir::FrameLoadOp op, Lines &out) {
   define(*op, frameField(from->name), touches, true, out);
 }
 
-void StateWriter::write(ir::FrameStoreOp op, Lines &out) {
+void StateWriter::write(ir::FrameStoreOp op, Statements &out) {
   const FrameField *to = savedField(op.getName());
   if (!to)
     return;
@@ -165,7 +166,7 @@ void StateWriter::write(ir::FrameStoreOp op, Lines &out) {
     emit(out, assign(target, value));
 }
 
-void StateWriter::write(ir::ExpressionOp op, Lines &out) {
+void StateWriter::write(ir::ExpressionOp op, Statements &out) {
   const SourceTable::Entry &entry = source.entries[op.getSource()];
   const Code code = expression(entry, op->getOperands());
   usesScratch |= context.effects.expression(*entry.expr).usesScratch;
@@ -193,13 +194,13 @@ void StateWriter::write(ir::SpawnPayloadOp op) {
       spawned.push_back(use(optional));
 }
 
-void StateWriter::write(ir::RandOp op, Lines &out) {
+void StateWriter::write(ir::RandOp op, Statements &out) {
   Touches touches = touchesOf(op);
   flush(touches, out);
   define(*op, onState(op.getOpen() ? "rtsl::randOpen" : "rtsl::rand"), touches, false, out);
 }
 
-void StateWriter::write(ir::IlluminateOp op, Lines &out) {
+void StateWriter::write(ir::IlluminateOp op, Statements &out) {
   std::vector<Code> arguments = {name("rt")};
   for (mlir::Value operand : op->getOperands())
     arguments.push_back(use(operand));
@@ -213,17 +214,17 @@ void StateWriter::write(ir::IlluminateOp op, Lines &out) {
 // Methods that are called through references
 //===----------------------------------------------------------------------===//
 
-void StateWriter::write(ir::CallArgumentOp op, Lines &out) {
+void StateWriter::write(ir::CallArgumentOp op, Statements &out) {
   if (!llvm::isa<ir::PtrType>(op.getType()))
     makeAnywhere(*op, frameField(machine.called->fields[machine.given(op)]), out);
 }
 
-void StateWriter::write(ir::CallResultOp op, Lines &out) {
+void StateWriter::write(ir::CallResultOp op, Statements &out) {
   const Code value = use(op.getValue(), machine.method->returnType);
   emit(out, assign(frameField(machine.called->returned), value));
 }
 
-void StateWriter::write(ir::CallReturnedOp op, Lines &out) {
+void StateWriter::write(ir::CallReturnedOp op, Statements &out) {
   const auto before =
       machine.callBefore.find(op->getParentOfType<mlir::func::FuncOp>().getSymName().str());
   if (op->getNumResults() != 0 && before->second)
@@ -260,7 +261,7 @@ Code StateWriter::call(ir::ReturnOp op) {
   return cpp::call("rtsl::callThen", std::move(arguments));
 }
 
-void StateWriter::leave(ir::ReturnOp op, Lines &out) {
+void StateWriter::leave(ir::ReturnOp op, Statements &out) {
   auto next =
       op.getValues().empty() ? ir::NextOp() : op.getValues().front().getDefiningOp<ir::NextOp>();
   auto withRay = [&](const char *callee, std::vector<Code> arguments) {

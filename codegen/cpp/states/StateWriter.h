@@ -77,9 +77,6 @@ std::string nameFor(mlir::Value value);
 /// Is it the compiler's name for the result of `&&` or `||`?
 bool isOwnName(llvm::StringRef name);
 
-/// `condition ? first : second`, of values of a type.
-Code choose(Context &context, Code condition, Code first, Code second, const Type *type);
-
 class StateWriter {
 public:
   StateWriter(Context &context, const SourceTable &source, Machine &machine);
@@ -125,17 +122,6 @@ private:
     bool isPure = true;     // no effects of its own
     bool isTrivial = false; // may stand in the text more than once
   };
-  /// A statement, and what it is of in the IR.
-  struct Line {
-    Statement statement;
-    // a variable whose declaration this is, to be joined with its first assignment
-    mlir::Operation *declares = nullptr;
-    mlir::Operation *assigns = nullptr; // the variable of `x = value;`
-    mlir::Value made;                   // what `type name = value;` is the variable of
-    const Type *copies = nullptr;       // the struct whose field is assigned
-  };
-  using Lines = std::vector<Line>;
-  static Statements statementsOf(const Lines &lines);
   /// A vector with components replaced, one after the other.
   struct Insertion {
     struct Part {
@@ -151,74 +137,72 @@ private:
   };
 
   // StateWriter.cpp
-  void operation(mlir::Operation &op, Lines &out);
+  void operation(mlir::Operation &op, Statements &out);
   /// The result of an operation is this, made of the operands that were used for it; or it is the
   /// same wherever it stands in the state.
-  void make(mlir::Operation &op, Code code, Lines &out);
-  void makeAnywhere(mlir::Operation &op, Code code, Lines &out);
+  void make(mlir::Operation &op, Code code, Statements &out);
+  void makeAnywhere(mlir::Operation &op, Code code, Statements &out);
   const FrameField *savedField(llvm::StringRef slot) const;
-  void write(ir::VarOp op, Lines &out);
-  void write(ir::LoadOp op, Lines &out);
-  void write(ir::CopyOp op, Lines &out);
-  void write(ir::ElementOp op, Lines &out);
-  void write(ir::FrameLoadOp op, Lines &out);
-  void write(ir::FrameStoreOp op, Lines &out);
-  void write(ir::ExpressionOp op, Lines &out);
+  void write(ir::VarOp op, Statements &out);
+  void write(ir::LoadOp op, Statements &out);
+  void write(ir::CopyOp op, Statements &out);
+  void write(ir::ElementOp op, Statements &out);
+  void write(ir::FrameLoadOp op, Statements &out);
+  void write(ir::FrameStoreOp op, Statements &out);
+  void write(ir::ExpressionOp op, Statements &out);
   void write(ir::SpawnOp op);
   void write(ir::SpawnPayloadOp op);
-  void write(ir::RandOp op, Lines &out);
-  void write(ir::IlluminateOp op, Lines &out);
-  void write(ir::CallArgumentOp op, Lines &out);
-  void write(ir::CallResultOp op, Lines &out);
-  void write(ir::CallReturnedOp op, Lines &out);
+  void write(ir::RandOp op, Statements &out);
+  void write(ir::IlluminateOp op, Statements &out);
+  void write(ir::CallArgumentOp op, Statements &out);
+  void write(ir::CallResultOp op, Statements &out);
+  void write(ir::CallReturnedOp op, Statements &out);
   Code call(ir::ReturnOp op);
-  void leave(ir::ReturnOp op, Lines &out);
+  void leave(ir::ReturnOp op, Statements &out);
   void unsupported(mlir::Operation &op);
 
   // StateValues.cpp
-  void infix(mlir::Operation &op, Operator sign, Lines &out);
-  void write(mlir::vector::ExtractOp op, Lines &out);
-  void write(mlir::vector::InsertOp op, Lines &out);
-  void write(mlir::vector::FromElementsOp op, Lines &out);
-  void write(mlir::vector::BroadcastOp op, Lines &out);
-  void write(mlir::vector::ShuffleOp op, Lines &out);
-  void write(mlir::arith::XOrIOp op, Lines &out);
-  void write(mlir::arith::AndIOp op, Lines &out);
-  void write(mlir::arith::OrIOp op, Lines &out);
-  void write(mlir::arith::AddIOp op, Lines &out);
-  void write(mlir::arith::CmpIOp op, Lines &out);
-  void write(mlir::arith::SelectOp op, Lines &out);
+  void infix(mlir::Operation &op, Operator sign, Statements &out);
+  void write(mlir::vector::ExtractOp op, Statements &out);
+  void write(mlir::vector::InsertOp op, Statements &out);
+  void write(mlir::vector::FromElementsOp op, Statements &out);
+  void write(mlir::vector::BroadcastOp op, Statements &out);
+  void write(mlir::vector::ShuffleOp op, Statements &out);
+  void write(mlir::arith::XOrIOp op, Statements &out);
+  void write(mlir::arith::AndIOp op, Statements &out);
+  void write(mlir::arith::OrIOp op, Statements &out);
+  void write(mlir::arith::AddIOp op, Statements &out);
+  void write(mlir::arith::CmpIOp op, Statements &out);
+  void write(mlir::arith::SelectOp op, Statements &out);
 
   // StateStatements.cpp
-  void block(mlir::Block &block, Lines &out);
-  std::optional<Code> takeCondition(ir::IfOp op, Lines &out, Statement &taken);
-  Code takeName(ir::IfOp op, const Code &named, Lines &out);
-  void choice(ir::IfOp op, Lines &out);
-  void loop(ir::LoopOp op, Lines &out);
-  void switchOver(ir::SwitchOp op, Lines &out);
+  void block(mlir::Block &block, Statements &out);
+  void choice(ir::IfOp op, Statements &out);
+  void loop(ir::LoopOp op, Statements &out);
+  void switchOver(ir::SwitchOp op, Statements &out);
   std::optional<Statement> lights(ir::LoopOp op, mlir::Block *&lit, std::string &name);
-  std::optional<Statement> counter(ir::LoopOp op, const Code &condition, Lines &out, Lines &body);
-  void joinDeclarations(Lines &lines);
+  void nameOpenDeclarations(Statements &out);
 
   // StateStores.cpp
-  void write(ir::EvaluateOp op, Lines &out);
-  void write(ir::ClearOp op, Lines &out);
-  void write(ir::StoreOp op, Lines &out);
+  void write(ir::EvaluateOp op, Statements &out);
+  void write(ir::ClearOp op, Statements &out);
+  void write(ir::StoreOp op, Statements &out);
   Code assignment(const Code &target, const Code &value, mlir::Value made);
-  void joinFields(mlir::Value address, Lines &out);
+  WrittenVariable written(ir::VarOp variable);
+  WrittenField writtenField(ir::StoreOp op);
 
   // StateOrder.cpp
   Location locationOf(mlir::Value address);
   void note(mlir::Value address, Touches &touches, bool isWritten);
   Touches touchesOf(mlir::Operation *op);
-  Line &emit(Lines &out, Statement statement);
-  Line &emit(Lines &out, Code code) { return emit(out, statement(std::move(code))); }
-  void materialise(mlir::Value value, Lines &out, bool isNew = false);
+  Statement &emit(Statements &out, Statement statement);
+  Statement &emit(Statements &out, Code code) { return emit(out, statement(std::move(code))); }
+  void materialise(mlir::Value value, Statements &out, bool isNew = false);
   bool isReplacedBy(mlir::Value before, mlir::Value value);
-  Code named(mlir::Value value, Lines &out);
-  void flush(const Touches &touches, Lines &out);
-  void flushBefore(mlir::Operation &op, Lines &out);
-  void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Lines &out);
+  Code named(mlir::Value value, Statements &out);
+  void flush(const Touches &touches, Statements &out);
+  void flushBefore(mlir::Operation &op, Statements &out);
+  void define(mlir::Operation &op, Code code, Touches touches, bool isPure, Statements &out);
 
   // StateExpressions.cpp
   Code use(mlir::Value value, const Type *type = nullptr);
