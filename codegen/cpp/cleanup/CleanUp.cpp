@@ -1,5 +1,6 @@
 #include "codegen/cpp/cleanup/CleanUp.h"
 
+#include "codegen/cpp/cleanup/Braces.h"
 #include "codegen/cpp/cleanup/ConditionalAssignments.h"
 #include "codegen/cpp/cleanup/CountedLoops.h"
 #include "codegen/cpp/cleanup/FieldAssignments.h"
@@ -26,6 +27,7 @@ void Body::cleanUp(Statements &block) {
     cleanUp(block[at].otherwise);
     for (Arm &arm : block[at].arms)
       cleanUp(arm.body);
+    setBraces(block[at]);
     removeOverwrittenZero(block, at);
     joinFieldAssignments(block, at);
     inlineFlag(block, at, statements, frame);

@@ -1,6 +1,6 @@
 #include "codegen/cpp/states/StateMachines.h"
 
-#include "codegen/cpp/states/StateWriter.h"
+#include "codegen/cpp/states/StatePrinter.h"
 #include "codegen/ir/Attributes.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
@@ -64,8 +64,9 @@ static std::set<std::string> joinsOf(const std::vector<mlir::func::FuncOp> &stat
 }
 
 /// The fields of the frame, in the order in which they are saved first; none is called as a type.
-static void collectFrame(Machine &machine, StateWriter &writer,
+static void collectFrame(Machine &machine, MethodPrinter &method,
                          const std::set<std::string> &types) {
+  ValueNames names(method.context, method.source, machine, method.functions);
   std::set<std::string> taken;
   if (machine.called) {
     taken.insert(machine.called->fields.begin(), machine.called->fields.end());
@@ -77,10 +78,10 @@ static void collectFrame(Machine &machine, StateWriter &writer,
     const auto [at, isNew] = fields.try_emplace({slot.str(), isObject}, machine.frame.size());
     if (!isNew)
       return machine.frame[at->second];
-    std::string name = writer.spelling(slot);
+    std::string name = spelling(machine, slot);
     if (name == "evaluate" || name == "expression" ||
         name == "call_returned") // what the IR calls it
-      name = value ? writer.nameOfValue(value) : "value";
+      name = value ? names.ofValue(value) : "value";
     machine.frame.push_back(
         {slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
@@ -88,7 +89,7 @@ static void collectFrame(Machine &machine, StateWriter &writer,
   for (mlir::func::FuncOp state : machine.states)
     state.walk([&](ir::FrameObjectOp object) {
       FrameField &saved = field(object.getName(), /*isObject=*/true);
-      saved.type = writer.typeOf(object.getResult());
+      saved.type = method.types.of(object.getResult());
       saved.madeIn = lineOf(object.getLoc(), machine.file);
       const unsigned line = lineOfAccess(object, machine.file);
       if (state != machine.states.front() && line != 0 &&
@@ -117,13 +118,13 @@ static void collectFrame(Machine &machine, StateWriter &writer,
         FrameField &saved = field(store.getName());
         if (saved.type)
           return;
-        saved.type = writer.typeOf(store.getValue());
+        saved.type = method.types.of(store.getValue());
         changed |= saved.type != nullptr;
       });
   }
   auto name = [&](llvm::StringRef slot, mlir::Type type) {
     if (FrameField &saved = field(slot); !saved.type)
-      saved.type = writer.typeOfSlot(saved.slot, type);
+      saved.type = method.types.ofSaved(saved.slot, type);
   };
   for (mlir::func::FuncOp state : machine.states) {
     state.walk([&](ir::FrameStoreOp store) { name(store.getName(), store.getValue().getType()); });
@@ -192,7 +193,19 @@ Machine StateMachines::machineOf(const typed::Class &definition, const typed::Fu
   return machine;
 }
 
-/// The struct of what a method has in its frame; nothing: there is only what it is given.
+/// The names of the parameters that the printer adds, which differ from the author's.
+static void nameParameters(const Context &context, Machine &machine) {
+  std::set<std::string> taken = context.namesInClass(*machine.definition);
+  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
+    taken.insert(machine.addressName(context, at));
+  for (std::string *name : {&machine.frameName, &machine.callName}) {
+    while (taken.count(*name) || context.namesInFile().count(*name))
+      *name += '_';
+    taken.insert(*name);
+  }
+}
+
+/// The struct of what a method has in its frame; nothing: there are only its arguments.
 std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
                                                          std::set<std::string> &taken) {
   if (machine.frame.empty()) {
@@ -255,25 +268,26 @@ static std::string headingOf(const Machine &machine, mlir::func::FuncOp state) {
   return fmt::format("// When the ray of line {} is back.", line);
 }
 
-/// Names for what a called method is given by its address, above the body that mentions them.
-void StateMachines::nameGiven(const Machine &machine, Statements &body) {
+/// Names for arguments of a called method that are addresses, above the body that mentions them.
+void StateMachines::nameArguments(const Machine &machine, Statements &body) {
   for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
     if (const std::string address = machine.addressName(context, at); mentions(body, address)) {
-      const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
+      const Code argument = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
       body.insert(body.begin(),
-                  cpp::declaration(context.types.of(machine.givenType(at)) + " &", address,
-                                   unary(UnaryOperator::Dereference, given)));
+                  cpp::declaration(context.types.of(machine.argumentType(at)) + " &", address,
+                                   unary(UnaryOperator::Dereference, argument)));
     }
 }
 
 /// One state as a function, whose parameters are what its body mentions; records how it is called.
-Declaration StateMachines::stateFunction(const Machine &machine, StateWriter &writer,
+Declaration StateMachines::stateFunction(const Machine &machine, MethodPrinter &printer,
                                          std::size_t number) {
   const typed::Class &definition = *machine.definition;
   const typed::Function &method = *machine.method;
   mlir::func::FuncOp state = machine.states[number];
-  Statements body = writer.body(state);
-  nameGiven(machine, body);
+  StatePrinter statePrinter(printer);
+  Statements body = statePrinter.body(state);
+  nameArguments(machine, body);
 
   Function made;
   made.result = "rtsl::Next";
@@ -289,7 +303,7 @@ Declaration StateMachines::stateFunction(const Machine &machine, StateWriter &wr
         byReference(context.names.of(payload->type->structure), context.names.of(payload)));
     arguments.push_back(payloadAt(context.names, *payload->type->structure));
   }
-  if (writer.usesScratch) {
+  if (statePrinter.usesScratch) {
     parameters.push_back(byConstReference("Scratch", "scratch"));
     arguments.push_back(storedScratch(context.names, definition));
   }
@@ -331,15 +345,16 @@ Declarations StateMachines::of(const typed::Class &definition, const typed::Func
   // names that the printer adds must differ from the author's
   std::set<std::string> taken = context.namesInClass(definition);
   Machine machine = machineOf(definition, method, taken);
-  StateWriter writer(context, context.split.program->source, machine);
-  collectFrame(machine, writer, context.split.typeNames());
+  nameParameters(context, machine);
+  MethodPrinter printer(context, context.split.program->source, machine);
+  collectFrame(machine, printer, context.split.typeNames());
   Declarations all;
   if (std::optional<Declaration> frame = frameStructure(machine, taken))
     all.push_back(std::move(*frame));
   if (machine.hasFrame())
     (machine.called ? entries.calledFrames : entries.frames).push_back(machine.frameType);
   for (std::size_t number = 0; number < machine.states.size(); ++number)
-    appendApart(all, stateFunction(machine, writer, number));
+    appendApart(all, stateFunction(machine, printer, number));
   return all;
 }
 

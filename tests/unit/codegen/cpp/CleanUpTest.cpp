@@ -1,5 +1,6 @@
 // Each rewrite of printed statements, on the smallest statements that it changes or leaves alone.
 #include "codegen/cpp/cleanup/CleanUp.h"
+#include "codegen/cpp/cleanup/Braces.h"
 #include "codegen/cpp/cleanup/ConditionalAssignments.h"
 #include "codegen/cpp/cleanup/CountedLoops.h"
 #include "codegen/cpp/cleanup/FieldAssignments.h"
@@ -201,6 +202,20 @@ TEST(JoinDeclarations, DeclaresWhereTheFirstValueIs) {
   EXPECT_EQ(declared({open(x, zero), statement(c)}), "c;\n");
   EXPECT_EQ(declared({open(x, zero), branch(c, {set(x, a)}), statement(x)}),
             "float x = 0.0f;\nif (c)\nx = a;\nx;\n");
+}
+
+TEST(Braces, StandRoundWhatIsLong) {
+  Statement test = branch(c, {statement(a)}, /*hasBraces=*/true);
+  test.otherwise = {branch(a, {statement(b)})};
+  setBraces(test);
+  EXPECT_FALSE(test.hasBraces);
+  EXPECT_TRUE(test.otherwiseHasBraces);
+  Statement choice = simple(StatementKind::Switch);
+  choice.arms = {{{integer(1)}, false, false, {declaration("int", "y", a)}},
+                 {{}, true, true, {returning(b)}}};
+  setBraces(choice);
+  EXPECT_TRUE(choice.arms[0].hasBraces);
+  EXPECT_FALSE(choice.arms[1].hasBraces);
 }
 
 TEST(CleanUp, WorksFromTheInside) {
