@@ -11,21 +11,21 @@ std::size_t Machine::argumentNumber(ir::CallArgumentOp argument) const {
 }
 
 const Type *Machine::argumentType(std::size_t number) const {
-  const typed::Variable *argument = called->given[number];
+  const typed::Variable *argument = called->arguments[number];
   return argument ? argument->type : method->returnType;
 }
 
 std::string Machine::addressName(const Context &context, std::size_t number) const {
-  if (!called->given[number])
+  if (!called->arguments[number])
     return called->fields[number];
-  const std::size_t before = called->given.size() - method->parameters.size();
+  const std::size_t before = called->arguments.size() - method->parameters.size();
   const std::string &name = context.names.of(method->parameters[number - before].get());
   return name.empty() ? called->fields[number] : name;
 }
 
 const FrameField *Machine::savedField(llvm::StringRef key) const {
   for (const FrameField &known : frame)
-    if (!known.isObject && known.slot == key)
+    if (!known.isObject && known.key == key)
       return &known;
   return nullptr;
 }

@@ -10,7 +10,7 @@ namespace rtsl::cpp {
 
 /// What stays in the frame of a method while its rays are traced.
 struct FrameField {
-  std::string slot; // as the IR names it
+  std::string key; // as the IR names it
   std::string name;
   const Type *type = nullptr; // null: it is not known
   unsigned neededBy = 0;      // the first line that reads it

@@ -13,7 +13,7 @@ Code StateLvalues::of(mlir::Value address) {
   }
   if (auto object = address.getDefiningOp<ir::FrameObjectOp>())
     for (const FrameField &field : state.machine.frame)
-      if (field.isObject && field.slot == object.getName())
+      if (field.isObject && field.key == object.getName())
         return frameField(field.name);
   if (auto argument = address.getDefiningOp<ir::CallArgumentOp>())
     return name(state.machine.addressName(context, state.machine.argumentNumber(argument)));

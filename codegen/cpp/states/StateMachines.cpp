@@ -73,17 +73,17 @@ static void collectFrame(Machine &machine, MethodPrinter &method,
     taken.insert({"begin", machine.called->returned});
   }
   std::map<std::pair<std::string, bool>, std::size_t> fields; // in the frame
-  auto field = [&](llvm::StringRef slot, bool isObject = false,
+  auto field = [&](llvm::StringRef key, bool isObject = false,
                    mlir::Value value = {}) -> FrameField & {
-    const auto [at, isNew] = fields.try_emplace({slot.str(), isObject}, machine.frame.size());
+    const auto [at, isNew] = fields.try_emplace({key.str(), isObject}, machine.frame.size());
     if (!isNew)
       return machine.frame[at->second];
-    std::string name = spelling(machine, slot);
+    std::string name = spelling(machine, key);
     if (name == "evaluate" || name == "expression" ||
         name == "call_returned") // what the IR calls it
       name = value ? names.ofValue(value) : "value";
     machine.frame.push_back(
-        {slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
+        {key.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
   for (mlir::func::FuncOp state : machine.states)
@@ -122,9 +122,9 @@ static void collectFrame(Machine &machine, MethodPrinter &method,
         changed |= saved.type != nullptr;
       });
   }
-  auto name = [&](llvm::StringRef slot, mlir::Type type) {
-    if (FrameField &saved = field(slot); !saved.type)
-      saved.type = method.types.ofSaved(saved.slot, type);
+  auto name = [&](llvm::StringRef key, mlir::Type type) {
+    if (FrameField &saved = field(key); !saved.type)
+      saved.type = method.types.ofSaved(saved.key, type);
   };
   for (mlir::func::FuncOp state : machine.states) {
     state.walk([&](ir::FrameStoreOp store) { name(store.getName(), store.getValue().getType()); });
@@ -146,7 +146,7 @@ std::string StateMachines::meaningOf(const typed::Function &method, const FrameF
   if (field.isReturned)
     return fmt::format("what the call of line {} returned", field.madeIn);
   for (const auto &local : method.locals)
-    if (local->name == field.slot)
+    if (local->name == field.key)
       if (std::string comment =
               context.notes.trailingComment(local->init ? local->init->range : local->range);
           comment.compare(0, 3, "// ") == 0)
@@ -157,7 +157,7 @@ std::string StateMachines::meaningOf(const typed::Function &method, const FrameF
       64 - std::min<std::size_t>(context.types.of(field.type).size() + field.name.size(), 40);
   if (line.size() > room)
     line = line.substr(0, line.rfind(' ', room - 4)) + " ...";
-  return line.empty() ? field.slot : "`" + line + "`";
+  return line.empty() ? field.key : "`" + line + "`";
 }
 
 /// The states of a method, with the names that they have in C++.
@@ -196,7 +196,7 @@ Machine StateMachines::machineOf(const typed::Class &definition, const typed::Fu
 /// The names of the parameters that the printer adds, which differ from the author's.
 static void nameParameters(const Context &context, Machine &machine) {
   std::set<std::string> taken = context.namesInClass(*machine.definition);
-  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
+  for (std::size_t at = 0; machine.called && at < machine.called->arguments.size(); ++at)
     taken.insert(machine.addressName(context, at));
   for (std::string *name : {&machine.frameName, &machine.callName}) {
     while (taken.count(*name) || context.namesInFile().count(*name))
@@ -226,7 +226,7 @@ std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
   for (const FrameField &field : machine.frame) {
     if (!field.type) {
       context.unsupported(machine.method->range,
-                          fmt::format("`{}` in the frame of a method in C++", field.slot));
+                          fmt::format("`{}` in the frame of a method in C++", field.key));
       continue;
     }
     Variable variable = {{}, context.types.of(field.type), {field.name, {}}};
@@ -270,7 +270,7 @@ static std::string headingOf(const Machine &machine, mlir::func::FuncOp state) {
 
 /// Names for arguments of a called method that are addresses, above the body that mentions them.
 void StateMachines::nameArguments(const Machine &machine, Statements &body) {
-  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
+  for (std::size_t at = 0; machine.called && at < machine.called->arguments.size(); ++at)
     if (const std::string address = machine.addressName(context, at); mentions(body, address)) {
       const Code argument = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
       body.insert(body.begin(),
@@ -322,9 +322,9 @@ Declaration StateMachines::stateFunction(const Machine &machine, MethodPrinter &
   const std::string symbol = state.getSymName().str();
   const auto before = machine.callBefore.find(symbol);
   if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
-    const std::string given = context.split.structureOf(*before->second);
-    parameters.push_back(byConstReference(given, machine.callName));
-    arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {given}), {frame}));
+    const std::string structure = context.split.structureOf(*before->second);
+    parameters.push_back(byConstReference(structure, machine.callName));
+    arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {structure}), {frame}));
   }
   made.body = std::move(body);
 

@@ -51,7 +51,7 @@ void StateMemory::write(ir::FrameLoadOp op, Statements &out) {
   if (!from)
     return;
   MemoryAccesses accesses;
-  accesses.reads.insert({MemoryLocation::Kind::Frame, from->slot});
+  accesses.reads.insert({MemoryLocation::Kind::Frame, from->key});
   state.values.define(*op, state.lvalues.frameField(from->name), accesses, true, out);
 }
 

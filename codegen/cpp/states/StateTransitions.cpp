@@ -107,7 +107,7 @@ Code StateTransitions::call(ir::ReturnOp op) {
     arguments.push_back(name(state.machine.frameName));
   arguments.push_back(name("Step::" + state.machine.stepOf.at(enter.getResume()->str())));
   arguments.push_back(state.values.use(enter.getOperands().front()));
-  for (auto [variable, value] : llvm::zip(called->given, enter.getOperands().drop_front()))
+  for (auto [variable, value] : llvm::zip(called->arguments, enter.getOperands().drop_front()))
     passed.push_back(llvm::isa<ir::PtrType>(value.getType())
                          ? unary(UnaryOperator::Address, state.lvalues.of(value))
                          : state.values.use(value, variable->type));

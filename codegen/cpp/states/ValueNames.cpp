@@ -12,7 +12,7 @@ ValueNames::ValueNames(Context &context, const SourceTable &source, const Machin
                        FunctionPrinter &functions)
     : context(context), source(source), machine(machine), functions(functions),
       reserved(context.namesInClass(*machine.definition)) {
-  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
+  for (std::size_t at = 0; machine.called && at < machine.called->arguments.size(); ++at)
     reserved.insert(machine.addressName(context, at));
   reserved.insert({machine.frameName, machine.callName});
 }
