@@ -7,10 +7,11 @@
 
 namespace rtsl::cpp {
 
-/// Is it given as an address?
-static bool isAddress(const typed::Variable *given) {
-  return !given || given->direction != ast::Direction::In || given->type->is(TypeKind::Struct) ||
-         given->type->is(TypeKind::Array) || given->type->isMatrix();
+/// Is it passed as an address?
+static bool isAddress(const typed::Variable *argument) {
+  return !argument || argument->direction != ast::Direction::In ||
+         argument->type->is(TypeKind::Struct) || argument->type->is(TypeKind::Array) ||
+         argument->type->isMatrix();
 }
 
 Declarations callStructures(Context &context, const std::string &className) {
@@ -22,11 +23,12 @@ Declarations callStructures(Context &context, const std::string &className) {
     made.name = called.structure;
     made.members.push_back(declare(
         Variable{"static constexpr", "Step", {"begin", cpp::name("Step::" + called.step)}}));
-    for (std::size_t i = 0; i < called.given.size(); ++i) {
-      const typed::Variable *given = called.given[i];
-      const std::string of = context.types.of(given ? given->type : called.function->returnType);
+    for (std::size_t i = 0; i < called.arguments.size(); ++i) {
+      const typed::Variable *argument = called.arguments[i];
+      const std::string of =
+          context.types.of(argument ? argument->type : called.function->returnType);
       made.members.push_back(
-          declare(Variable{{}, isAddress(given) ? of + " *" : of, {called.fields[i], {}}}));
+          declare(Variable{{}, isAddress(argument) ? of + " *" : of, {called.fields[i], {}}}));
     }
     if (!called.returned.empty())
       made.members.push_back(declare(Variable{
@@ -42,7 +44,7 @@ Declarations callStructures(Context &context, const std::string &className) {
 /// The method of an object's class begins, or runs at once if that does not trace.
 Statements runCalledMethod(Context &context, const StateEntries &entries,
                            const CalledMethod &called) {
-  const Code given = cpp::name("call");
+  const Code callFrame = cpp::name("call");
   Statements body = dispatch(
       context.names, classesBelow(context.module, called.definition->name),
       [&](const typed::Class &definition) -> Statements {
@@ -60,26 +62,26 @@ Statements runCalledMethod(Context &context, const StateEntries &entries,
         if (context.signatures.takesScratch(*method))
           arguments.push_back(storedScratch(context.names, definition));
         auto field = [&](std::size_t i) {
-          const Code own = cpp::member(given, called.fields[i]);
-          return isAddress(called.given[i]) ? unary(UnaryOperator::Dereference, own) : own;
+          const Code own = cpp::member(callFrame, called.fields[i]);
+          return isAddress(called.arguments[i]) ? unary(UnaryOperator::Dereference, own) : own;
         };
-        for (std::size_t i = 0; i < called.given.size(); ++i)
-          if (called.given[i])
+        for (std::size_t i = 0; i < called.arguments.size(); ++i)
+          if (called.arguments[i])
             arguments.push_back(field(i));
         const Code run = callMember(objectOf(context.names, definition), context.names.of(method),
                                     std::move(arguments));
         if (!called.returned.empty())
-          return {statement(assign(cpp::member(given, called.returned), run))};
-        if (!called.given.empty() && !called.given.front())
+          return {statement(assign(cpp::member(callFrame, called.returned), run))};
+        if (!called.arguments.empty() && !called.arguments.front())
           return {statement(assign(field(0), run))};
         return {statement(run)};
       },
       typed::mayReferToNothing(context.module));
-  if (mentions(body, given->name)) {
-    const Code frame =
+  if (mentions(body, callFrame->name)) {
+    const Code located =
         call(withParameters("rtsl::calledFrameAt", {context.split.structureOf(called)}),
              {cpp::name("frame")});
-    body.insert(body.begin(), declaration("auto &", given->name, frame));
+    body.insert(body.begin(), declaration("auto &", callFrame->name, located));
   }
   if (!endsInReturn(body))
     body.push_back(returning(cpp::call("rtsl::returnToCaller", {cpp::name("rt")})));

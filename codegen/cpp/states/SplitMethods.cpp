@@ -99,13 +99,13 @@ void SplitMethods::findCalledMethods() {
     called.offsets.assign(layout.arguments.begin(), layout.arguments.end());
     std::set<std::string> fields = {"begin"};
     if (called.offsets.size() > called.function->parameters.size()) {
-      called.given.push_back(nullptr);
+      called.arguments.push_back(nullptr);
       called.fields.push_back(unique("returned", fields));
     }
     for (const auto &parameter : called.function->parameters) {
-      const std::string &given = names.of(parameter.get());
-      called.given.push_back(parameter.get());
-      called.fields.push_back(unique(given.empty() ? "unnamed" : given, fields));
+      const std::string &name = names.of(parameter.get());
+      called.arguments.push_back(parameter.get());
+      called.fields.push_back(unique(name.empty() ? "unnamed" : name, fields));
     }
     if (type.getNumResults() != 0)
       called.returned = unique("returned", fields);

@@ -21,8 +21,8 @@ struct CalledMethod {
   std::string step;                          // of its first state: `Filter_follow`
   std::string structure; // of the arguments, in the type of references to the class: `Follow`
   // in the order of the IR; null: the address for a result that stays whole
-  std::vector<const typed::Variable *> given;
-  std::vector<std::string> fields;   // of these
+  std::vector<const typed::Variable *> arguments;
+  std::vector<std::string> fields;   // of the arguments
   std::vector<std::int32_t> offsets; // in the IR
   std::string returned;              // the field of the result; empty: there is none
 };

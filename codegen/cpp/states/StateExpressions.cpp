@@ -1,11 +1,6 @@
-//===- StateExpressions.cpp - lvalues and expressions of a state ----------===//
-//
-// An expression is the author's tree (codegen/lower/SourceTable.h), whose leaves are what the IR
-// has computed.
-//
-//===----------------------------------------------------------------------===//
-#include "codegen/cpp/states/StateWriter.h"
+#include "codegen/cpp/states/StateExpressions.h"
 
+#include "codegen/cpp/states/StatePrinter.h"
 #include "sema/typed/Casting.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -19,29 +14,15 @@ namespace rtsl::cpp {
 
 using typed::ExprKind;
 
-Code StateWriter::use(mlir::Value value, const Type *type) {
-  if (auto found = declared.find(value); found != declared.end())
-    return name(found->second);
-  auto found = pending.find(value);
-  if (found == pending.end())
-    return constant(value, type);
-  Code code = found->second.code;
-  consumed.add(found->second.touches);
-  if (--found->second.usesLeft == 0)
-    pending.erase(value);
-  return code;
-}
-
-// C++ requires both values to be of one type, and a vector of bools has another where it lies in
-// memory.
-Code choose(Context &context, Code condition, Code first, Code second, const Type *type) {
-  const bool isBools = type && type->isVector() && type->element->is(TypeKind::Bool);
-  const auto side = [&](const Code &value) {
-    const bool isMade =
-        !isBools || (value->is(ExpressionKind::Construct) && value->name == context.types.of(type));
-    return isMade ? value : construct(context.types.of(type), {value});
-  };
-  return conditional(std::move(condition), side(first), side(second));
+bool StateExpressions::print(mlir::Operation &op, Statements &out) {
+  auto whole = llvm::dyn_cast<ir::ExpressionOp>(op);
+  if (!whole)
+    return false;
+  const SourceTable::Entry &entry = state.source.entries[whole.getSource()];
+  const Code code = of(entry, whole->getOperands());
+  state.usesScratch |= context.effects.expression(*entry.expr).usesScratch;
+  state.values.make(op, code, out);
+  return true;
 }
 
 static Code number(mlir::Attribute attribute, bool isUnsigned) {
@@ -55,13 +36,13 @@ static Code number(mlir::Attribute attribute, bool isUnsigned) {
                     : integer(value.getSExtValue());
 }
 
-Code StateWriter::constant(mlir::Value value, const Type *type) {
+Code StateExpressions::constant(mlir::Value value, const Type *type) {
   mlir::Attribute attribute;
   if (!mlir::matchPattern(value, mlir::m_Constant(&attribute))) {
     if (value.getDefiningOp<ir::NullRefOp>())
       return list(type ? context.types.of(type) : "", {});
     if (value.getDefiningOp())
-      unsupported(*value.getDefiningOp());
+      state.unsupported(*value.getDefiningOp());
     return integer(0);
   }
   const bool isUnsigned = type && type->scalar() && type->scalar()->is(TypeKind::UInt);
@@ -83,58 +64,33 @@ Code StateWriter::constant(mlir::Value value, const Type *type) {
   return construct(vector, std::move(parts));
 }
 
-Code StateWriter::place(mlir::Value address) {
-  if (auto state = address.getDefiningOp<ir::StateOp>())
-    return member(name("rt"), state.getName().str());
-  if (auto variable = address.getDefiningOp<ir::VarOp>()) {
-    const auto light = lightNumbers.find(variable);
-    return light != lightNumbers.end() ? light->second : name(nameOf(variable));
-  }
-  if (auto object = address.getDefiningOp<ir::FrameObjectOp>())
-    for (const FrameField &field : machine.frame)
-      if (field.isObject && field.slot == object.getName())
-        return frameField(field.name);
-  if (auto argument = address.getDefiningOp<ir::CallArgumentOp>())
-    return name(machine.addressName(context, machine.given(argument)));
-  if (address.getDefiningOp<ir::PayloadOp>())
-    return name(context.names.of(machine.method->parameters.front().get()));
-  if (auto field = address.getDefiningOp<ir::FieldOp>())
-    if (const Type *base = declaredType(field.getBase()); base && base->is(TypeKind::Struct))
-      for (const typed::Field &part : base->structure->fields)
-        if (part.name == field.getField())
-          return member(place(field.getBase()), context.names.of(&part));
-  if (auto element = address.getDefiningOp<ir::ElementOp>())
-    return subscript(place(element.getBase()), elementIndices[element]);
-  unsupported(*address.getDefiningOp());
-  return integer(0);
-}
-
-/// What the leaves of the author's expression are here.
-void StateWriter::replaceLeaves(const SourceTable::Entry &entry, mlir::ValueRange operands) {
-  printer.replaced.clear();
+void StateExpressions::replaceLeaves(const SourceTable::Entry &entry, mlir::ValueRange operands) {
+  state.functions.replaced.clear();
   for (auto [leaf, operand] : llvm::zip(entry.leaves, operands))
     if (leaf)
-      printer.replaced[leaf] =
-          llvm::isa<ir::PtrType>(operand.getType()) ? place(operand) : use(operand, leaf->type);
+      state.functions.replaced[leaf] = llvm::isa<ir::PtrType>(operand.getType())
+                                           ? state.lvalues.of(operand)
+                                           : state.values.use(operand, leaf->type);
   nameConstants(*entry.expr);
 }
 
-Code StateWriter::expression(const SourceTable::Entry &entry, mlir::ValueRange operands) {
+Code StateExpressions::of(const SourceTable::Entry &entry, mlir::ValueRange operands) {
   replaceLeaves(entry, operands);
   switch (entry.kind) {
   case SourceTable::Kind::Value:
   case SourceTable::Kind::Into:
-    return printer.expressions.expr(*entry.expr);
+    return state.functions.expressions.expr(*entry.expr);
   case SourceTable::Kind::AngleCosine:
-    return cpp::call("rtsl::cosOfAngle", {printer.expressions.argument(*entry.expr)});
+    return cpp::call("rtsl::cosOfAngle", {state.functions.expressions.argument(*entry.expr)});
   case SourceTable::Kind::Compound: {
     const auto &assign = static_cast<const typed::AssignExpr &>(*entry.expr);
-    return printer.operators.binary(assign.op, *assign.target, *assign.value);
+    return state.functions.operators.binary(assign.op, *assign.target, *assign.value);
   }
   case SourceTable::Kind::Step: {
     const auto &step = static_cast<const typed::IncDecExpr &>(*entry.expr);
-    return printer.assignments.stepped(printer.expressions.operand(*step.target, Binding::Sum),
-                                       step.target->type->scalar(), step.increment);
+    return state.functions.assignments.stepped(
+        state.functions.expressions.operand(*step.target, Binding::Sum),
+        step.target->type->scalar(), step.increment);
   }
   }
   return integer(0);
@@ -161,10 +117,9 @@ static std::optional<Operator> oppositeOf(Operator op, bool isWhole) {
   }
 }
 
-/// `i >= 3` for `i < 3`, which is the code of `condition`.
-Code StateWriter::opposite(mlir::Value condition, const Code &code) {
+Code StateExpressions::opposite(mlir::Value condition, const Code &code) {
   auto whole = condition.getDefiningOp<ir::ExpressionOp>();
-  const SourceTable::Entry *entry = whole ? &source.entries[whole.getSource()] : nullptr;
+  const SourceTable::Entry *entry = whole ? &state.source.entries[whole.getSource()] : nullptr;
   auto *compared = entry && entry->kind == SourceTable::Kind::Value
                        ? dynCast<typed::BinaryExpr>(entry->expr)
                        : nullptr;
@@ -182,10 +137,10 @@ Code StateWriter::opposite(mlir::Value condition, const Code &code) {
 }
 
 /// Constant arrays and structs of a function are declared where a state names them.
-void StateWriter::nameConstants(const typed::Expr &expr) {
+void StateExpressions::nameConstants(const typed::Expr &expr) {
   std::set<const typed::Expr *> elsewhere;
   forEachExpr(expr, [&](const typed::Expr &inner) {
-    if (printer.replaced.count(&inner))
+    if (state.functions.replaced.count(&inner))
       forEachExpr(inner, [&](const typed::Expr &part) { elsewhere.insert(&part); });
   });
   auto add = [&](const typed::Variable &constant) {
@@ -201,8 +156,8 @@ void StateWriter::nameConstants(const typed::Expr &expr) {
         named && named->variable->isConst && named->variable->kind != typed::Variable::Kind::Global)
       add(*named->variable);
     if (auto *literal = dynCast<typed::LiteralExpr>(&inner)) // the value of one
-      if (const void *named = printer.literals.namedConstant(*literal))
-        for (const auto &local : machine.method->locals)
+      if (const void *named = state.functions.literals.namedConstant(*literal))
+        for (const auto &local : state.machine.method->locals)
           if (local.get() == named)
             add(*local);
   });

@@ -1,6 +1,6 @@
 #include "codegen/cpp/states/StateMachines.h"
 
-#include "codegen/cpp/states/StateWriter.h"
+#include "codegen/cpp/states/StatePrinter.h"
 #include "codegen/ir/Attributes.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
@@ -64,31 +64,32 @@ static std::set<std::string> joinsOf(const std::vector<mlir::func::FuncOp> &stat
 }
 
 /// The fields of the frame, in the order in which they are saved first; none is called as a type.
-static void collectFrame(Machine &machine, StateWriter &writer,
+static void collectFrame(Machine &machine, MethodPrinter &method,
                          const std::set<std::string> &types) {
+  ValueNames names(method.context, method.source, machine, method.functions);
   std::set<std::string> taken;
   if (machine.called) {
     taken.insert(machine.called->fields.begin(), machine.called->fields.end());
     taken.insert({"begin", machine.called->returned});
   }
   std::map<std::pair<std::string, bool>, std::size_t> fields; // in the frame
-  auto field = [&](llvm::StringRef slot, bool isObject = false,
+  auto field = [&](llvm::StringRef key, bool isObject = false,
                    mlir::Value value = {}) -> FrameField & {
-    const auto [at, isNew] = fields.try_emplace({slot.str(), isObject}, machine.frame.size());
+    const auto [at, isNew] = fields.try_emplace({key.str(), isObject}, machine.frame.size());
     if (!isNew)
       return machine.frame[at->second];
-    std::string name = writer.spelling(slot);
+    std::string name = spelling(machine, key);
     if (name == "evaluate" || name == "expression" ||
         name == "call_returned") // what the IR calls it
-      name = value ? writer.nameOfValue(value) : "value";
+      name = value ? names.ofValue(value) : "value";
     machine.frame.push_back(
-        {slot.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
+        {key.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
     return machine.frame.back();
   };
   for (mlir::func::FuncOp state : machine.states)
     state.walk([&](ir::FrameObjectOp object) {
       FrameField &saved = field(object.getName(), /*isObject=*/true);
-      saved.type = writer.typeOf(object.getResult());
+      saved.type = method.types.of(object.getResult());
       saved.madeIn = lineOf(object.getLoc(), machine.file);
       const unsigned line = lineOfAccess(object, machine.file);
       if (state != machine.states.front() && line != 0 &&
@@ -117,13 +118,13 @@ static void collectFrame(Machine &machine, StateWriter &writer,
         FrameField &saved = field(store.getName());
         if (saved.type)
           return;
-        saved.type = writer.typeOf(store.getValue());
+        saved.type = method.types.of(store.getValue());
         changed |= saved.type != nullptr;
       });
   }
-  auto name = [&](llvm::StringRef slot, mlir::Type type) {
-    if (FrameField &saved = field(slot); !saved.type)
-      saved.type = writer.typeOfSlot(saved.slot, type);
+  auto name = [&](llvm::StringRef key, mlir::Type type) {
+    if (FrameField &saved = field(key); !saved.type)
+      saved.type = method.types.ofSaved(saved.key, type);
   };
   for (mlir::func::FuncOp state : machine.states) {
     state.walk([&](ir::FrameStoreOp store) { name(store.getName(), store.getValue().getType()); });
@@ -145,7 +146,7 @@ std::string StateMachines::meaningOf(const typed::Function &method, const FrameF
   if (field.isReturned)
     return fmt::format("what the call of line {} returned", field.madeIn);
   for (const auto &local : method.locals)
-    if (local->name == field.slot)
+    if (local->name == field.key)
       if (std::string comment =
               context.notes.trailingComment(local->init ? local->init->range : local->range);
           comment.compare(0, 3, "// ") == 0)
@@ -156,7 +157,7 @@ std::string StateMachines::meaningOf(const typed::Function &method, const FrameF
       64 - std::min<std::size_t>(context.types.of(field.type).size() + field.name.size(), 40);
   if (line.size() > room)
     line = line.substr(0, line.rfind(' ', room - 4)) + " ...";
-  return line.empty() ? field.slot : "`" + line + "`";
+  return line.empty() ? field.key : "`" + line + "`";
 }
 
 /// The states of a method, with the names that they have in C++.
@@ -192,7 +193,19 @@ Machine StateMachines::machineOf(const typed::Class &definition, const typed::Fu
   return machine;
 }
 
-/// The struct of what a method has in its frame; nothing: there is only what it is given.
+/// The names of the parameters that the printer adds, which differ from the author's.
+static void nameParameters(const Context &context, Machine &machine) {
+  std::set<std::string> taken = context.namesInClass(*machine.definition);
+  for (std::size_t at = 0; machine.called && at < machine.called->arguments.size(); ++at)
+    taken.insert(machine.addressName(context, at));
+  for (std::string *name : {&machine.frameName, &machine.callName}) {
+    while (taken.count(*name) || context.namesInFile().count(*name))
+      *name += '_';
+    taken.insert(*name);
+  }
+}
+
+/// The struct of what a method has in its frame; nothing: there are only its arguments.
 std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
                                                          std::set<std::string> &taken) {
   if (machine.frame.empty()) {
@@ -213,7 +226,7 @@ std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
   for (const FrameField &field : machine.frame) {
     if (!field.type) {
       context.unsupported(machine.method->range,
-                          fmt::format("`{}` in the frame of a method in C++", field.slot));
+                          fmt::format("`{}` in the frame of a method in C++", field.key));
       continue;
     }
     Variable variable = {{}, context.types.of(field.type), {field.name, {}}};
@@ -255,25 +268,26 @@ static std::string headingOf(const Machine &machine, mlir::func::FuncOp state) {
   return fmt::format("// When the ray of line {} is back.", line);
 }
 
-/// Names for what a called method is given by its address, above the body that mentions them.
-void StateMachines::nameGiven(const Machine &machine, Statements &body) {
-  for (std::size_t at = 0; machine.called && at < machine.called->given.size(); ++at)
+/// Names for arguments of a called method that are addresses, above the body that mentions them.
+void StateMachines::nameArguments(const Machine &machine, Statements &body) {
+  for (std::size_t at = 0; machine.called && at < machine.called->arguments.size(); ++at)
     if (const std::string address = machine.addressName(context, at); mentions(body, address)) {
-      const Code given = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
+      const Code argument = cpp::member(cpp::name(machine.frameName), machine.called->fields[at]);
       body.insert(body.begin(),
-                  cpp::declaration(context.types.of(machine.givenType(at)) + " &", address,
-                                   unary(UnaryOperator::Dereference, given)));
+                  cpp::declaration(context.types.of(machine.argumentType(at)) + " &", address,
+                                   unary(UnaryOperator::Dereference, argument)));
     }
 }
 
 /// One state as a function, whose parameters are what its body mentions; records how it is called.
-Declaration StateMachines::stateFunction(const Machine &machine, StateWriter &writer,
+Declaration StateMachines::stateFunction(const Machine &machine, MethodPrinter &printer,
                                          std::size_t number) {
   const typed::Class &definition = *machine.definition;
   const typed::Function &method = *machine.method;
   mlir::func::FuncOp state = machine.states[number];
-  Statements body = writer.body(state);
-  nameGiven(machine, body);
+  StatePrinter statePrinter(printer);
+  Statements body = statePrinter.body(state);
+  nameArguments(machine, body);
 
   Function made;
   made.result = "rtsl::Next";
@@ -289,7 +303,7 @@ Declaration StateMachines::stateFunction(const Machine &machine, StateWriter &wr
         byReference(context.names.of(payload->type->structure), context.names.of(payload)));
     arguments.push_back(payloadAt(context.names, *payload->type->structure));
   }
-  if (writer.usesScratch) {
+  if (statePrinter.usesScratch) {
     parameters.push_back(byConstReference("Scratch", "scratch"));
     arguments.push_back(storedScratch(context.names, definition));
   }
@@ -308,9 +322,9 @@ Declaration StateMachines::stateFunction(const Machine &machine, StateWriter &wr
   const std::string symbol = state.getSymName().str();
   const auto before = machine.callBefore.find(symbol);
   if (before != machine.callBefore.end() && before->second && mentions(body, machine.callName)) {
-    const std::string given = context.split.structureOf(*before->second);
-    parameters.push_back(byConstReference(given, machine.callName));
-    arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {given}), {frame}));
+    const std::string structure = context.split.structureOf(*before->second);
+    parameters.push_back(byConstReference(structure, machine.callName));
+    arguments.push_back(cpp::call(withParameters("rtsl::callAbove", {structure}), {frame}));
   }
   made.body = std::move(body);
 
@@ -331,15 +345,16 @@ Declarations StateMachines::of(const typed::Class &definition, const typed::Func
   // names that the printer adds must differ from the author's
   std::set<std::string> taken = context.namesInClass(definition);
   Machine machine = machineOf(definition, method, taken);
-  StateWriter writer(context, context.split.program->source, machine);
-  collectFrame(machine, writer, context.split.typeNames());
+  nameParameters(context, machine);
+  MethodPrinter printer(context, context.split.program->source, machine);
+  collectFrame(machine, printer, context.split.typeNames());
   Declarations all;
   if (std::optional<Declaration> frame = frameStructure(machine, taken))
     all.push_back(std::move(*frame));
   if (machine.hasFrame())
     (machine.called ? entries.calledFrames : entries.frames).push_back(machine.frameType);
   for (std::size_t number = 0; number < machine.states.size(); ++number)
-    appendApart(all, stateFunction(machine, writer, number));
+    appendApart(all, stateFunction(machine, printer, number));
   return all;
 }
 

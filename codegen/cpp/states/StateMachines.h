@@ -9,7 +9,7 @@ namespace rtsl::cpp {
 
 struct FrameField;
 struct Machine;
-class StateWriter;
+struct MethodPrinter;
 
 /// `shadeAfterTrace1(rt, frame)`, on an object.
 struct MethodCall {
@@ -51,8 +51,8 @@ private:
   Machine machineOf(const typed::Class &definition, const typed::Function &method,
                     std::set<std::string> &taken);
   std::optional<Declaration> frameStructure(Machine &machine, std::set<std::string> &taken);
-  void nameGiven(const Machine &machine, Statements &body);
-  Declaration stateFunction(const Machine &machine, StateWriter &writer, std::size_t number);
+  void nameArguments(const Machine &machine, Statements &body);
+  Declaration stateFunction(const Machine &machine, MethodPrinter &printer, std::size_t number);
   bool differsIn(const typed::Class &derived, const typed::Function &method) const;
   std::string meaningOf(const typed::Function &method, const FrameField &field);
 

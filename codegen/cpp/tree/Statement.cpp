@@ -1,7 +1,5 @@
 #include "codegen/cpp/tree/Statement.h"
 
-#include <algorithm>
-
 namespace rtsl::cpp {
 
 Statement simple(StatementKind kind) {
@@ -79,6 +77,11 @@ Code assignedValue(const Statement &statement) {
                               : assignment->parts[1];
 }
 
+const void *assignedVariable(const Statement &statement) {
+  return assignmentIn(statement) && statement.field.all.empty() ? statement.written.identity
+                                                                : nullptr;
+}
+
 void forEachPart(const Statement &statement,
                  const std::function<void(const ExpressionNode &)> &visit) {
   auto all = [&](const Statements &statements) {
@@ -99,17 +102,27 @@ void forEachPart(const Statement &statement,
   }
 }
 
-bool mentions(const Statement &statement, const std::string &name) {
-  bool found = false;
+unsigned countMentions(const Statement &statement, const std::string &name) {
+  unsigned count = 0;
   forEachPart(statement, [&](const ExpressionNode &part) {
-    found |= part.is(ExpressionKind::Name) && part.name == name;
+    count += part.is(ExpressionKind::Name) && part.name == name;
   });
-  return found;
+  return count;
+}
+
+unsigned countMentions(const Statements &statements, const std::string &name) {
+  unsigned count = 0;
+  for (const Statement &statement : statements)
+    count += countMentions(statement, name);
+  return count;
+}
+
+bool mentions(const Statement &statement, const std::string &name) {
+  return countMentions(statement, name) != 0;
 }
 
 bool mentions(const Statements &statements, const std::string &name) {
-  return std::any_of(statements.begin(), statements.end(),
-                     [&](const Statement &statement) { return mentions(statement, name); });
+  return countMentions(statements, name) != 0;
 }
 
 } // namespace rtsl::cpp

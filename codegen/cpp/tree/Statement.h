@@ -27,6 +27,21 @@ struct Arm {
   Statements body;
 };
 
+/// What the maker of a statement knows of the variable that it declares or assigns. It is not
+/// printed; clean-ups use it (codegen/cpp/cleanup).
+struct WrittenVariable {
+  const void *identity = nullptr; // null: there is none, or it is not known
+  std::string type;
+  bool isTemporary = false;     // the compiler has named it: its value may move to its only use
+  bool isVectorOfBools = false; // whose type as a value differs from that in memory
+};
+
+/// An assignment to a field of the written variable; `all` is empty if it is none.
+struct WrittenField {
+  std::vector<std::string> all; // fields of the struct, in order
+  bool isCopy = false;          // the value is a field of another struct of that type
+};
+
 struct Statement {
   enum class Kind : std::uint8_t {
     Expression,
@@ -63,6 +78,10 @@ struct Statement {
   bool hasBraces = false, otherwiseHasBraces = false; // whether they need some or not
   // Switch
   std::vector<Arm> arms;
+  // Declaration, or Expression that is an assignment
+  WrittenVariable written;
+  WrittenField field;
+  bool isOpen = false; // a declaration that is moved to the first assignment, if there is one
 
   bool is(Kind k) const { return kind == k; }
 };
@@ -83,6 +102,8 @@ void append(Statements &statements, const Statements &more);
 std::string assignedName(const Statement &statement);
 /// Of an assignment, without a compound operator: `x op y` for `x op= y`.
 Code assignedValue(const Statement &statement);
+/// The variable, if the statement assigns all of a known variable; otherwise null.
+const void *assignedVariable(const Statement &statement);
 
 /// Visits every expression of the statements, parts included.
 void forEachPart(const Statement &statement,
@@ -90,5 +111,8 @@ void forEachPart(const Statement &statement,
 /// Does it name this variable, function or type anywhere?
 bool mentions(const Statement &statement, const std::string &name);
 bool mentions(const Statements &statements, const std::string &name);
+/// How often the statements name it.
+unsigned countMentions(const Statement &statement, const std::string &name);
+unsigned countMentions(const Statements &statements, const std::string &name);
 
 } // namespace rtsl::cpp
