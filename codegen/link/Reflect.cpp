@@ -89,6 +89,9 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record,
   result.name = info.name;
   result.root = info.root;
   result.base = info.base ? info.base->name : info.root;
+  if (info.base)
+    for (const typed::Class *above = info.base->base; above; above = above->base)
+      result.ancestors.push_back(above->name);
   result.recordSize = ir::recordSize(record);
 
   for (const typed::Member *member : allMembers(info)) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pictures.py RTSLC FOLDER [--quick]: renders a picture of each class of the standard library into FOLDER.
+"""pictures.py RTSLC FOLDER [--quick] [CLASS...]: renders a picture of each class of the standard library into FOLDER.
 
 docs/library.md shows them; --quick, for tests, renders few samples of few pixels. Each scene is written beside its
 picture while it is rendered, and removed after."""
@@ -17,6 +17,8 @@ FLOOR = {"primitive": {"class": "Parallelogram", "constructor": [[-8, -1, 8], [1
 LIGHTS = [{"class": "SphereLight", "center": [4, 6, 4], "radius": 0.8, "radiance": [20, 19, 17]}]
 SKY = {"class": "GradientSky"}
 CLAY = {"class": "Lambert", "albedo": {"class": "Checker", "even": [0.8, 0.4, 0.25], "odd": [0.75, 0.65, 0.5]}}
+PLAIN = {"class": "Lambert", "reflectance": [0.8, 0.45, 0.3]}
+FRACTALS = ("DistanceField", "Julia", "Mandelbulb")  # a pattern would hide their form
 MARBLE = {"class": "Marble", "scale": 1.2}
 
 CAMERAS = {name: {"constructor": [[0, 0.8, 5], [0, -0.2, 0], UP], **more} for name, more in {
@@ -67,7 +69,7 @@ def scenes():
         row = [{"primitive": {"class": "Sphere", "center": [1.1 * x, -0.5, -1.4 * x], "radius": 0.5}, "material": CLAY} for x in (-1, 0, 1)]
         yield name, scene([FLOOR, *row], camera={"class": name, **members})
     for name, members in PRIMITIVES.items():
-        yield name, scene([FLOOR, {"primitive": {"class": name, **members}, "material": CLAY}])
+        yield name, scene([FLOOR, {"primitive": {"class": name, **members}, "material": PLAIN if name in FRACTALS else CLAY}])
     for name, members in MATERIALS.items():
         form = {"Ward": {"class": "Cylinder", "constructor": [[0, -1, 0], [0, 0.8, 0], 0.8]}, "NormalMap": TORUS, "Velvet": TORUS}.get(name, BALL)
         yield name, scene([FLOOR, {"primitive": form, "material": {"class": name, **members}}])
@@ -86,8 +88,13 @@ def scenes():
 def main():
     rtslc, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     options = ["--size", "24x18", "--spp", "2"] if "--quick" in sys.argv else []
+    wanted = [argument for argument in sys.argv[3:] if argument != "--quick"]
     failed = []
     for name, description in scenes():
+        if wanted and name not in wanted:
+            continue
+        if name == "EnvironmentLight":  # all of its light is chosen at random
+            description["render"]["spp"] = 1024
         file = folder / f"{name}.json"
         file.write_text(json.dumps(description))
         done = subprocess.run([rtslc, "render", file, "-o", folder / f"{name}.png", "--quiet", *options], capture_output=True, text=True)

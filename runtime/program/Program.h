@@ -44,7 +44,9 @@ struct MemberInfo {
 
 struct ClassInfo {
   std::string name;
-  std::string base;                // "rt_Primitive", or another user class
+  std::string base; // "rt_Primitive", or another user class
+  /// The user classes above `base`, which need not be in the program themselves.
+  std::vector<std::string> ancestors;
   std::string root;                // the rt_ class at the end of the chain
   std::uint32_t id = 0;            // first word of a record; from 1
   std::uint32_t recordSize = 4;    // bytes, multiple of 4

@@ -120,9 +120,12 @@ void Objects::runConstructor(const Object &object, const ObjectValues &values,
 }
 
 bool Objects::derivesFrom(const ClassInfo *info, const std::string &className) const {
-  for (; info; info = code->find(info->base))
-    if (info->name == className || info->base == className || info->root == className)
+  for (; info; info = code->find(info->base)) {
+    const std::vector<std::string> &above = info->ancestors;
+    if (info->name == className || info->base == className || info->root == className ||
+        std::find(above.begin(), above.end(), className) != above.end())
       return true;
+  }
   return false;
 }
 

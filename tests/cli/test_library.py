@@ -57,6 +57,12 @@ class Library(Case):
         self.assertIn(str(LIBRARY / "std/cameras/ViewCamera.rtsl"), rule)
         self.assertNotIn("PinholeCamera", rule)
 
+    def test_an_object_may_be_of_a_class_far_below_that_of_a_member(self):
+        # Gold : Conductor : Scatterer; no object is a Conductor, so the program does not have that class.
+        self.scene(**{"import": ["std.primitives", "std.cameras", "std.materials"],
+                      "objects": [{**SPHERE, "material": {"class": "TwoSided", "front": {"class": "Gold"}, "back": {"class": "Gold"}}}]})
+        self.run_rtslc("render", "scene.json", "-o", "picture.png")
+
     def test_unknown_modules(self):
         for text, meant in (("std.cameas", "std.cameras"), ("std.cameras.Pinhole", "std.cameras.PinholeCamera"),
                             ("PinholeCamera", "std.cameras.PinholeCamera"), ("std.primitives.sphere", "std.primitives.Sphere")):
