@@ -85,7 +85,7 @@ std::vector<mlir::OwningOpRef<mlir::ModuleOp>> takeParts(mlir::ModuleOp program)
 std::vector<std::string> visibleFunctions(const llvm::Module &module) {
   std::vector<std::string> names;
   for (const llvm::Function &function : module)
-    if (!function.isDeclaration() && !function.hasLocalLinkage())
+    if (!function.isDeclaration() && !function.hasLocalLinkage() && !function.isWeakForLinker())
       names.push_back(function.getName().str());
   return names;
 }

@@ -28,7 +28,7 @@ namespace rtsl::codegen {
 /// piece.
 std::vector<mlir::OwningOpRef<mlir::ModuleOp>> takeParts(mlir::ModuleOp program);
 
-/// The functions that a module defines and exports.
+/// The functions that a module defines and exports, except those that each part defines alike.
 std::vector<std::string> visibleFunctions(const llvm::Module &module);
 
 /// Runs after device code was linked with a part: functions too large to be inlined are left to the

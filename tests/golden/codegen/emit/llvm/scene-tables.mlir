@@ -6,9 +6,9 @@
 // CHECK-DAG: llvm.mlir.global internal constant @rtsl.records(dense<[0, 0, 0, 0, 1, 1065353216]> : tensor<6xi32>) {addr_space = 0 : i32, alignment = 16 : i64}
 // CHECK-DAG: llvm.mlir.global internal constant @rtsl.instances(dense<[16, 7]> : tensor<2xi32>)
 // LLVM-DAG: @rtsl.records = internal constant [6 x i32]
-// LLVM: define ptr @rtsl_instances(ptr %{{.*}})
+// LLVM: define weak_odr ptr @rtsl_instances(ptr %{{.*}})
 // LLVM: ret ptr @rtsl.instances
-// LLVM: define i32 @rtsl_listed_instances(ptr %{{.*}})
+// LLVM: define weak_odr i32 @rtsl_listed_instances(ptr %{{.*}})
 // LLVM: ret i32 1
 module attributes {rtsl.records = array<i32: 0, 0, 0, 0, 1, 1065353216>, rtsl.instances = array<i32: 16, 7>, rtsl.listed = 1 : i32} {
   rtsl.class @Ball root "rt_Primitive" {
