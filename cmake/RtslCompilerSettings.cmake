@@ -44,11 +44,21 @@ function(rtsl_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter)
 endfunction()
 
-# rtsl_library(name SOURCES... [LINK libraries...]): a static library of this tree. Includes are written from the root
-# of the tree, or of the build tree for generated files.
+# rtsl_library(name [SOURCES...] [FOLDERS folders...] [LINK libraries...]): a static library of this tree. Without
+# sources it has all of the folders, by default of this one. Includes are written from the root of the tree, or of the
+# build tree for generated files.
 function(rtsl_library name)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
+  cmake_parse_arguments(ARG "" "" "FOLDERS;LINK" ${ARGN})
+  set(sources ${ARG_UNPARSED_ARGUMENTS})
+  if(NOT sources)
+    set(folders ${ARG_FOLDERS})
+    if(NOT folders)
+      set(folders .)
+    endif()
+    list(TRANSFORM folders APPEND "/*.cpp")
+    file(GLOB sources CONFIGURE_DEPENDS ${folders})
+  endif()
+  add_library(${name} STATIC ${sources})
   target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}")
   target_link_libraries(${name} PUBLIC ${ARG_LINK})
   rtsl_warnings(${name})
