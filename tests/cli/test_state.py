@@ -66,6 +66,8 @@ class State(Case):
         first = None
         for pattern in PATTERNS:
             for way, arguments in WAYS.items():
+                if pattern == "leave" and first and way != "double":
+                    continue  # no more than a reference: this is how the other tests render
                 name = f"{pattern} {way}.exr"
                 with self.subTest(pattern=pattern, way=way, scene=str(scene)):
                     self.run_rtslc("render", scene, "-o", name, "-q", f"--undefined={pattern}", *arguments, *options)
