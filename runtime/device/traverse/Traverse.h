@@ -140,8 +140,9 @@ bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Inters
 
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
 /// before limit(), until it returns true. All boxes are tested first: the lanes of a GPU that have
-/// primitives left then test them together, each its own. Unrolling both loops completely would make all that
-/// they read of the scene constant, and is slower: the program exceeds the instruction cache.
+/// primitives left then test them together, each its own. Unrolling both loops completely would
+/// make all that they read of the scene constant, and is slower: the program exceeds the
+/// instruction cache.
 template <typename Limit, typename Visit>
 void forEachListed(const RtslState &state, uint32_t count, const TriangleRay &ray, Limit limit,
                    Visit visit) {
