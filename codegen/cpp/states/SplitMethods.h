@@ -59,8 +59,6 @@ public:
 private:
   void findStates();
   void findCalledMethods();
-  CalledMethod describe(mlir::func::FuncOp declaration, const typed::Class &definition,
-                        const typed::Function &function, std::set<std::string> &structures);
 
   const typed::Module &module;
   const Names &names;
