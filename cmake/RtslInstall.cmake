@@ -1,5 +1,6 @@
 # cmake --install: the programs, the standard library, the runtime library with its headers, find_package(rtsl),
-# pkg-config, a man page and completions. Headers keep their folders below include/rtsl, which is an include path of rtsl::runtime.
+# pkg-config, a man page and completions. Headers keep their folders below include/rtsl, which is an include path of
+# rtsl::runtime.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS rtsl LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")

@@ -1,8 +1,9 @@
 //===- SourceLoader.h - files and their imports ---------------------------===//
 //
 // Reads RTSL files, each once however often it is imported, and resolves imports: files
-// (frontend/preprocessor/FileSearch.h) and modules (StandardLibrary.h). Of a module that is a folder
-// only those files are read whose names the program mentions, so that importing it costs nothing.
+// (frontend/preprocessor/FileSearch.h) and modules (StandardLibrary.h). Of a module that is a
+// folder only those files are read whose names the program mentions, so that importing it costs
+// nothing.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

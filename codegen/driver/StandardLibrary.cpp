@@ -2,6 +2,7 @@
 #include "codegen/driver/StandardLibrary.h"
 
 #include "support/ClosestName.h"
+#include "support/ProgramFolder.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -14,8 +15,7 @@ namespace rtsl {
 const std::string &libraryFolder() {
   static const std::string folder = [] {
     std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    const fs::path library = program.parent_path() / RTSL_DATA_FROM_PROGRAMS / "rtslc/library";
+    const fs::path library = programFolder() / RTSL_DATA_FROM_PROGRAMS / "rtslc/library";
     const fs::path canonical = fs::canonical(library, error);
     return (error ? library.lexically_normal() : canonical).string();
   }();

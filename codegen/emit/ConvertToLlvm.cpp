@@ -308,8 +308,8 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
       classOp.erase();
     for (auto function : module.getOps<LLVM::LLVMFuncOp>())
       finish(function);
-    for (const auto &table : {ir::attr::records, ir::attr::instances})
-      table.removeFrom(module);
+    ir::attr::records.removeFrom(module);
+    ir::attr::instances.removeFrom(module);
     ir::attr::listed.removeFrom(module);
     ir::attr::noted.removeFrom(module);
     ir::attr::holdsPayloads.removeFrom(module);

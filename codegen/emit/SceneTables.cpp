@@ -24,8 +24,8 @@ void defineTable(mlir::OpBuilder &builder, mlir::Location location, llvm::String
                          name, values, tableAlignment);
 }
 
-/// `type NAME(const RtslLaunch *)`, which returns what `result` makes. It replaces the weak function
-/// of the device code, and each part of a large program has it.
+/// `type NAME(const RtslLaunch *)`, which returns what `result` makes. It replaces the weak
+/// function of the device code, and each part of a large program has it.
 void defineFunction(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef name,
                     mlir::Type type, llvm::function_ref<mlir::Value()> result) {
   auto pointer = LLVM::LLVMPointerType::get(builder.getContext());

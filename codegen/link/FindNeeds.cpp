@@ -105,20 +105,20 @@ Reader readerOf(const mlir::SymbolTable &symbols, mlir::func::FuncOp function) {
   return {function, owner ? owner.getRoot() : llvm::StringRef()};
 }
 
+bool isRead(mlir::Value address) {
+  return llvm::any_of(address.getUsers(),
+                      [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
+}
+
 std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   if (auto state = llvm::dyn_cast<ir::StateOp>(op)) {
-    const bool isRead = llvm::any_of(
-        state->getUsers(), [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
-    if (!isRead)
+    if (!isRead(state))
       return 0;
     return needsOf(state.getName()) |
            (isOfCandidate(state.getName(), reader) ? RTSL_NEEDS_CANDIDATE : 0);
   }
-  if (llvm::isa<ir::AttributeOp>(op))
-    return llvm::any_of(op->getUsers(),
-                        [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); })
-               ? RTSL_NEEDS_ATTRIBUTES
-               : 0;
+  if (auto attribute = llvm::dyn_cast<ir::AttributeOp>(op))
+    return isRead(attribute) ? RTSL_NEEDS_ATTRIBUTES : 0;
   if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op);
       trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);

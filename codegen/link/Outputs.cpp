@@ -91,11 +91,10 @@ void dropUnreadOutputs(LinkContext &context) {
   context.ir.walk([&](ir::StateOp state) {
     if (!isOnlyForMethods(state.getName(), context.request.isSampled))
       return;
-    const bool isRead = llvm::any_of(
-        state->getUsers(), [](mlir::Operation *user) { return !llvm::isa<ir::StoreOp>(user); });
     Output &output = outputs[state.getNameAttr()];
-    output.isRead |= isRead;
-    if (!isRead && !state->use_empty())
+    if (isRead(state))
+      output.isRead = true;
+    else if (!state->use_empty())
       output.written.push_back(state);
   });
   for (auto &[name, output] : outputs) {

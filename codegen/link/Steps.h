@@ -170,6 +170,8 @@ struct Reader {
 Reader readerOf(const mlir::SymbolTable &symbols, mlir::func::FuncOp function);
 /// RTSL_NEEDS_*: the outputs that an operation of this function reads.
 std::uint32_t needsOf(const Reader &reader, mlir::Operation *op);
+/// Whether an operation uses the address other than to store to it.
+bool isRead(mlir::Value address);
 /// The outputs that functions of the program read; the runtime computes no others.
 std::uint32_t findNeeds(const LinkContext &context);
 /// ClassInfo::needs of each of the context's classes.

@@ -3,6 +3,7 @@
 
 #include "CommandLine.h"
 #include "SceneShaders.h"
+#include "support/ProgramFolder.h"
 
 #include <fmt/format.h>
 
@@ -44,9 +45,7 @@ void handOver(char **argv) {
       std::any_of(std::begin(handedOver), std::end(handedOver),
                   [&](const Summary &summary) { return command == summary.command; });
   if (isHandedOver || bindsScene(command, argv + 1)) {
-    std::error_code error;
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-    const std::filesystem::path program = self.parent_path() / "rtslc-render";
+    const std::filesystem::path program = programFolder() / "rtslc-render";
     execv(program.c_str(), argv);
     if (errno == ENOMEM)
       throw std::bad_alloc();

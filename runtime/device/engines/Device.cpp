@@ -6,25 +6,13 @@
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Classic.h"
+#include "runtime/device/engines/LaunchFacts.cpp"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/HitError.h"
 
 using namespace rtsl;
 
 extern "C" {
-
-__attribute__((weak)) uint32_t rtsl_needs(const RtslLaunch *launch) {
-  return launch->needs;
-}
-__attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
-  return launch->colorComponents;
-}
-__attribute__((weak)) const RtslInstance *rtsl_instances(const RtslLaunch *launch) {
-  return launch->instances;
-}
-__attribute__((weak)) uint32_t rtsl_listed_instances(const RtslLaunch *) {
-  return 0;
-}
 
 uint32_t rtsl_hit(RtslState *state, float t) {
   return device::reportHitWithin(*state, t, device::errorNotStated);

@@ -39,8 +39,8 @@ inline float movedInto(Range range, float t) {
   return t < range.near ? range.near : t > range.far ? range.far : t;
 }
 
-/// The larger of two numbers, or `limit` if the other one is NaN. If both are 0, the sign depends on
-/// the processor; no distance of a hit is 0.
+/// The larger of two numbers, or `limit` if the other one is NaN. If both are 0, the sign depends
+/// on the processor; no distance of a hit is 0.
 inline float raised(float limit, float x) {
 #ifdef __NVPTX__
   return __builtin_fmaxf(limit, x); // one instruction

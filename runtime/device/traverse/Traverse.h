@@ -139,22 +139,21 @@ bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Inters
 }
 
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
-/// before limit(), until it returns true. All boxes are tested first: the lanes of a GPU that have
+/// between tMin and limit(), until it returns true. All boxes are tested first: the lanes of a GPU that have
 /// primitives left then test them together, each its own. Unrolling both loops completely would
 /// make all that they read of the scene constant, and is slower: the program exceeds the
 /// instruction cache.
 template <typename Limit, typename Visit>
-void forEachListed(const RtslState &state, uint32_t count, const TriangleRay &ray, Limit limit,
-                   Visit visit) {
-  const RtslInstance *instances = rtsl_instances(state.launch);
-  const float tMin = maximum(state.Epsilon, 0.0f) * (1.0f - 2 * rangeShare);
+void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &ray, float tMin,
+                   Limit limit, Visit visit) {
+  tMin *= 1.0f - 2 * rangeShare;
   const float tMax = limit() * cullSlack;
   uint32_t entered = 0; // bit i: instance i
 #ifdef __clang__
 #pragma clang loop unroll_count(2) vectorize(disable)
 #endif
   for (uint32_t i = 0; i < count; ++i) {
-    const RtslInstance &instance = instances[i];
+    const RtslInstance &instance = instanceAt(launch, i);
     const float near =
         enterBox(instance.lower, instance.upper, ray.origin, ray.inverse, tMin, tMax);
     entered |= uint32_t(near < infinity) << i;
@@ -174,11 +173,11 @@ struct LaunchTree {
   template <typename Limit, typename Visit>
   void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Visit visit) const {
     const RtslLaunch &launch = *state.launch;
+    const float tMin = maximum(state.Epsilon, 0.0f);
     if (const uint32_t count = rtsl_listed_instances(&launch)) {
-      forEachListed(state, count, ray, limit, visit);
+      forEachListed(launch, count, ray, tMin, limit, visit);
       return;
     }
-    const float tMin = maximum(state.Epsilon, 0.0f);
     const RtslMeshTree world =
         launch.rootIsLeaf ? RtslMeshTree{~0, launch.nodeCount} : RtslMeshTree{0, 0};
     traverseBvh(launch, world, ray, tMin, limit, [&](const RtslLeafItem &item) {

@@ -1,6 +1,7 @@
 //===- LaunchFacts.cpp - facts of a scene, from its launch ----------------===//
 //
-// A compiled program defines these itself, as constants; this code of the host serves all programs.
+// A compiled program defines these itself, as constants. This code serves all programs: it is part
+// of Device.cpp, and of the host's code.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/ray/Abi.h"
@@ -9,6 +10,9 @@ extern "C" {
 
 __attribute__((weak)) uint32_t rtsl_needs(const RtslLaunch *launch) {
   return launch->needs;
+}
+__attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
+  return launch->colorComponents;
 }
 __attribute__((weak)) const RtslInstance *rtsl_instances(const RtslLaunch *launch) {
   return launch->instances;
