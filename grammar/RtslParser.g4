@@ -45,8 +45,10 @@ structDeclaration
 // class Sphere : rt_Primitive;        its members are the declarations that follow, to the end of the file
 // class Sphere : rt_Primitive { };    any number of them in a file
 // class Noise { };                    a helper class, which derives from nothing; only in this form
+// default class Plain : rt_Material;  methods of all rt_Material classes that do not define them; those without a body
+//                                     say for which classes
 classDeclaration
-    : CLASS IDENTIFIER ( COLON IDENTIFIER )? ( LEFT_BRACE declaration* RIGHT_BRACE )? SEMICOLON
+    : DEFAULT? CLASS IDENTIFIER ( COLON IDENTIFIER )? ( LEFT_BRACE declaration* RIGHT_BRACE )? SEMICOLON
     ;
 
 // --- Declarations ---------------------------------------------------------------------------------------------------

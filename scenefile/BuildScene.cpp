@@ -32,10 +32,10 @@ public:
 
   Scene build() {
     attempt([&] {
-      if (description.render.engine == runtime::Engine::Classic)
-        scene.setCamera(add(description.camera.value(), "camera"));
-      else
-        scene.setRayGeneration(add(description.rayGeneration.value(), "rayGeneration"));
+      if (description.camera)
+        scene.setCamera(add(*description.camera, "camera"));
+      if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
+        scene.setRayGeneration(add(*description.rayGeneration, "rayGeneration"));
     });
     // Named objects are created in the order of their names, after those that they refer to.
     for (const auto *section : sections)

@@ -1,6 +1,8 @@
 //===- SceneFile.cpp - from JSON to a description -------------------------===//
 #include "scenefile/SceneFile.h"
 
+#include "scenefile/PathEngine.h"
+
 #include "scenefile/Graph.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
@@ -61,6 +63,8 @@ public:
       if (const JsonValue *render = root.find("render"))
         readRender(*render);
       requireStart();
+      if (usesPathTracer)
+        usePathTracer(scene);
     });
     errors.throwIfAny();
   }
@@ -99,9 +103,12 @@ private:
 
   /// Requires the object that starts samples.
   void requireStart() const {
-    bool isClassic = scene.render.engine == runtime::Engine::Classic;
-    require(root, isClassic ? "camera" : "rayGeneration",
-            isClassic ? "a scene" : "a scene for the engine `programs`");
+    if (scene.render.engine == runtime::Engine::Classic)
+      require(root, "camera", "a scene");
+    else if (usesPathTracer)
+      require(root, "camera", "a scene for the engine `path`");
+    else
+      require(root, "rayGeneration", "a scene for the engine `programs`");
   }
 
   void readVersion() const {
@@ -285,12 +292,13 @@ private:
     RenderSettings &render = scene.render;
     if (const JsonValue *engine = value.find("engine")) {
       expect(*engine, Kind::String, "`engine`");
-      if (engine->string != "classic" && engine->string != "programs")
-        throw Error(
-            ErrorCode::NotSupported,
-            fmt::format("there is no engine `{}`, only `classic` and `programs`", engine->string),
-            engine->place());
-      if (engine->string == "programs")
+      if (engine->string != "classic" && engine->string != "path" && engine->string != "programs")
+        throw Error(ErrorCode::NotSupported,
+                    fmt::format("there is no engine `{}`, only `classic`, `path` and `programs`",
+                                engine->string),
+                    engine->place());
+      usesPathTracer = engine->string == "path";
+      if (engine->string != "classic")
         render.engine = runtime::Engine::Programs;
     }
     if (const JsonValue *size = value.find("size")) {
@@ -308,6 +316,7 @@ private:
 
   const JsonValue &root;
   SceneDescription &scene;
+  bool usesPathTracer = false;
   ErrorCollector errors;
 };
 
@@ -342,12 +351,10 @@ void forEachObject(const ObjectDescription &object, const ObjectVisitor &visit) 
 
 /// In the order of the file's sections.
 void forEachObject(const SceneDescription &description, const ObjectVisitor &visit) {
-  // Only one of camera and ray generation is used.
-  const auto &start = description.render.engine == runtime::Engine::Classic
-                          ? description.camera
-                          : description.rayGeneration;
-  if (start)
-    forEachObject(*start, visit);
+  if (description.camera)
+    forEachObject(*description.camera, visit);
+  if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
+    forEachObject(*description.rayGeneration, visit);
   for (const auto *named : {&description.helpers, &description.textures, &description.materials})
     for (const auto &object : *named)
       forEachObject(object.second, visit);

@@ -24,9 +24,8 @@ public:
     for (const auto *objects : {&scene.helpers, &scene.textures, &scene.materials})
       for (const auto &[name, object] : *objects)
         add(object, parts[next++]);
-    if (scene.render.engine == runtime::Engine::Classic)
-      root("camera", scene.camera);
-    else
+    root("camera", scene.camera);
+    if (scene.render.engine != runtime::Engine::Classic)
       root("rayGeneration", scene.rayGeneration);
     for (std::size_t i = 0; i < scene.objects.size(); ++i)
       geometry(scene.objects[i], fmt::format("objects.{}", i));

@@ -64,9 +64,13 @@ EffectsOf::EffectsOf(const typed::Module &module, bool prints, bool raises)
           });
 }
 
+bool isCalledByEngineAlone(const typed::Function &function) {
+  return function.isStateMethod && !function.isCalledOnSelf;
+}
+
 const typed::Function &overridden(const typed::Function &function) {
   const typed::Function *top = &function;
-  if (function.owner && !function.isConstructor && !function.isStateMethod)
+  if (function.owner && !function.isConstructor && !isCalledByEngineAlone(function))
     for (const typed::Class *base = function.owner->base; base; base = base->base)
       for (const auto &method : base->functions)
         if (method->name == function.name && typed::sameParameters(*method, function))

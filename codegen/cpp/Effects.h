@@ -38,6 +38,9 @@ struct Effects {
 /// Would it show if `second` were evaluated before `first`?
 bool conflicts(const Effects &first, const Effects &second);
 
+/// Is this a method of the table that no other method of the object calls?
+bool isCalledByEngineAlone(const typed::Function &function);
+
 /// The first definition of a method, in the farthest base that has it.
 const typed::Function &overridden(const typed::Function &function);
 

@@ -35,7 +35,7 @@ bool Signatures::isByReference(const typed::Variable &parameter, const typed::Fu
            assignedVariables(*method.body)
                    .count(method.parameters[static_cast<std::size_t>(position)].get()) != 0;
   };
-  if (!function.owner || function.isConstructor || function.isStateMethod)
+  if (!function.owner || function.isConstructor || isCalledByEngineAlone(function))
     return !assigns(function);
   // What overrides a method takes what that takes.
   const typed::Function &top = overridden(function);
@@ -173,7 +173,7 @@ bool Signatures::overrides(const typed::Function &function) const {
 // Only calls in the author's code on the object itself need virtual methods of C++: the runtime and
 // references call methods of a known class.
 bool Signatures::isOverridden(const typed::Function &function) const {
-  if (function.isConstructor || !function.owner || function.isStateMethod ||
+  if (function.isConstructor || !function.owner || isCalledByEngineAlone(function) ||
       split.isPartOfStates(function))
     return false;
   for (const auto &definition : module.classes)

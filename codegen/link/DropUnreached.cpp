@@ -144,6 +144,8 @@ private:
       addMethods("rt_Primitive", "computeTextureCoordinates", cause);
     if (needs & RTSL_NEEDS_DERIVATIVES)
       addMethods("rt_Primitive", "computeDerivatives", cause);
+    if (needs & RTSL_NEEDS_CAMERA_RAY && context.request.engine != runtime::Engine::Classic)
+      addMethods("rt_Camera", "generateRay", cause);
   }
 
   const LinkContext &context;
@@ -157,6 +159,29 @@ private:
 bool isStartedByRays(llvm::StringRef method) {
   const llvm::StringRef name = method.split('.').first;
   return name == "shade" || name == "miss" || name == "closestHit" || name == "anyHit";
+}
+
+Item itemOf(llvm::StringRef method) {
+  return isStartedByRays(method) ? Item::States : Item::Methods;
+}
+
+/// The methods that are kept although nothing reaches them, and what they call.
+llvm::SmallPtrSet<mlir::Operation *, 16>
+functionsOfKept(const LinkContext &context,
+                const llvm::MapVector<mlir::Operation *, Cause> &reached) {
+  llvm::SmallVector<FuncOp> pending;
+  for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
+    if (const auto method = ir::attr::methodName.of(function);
+        method && !reached.contains(function) &&
+        context.request.keep.has(itemOf(method.getValue())))
+      pending.push_back(function);
+  llvm::SmallPtrSet<mlir::Operation *, 16> all(pending.begin(), pending.end());
+  while (!pending.empty())
+    pending.pop_back_val().walk([&](mlir::func::CallOp call) {
+      if (FuncOp callee = context.function(call.getCallee()); callee && all.insert(callee).second)
+        pending.push_back(callee);
+    });
+  return all;
 }
 
 bool traces(FuncOp function) {
@@ -198,12 +223,13 @@ void dropUnreached(LinkContext &context) {
   for (auto &[name, finding] : context.dispatches)
     if (FuncOp function = context.function(name); function && reach.isReachedByRendering(function))
       context.findings.push_back(finding);
+  const llvm::SmallPtrSet<mlir::Operation *, 16> calledByKept = functionsOfKept(context, reached);
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
     const auto method = ir::attr::methodName.of(function);
     const auto found = reached.find(function);
     if (method) {
       Finding finding;
-      finding.item = isStartedByRays(method.getValue()) ? Item::States : Item::Methods;
+      finding.item = itemOf(method.getValue());
       finding.subject = shownName(function);
       finding.isNeeded = reach.isReachedByRendering(function);
       if (finding.isNeeded) {
@@ -231,7 +257,7 @@ void dropUnreached(LinkContext &context) {
       }
     }
     const bool mayBeCalledByKept = !context.request.keep.isEmpty() && !method;
-    if (found == reached.end() && !mayBeCalledByKept)
+    if (found == reached.end() && !mayBeCalledByKept && !calledByKept.contains(function))
       context.symbols.erase(function);
   }
 }

@@ -62,6 +62,11 @@ bool mayStartAtHits(const Reader &reader) {
   return reader.root.empty() || reader.root == "rt_Material" || reader.root == ir::helperRoot;
 }
 
+/// Whether the function may run for `generate`, where the ray is the camera's.
+bool mayRunForGenerate(const Reader &reader) {
+  return reader.root.empty() || reader.root == "rt_RayGeneration" || reader.root == ir::helperRoot;
+}
+
 constexpr std::uint32_t ofRaysFromHits = RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS;
 
 /// The outputs that one function reads itself.
@@ -114,8 +119,12 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   if (auto state = llvm::dyn_cast<ir::StateOp>(op)) {
     if (!isRead(state))
       return 0;
+    const bool isCameraRay =
+        (state.getName() == "RayOrigin" || state.getName() == "RayDirection") &&
+        mayRunForGenerate(reader);
     return needsOf(state.getName()) |
-           (isOfCandidate(state.getName(), reader) ? RTSL_NEEDS_CANDIDATE : 0);
+           (isOfCandidate(state.getName(), reader) ? RTSL_NEEDS_CANDIDATE : 0) |
+           (isCameraRay ? RTSL_NEEDS_CAMERA_RAY : 0);
   }
   if (auto attribute = llvm::dyn_cast<ir::AttributeOp>(op))
     return isRead(attribute) ? RTSL_NEEDS_ATTRIBUTES : 0;
@@ -131,6 +140,8 @@ std::uint32_t findNeeds(const LinkContext &context) {
   std::uint32_t needs = 0;
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
     needs |= needsOf(context, function);
+  if (context.request.engine == runtime::Engine::Classic) // nothing generates rays
+    needs &= ~RTSL_NEEDS_CAMERA_RAY;
   return needs;
 }
 

@@ -48,6 +48,7 @@ constexpr Computed computed[] = {
     {RTSL_NEEDS_TIME, "rt_Time, rt_TimeSeed"},
     {RTSL_NEEDS_LAUNCH, "rt_LaunchIndex, rt_LaunchSize"},
     {RTSL_NEEDS_LENS, "rt_LensCoord"},
+    {RTSL_NEEDS_CAMERA_RAY, "the camera's ray in `generate`"},
     {RTSL_NEEDS_CANDIDATE, "rt_BoundMin, rt_BoundMax and other state of the object in `intersect`"},
 };
 

@@ -101,11 +101,13 @@ void FunctionLowering::copyOut(const std::vector<CopyOut> &outputs) {
     store(loadFrom(output.from, output.target.type), output.target);
 }
 
-/// Is the callee an overridden function, or one that the engine calls under the same name?
+/// Is the callee an overridden function, or one that begins a ray if the engine calls it?
 bool FunctionLowering::isHidden(const typed::CallExpr &expr) const {
   const typed::Function &callee = *expr.function;
-  return expr.isOfBase && (callee.isStateMethod || callee.isConstructor ||
-                           &resolve(callee, key.concrete) != &callee);
+  if (expr.isOfBase)
+    return callee.isStateMethod || callee.isConstructor ||
+           &resolve(callee, key.concrete) != &callee;
+  return callee.isStateMethod && (callee.name == "shade" || callee.name == "miss");
 }
 
 Parts FunctionLowering::lowerCall(const typed::CallExpr &expr, Value result) {

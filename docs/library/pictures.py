@@ -55,7 +55,7 @@ LIGHT_SCENES = {
 TEXTURES = {
     "Solid": {}, "Checker": {"scale": 4}, "Brick": {}, "Noise": {"kind": 3, "scale": 2}, "Marble": MARBLE, "Wood": {}, "Gradient": {},
     "TransformedPattern": {"pattern": {"class": "Checker", "scale": 4}, "rotation": 30}, "Triplanar": {"pattern": {"class": "Checker", "scale": 2}}}
-BACKGROUNDS = {"GradientSky": {}, "DaylightSky": {}}
+BACKGROUNDS = {"GradientSky": {}, "DaylightSky": {}, "UniformSky": {"radiance": [0.6, 0.7, 0.9]}}
 
 
 def scene(objects, camera=VIEW, lights=LIGHTS, background=SKY, ambient=0.3):
@@ -79,6 +79,18 @@ def scenes():
     for name, members in TEXTURES.items():
         form = {"class": "Box", "low": [-0.8, -1, -0.8], "high": [0.8, 0.6, 0.8]}
         yield name, scene([FLOOR, {"primitive": form, "material": {"class": "Lambert", "albedo": {"class": name, **members}}}])
+    walls = [{"primitive": {"class": "Parallelogram", "constructor": [corner, side1, side2]},
+              "material": {"class": "Lambert", "reflectance": reflectance}} for corner, side1, side2, reflectance in (
+                  ([-1.6, -1, -1.5], [3.2, 0, 0], [0, 2.4, 0], [0.7] * 3), ([-1.6, -1, 2], [0, 0, -3.5], [0, 2.4, 0], [0.6, 0.1, 0.08]),
+                  ([1.6, -1, -1.5], [0, 0, 3.5], [0, 2.4, 0], [0.1, 0.4, 0.12]), ([-1.6, -1, 2], [3.2, 0, 0], [0, 0, -3.5], [0.7] * 3),
+                  ([-1.6, 1.4, -1.5], [3.2, 0, 0], [0, 0, 3.5], [0.7] * 3))]
+    balls = [{"primitive": {"class": "Sphere", "center": center, "radius": 0.5}, "material": {"class": material}}
+             for center, material in (([-0.7, -0.5, -0.3], "Gold"), ([0.6, -0.5, 0.4], "Dielectric"))]
+    room = scene(walls + balls, camera={"class": "PerspectiveCamera", "constructor": [[0, 0.2, 5.5], [0, 0.15, 0], UP], "fieldOfView": 33},
+                 lights=[{"class": "RectangleLight", "corner": [-0.5, 1.39, -0.5], "side1": [1, 0, 0], "side2": [0, 0, 1], "radiance": [9, 8, 6]}],
+                 background=[0, 0, 0])
+    room["render"].update(engine="path", spp=1024)
+    yield "PathTracer", room
     for name, members in BACKGROUNDS.items():
         yield name, scene([FLOOR, {"primitive": BALL, "material": {"class": "Silver", "alpha": 0}}],
                           camera={"class": "PerspectiveCamera", "constructor": [[0, 0.3, 5], [0, 0.4, 0], UP], "fieldOfView": 50},

@@ -314,6 +314,9 @@ struct ClassDecl {
   Name name;
   Name base;             // empty text: a helper class
   bool fileForm = false; // `class Name : Base;`, members follow to the end of the file
+  // of `default`; not valid: absent. Functions of a default class without a body are those that it
+  // requires.
+  SourceRange defaultRange;
   std::vector<VariableDecl> members;
   std::vector<FunctionDecl> functions;
   SourceRange range;

@@ -35,7 +35,11 @@ public:
   std::unique_ptr<ast::TranslationUnit> finish();
 
 private:
-  enum class Place { File, Member, Field, Local, Parameter };
+  enum class Place { File, Member, MemberOfDefault, Field, Local, Parameter };
+
+  static Place placeIn(const ast::ClassDecl &owner) {
+    return owner.defaultRange.isValid() ? Place::MemberOfDefault : Place::Member;
+  }
 
   // Ranges (AstBuilder.cpp).
   SourceRange range(const antlr4::ParserRuleContext *context) const;

@@ -19,7 +19,7 @@ void AstBuilder::addItem(Parser::FileItemContext *item) {
   } else if (auto *declaration = item->declaration()) {
     if (hasFileClass) {
       ClassDecl &owner = unit->classes.back();
-      addDeclaration(declaration, Place::Member, owner.members, &owner.functions);
+      addDeclaration(declaration, placeIn(owner), owner.members, &owner.functions);
       owner.range.end = range(declaration).end;
     } else {
       addDeclaration(declaration, Place::File, unit->constants, &unit->functions);
@@ -96,9 +96,11 @@ void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
   if (!isHelper)
     declared.base = name(names[1]);
   declared.fileForm = !context->LEFT_BRACE();
+  if (context->DEFAULT())
+    declared.defaultRange = range(context->DEFAULT());
   declared.range = range(context);
   for (auto *member : context->declaration())
-    addDeclaration(member, Place::Member, declared.members, &declared.functions);
+    addDeclaration(member, placeIn(declared), declared.members, &declared.functions);
   hasFileClass |= declared.fileForm;
   unit->classes.push_back(std::move(declared));
 }
@@ -258,8 +260,8 @@ bool AstBuilder::addDeclaration(Parser::DeclarationContext *context, Place place
   if (!context->typeName() || context->typeName()->exception)
     return false; // broken, or a stray semicolon
   if (!context->IDENTIFIER()) {
-    addVariables(context, context->qualifier(), context->typeName(), context->declarator(), place,
-                 variables);
+    addVariables(context, context->qualifier(), context->typeName(), context->declarator(),
+                 place == Place::MemberOfDefault ? Place::Member : place, variables);
     return true;
   }
   if (!functions) {

@@ -434,7 +434,8 @@ void Dumper::unit(const TranslationUnit &unit) {
     function(declared);
   for (const ClassDecl &declared : unit.classes) {
     comment(declared.comment);
-    line(fmt::format("class {}{}{}{}", declared.name.text, declared.base.text.empty() ? "" : " : ",
+    line(fmt::format("{}class {}{}{}{}", declared.defaultRange.isValid() ? "default " : "",
+                     declared.name.text, declared.base.text.empty() ? "" : " : ",
                      declared.base.text, declared.fileForm ? " (to the end of the file)" : ""));
     const Indent inner(depth);
     for (const VariableDecl &member : declared.members)

@@ -265,13 +265,8 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   const bool isOfBase = !expr.base.text.empty();
   if (isOfBase && !requireSameMethod(callee, expr.base.range.to(expr.callee.range)))
     return errorExpr(expr.range);
-  if (!isOfBase && (callee.isConstructor || callee.isStateMethod)) {
-    diagnostics.report(Code::engineCalls, expr.callee.range, callee.name)
-        .label(callee.range, "defined here")
-        .note(callee.isConstructor ? "the constructor runs once, when the scene creates the object"
-                                   : "move the common code into a function of its own");
+  if (!isOfBase && !requireCallable(callee, expr.callee.range, receiver != nullptr))
     return errorExpr(expr.range);
-  }
   for (std::size_t i = 0; i != args.size(); ++i)
     if (signature.parameters[i].direction != ast::Direction::In &&
         !requireTarget(*expr.args[i], *args[i], "write to"))
@@ -297,6 +292,23 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   node->isOfBase = isOfBase;
   node->args = std::move(args);
   return node;
+}
+
+/// Constructors and most methods of the table are called by the engine alone; a few may be called by
+/// other methods of the same object, where these may do what they do.
+bool FunctionChecker::requireCallable(const typed::Function &callee, SourceRange range,
+                                      bool onOtherObject) {
+  if (!callee.isConstructor && !callee.isStateMethod)
+    return true;
+  if (const RootModel *root = rootModel(callee.owner->root); root && !onOtherObject)
+    if (const MethodModel *method = root->method(callee.name, !callee.parameters.empty()))
+      if (const std::optional<Ability> ability = method->calledBy())
+        return recordSpecial(*ability, callee.name, range);
+  diagnostics.report(Code::engineCalls, range, callee.name)
+      .label(callee.range, "defined here")
+      .note(callee.isConstructor ? "the constructor runs once, when the scene creates the object"
+                                 : "move the common code into a function of its own");
+  return false;
 }
 
 //===----------------------------------------------------------------------===//

@@ -50,6 +50,54 @@ std::vector<const typed::Function *> Program::findMethods(const ClassScope *scop
 // Bases
 //===----------------------------------------------------------------------===//
 
+/// Finds the default classes of each rt_ class, in source order.
+void Program::findDefaults() {
+  for (const std::string &name : classOrder) {
+    ClassScope &scope = *classes[name];
+    const ast::ClassDecl &declaration = *scope.declaration;
+    if (!declaration.defaultRange.isValid())
+      continue;
+    const RootModel *root = rootModel(declaration.base.text);
+    if (!root) {
+      diagnostics
+          .report(Code::badDefaultClass, declaration.defaultRange, name,
+                  "its base is not one of the rt_ classes")
+          .fix(declaration.defaultRange, "");
+      continue;
+    }
+    for (const ast::VariableDecl &member : declaration.members)
+      diagnostics.report(Code::badDefaultClass, member.name.range, name, "it has members")
+          .note("every " + root->name + " of the program would have them");
+    for (const ast::FunctionDecl &function : declaration.functions)
+      if (!root->method(function.name.text))
+        diagnostics
+            .report(Code::badDefaultClass, function.name.range, name,
+                    "it has a function that is not a method of " + withArticle(root->name))
+            .note("functions of other classes could have the same name; move it to file level");
+    defaults[root].push_back(&scope);
+  }
+}
+
+/// The default class from which a class derives that names an rt_ class as its base: the first whose
+/// required methods, those without a body, it defines. Null if there is none.
+ClassScope *Program::defaultOf(const ClassScope &scope) const {
+  const auto candidates = defaults.find(scope.root);
+  if (candidates == defaults.end() || scope.declaration->defaultRange.isValid())
+    return nullptr;
+  const std::vector<ast::FunctionDecl> &own = scope.declaration->functions;
+  const auto isDefined = [&](const ast::FunctionDecl &required) {
+    return required.body || std::any_of(own.begin(), own.end(), [&](const ast::FunctionDecl &one) {
+             return one.name.text == required.name.text &&
+                    one.parameters.size() == required.parameters.size();
+           });
+  };
+  for (ClassScope *candidate : candidates->second)
+    if (const auto &methods = candidate->declaration->functions;
+        std::all_of(methods.begin(), methods.end(), isDefined))
+      return candidate;
+  return nullptr;
+}
+
 void Program::linkBase(ClassScope &scope) {
   const ast::Name &base = scope.declaration->base;
   if (base.text.empty()) {
@@ -60,6 +108,10 @@ void Program::linkBase(ClassScope &scope) {
   if (const RootModel *root = rootModel(base.text)) {
     scope.root = root;
     scope.definition->root = root->name;
+    if (ClassScope *base = defaultOf(scope)) {
+      scope.base = base;
+      scope.definition->base = base->definition;
+    }
     return;
   }
   if (auto found = classes.find(base.text); found != classes.end()) {
@@ -151,6 +203,7 @@ void Program::limitInheritance() {
 }
 
 void Program::resolveClasses() {
+  findDefaults();
   for (const std::string &name : classOrder)
     linkBase(*classes[name]);
   const bool hadCycles = breakCycles();

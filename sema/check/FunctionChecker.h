@@ -138,6 +138,7 @@ private:
   typed::ExprPtr checkCall(const ast::CallExpr &expr);
   typed::ExprPtr checkPlainCall(const ast::CallExpr &expr);
   typed::ExprPtr checkBaseCall(const ast::CallExpr &expr);
+  bool requireCallable(const typed::Function &callee, SourceRange range, bool onOtherObject);
   bool requireSameMethod(const typed::Function &callee, SourceRange range);
   typed::ExprPtr checkReceiverCall(const ast::CallExpr &expr);
   typed::ExprPtr checkLength(const ast::CallExpr &expr, typed::ExprPtr receiver);

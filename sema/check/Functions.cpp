@@ -118,7 +118,7 @@ void Program::declareMethods(ClassScope &scope) {
     if (declaration.body)
       bodies.push_back({&declaration, function, &scope});
     else
-      function->body = std::make_unique<typed::CompoundStmt>(); // reported by the parser
+      function->body = std::make_unique<typed::CompoundStmt>(); // required by a default class
   }
 }
 

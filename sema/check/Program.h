@@ -108,6 +108,8 @@ public:
   std::unordered_map<std::string, std::vector<typed::Function *>> functions;
   std::vector<std::string> structOrder, constantOrder, classOrder; // in source order
   std::unordered_map<const typed::Function *, FunctionFacts> facts;
+  std::unordered_map<const RootModel *, std::vector<ClassScope *>>
+      defaults; // the default classes of an rt_ class
   std::unordered_map<const typed::Class *, ClassScope *> scopeOf;
 
   const Symbol *findSymbol(const std::string &name) const;
@@ -153,6 +155,8 @@ private:
   void resolveFields(StructEntry &entry);
   void checkConstant(GlobalConstant &entry);
   // Classes.cpp
+  void findDefaults();
+  ClassScope *defaultOf(const ClassScope &scope) const;
   void linkBase(ClassScope &scope);
   bool breakCycles();
   void limitInheritance();

@@ -510,8 +510,11 @@ void CallGraph::judgeHelpers() {
   std::unordered_set<const typed::Function *> called;
   for (const auto &[caller, facts] : program.facts)
     for (const CallEdge &edge : facts.calls)
-      for (const typed::Function *target : targets(edge))
+      for (const typed::Function *target : targets(edge)) {
         called.insert(target);
+        const_cast<typed::Function *>(target)->isCalledOnSelf |=
+            target->isStateMethod && edge.dispatched && !edge.throughReference;
+      }
   // A function that no method reaches yet may do what any method of its class may do.
   for (const ClassScope *scope : baseFirst) {
     if (!scope->root || scope->root == &helperModel())

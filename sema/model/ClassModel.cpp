@@ -87,18 +87,20 @@ static RootModel materialModel() {
                                  S::du,
                                  S::dv};
   const AbilitySet common = {A::Lookup, A::Random, A::ReadScratch};
+  // What the sampling methods are given and write: methods that call them write it, too.
+  const StateSet sampling = {S::LightDirection, S::BSDFSeed, S::BSDFValue, S::PDF,
+                             S::EmissionColor};
   return {"rt_Material",
           sees,
           {
-              {"shade", sees, {S::SampleColor}, common | AbilitySet{A::Trace, A::Illuminance}},
+              {"shade", sees, sampling | StateSet{S::SampleColor},
+               common | AbilitySet{A::Trace, A::Illuminance, A::CallSampling}},
               {"BSDF", sees, {S::BSDFValue}, common},
               {"sampleBSDF", sees, {S::LightDirection, S::BSDFValue, S::PDF}, common},
               {"evaluatePDF", sees, {S::PDF}, common},
               {"emission", sees, {S::EmissionColor}, common},
-              {"closestHit",
-               sees,
-               {},
-               common | AbilitySet{A::Trace, A::Illuminance},
+              {"closestHit", sees, sampling | StateSet{S::SampleColor},
+               common | AbilitySet{A::Trace, A::Illuminance, A::CallSampling, A::CallColor},
                Payload::Required},
               {"anyHit", sees, {}, common | AbilitySet{A::AnyHit}, Payload::Required},
           },
@@ -118,7 +120,8 @@ static RootModel lightModel() {
 }
 
 static RootModel rayGenerationModel() {
-  const StateSet sees = everyRay | StateSet{S::ScreenCoord, S::LensCoord, S::SampleColor};
+  const StateSet sees = everyRay | StateSet{S::RayOrigin, S::RayDirection, S::ScreenCoord,
+                                            S::LensCoord, S::SampleColor};
   return {"rt_RayGeneration",
           sees,
           {{"generate", sees, {S::SampleColor}, {A::Trace, A::Random}}},
@@ -129,15 +132,14 @@ static RootModel missModel() {
   const StateSet rayOnly =
       everyRay | StateSet{S::RayOrigin, S::RayDirection, S::InverseRayDirection};
   // Texture coordinates are set by `miss`: there is no surface.
-  const StateSet withPayload = rayOnly | textureCoordinates;
-  const StateSet classic = withPayload | StateSet{S::SampleColor};
+  const StateSet sees = rayOnly | textureCoordinates | StateSet{S::SampleColor};
+  const StateSet writes = textureCoordinates | StateSet{S::SampleColor};
   const AbilitySet abilities = {A::Trace, A::Lookup, A::Random};
   return {"rt_Miss",
-          classic,
+          sees,
           {
-              {"miss", classic, textureCoordinates | StateSet{S::SampleColor}, abilities,
-               Payload::None},
-              {"miss", withPayload, textureCoordinates, abilities, Payload::Required},
+              {"miss", sees, writes, abilities, Payload::None},
+              {"miss", sees, writes, abilities | AbilitySet{A::CallColor}, Payload::Required},
           },
           false};
 }
@@ -190,6 +192,14 @@ std::optional<Ability> abilityNeeded(const std::string &builtin) {
   if (found == needed.end() || found->second == Ability::Anywhere)
     return std::nullopt;
   return found->second;
+}
+
+std::optional<Ability> MethodModel::calledBy() const {
+  if (name == "BSDF" || name == "sampleBSDF" || name == "evaluatePDF" || name == "emission")
+    return A::CallSampling;
+  if (payload == Payload::None && (name == "shade" || name == "miss"))
+    return A::CallColor;
+  return std::nullopt;
 }
 
 std::string MethodModel::signature() const {

@@ -50,6 +50,8 @@ enum class Ability : std::uint8_t {
   ReadScratch,
   WriteScratch,
   WriteMembers, // public and private members
+  CallSampling, // BSDF, sampleBSDF, evaluatePDF and emission of the same object
+  CallColor,    // shade, or miss without payload, of the same object
 };
 
 class AbilitySet {
@@ -85,6 +87,10 @@ struct MethodModel {
   StateSet writes;
   AbilitySet abilities;
   Payload payload = Payload::None;
+
+  /// The ability that another method of the same object needs to call this one; none if only the
+  /// engine may call it.
+  std::optional<Ability> calledBy() const;
 
   /// `void closestHit(inout P)`, for messages.
   std::string signature() const;

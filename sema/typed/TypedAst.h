@@ -131,6 +131,8 @@ struct Function {
   StmtPtr body;                                  // a CompoundStmt
   const Class *owner = nullptr;                  // methods
   bool isConstructor = false;
+  bool isCalledOnSelf =
+      false;                  // a method that other methods of the object call, not only the engine
   bool isStateMethod = false; // overrides an engine method of its base class: intersect, shade, ...
   SentRays sends;             // by itself or its callees, and by methods that override these
   SentRays callSends;         // by a call of it, which may run an overriding method

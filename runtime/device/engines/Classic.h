@@ -310,16 +310,21 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   state.rayRoot = 0;
 }
 
-/// Makes `state` the camera ray of one sample of one pixel.
-inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
-                        uint32_t index, RtslEvents &events) {
-  placeSample(state, launch, x, y, index, events);
+/// Writes the camera's ray to the state of a sample that begins.
+inline void aimCamera(RtslState &state, const RtslLaunch &launch) {
   state.du = state.dv = 0;
   setVector(state.RayOrigin, 0, 0, 0); // defaults if the camera does not write them
   setVector(state.RayDirection, 0, 0, 0);
   state.Epsilon = 0; // its ray sees everything in front of the origin
   state.HitDistance = infinity;
   rtsl_rt_Camera_generateRay(&state, launch.camera);
+}
+
+/// Makes `state` the camera ray of one sample of one pixel.
+inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
+                        uint32_t index, RtslEvents &events) {
+  placeSample(state, launch, x, y, index, events);
+  aimCamera(state, launch);
   setRay(state, load(state.RayOrigin), load(state.RayDirection), {0, 0, RTSL_NO_HIT}, infinity);
 }
 

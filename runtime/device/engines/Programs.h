@@ -82,12 +82,21 @@ inline void trace(RtslState &parent, const PayloadRay &ray, uint32_t how) {
 }
 
 /// Makes `state` that of `generate`, which precedes all rays: the rays that it sends have depth 0.
+/// Its own ray is the camera's, if the scene has one.
 inline void startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                           uint32_t index, RtslEvents &events) {
   placeSample(state, launch, x, y, index, events);
   state.Depth = -1;
   state.instance = RTSL_NO_HIT;
   setColor(state.SampleColor, rtsl_color_components(&launch), 0);
+  if (!(rtsl_needs(&launch) & RTSL_NEEDS_CAMERA_RAY))
+    return;
+  if (launch.camera) {
+    aimCamera(state, launch);
+  } else {
+    setVector(state.RayOrigin, 0, 0, 0);
+    setVector(state.RayDirection, 0, 0, 0);
+  }
 }
 
 /// One sample of one pixel: the result of `generate`.

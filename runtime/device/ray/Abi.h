@@ -236,9 +236,10 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_ANY_HIT 512u // no state: some ray's hits may be rejected
 #define RTSL_NEEDS_CANDIDATE                                                                       \
   1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
-#define RTSL_NEEDS_HIT_ERRORS 2048u // no state: rays leave hits, so the error of t matters
-#define RTSL_NEEDS_ATTRIBUTES 4096u // no state: what `intersect` wrote to scratch members
-#define RTSL_NEEDS_ALL 8191u
+#define RTSL_NEEDS_HIT_ERRORS 2048u  // no state: rays leave hits, so the error of t matters
+#define RTSL_NEEDS_ATTRIBUTES 4096u  // no state: what `intersect` wrote to scratch members
+#define RTSL_NEEDS_CAMERA_RAY 65536u // RayOrigin RayDirection in `generate`
+#define RTSL_NEEDS_ALL (8191u | RTSL_NEEDS_CAMERA_RAY)
 // RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
 #define RTSL_HAS_TRANSFORMS 8192u // some instance has a transform
 #define RTSL_HAS_ROOTS 16384u     // some instance is not below root 0, or below another one

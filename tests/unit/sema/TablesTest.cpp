@@ -157,7 +157,8 @@ TEST(ClassModel, StateIsWrittenByTheMethodsOfTheTable) {
   using S = typed::StateVariable;
   EXPECT_EQ(methodsThatWrite(S::LightColor), "`illumination` of an rt_Light");
   EXPECT_EQ(methodsThatWrite(S::LightDirection),
-            "`sampleBSDF` of an rt_Material and `illumination` of an rt_Light");
+            "`shade`, `sampleBSDF` and `closestHit` of an rt_Material and `illumination` of an "
+            "rt_Light");
   EXPECT_EQ(methodsThatWrite(S::RayOrigin), "`generateRay` of an rt_Camera");
   EXPECT_EQ(methodsThatWrite(S::Depth), "");
   EXPECT_EQ(methodsWith(Ability::Trace), "`shade` and `closestHit` of an rt_Material, `generate` "

@@ -1,0 +1,185 @@
+"""The engine `path`: pictures of scenes whose light is known, with materials of the library and of authors."""
+
+import json
+import math
+import unittest
+
+from harness import Case
+
+SHADERS = """
+// An author's material, with the sampling methods alone: a diffuse surface that may shine.
+class Own : rt_Material {
+  public float albedo = 0.5;
+  public color glow = color(0.0);
+
+  vec3 normal() { return faceforward(rt_GeometricNormal, rt_RayDirection, rt_GeometricNormal); }
+
+  void emission() { rt_EmissionColor = glow; }
+  void BSDF() {
+    rt_BSDFValue = color(dot(rt_LightDirection, normal()) > 0.0 ? albedo * 0.31830989 : 0.0);
+  }
+  void sampleBSDF() {
+    vec3 n = normal();
+    vec3 u = perpendicularTo(n);
+    float r = sqrt(rt_BSDFSeed.x), a = 2.0 * rt_BSDFSeed.y;
+    rt_LightDirection = r * cospi(a) * u + r * sinpi(a) * cross(n, u) + sqrt(1.0 - rt_BSDFSeed.x) * n;
+    rt_PDF = dot(rt_LightDirection, n) * 0.31830989;
+    BSDF_();
+  }
+  void BSDF_() { rt_BSDFValue = color(albedo * 0.31830989); }
+};
+class Shines : rt_Material {
+  void emission() { rt_EmissionColor = color(0.75); }
+};
+class Shaded : rt_Material {
+  void shade() { rt_SampleColor = color(0.25) + 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_GeometricNormal)); }
+};
+class Inside : rt_Camera {
+  void generateRay() {
+    rt_RayOrigin = vec3(0.1, 0.2, 0.3);
+    rt_RayDirection = vec3(2.0 * rt_ScreenCoord - vec2(1.0), 1.0);
+  }
+};
+class Down : rt_Camera {
+  void generateRay() {
+    rt_RayOrigin = vec3(0.0, 5.0, 0.0);
+    rt_RayDirection = vec3(0.02 * rt_ScreenCoord.x - 0.01, -1.0, 0.02 * rt_ScreenCoord.y - 0.01);
+  }
+};
+"""
+
+BALL = {"class": "Sphere", "center": [0, 0, 0], "radius": 2}
+FLOOR = {"class": "Parallelogram", "constructor": [[-1000, 0, -1000], [0, 0, 2000], [2000, 0, 0]]}
+WAYS = (["--trace=recurse"], ["--trace=split"], ["--traversal=device"], ["--target=host-megakernel"], ["--keep=all"],
+        ["--threads", "1"])
+
+
+class PathCase(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("shaders.rtsl", SHADERS)
+
+    def scene(self, objects, camera="Inside", spp=64, depth=64, size=(16, 16), **rest):
+        listed = [{"primitive": primitive, "material": material} for primitive, material in objects]
+        self.write("scene.json", json.dumps({
+            "rtsl": 1, "import": ["std.primitives", "std.materials", "std.lights", "shaders.rtsl"], "camera": {"class": camera},
+            "objects": listed, **rest,
+            "render": {"engine": "path", "size": size, "spp": spp, "depth": depth}}))
+
+    def mean(self, *arguments):
+        """Of red, green and blue."""
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *arguments)
+        out, _ = self.run_rtslc("compare", "a.exr", "a.exr", "--json")
+        return json.loads(out)["means"][0]
+
+    def assert_gray(self, expected, relative, *arguments):
+        for component in self.mean(*arguments):
+            self.assertAlmostEqual(component, expected, delta=relative * expected)
+
+
+class ClosedForms(PathCase):
+    def test_a_surface_that_shines(self):
+        self.scene([(BALL, {"class": "Shines"})], spp=1)
+        self.assert_gray(0.75, 1e-6)
+
+    def test_an_oven(self):
+        """In a closed surface of albedo a that sends out e, the radiance is e / (1 - a) everywhere."""
+        for albedo in (0.3, 0.8):
+            self.scene([(BALL, {"class": "Own", "albedo": albedo, "glow": 0.5})], depth=200, spp=256)
+            self.assert_gray(0.5 / (1 - albedo), 0.02)
+
+    def test_bounces_end(self):
+        """After n rays only the first n + 1 terms of the series are there."""
+        for bounces in (0, 1, 2):
+            self.scene([(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})], depth=bounces, spp=4)
+            self.assert_gray(sum(0.5 ** i for i in range(bounces + 1)), 1e-5)
+
+    def test_a_furnace(self):
+        """A floor that reflects all light, below a sky of 1."""
+        for material in ({"class": "Own", "albedo": 1}, {"class": "Lambert", "reflectance": 1},
+                         {"class": "OrenNayar", "reflectance": 1, "sigma": 0}, {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0}):
+            with self.subTest(material=material):
+                self.scene([(FLOOR, material)], camera="Down", background=1.0)
+                self.assert_gray(1.0, 0.002)
+
+    def test_a_point_light(self):
+        """Irradiance intensity * pi / h^2 on a floor below it, by the convention of LightColor."""
+        self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Down",
+                   lights=[{"class": "PointLight", "position": [0, 3, 0], "intensity": 9}])
+        self.assert_gray(0.5, 0.002)
+
+    def test_a_square_light_however_it_is_found(self):
+        """The form factor of a square of side 2 at height 1, seen from below its middle."""
+        a = 1 / math.sqrt(2)
+        factor = 4 / (2 * math.pi) * 2 * a * math.atan(a)
+        corner, side1, side2 = [-1, 1, -1], [2, 0, 0], [0, 0, 2]
+        self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Down", spp=256,
+                   lights=[{"class": "RectangleLight", "corner": corner, "side1": side1, "side2": side2, "radiance": 2, "isTwoSided": True}])
+        self.assert_gray(0.5 * 2 * factor, 0.01)
+
+    def test_many_lights(self):
+        """Of more than four lights four are chosen; the mean is that of all."""
+        lights = [{"class": "PointLight", "position": [0, 1 + i, 0], "intensity": (1 + i) ** 2} for i in range(10)]
+        self.scene([(FLOOR, {"class": "Own", "albedo": 1})], camera="Down", lights=lights, depth=1, spp=256)
+        self.assert_gray(10.0, 0.01)
+
+    def test_only_shade(self):
+        """Its color counts, and its own rays are answered by `shade`."""
+        self.scene([(BALL, {"class": "Shaded"})], depth=5, spp=1)
+        self.assert_gray(sum(0.25 * 0.5 ** i for i in range(6)), 1e-5, "-Wno-all")
+
+
+class Paths(PathCase):
+    def test_every_path_gives_the_same_bits(self):
+        self.scene([(FLOOR, {"class": "Lambert"}), (BALL, {"class": "Dielectric"}),
+                    ({"class": "Sphere", "center": [3, 1, 0], "radius": 1}, {"class": "Gold"}),
+                    ({"class": "Sphere", "center": [0, 4, 3], "radius": 1}, {"class": "Emitter", "radiance": 4})],
+                   background=[0.2, 0.3, 0.4], spp=8, size=(32, 32))
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
+        for i, way in enumerate(WAYS):
+            with self.subTest(way=way):
+                self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", "-q", *way)
+                self.run_rtslc("compare", "a.exr", f"{i}.exr", "--threshold", "0")
+
+    def test_members_of_the_engine(self):
+        self.scene([(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})], depth=50, spp=1,
+                   rayGeneration={"class": "PathTracer", "bounces": 0})
+        self.assert_gray(1.0, 1e-6)
+
+    def test_another_ray_generation_is_not_used(self):
+        self.write("other.rtsl", "class Other : rt_RayGeneration { void generate() { rt_SampleColor = color(9.0); } };")
+        self.scene([(BALL, {"class": "Shines"})], spp=1, rayGeneration={"class": "Other"})
+        self.assert_gray(0.75, 1e-6, "--set", 'import=["std.primitives", "shaders.rtsl", "other.rtsl"]')
+
+    def test_a_camera_is_needed(self):
+        self.scene([(BALL, {"class": "Shines"})])
+        scene = json.loads((self.folder / "scene.json").read_text())
+        del scene["camera"]
+        self.write("scene.json", json.dumps(scene))
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "a.exr"), "E0803", "the engine `path`")
+
+    def test_unknown_engines(self):
+        self.scene([(BALL, {"class": "Shines"})])
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "a.exr", "--set", "render.engine=bdpt"), "E0808",
+                            "there is no engine `bdpt`, only `classic`, `path` and `programs`")
+
+    def test_the_camera_of_an_authors_generate(self):
+        """`generate` sees the camera's ray; without a camera it is zero."""
+        self.write("shaders.rtsl", SHADERS + """
+class Eye : rt_RayGeneration {
+  void generate() { rt_SampleColor = color(rt_RayDirection.z, rt_RayOrigin.y, 0.0); }
+};
+""")
+        self.scene([(BALL, {"class": "Shines"})], spp=1, rayGeneration={"class": "Eye"})
+        for way in WAYS:
+            red, green, _ = self.mean("--set", "render.engine=programs", *way)
+            self.assertAlmostEqual(red, 1.0, delta=1e-6)
+            self.assertAlmostEqual(green, 0.2, delta=1e-6)
+        scene = json.loads((self.folder / "scene.json").read_text())
+        del scene["camera"]
+        self.write("scene.json", json.dumps(scene))
+        self.assertEqual(self.mean("--set", "render.engine=programs"), [0, 0, 0])
+
+
+if __name__ == "__main__":
+    unittest.main()
