@@ -233,6 +233,9 @@ void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effec
   case Builtin::LightCount:
     effects.usesRay = true;
     break;
+  case Builtin::IlluminateBySurface:
+    effects.writes.insert(place(typed::StateVariable::PDF));
+    [[fallthrough]];
   case Builtin::Illuminate:
     collectLights(effects);
     break;

@@ -48,6 +48,8 @@ std::vector<std::string> entries(const runtime::Program &program, const CompileO
 #include "language/Slots.def"
 #define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
 #include "language/SamplingSlots.def"
+  if (program.needs & RTSL_NEEDS_EMITTERS)
+    names.push_back("rtsl_emitted_power");
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
@@ -83,6 +85,8 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit,
 #define RTSL_SAMPLING_SLOT(base, method)                                                           \
   find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "language/SamplingSlots.def"
+  if (program.needs & RTSL_NEEDS_EMITTERS)
+    find(jit, "rtsl_emitted_power", program.emittedPower);
   for (runtime::ClassInfo &info : program.classes) {
     find(jit, initializeSymbol(info.name), info.initialize);
     find(jit, constructSymbol(info.name), info.construct);

@@ -84,9 +84,13 @@ struct ConvertIlluminate : ConvertOpToLLVMPattern<ir::IlluminateOp> {
                                 ConversionPatternRewriter &rewriter) const override {
     mlir::Location location = op.getLoc();
     mlir::Type f32 = rewriter.getF32Type();
-    llvm::SmallVector<Value> arguments = {rayState(rewriter), adaptor.getIndex()};
+    llvm::SmallVector<Value> arguments = {rayState(rewriter)};
+    if (adaptor.getIndex())
+      arguments.push_back(adaptor.getIndex());
     llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getPoint()));
-    if (adaptor.getNormal()) {
+    if (!adaptor.getIndex()) {
+      // no cone
+    } else if (adaptor.getNormal()) {
       llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getNormal()));
       arguments.push_back(adaptor.getCosAngle());
     } else {

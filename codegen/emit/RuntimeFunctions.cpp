@@ -30,7 +30,9 @@ std::string runtimeFunction(mlir::Operation *op) {
       .Case([](ir::PrintOp) { return "rtsl_print"; })
       .Case([](ir::HitOp hit) { return hit.getError() ? "rtsl_hit_within" : "rtsl_hit"; })
       .Case([](ir::RandOp rand) { return rand.getOpen() ? "rtsl_rand_open" : "rtsl_rand"; })
-      .Case([](ir::IlluminateOp) { return "rtsl_illuminance"; })
+      .Case([](ir::IlluminateOp light) {
+        return light.getIndex() ? "rtsl_illuminance" : "rtsl_illuminate_by_surface";
+      })
       .Case([](ir::SpawnOp spawn) { return spawn.getLast() ? "rtsl_spawn_last" : "rtsl_spawn"; })
       .Case([](ir::TraceResultOp) { return "rtsl_trace_result"; })
       .Case([](ir::MoveFrameOp) { return "rtsl_move_frame"; })
@@ -70,7 +72,9 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
         return hit.getError() ? function(i32, {pointer, f32, f32}) : function(i32, {pointer, f32});
       })
       .Case([&](ir::RandOp) { return function(f32, {pointer}); })
-      .Case([&](ir::IlluminateOp) {
+      .Case([&](ir::IlluminateOp light) {
+        if (!light.getIndex())
+          return function(i32, {pointer, f32, f32, f32});
         return function(i32, {pointer, i32, f32, f32, f32, f32, f32, f32, f32});
       })
       .Case([&](ir::SpawnOp) { return function(nothing, {pointer, f32, f32, f32, f32, f32, f32}); })

@@ -332,6 +332,8 @@ LogicalResult BufferLengthOp::verify() {
 LogicalResult IlluminateOp::verify() {
   if (!getNormal() != !getCosAngle())
     return emitOpError() << "takes `normal` and `cos` together";
+  if (getNormal() && !getIndex())
+    return emitOpError() << "takes `normal` only with a light";
   return mlir::success();
 }
 

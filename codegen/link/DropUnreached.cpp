@@ -127,6 +127,10 @@ private:
         addMethods("rt_Material", "closestHit." + type, by("for rays of"));
         addMethods("rt_Material", "anyHit." + type, by("for rays of"));
         addMethods("rt_Miss", "miss." + type, by("for rays of"));
+      } else if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && !light.getIndex()) {
+        addMethods("rt_Primitive", "generateSample", by("for `illuminate` in"));
+        addMethods("rt_Primitive", "samplePDF", by("for `illuminate` in"));
+        addMethods("rt_Material", "emission", by("for `illuminate` in"));
       } else if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op)) {
         const bool isOne = llvm::isa<ir::IlluminateOp>(op);
         addMethods("rt_Light", "illumination",
@@ -210,8 +214,10 @@ bool usesLights(const LinkContext &context) {
   reach.run();
   return llvm::any_of(mlir::ModuleOp(context.ir).getOps<FuncOp>(), [&](FuncOp function) {
     const auto isLit = [](mlir::Operation *op) {
-      return llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op) ? mlir::WalkResult::interrupt()
-                                                                : mlir::WalkResult::advance();
+      auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
+      return llvm::isa<ir::IlluminanceOp>(op) || (light && light.getIndex())
+                 ? mlir::WalkResult::interrupt()
+                 : mlir::WalkResult::advance();
     };
     return reach.isReachedByRendering(function) && function.walk(isLit).wasInterrupted();
   });

@@ -41,6 +41,7 @@ std::optional<ModuleFacts> linkModule(mlir::ModuleOp ir, const typed::Module &mo
                                       Diagnostics &diagnostics, FloatingPoint floatingPoint) {
   LinkRequest request;
   request.isSampled = true;
+  request.engine = runtime::Engine::Either;
   Findings unasked;
   linking::LinkContext context{ir,          module,  request,
                                diagnostics, unasked, linking::elementaryErrorsOf(floatingPoint)};

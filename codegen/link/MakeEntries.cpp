@@ -29,6 +29,12 @@ constexpr Slot samplingSlots[] = {
 #include "language/SamplingSlots.def"
 };
 
+/// Does the runtime call it to choose a point on a surface that shines?
+bool isOfSurfaces(const Slot &slot) {
+  const std::string_view method = slot.method;
+  return method == "generateSample" || method == "samplePDF" || method == "emission";
+}
+
 void exportFunction(mlir::func::FuncOp function) {
   ir::attr::exported.set(function);
   function.setPublic();
@@ -116,8 +122,9 @@ void makeEntries(LinkContext &context) {
   }
   for (const Slot &slot : slots)
     makeSlot(context, slot);
-  if (context.request.isSampled)
-    for (const Slot &slot : samplingSlots)
+  const bool samplesSurfaces = findNeeds(context) & RTSL_NEEDS_EMITTERS;
+  for (const Slot &slot : samplingSlots)
+    if (context.request.isSampled || (samplesSurfaces && isOfSurfaces(slot)))
       makeSlot(context, slot);
   makePayloadSlots(context);
   makeFeatures(context);

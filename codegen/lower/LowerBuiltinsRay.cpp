@@ -39,6 +39,12 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
     return Parts{emitter.make<ir::LightCountOp>(emitter.getI32Type())};
   case Builtin::Illuminate:
     return lowerIlluminate(expr);
+  case Builtin::IlluminateBySurface: {
+    Value point = value(*expr.args[0]);
+    emitter.setLoc(location);
+    return Parts{
+        emitter.make<ir::IlluminateOp>(emitter.getI1Type(), Value(), point, Value(), Value())};
+  }
   case Builtin::TracePayload:
     lowerTracePayload(expr);
     return Parts();

@@ -63,6 +63,9 @@ FlatScene flatten(const Scene &scene) {
   flattener.addAt(offsetof(RtslLaunch, nodes), launch.nodes, bvh.nodes.size());
   flattener.addAt(offsetof(RtslLaunch, leafItems), launch.leafItems, bvh.items.size());
   flattener.addAt(offsetof(RtslLaunch, meshTrees), launch.meshTrees, bvh.meshTrees.size());
+  flattener.addAt(offsetof(RtslLaunch, emitters), launch.emitters, launch.emitterCount);
+  flattener.addAt(offsetof(RtslLaunch, triangleChances), launch.triangleChances,
+                  launch.triangleChanceCount);
   for (std::uint32_t i = 0; i < launch.meshCount; ++i) {
     const RtslMesh &mesh = launch.meshes[i];
     const std::uint64_t place = meshes + i * sizeof(RtslMesh);

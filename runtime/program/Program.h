@@ -141,6 +141,10 @@ struct Program {
     std::uint32_t features = 0; // for shaders in C++: the result of rtsl_features, RTSL_FEATURE_*
   } slots;
 
+  /// The program's rtsl_emitted_power; null if it does not choose points on surfaces that shine.
+  float (*emittedPower)(const RtslLaunch *, std::uint32_t instance, std::uint32_t triangle,
+                        std::uint32_t sample) = nullptr;
+
   /// RTSL_NEEDS_*: the state that the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
   /// RTSL_HAS_*: what the scenes that it renders may have.

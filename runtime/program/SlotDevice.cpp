@@ -54,8 +54,10 @@ uint64_t frameBytes(const RtslLaunch *launch) {
     if (auto *code = slotsOf(state).base##_##method##_payload)                                     \
       code(state, object);                                                                         \
   }
+#define RTSL_SAMPLING_SLOT(base, method) RTSL_SLOT(base, method)
 extern "C" {
 #include "language/PayloadSlots.def"
+#include "language/SamplingSlots.def"
 #include "language/Slots.def"
 
 uint32_t rtsl_features(RtslState *state) {

@@ -1,9 +1,11 @@
 #include "runtime/scene/Scene.h"
 
 #include "runtime/scene/CameraAndLights.h"
+#include "runtime/scene/Emitters.h"
 #include "runtime/scene/Geometry.h"
 #include "runtime/scene/Objects.h"
 
+#include <optional>
 #include <unordered_set>
 
 namespace rtsl::runtime {
@@ -15,6 +17,7 @@ struct Scene::Implementation {
   Geometry geometry;
   CameraAndLights cameraAndLights;
   std::vector<Warning> warnings;
+  std::optional<Emitters> emitters; // found when a complete launch is first needed
 
   /// The current launch, complete or not.
   RtslLaunch launch() {
@@ -37,6 +40,7 @@ const Program &Scene::program() const {
 }
 
 void Scene::useProgram(std::shared_ptr<const Program> program) {
+  self->emitters.reset();
   self->objects.useProgram(std::move(program));
   self->geometry.useProgram(self->objects);
 }
@@ -87,6 +91,7 @@ std::vector<BufferPlace> Scene::buffers() const {
 //===----------------------------------------------------------------------===//
 
 std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement) {
+  self->emitters.reset();
   return self->geometry.addPrimitive(
       self->objects, primitive, material, placement, [this] { return self->launch(); },
       self->warnings);
@@ -98,6 +103,7 @@ std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name) {
 
 std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material,
                                      const Placement &placement) {
+  self->emitters.reset();
   return self->geometry.addMeshInstance(self->objects, mesh, material, placement);
 }
 
@@ -172,7 +178,13 @@ SceneFacts Scene::facts() const {
 
 RtslLaunch Scene::launch() const {
   self->cameraAndLights.requireCamera(program().engine);
-  return self->launch();
+  RtslLaunch launch = self->launch();
+  if (program().emittedPower && program().needs & RTSL_NEEDS_EMITTERS) {
+    if (!self->emitters)
+      self->emitters.emplace(program(), launch);
+    self->emitters->fill(launch);
+  }
+  return launch;
 }
 
 } // namespace rtsl::runtime

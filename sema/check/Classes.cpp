@@ -52,28 +52,33 @@ std::vector<const typed::Function *> Program::findMethods(const ClassScope *scop
 
 /// Finds the default classes of each rt_ class, in source order.
 void Program::findDefaults() {
+  const auto isDefault = [](const ClassScope &scope) {
+    return scope.declaration->defaultRange.isValid();
+  };
   for (const std::string &name : classOrder) {
     ClassScope &scope = *classes[name];
-    const ast::ClassDecl &declaration = *scope.declaration;
-    if (!declaration.defaultRange.isValid())
+    if (!isDefault(scope))
       continue;
-    const RootModel *root = rootModel(declaration.base.text);
+    // A default class may derive from another one.
+    const ClassScope *first = &scope;
+    for (std::size_t bases = 0; bases != classes.size(); ++bases) {
+      const auto base = classes.find(first->declaration->base.text);
+      if (base == classes.end() || !isDefault(*base->second))
+        break;
+      first = base->second.get();
+    }
+    const SourceRange written = scope.declaration->defaultRange;
+    const RootModel *root = rootModel(first->declaration->base.text);
     if (!root) {
       diagnostics
-          .report(Code::badDefaultClass, declaration.defaultRange, name,
-                  "its base is not one of the rt_ classes")
-          .fix(declaration.defaultRange, "");
+          .report(Code::badDefaultClass, written, name,
+                  "its base is neither one of the rt_ classes nor a `default` class")
+          .fix(written, "");
       continue;
     }
-    for (const ast::VariableDecl &member : declaration.members)
+    for (const ast::VariableDecl &member : scope.declaration->members)
       diagnostics.report(Code::badDefaultClass, member.name.range, name, "it has members")
           .note("every " + root->name + " of the program would have them");
-    for (const ast::FunctionDecl &function : declaration.functions)
-      if (!root->method(function.name.text))
-        diagnostics
-            .report(Code::badDefaultClass, function.name.range, name,
-                    "it has a function that is not a method of " + withArticle(root->name))
-            .note("functions of other classes could have the same name; move it to file level");
     defaults[root].push_back(&scope);
   }
 }
@@ -91,9 +96,19 @@ ClassScope *Program::defaultOf(const ClassScope &scope) const {
                     one.parameters.size() == required.parameters.size();
            });
   };
+  // Of a default class and those that it derives from.
+  const auto areAllDefined = [&](const ClassScope *candidate) {
+    for (std::size_t bases = 0; candidate && bases != classes.size(); ++bases) {
+      const std::vector<ast::FunctionDecl> &methods = candidate->declaration->functions;
+      if (!std::all_of(methods.begin(), methods.end(), isDefined))
+        return false;
+      const auto base = classes.find(candidate->declaration->base.text);
+      candidate = base == classes.end() ? nullptr : base->second.get();
+    }
+    return true;
+  };
   for (ClassScope *candidate : candidates->second)
-    if (const auto &methods = candidate->declaration->functions;
-        std::all_of(methods.begin(), methods.end(), isDefined))
+    if (areAllDefined(candidate))
       return candidate;
   return nullptr;
 }

@@ -170,7 +170,8 @@ const Function &resolve(const CallExpr &call, const Class *concrete) {
 SentRays raysOf(const Expr &expr) {
   if (auto *builtin = dynCast<BuiltinExpr>(&expr))
     return {builtin->builtin == Builtin::Trace || builtin->builtin == Builtin::TracePayload,
-            builtin->builtin == Builtin::Illuminate};
+            builtin->builtin == Builtin::Illuminate ||
+                builtin->builtin == Builtin::IlluminateBySurface};
   if (auto *call = dynCast<CallExpr>(&expr))
     return call->isOfBase ? call->function->sends : call->function->callSends;
   auto *method = dynCast<MethodCallExpr>(&expr);

@@ -2,9 +2,10 @@
 
 import json
 import math
+import pathlib
 import unittest
 
-from harness import Case
+from harness import RTSLC, Case
 
 SHADERS = """
 // An author's material, with the sampling methods alone: a diffuse surface that may shine.
@@ -24,9 +25,28 @@ class Own : rt_Material {
     float r = sqrt(rt_BSDFSeed.x), a = 2.0 * rt_BSDFSeed.y;
     rt_LightDirection = r * cospi(a) * u + r * sinpi(a) * cross(n, u) + sqrt(1.0 - rt_BSDFSeed.x) * n;
     rt_PDF = dot(rt_LightDirection, n) * 0.31830989;
-    BSDF_();
+    rt_BSDFValue = color(albedo * 0.31830989);
   }
-  void BSDF_() { rt_BSDFValue = color(albedo * 0.31830989); }
+  void evaluatePDF() { rt_PDF = max(dot(rt_LightDirection, normal()), 0.0) * 0.31830989; }
+};
+// A mirror that has no more than it needs.
+class Mirror : rt_Material {
+  void sampleBSDF() {
+    rt_LightDirection = reflect(normalize(rt_RayDirection), normalize(rt_GeometricNormal));
+    rt_BSDFValue = color(1.0);
+    rt_PDF = -1.0;
+  }
+};
+// A diffuse surface without evaluatePDF.
+class Blind : rt_Material {
+  void sampleBSDF() {
+    vec3 n = faceforward(rt_GeometricNormal, rt_RayDirection, rt_GeometricNormal);
+    vec3 u = perpendicularTo(n);
+    float r = sqrt(rt_BSDFSeed.x), a = 2.0 * rt_BSDFSeed.y;
+    rt_LightDirection = r * cospi(a) * u + r * sinpi(a) * cross(n, u) + sqrt(1.0 - rt_BSDFSeed.x) * n;
+    rt_PDF = dot(rt_LightDirection, n) * 0.31830989;
+    rt_BSDFValue = color(0.5 * 0.31830989);
+  }
 };
 class Shines : rt_Material {
   void emission() { rt_EmissionColor = color(0.75); }
@@ -38,6 +58,12 @@ class Inside : rt_Camera {
   void generateRay() {
     rt_RayOrigin = vec3(0.1, 0.2, 0.3);
     rt_RayDirection = vec3(2.0 * rt_ScreenCoord - vec2(1.0), 1.0);
+  }
+};
+class Under : rt_Camera { // close to the floor, below lamps
+  void generateRay() {
+    rt_RayOrigin = vec3(0.0, 0.5, 0.0);
+    rt_RayDirection = vec3(0.02 * rt_ScreenCoord.x - 0.01, -1.0, 0.02 * rt_ScreenCoord.y - 0.01);
   }
 };
 class Down : rt_Camera {
@@ -96,7 +122,7 @@ class ClosedForms(PathCase):
 
     def test_a_furnace(self):
         """A floor that reflects all light, below a sky of 1."""
-        for material in ({"class": "Own", "albedo": 1}, {"class": "Lambert", "reflectance": 1},
+        for material in ({"class": "Mirror"}, {"class": "Own", "albedo": 1}, {"class": "Lambert", "reflectance": 1},
                          {"class": "OrenNayar", "reflectance": 1, "sigma": 0}, {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0}):
             with self.subTest(material=material):
                 self.scene([(FLOOR, material)], camera="Down", background=1.0)
@@ -116,6 +142,47 @@ class ClosedForms(PathCase):
         self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Down", spp=256,
                    lights=[{"class": "RectangleLight", "corner": corner, "side1": side1, "side2": side2, "radiance": 2, "isTwoSided": True}])
         self.assert_gray(0.5 * 2 * factor, 0.01)
+        lamp = {"class": "Emitter", "radiance": 2, "isTwoSided": True}
+        square = {"class": "Parallelogram", "constructor": [corner, side1, side2]}
+        self.scene([(FLOOR, {"class": "Own", "albedo": 0.5}), (square, lamp)], camera="Under", spp=256)
+        self.assert_gray(0.5 * 2 * factor, 0.01)
+        self.scene([(FLOOR, {"class": "Blind"}), (square, lamp)], camera="Under", spp=1024)
+        self.assert_gray(0.5 * 2 * factor, 0.01)
+        # As a mesh of two triangles of another size, and as a node with a transform that shears and mirrors.
+        self.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n")
+        for transform in ({"scale": 2, "translate": corner}, {"matrix": [-2, 0, 0, 0, 5, 3, 7, 0, 0, 0, 2, 0, 1, 1, -1, 1]}):
+            for geometry in ({"mesh": "square.obj"}, {"primitive": {"class": "Parallelogram", "constructor": [[0, 0, 0], [0, 0, 1], [1, 0, 0]]}}):
+                with self.subTest(transform=transform, geometry=geometry):
+                    self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Under", spp=256,
+                               nodes={"lamp": {**geometry, "material": lamp, "transform": transform}}, root="lamp")
+                    self.assert_gray(0.5 * 2 * factor, 0.01)
+
+    def test_a_lamp_among_many(self):
+        """Lamps are chosen by their power: of a thousand only the bright one matters, and it is found."""
+        dim = [({"class": "Sphere", "center": [x, 40, z], "radius": 0.01}, {"class": "Emitter", "radiance": 1e-4})
+               for x in range(-16, 16) for z in range(-16, 16)]
+        bright = ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.1}, {"class": "Emitter", "radiance": 900})
+        self.scene([(FLOOR, {"class": "Own", "albedo": 1}), bright, *dim], camera="Under", depth=1, spp=16)
+        # The irradiance of a ball of radius r at distance d: pi L (r / d)^2.
+        self.assert_gray(900 * (0.1 / 3) ** 2, 0.02)
+
+    def test_both_ways_find_the_same_light(self):
+        """The path tracer with and without its search for surfaces that shine; the second needs many more samples."""
+        objects = [({"class": "Sphere", "center": [0, 0, 0], "radius": 3}, {"class": "Own", "albedo": 0.5}),
+                   ({"class": "Sphere", "center": [1, 1, 1], "radius": 0.8}, {"class": "Emitter", "radiance": 2}),
+                   ({"class": "Sphere", "center": [-1, 0, 1.5], "radius": 0.7}, {"class": "Conductor", "alpha": 0.3}),
+                   ({"class": "Sphere", "center": [0.8, -1, 1.5], "radius": 0.6}, {"class": "Plastic"})]
+        self.scene(objects, spp=128)
+        both = self.mean()
+        source = (pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl").read_text()
+        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace("share(path.density, rt_PDF)", "1.0")
+        self.assertEqual(len(plain.split("if (false)")), 2)
+        self.write("PathTracer.rtsl", plain)
+        self.scene(objects, spp=4096, rayGeneration={"class": "PathTracer", "bounces": 64})
+        found = self.mean("--set", "render.engine=programs", "--set",
+                          'import=["std.primitives", "std.materials", "shaders.rtsl", "PathTracer.rtsl"]')
+        for one, other in zip(both, found):
+            self.assertAlmostEqual(one, other, delta=0.01 * other)
 
     def test_many_lights(self):
         """Of more than four lights four are chosen; the mean is that of all."""

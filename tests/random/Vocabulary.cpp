@@ -15,6 +15,7 @@ static bool standsAnywhere(typed::Builtin builtin) {
   case Builtin::Ambient:
   case Builtin::LightCount:
   case Builtin::Illuminate:
+  case Builtin::IlluminateBySurface:
   case Builtin::IgnoreIntersection:
   case Builtin::TerminateRay:
   case Builtin::VisitChild:

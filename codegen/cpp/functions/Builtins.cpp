@@ -125,6 +125,7 @@ Code Builtins::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::Ambient:
   case Builtin::LightCount:
   case Builtin::Illuminate:
+  case Builtin::IlluminateBySurface:
     return with({name("rt")});
   case Builtin::Hit:
     return printer.function && context.signatures.takesScratch(*printer.function)

@@ -328,6 +328,7 @@ public:
     selfTest<N>();
     result->colorComponents = N;
     result->sample = &rtsl_sample_slots;
+    result->emittedPower = &rtsl_emitted_power;
     result->needs = 0;
   }
 

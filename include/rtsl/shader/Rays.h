@@ -127,6 +127,12 @@ inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point, bool sha
   return illuminate(rt, index, point, point, shadows ? -2.0f : static_cast<float>(RTSL_NO_SHADOWS));
 }
 
+/// Lights a point by one of the surfaces that shine; sets PDF too.
+template <int N>
+inline bool illuminate(State<N> &rt, const glm::vec3 &point) {
+  return rtsl_illuminate_by_surface(rawState(rt), point.x, point.y, point.z) != 0;
+}
+
 /// The lights that reach a point, one after the other:
 ///
 ///     for (rtsl::Lights lights(rt, point, normal, angle); lights.next();)

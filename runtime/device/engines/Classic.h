@@ -8,6 +8,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/engines/BeginRay.h"
+#include "runtime/device/engines/Emitters.h"
+#include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Events.h"
@@ -18,25 +21,6 @@
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
-
-/// Initialises state's ray: nothing hit yet, visible up to `distance` in units of the direction.
-inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart &start,
-                   float distance) {
-  store(state.RayOrigin, origin);
-  store(state.RayDirection, direction);
-  if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
-    setVector(state.InverseRayDirection, 1.0f / direction.x, 1.0f / direction.y,
-              1.0f / direction.z);
-  state.Epsilon = start.epsilon;
-  state.HitDistance = distance;
-  state.isEasy = start.isEasy;
-  if (rtsl_needs(state.launch) & RTSL_NEEDS_ANY_HIT)
-    state.hitAnswer = RTSL_ACCEPT;
-  if (rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS)
-    state.leaves = start.leaves;
-  state.instance = RTSL_NO_HIT;
-  state.primitive = RTSL_NO_HIT;
-}
 
 /// What a ray inherits from the ray that sent it.
 inline void inherit(RtslState &state, const RtslState &parent) {
@@ -57,21 +41,6 @@ inline void inherit(RtslState &state, const RtslState &parent) {
     state.events = parent.events;
 }
 
-/// State that a method may read although it was not written for this ray.
-inline void setDefaults(RtslState &state, uint32_t components) {
-  setColor(state.SampleColor, components, 0);
-  setColor(state.LightColor, components, 0);
-  setVector(state.LightDirection, 0, 0, 0);
-  state.LightDistance = infinity;
-  if (rtsl_needs(state.launch) & RTSL_NEEDS_SAMPLING) { // this engine does not sample
-    setColor(state.EmissionColor, components, 0);
-    setColor(state.BSDFValue, components, 0);
-    state.BSDFSeed[0] = state.BSDFSeed[1] = 0;
-    state.PDF = 0;
-    state.du = state.dv = 0;
-  }
-}
-
 /// What a ray met, and the object whose method computes the color.
 struct Arrival {
   enum Kind : uint32_t { Nothing, Surface, Background } kind; // Nothing: SampleColor is already set
@@ -90,6 +59,7 @@ inline Arrival arriveAt(RtslState &state, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
   if (found == RTSL_HIT) {
     describeHit(state);
+    describeEmitter(state);
     return {Arrival::Surface, instanceAt(launch, state.instance).material};
   }
   if (found == RTSL_MISS) {
@@ -161,76 +131,6 @@ inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) 
   spawn(state, parent, dimension, origin, direction);
   follow(state);
   copyColor(color, state.SampleColor, components);
-}
-
-/// What decides whether light arrives.
-struct ShadowRay {
-  const RtslLaunch *launch;
-  RtslEvents *events;
-  Vec3 origin, direction;
-  RayStart start;
-  float distance; // of the light
-  float time, timeSeed;
-  uint32_t launchIndex[2], launchSize[2];
-  uint32_t mask;
-  int32_t root, depth;
-  uint32_t randomKey[2];
-};
-
-/// The traversal of a shadow ray. It is passed values, so that the state of the ray that sends it
-/// stays in registers. On a GPU it is a separate function.
-#ifdef __NVPTX__
-__attribute__((noinline))
-#endif
-inline uint32_t traverseShadow(ShadowRay ray) {
-  RtslState state;
-  beginState(state, ray.launch);
-  state.events = ray.events;
-  state.TimeSeed = ray.timeSeed;
-  state.Time = ray.time;
-  for (int i = 0; i < 2; ++i) {
-    state.LaunchIndex[i] = ray.launchIndex[i];
-    state.LaunchSize[i] = ray.launchSize[i];
-    state.randomKey[i] = ray.randomKey[i];
-  }
-  state.rayMask = ray.mask;
-  state.rayRoot = ray.root;
-  state.Depth = ray.depth;
-  state.dimension = 0;
-  setRay(state, ray.origin, ray.direction, ray.start, ray.distance);
-  return rtsl_traverse(&state, RTSL_FIRST_HIT);
-}
-
-/// Is there anything between `point` and the light that wrote LightDistance to `shading`?
-inline bool inShadow(const RtslState &shading, Vec3 point) {
-  ShadowRay ray;
-  ray.launch = shading.launch;
-  ray.events = shading.events;
-  ray.origin = point;
-  ray.direction = load(shading.LightDirection);
-  ray.start = startOf(shading, point, ray.direction);
-  // The light's own surface, if it has one, is at the end: keep as clear of it as of the start.
-  ray.distance = shading.LightDistance;
-  if (ray.distance < infinity)
-    ray.distance -= minimum(ray.start.epsilon, ray.distance * 0x1p-10f);
-  if (!(ray.start.epsilon < ray.distance))
-    return false;
-  ray.time = shading.Time;
-  ray.timeSeed = shading.TimeSeed;
-  for (int i = 0; i < 2; ++i) {
-    ray.launchIndex[i] = shading.LaunchIndex[i];
-    ray.launchSize[i] = shading.LaunchSize[i];
-  }
-  ray.mask = shading.rayMask;
-  ray.root = shading.rayRoot;
-  ray.depth = shading.Depth + 1;
-  // Draws are hashed; a key that no other ray has is sufficient.
-  ray.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
-  ray.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
-  uint32_t found = traverseShadow(ray);
-  if (found == RTSL_BAD_RAY)
-    raise(shading, RTSL_EXCEPTION_BAD_RAY);
-  return found != RTSL_MISS; // no light arrives along a bad ray
 }
 
 /// isInCone for vectors whose squares would leave the range of a float.

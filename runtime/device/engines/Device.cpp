@@ -32,9 +32,21 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
   return device::illuminate(*state, index, {px, py, pz}, {nx, ny, nz}, cosAngle);
 }
 
+uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float pz) {
+  return device::illuminateBySurface(*state, {px, py, pz});
+}
+
+float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t triangle,
+                         uint32_t sample) {
+  return device::emittedPower(*launch, instance, triangle, sample);
+}
+
 #ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp calls the program
 /// Defaults that programs override if they define these functions.
 __attribute__((weak)) void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Primitive_generateSample(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Primitive_samplePDF(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Material_emission(RtslState *, RtslRef) {}
 __attribute__((weak)) uint32_t rtsl_features(RtslState *) {
   return 0;
 }

@@ -50,8 +50,10 @@ inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t foun
   const RtslLaunch &launch = *state.launch;
   if (found == RTSL_HIT) {
     RtslRef material = instanceAt(launch, state.instance).material;
-    if (!(how & RTSL_FIRST_HIT)) // otherwise no program reads it
+    if (!(how & RTSL_FIRST_HIT)) { // otherwise no program reads it
       describeHit(state);
+      describeEmitter(state);
+    }
     return {Arrival::Surface, material};
   }
   if (found == RTSL_BAD_RAY)

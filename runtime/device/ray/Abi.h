@@ -76,6 +76,15 @@ typedef struct RtslMeshTree {
   uint32_t count;
 } RtslMeshTree;
 
+/// An instance that shines, as a light: its material has `emission`, and points on it can be chosen.
+typedef struct RtslEmitter {
+  uint32_t instance;
+  // for a mesh: of the first of its triangles in RtslLaunch::triangleChances
+  uint32_t firstTriangle;
+  // the probability that this one or one before it is chosen; of the last: 1
+  float chances;
+} RtslEmitter;
+
 /// What all rays of a launch share.
 typedef struct RtslLaunch {
   uint8_t *records; // object records; the first 4 bytes of each are its class id
@@ -100,6 +109,10 @@ typedef struct RtslLaunch {
   const RtslLeafItem *leafItems;
   // by mesh: the tree of a mesh that has instances with transforms, in its object space
   const RtslMeshTree *meshTrees;
+  const RtslEmitter *emitters; // in the order of their instances
+  // of an emitter's mesh: the probability that this triangle or one before it is chosen
+  const float *triangleChances;
+  uint32_t emitterCount, triangleChanceCount;
   uint32_t rootIsLeaf,
       nodeCount;  // rootIsLeaf: there are no nodes, and nodeCount leaf items are tested one by one
   uint32_t needs; // RTSL_NEEDS_*: what the classes of the scene read
@@ -239,7 +252,8 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_HIT_ERRORS 2048u  // no state: rays leave hits, so the error of t matters
 #define RTSL_NEEDS_ATTRIBUTES 4096u  // no state: what `intersect` wrote to scratch members
 #define RTSL_NEEDS_CAMERA_RAY 65536u // RayOrigin RayDirection in `generate`
-#define RTSL_NEEDS_ALL (8191u | RTSL_NEEDS_CAMERA_RAY)
+#define RTSL_NEEDS_EMITTERS 131072u  // no state: points are lit by surfaces that shine
+#define RTSL_NEEDS_ALL (8191u | RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS)
 // RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
 #define RTSL_HAS_TRANSFORMS 8192u // some instance has a transform
 #define RTSL_HAS_ROOTS 16384u     // some instance is not below root 0, or below another one
@@ -261,6 +275,9 @@ extern "C" {
 //===----------------------------------------------------------------------===//
 #define RTSL_SLOT(base, method) void rtsl_##base##_##method(RtslState *state, RtslRef object);
 #include "language/Slots.def"
+#define RTSL_SAMPLING_SLOT(base, method)                                                           \
+  void rtsl_##base##_##method(RtslState *state, RtslRef object);
+#include "language/SamplingSlots.def"
 /// The same for methods that take the payload of state's ray type.
 #define RTSL_PAYLOAD_SLOT(base, method)                                                            \
   void rtsl_##base##_##method##_payload(RtslState *state, RtslRef object);
@@ -326,6 +343,16 @@ void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float d
 /// cone and without shadows. 0 if there is no such light.
 uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx,
                           float ny, float nz, float cosAngle);
+
+/// `illuminate(P)`: lights a point by one of the surfaces that shine. Sets LightDirection,
+/// LightDistance, LightColor and PDF of the state, and returns whether light arrives.
+uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float pz);
+
+/// What an instance sends out, to choose emitters by: for a primitive the radiance at a point of its
+/// own choice times the area that the point stands for; for a mesh the radiance at a point of the
+/// triangle. The mean of the color's components; not finite: unknown. `sample` numbers the points.
+float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t triangle,
+                         uint32_t sample);
 
 /// `rand()`: uniform in [0, 1).
 float rtsl_rand(RtslState *state);

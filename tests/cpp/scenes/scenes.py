@@ -115,6 +115,30 @@ def objects(layers):
     return objects_scene(here / "Objects.rtsl", glass / "Sphere.rtsl", layers)
 
 
+def paths():
+    """The path tracer: materials that call their own methods, default classes, surfaces that shine as lights."""
+    library = pathlib.Path(source, "library/std")
+    return {
+        "rtsl": 1,
+        "import": [str(library / file) for file in ("engines/PathTracer.rtsl", "cameras/PerspectiveCamera.rtsl", "primitives/Parallelogram.rtsl",
+                                                    "primitives/Sphere.rtsl", "materials/Lambert.rtsl", "materials/Dielectric.rtsl",
+                                                    "materials/Gold.rtsl", "materials/Emitter.rtsl", "lights/PointLight.rtsl",
+                                                    "backgrounds/UniformSky.rtsl")],
+        "camera": {"class": "PerspectiveCamera", "constructor": [[0, 1, 6], [0, 0.5, 0], [0, 1, 0]]},
+        "rayGeneration": {"class": "PathTracer"},
+        "objects": [{"primitive": {"class": "Parallelogram", "constructor": [[-4, -1, -4], [0, 0, 8], [8, 0, 0]]}, "material": {"class": "Lambert"}},
+                    sphere([-1.2, 0, 0], 1, {"class": "Dielectric"}), sphere([1.2, 0, 0], 1, {"class": "Gold"}),
+                    sphere([0, 3, 1], 0.5, {"class": "Emitter", "radiance": 20})],
+        "nodes": {"lamp": {"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 0.3}, "material": {"class": "Emitter", "radiance": 30}},
+                  "both": {"children": [{"child": "lamp", "transform": {"scale": [1, 2, 0.5], "translate": [3, 2, 1]}},
+                                        {"child": "lamp", "transform": {"translate": [-3, 2, 1]}}]}},
+        "root": "both",
+        "lights": [{"class": "PointLight", "position": [2, 4, 4], "intensity": 5}],
+        "background": {"class": "UniformSky", "radiance": [0.2, 0.3, 0.4]},
+        "render": {"engine": "programs", "size": [32, 24], "spp": 4, "depth": 8},
+    }
+
+
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
@@ -129,6 +153,8 @@ CASES = [
     ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [objects(4)]),
     ("g++", ["-O1"], [], [nothing()]),
     ("clang++-22", ["-O1"], ["--trace=recurse"], [nothing()]),
+    ("g++", ["-O1"], ["--undefined=nan"], [paths()]),
+    ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [paths()]),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),
     ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]

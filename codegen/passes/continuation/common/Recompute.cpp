@@ -119,8 +119,13 @@ StateWrites WriteSummary::of(mlir::Operation *op) const {
     writes.add(callee->second);
     return writes;
   }
-  if (llvm::isa<ir::IlluminateOp>(op))
-    return illumination;
+  if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op)) {
+    if (light.getIndex())
+      return illumination;
+    for (const char *name : {"LightDirection", "LightDistance", "LightColor", "PDF"})
+      writes.names.insert(name);
+    return writes;
+  }
   auto addNamed = [&](std::optional<mlir::ArrayAttr> names) {
     writes.any = !names;
     if (names)

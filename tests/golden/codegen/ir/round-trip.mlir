@@ -100,10 +100,12 @@ func.func @rays(%p: vector<3xf32>, %t: f32, %i: i32) {
   %r = rtsl.rand
   // CHECK: rtsl.light_count{{$}}
   %n = rtsl.light_count
-  // CHECK: rtsl.illuminate %{{.*}}, %{{.*}}{{$}}
-  %lit = rtsl.illuminate %i, %p
-  // CHECK: rtsl.illuminate %{{.*}}, %{{.*}} normal %{{.*}} cos %{{.*}}
-  %lit2 = rtsl.illuminate %i, %p normal %p cos %t
+  // CHECK: rtsl.illuminate %{{.*}} light %{{.*}}{{$}}
+  %lit = rtsl.illuminate %p light %i
+  // CHECK: rtsl.illuminate %{{.*}} light %{{.*}} normal %{{.*}} cos %{{.*}}
+  %lit2 = rtsl.illuminate %p light %i normal %p cos %t
+  // CHECK: rtsl.illuminate %{{[^ ]*}}{{$}}
+  %lit3 = rtsl.illuminate %p
   rtsl.return
 }
 

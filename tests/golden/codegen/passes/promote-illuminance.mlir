@@ -13,7 +13,7 @@
 // CHECK-NEXT: %[[V2:.*]] = arith.cmpi ult, %[[V1]], %[[V0]] : i32
 // CHECK-NEXT: cf.cond_br %[[V2]], ^bb2, ^bb6
 // CHECK-NEXT: ^bb2:
-// CHECK-NEXT: %[[V3:.*]] = rtsl.illuminate %[[V1]], %[[ARG0]] normal %[[ARG1]] cos %[[ARG2]]
+// CHECK-NEXT: %[[V3:.*]] = rtsl.illuminate %[[ARG0]] light %[[V1]] normal %[[ARG1]] cos %[[ARG2]]
 // CHECK-NEXT: cf.cond_br %[[V3]], ^bb3, ^bb5
 // CHECK-NEXT: ^bb3:
 // CHECK-NEXT: %[[V4:.*]] = rtsl.load %[[LIGHTCOLOR]] : !rtsl.ptr<vector<3xf32>>

@@ -57,7 +57,7 @@ func.func @A.launch() -> (vector<3xf32>) {
 // CHECK-DAG: %[[ZERO:.*]] = llvm.mlir.constant(0.000000e+00 : f32)
 // CHECK: llvm.call @rtsl_illuminance(%{{.*}}, %{{.*}}, %{{.*}}, %{{.*}}, %{{.*}}, %[[ZERO]], %[[ZERO]], %[[ZERO]], %[[NONE]])
 func.func @A.illuminate(%i: i32, %p: vector<3xf32>) -> i1 {
-  %l = rtsl.illuminate %i, %p
+  %l = rtsl.illuminate %p light %i
   return %l : i1
 }
 // CHECK-LABEL: llvm.func @A.state(

@@ -202,7 +202,7 @@ func.func @lights(%i: i32) -> (vector<3xf32>, vector<3xf32>) {
   %p = rtsl.load %place : !rtsl.ptr<vector<3xf32>>
   %normal = rtsl.state "GeometricNormal" : !rtsl.ptr<vector<3xf32>>
   %n = rtsl.load %normal : !rtsl.ptr<vector<3xf32>>
-  %lit = rtsl.illuminate %i, %p
+  %lit = rtsl.illuminate %p light %i
   %c = rtsl.trace %p, %n : vector<3xf32>
   return %p, %n : vector<3xf32>, vector<3xf32>
 }

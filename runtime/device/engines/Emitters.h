@@ -1,0 +1,319 @@
+//===- Emitters.h - surfaces that shine, as lights ------------------------===//
+//
+// `illuminate(P)` chooses one of the launch's emitters, with the probability that the table gives,
+// and a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`. A ray
+// towards the point finds what is seen there; only if that is the point itself does its light
+// count, so that each direction has the density of one point. A ray that meets an emitter by chance
+// finds the same density in rt_PDF: an engine weighs the two against one another (Veach and Guibas,
+// "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/engines/BeginRay.h"
+#include "runtime/device/engines/ShadowRay.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Random.h"
+#include "runtime/device/traverse/Surface.h"
+
+namespace rtsl::device {
+
+/// The number of the first of `count` ascending chances that exceeds `choice`, which is below 1.
+template <typename ChanceOf>
+uint32_t chosenOf(uint32_t count, float choice, ChanceOf chanceOf) {
+  uint32_t first = 0, last = count - 1;
+  while (first < last) {
+    const uint32_t middle = first + (last - first) / 2;
+    if (chanceOf(middle) > choice)
+      last = middle;
+    else
+      first = middle + 1;
+  }
+  return first;
+}
+
+/// The probability of one of them.
+template <typename ChanceOf>
+float probabilityOf(uint32_t number, ChanceOf chanceOf) {
+  return number ? chanceOf(number) - chanceOf(number - 1) : chanceOf(0);
+}
+
+inline auto chancesOfEmitters(const RtslLaunch &launch) {
+  return [emitters = launch.emitters](uint32_t i) { return emitters[i].chances; };
+}
+inline auto chancesOfTriangles(const RtslLaunch &launch, const RtslEmitter &emitter) {
+  return
+      [chances = launch.triangleChances + emitter.firstTriangle](uint32_t i) { return chances[i]; };
+}
+
+/// The vertices of a triangle of an instance in world space.
+inline TriangleVertices verticesInWorld(const RtslLaunch &launch, const RtslInstance &instance,
+                                        uint32_t triangle) {
+  TriangleVertices p = triangleVertices(launch.meshes[instance.mesh], triangle);
+  if (isTransformed(launch, instance)) {
+    const RtslTransform &transform = transformOf(launch, instance);
+    p = {pointToWorld(transform, p.v0), pointToWorld(transform, p.v1),
+         pointToWorld(transform, p.v2)};
+  }
+  return p;
+}
+
+/// Its normal, of twice the length of its area.
+inline Vec3 doubleArea(const TriangleVertices &p) {
+  return cross(p.v1 - p.v0, p.v2 - p.v0);
+}
+
+/// State of a primitive on whose surface a point is chosen; the rest is 0.
+inline void clearForSample(RtslState &state) {
+  setVector(state.RayOrigin, 0, 0, 0);
+  setVector(state.RayDirection, 0, 0, 0);
+  setVector(state.InverseRayDirection, 0, 0, 0);
+  state.Epsilon = state.HitDistance = 0;
+  setVector(state.HitPoint, 0, 0, 0);
+  setVector(state.BoundMin, 0, 0, 0);
+  setVector(state.BoundMax, 0, 0, 0);
+  setVector(state.GeometricNormal, 0, 0, 0);
+  setVector(state.ShadingNormal, 0, 0, 0);
+  setVector(state.dPdu, 0, 0, 0);
+  setVector(state.dPdv, 0, 0, 0);
+  state.TextureUV[0] = state.TextureUV[1] = 0;
+  setVector(state.TextureUVW, 0, 0, 0);
+  state.dsdu = state.dsdv = state.dtdu = state.dtdv = 0;
+  state.PDF = 0;
+  for (int i = 0; i < 16; ++i)
+    state.ObjectToWorld[i] = state.WorldToObject[i] = 0;
+  state.PrimitiveIndex = 0;
+  state.InstanceIndex = 0;
+}
+
+/// How many times larger an area is in world space than in object space, where the surface has this
+/// normal in world space: |det M| / |M^T n| for p -> M p.
+inline float areaScale(const RtslTransform &transform, Vec3 worldNormal) {
+  const float *m = transform.linear;
+  const Vec3 c0 = load(m), c1 = load(m + 3), c2 = load(m + 6);
+  const Vec3 unit = normalized(worldNormal);
+  const Vec3 back = {dot(c0, unit), dot(c1, unit), dot(c2, unit)};
+  return absolute(dot(c0, cross(c1, c2))) / squareRoot(dot(back, back));
+}
+
+/// The density with which `illuminate` at the ray's origin chooses the direction of this ray, by
+/// solid angle, because of the point that it has hit; 0 if that is not on an emitter.
+inline float emitterDensity(const RtslState &hit) {
+  const RtslLaunch &launch = *hit.launch;
+  // The emitter of the instance.
+  uint32_t first = 0, last = launch.emitterCount;
+  while (first < last) {
+    const uint32_t middle = first + (last - first) / 2;
+    if (launch.emitters[middle].instance < hit.instance)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  if (first == launch.emitterCount || launch.emitters[first].instance != hit.instance)
+    return 0;
+  const RtslInstance &instance = instanceAt(launch, hit.instance);
+  const Vec3 direction = load(hit.RayDirection), normal = load(hit.GeometricNormal);
+  float density = probabilityOf(first, chancesOfEmitters(launch));
+  if (instance.primitive == 0) {
+    const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive));
+    density *= 2 *
+               probabilityOf(hit.primitive, chancesOfTriangles(launch, launch.emitters[first])) /
+               squareRoot(dot(twice, twice));
+  } else {
+    RtslState state;
+    beginState(state, hit.launch);
+    state.events = hit.events;
+    for (int i = 0; i < 2; ++i) {
+      state.LaunchIndex[i] = hit.LaunchIndex[i];
+      state.LaunchSize[i] = hit.LaunchSize[i];
+      state.randomKey[i] = hit.randomKey[i];
+    }
+    state.randomKey[0] ^= 0x85ebca6bu;
+    state.dimension = 0;
+    state.Time = hit.Time;
+    state.TimeSeed = hit.TimeSeed;
+    state.Depth = hit.Depth;
+    clearForSample(state);
+    store(state.HitPoint, load(hit.HitPoint));
+    store(state.GeometricNormal, normal);
+    float scale = 1;
+    if (isTransformed(launch, instance)) {
+      const RtslTransform &transform = transformOf(launch, instance);
+      store(state.HitPoint, pointToObject(transform, load(hit.HitPoint)));
+      const float *m = transform.linear;
+      store(state.GeometricNormal,
+            normalized({dot(load(m), normal), dot(load(m + 3), normal), dot(load(m + 6), normal)}));
+      scale = areaScale(transform, normal);
+    }
+    rtsl_rt_Primitive_samplePDF(&state, instance.primitive);
+    density *= state.PDF / scale;
+  }
+  const float along = absolute(dot(direction, normal));
+  const float square = dot(direction, direction);
+  // distance^2 / cosine
+  density *= hit.HitDistance * hit.HitDistance * square *
+             (squareRoot(square * dot(normal, normal)) / along);
+  return density > 0 && density < infinity ? density : 0; // edge-on, or not a number
+}
+
+/// Sets rt_PDF of a hit, in programs that choose points on emitters.
+inline void describeEmitter(RtslState &state) {
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_EMITTERS)
+    state.PDF = emitterDensity(state);
+}
+
+/// Numbers in [0, 1) that choose an emitter and a point on it.
+struct EmitterChoice {
+  float emitter, triangle, u, v;
+};
+
+/// A point on an instance in world space, and with it GeometricNormal and PDF (by area, in object
+/// space) of a primitive in `state`.
+inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
+                            const RtslInstance &instance, uint32_t triangle, float u, float v) {
+  if (instance.primitive == 0) {
+    // Uniform on the triangle (Turk, "Generating Random Points in Triangles", 1990).
+    const TriangleVertices p = verticesInWorld(launch, instance, triangle);
+    const float root = squareRoot(u);
+    return p.v0 + (p.v1 - p.v0) * (root * (1 - v)) + (p.v2 - p.v0) * (root * v);
+  }
+  clearForSample(state);
+  rtsl_rt_Primitive_generateSample(&state, instance.primitive);
+  const Vec3 point = load(state.HitPoint);
+  return isTransformed(launch, instance) ? pointToWorld(transformOf(launch, instance), point)
+                                         : point;
+}
+
+/// The light that arrives from an emitter.
+struct EmittedLight {
+  Vec3 direction; // of any length
+  float distance; // in units of it
+  float density;  // of the direction, by solid angle; 0: no light arrives
+  float radiance[RTSL_MAX_COLOR];
+};
+
+/// Chooses a point on an emitter and finds what is seen of it. On a GPU it is a separate function.
+#ifdef __NVPTX__
+__attribute__((noinline))
+#endif
+inline void lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice choice, EmittedLight *light) {
+  const RtslLaunch &launch = *ray.launch;
+  const RtslEmitter &emitter =
+      launch.emitters[chosenOf(launch.emitterCount, choice.emitter, chancesOfEmitters(launch))];
+  const RtslInstance &instance = instanceAt(launch, emitter.instance);
+  uint32_t triangle = 0;
+  if (instance.primitive == 0)
+    triangle = chosenOf(launch.meshes[instance.mesh].triangleCount, choice.triangle,
+                        chancesOfTriangles(launch, emitter));
+  light->density = 0;
+  RtslState state;
+  startShadowRay(state, ray);
+  light->direction =
+      pointOnInstance(state, launch, instance, triangle, choice.u, choice.v) - ray.origin;
+
+  // How much the hit's distance may differ from that of the point.
+  constexpr float tolerance = 0x1p-10f;
+  setDefaults(state, rtsl_color_components(&launch));
+  const RayStart start = startElsewhere(left, ray.origin, light->direction);
+  if (!(start.epsilon < 1 - tolerance))
+    return;
+  setRay(state, ray.origin, light->direction, start, 1 + tolerance);
+  if (rtsl_traverse(&state, 0) != RTSL_HIT || state.instance != emitter.instance ||
+      !(state.HitDistance > 1 - tolerance))
+    return;
+  describeHit(state);
+  light->distance = state.HitDistance;
+  light->density = emitterDensity(state);
+  setColor(state.EmissionColor, rtsl_color_components(&launch), 0);
+  if (light->density > 0)
+    rtsl_rt_Material_emission(&state, instance.material);
+  copyColor(light->radiance, state.EmissionColor, rtsl_color_components(&launch));
+}
+
+/// `illuminate(P)`. Always four draws.
+inline bool illuminateBySurface(RtslState &state, Vec3 point) {
+  const RtslLaunch &launch = *state.launch;
+  const uint32_t components = rtsl_color_components(&launch);
+  setVector(state.LightDirection, 0, 0, 0);
+  state.LightDistance = infinity;
+  setColor(state.LightColor, components, 0);
+  state.PDF = 0;
+  EmitterChoice choice;
+  choice.emitter = randomNumber(state.randomKey, state.dimension);
+  choice.triangle = randomNumber(state.randomKey, state.dimension + 1);
+  choice.u = randomNumber(state.randomKey, state.dimension + 2);
+  choice.v = randomNumber(state.randomKey, state.dimension + 3);
+  state.dimension += 4;
+  if (launch.emitterCount == 0)
+    return false;
+  EmittedLight light;
+  lookAtEmitter(shadowRayFrom(state, point), leftHit(state), choice, &light);
+  const float length = squareRoot(dot(light.direction, light.direction));
+  if (!(light.density > 0 && length > 0) || isBlack(light.radiance, components))
+    return false;
+  store(state.LightDirection, light.direction * (1 / length));
+  state.LightDistance = light.distance * length;
+  // The radiance of a white diffuse surface that faces the light.
+  const float factor = 1 / (3.14159274f * light.density);
+  for (uint32_t i = 0; i < RTSL_MAX_COLOR; ++i)
+    if (i < components)
+      state.LightColor[i] = light.radiance[i] * factor;
+  state.PDF = light.density;
+  return true;
+}
+
+/// rtsl_emitted_power.
+inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t triangle,
+                          uint32_t sample) {
+  const RtslInstance &instance = instanceAt(launch, number);
+  RtslState state;
+  beginState(state, &launch);
+  state.events = nullptr;
+  const Words4 key = hash4(number, triangle, sample, 0x656d6974u);
+  state.randomKey[0] = key.x;
+  state.randomKey[1] = key.y;
+  state.dimension = 0;
+  state.LaunchIndex[0] = state.LaunchIndex[1] = 0;
+  state.LaunchSize[0] = state.LaunchSize[1] = 1;
+  state.Time = state.TimeSeed = 0;
+  state.Depth = 0;
+  state.rayType = 0;
+  state.rayMask = ~0u;
+  state.rayRoot = 0;
+  const float u = unitFloat(key.z), v = unitFloat(key.w);
+  const Vec3 point = pointOnInstance(state, launch, instance, triangle, u, v);
+  Vec3 normal;
+  float area = 1;
+  if (instance.primitive == 0) {
+    normal = normalized(doubleArea(verticesInWorld(launch, instance, triangle)));
+    const float root = squareRoot(u);
+    state.u = root * (1 - v);
+    state.v = root * v;
+  } else {
+    normal = load(state.GeometricNormal);
+    area = 1 / state.PDF;
+    if (isTransformed(launch, instance)) {
+      const RtslTransform &transform = transformOf(launch, instance);
+      normal = normalToWorld(transform, normal);
+      area *= areaScale(transform, normal);
+    }
+  }
+  // Seen from either side in turn.
+  const Vec3 toEye = normal * (sample & 1 ? -1.0f : 1.0f);
+  setDefaults(state, rtsl_color_components(&launch));
+  setRay(state, point + toEye, toEye * -1.0f, {0, 0, RTSL_NO_HIT}, 1);
+  state.instance = number;
+  state.primitive = triangle;
+  for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
+    state.attributes[i] = 0; // nothing was intersected
+  describeHit(state);
+  const uint32_t components = rtsl_color_components(&launch);
+  setColor(state.EmissionColor, components, 0);
+  rtsl_rt_Material_emission(&state, instance.material);
+  float sum = 0;
+  for (uint32_t i = 0; i < components; ++i)
+    sum += state.EmissionColor[i];
+  return sum / float(components) * area;
+}
+
+} // namespace rtsl::device

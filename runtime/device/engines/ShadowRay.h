@@ -1,0 +1,91 @@
+//===- ShadowRay.h - rays between a point and what lights it --------------===//
+#pragma once
+
+#include "runtime/device/engines/BeginRay.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Events.h"
+#include "runtime/device/ray/Spawn.h"
+#include "runtime/device/ray/Undefined.h"
+#include "runtime/device/ray/Vector.h"
+
+namespace rtsl::device {
+
+/// What a ray to a light has of the state of the shader that is lit. It is passed by value, so that
+/// that state stays in registers.
+struct ShadowRay {
+  const RtslLaunch *launch;
+  RtslEvents *events;
+  Vec3 origin;
+  float time, timeSeed;
+  uint32_t launchIndex[2], launchSize[2];
+  uint32_t mask;
+  int32_t root, depth;
+  uint32_t randomKey[2];
+};
+
+inline ShadowRay shadowRayFrom(const RtslState &shading, Vec3 point) {
+  ShadowRay ray;
+  ray.launch = shading.launch;
+  ray.events = shading.events;
+  ray.origin = point;
+  ray.time = shading.Time;
+  ray.timeSeed = shading.TimeSeed;
+  for (int i = 0; i < 2; ++i) {
+    ray.launchIndex[i] = shading.LaunchIndex[i];
+    ray.launchSize[i] = shading.LaunchSize[i];
+  }
+  ray.mask = shading.rayMask;
+  ray.root = shading.rayRoot;
+  ray.depth = shading.Depth + 1;
+  // Draws are hashed; a key that no other ray has is sufficient.
+  ray.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
+  ray.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
+  return ray;
+}
+
+/// Makes `state` that of the ray, but for its direction.
+inline void startShadowRay(RtslState &state, const ShadowRay &ray) {
+  beginState(state, ray.launch);
+  state.events = ray.events;
+  state.TimeSeed = ray.timeSeed;
+  state.Time = ray.time;
+  for (int i = 0; i < 2; ++i) {
+    state.LaunchIndex[i] = ray.launchIndex[i];
+    state.LaunchSize[i] = ray.launchSize[i];
+    state.randomKey[i] = ray.randomKey[i];
+  }
+  state.rayMask = ray.mask;
+  state.rayRoot = ray.root;
+  state.rayType = 0;
+  state.Depth = ray.depth;
+  state.dimension = 0;
+}
+
+/// Is there anything between the ray's origin and `distance`? On a GPU it is a separate function.
+#ifdef __NVPTX__
+__attribute__((noinline))
+#endif
+inline uint32_t traverseShadow(ShadowRay ray, Vec3 direction, RayStart start, float distance) {
+  RtslState state;
+  startShadowRay(state, ray);
+  setRay(state, ray.origin, direction, start, distance);
+  return rtsl_traverse(&state, RTSL_FIRST_HIT);
+}
+
+/// Is there anything between `point` and the light that wrote LightDistance to `shading`?
+inline bool inShadow(const RtslState &shading, Vec3 point) {
+  const Vec3 direction = load(shading.LightDirection);
+  const RayStart start = startOf(shading, point, direction);
+  // The light's own surface, if it has one, is at the end: keep as clear of it as of the start.
+  float distance = shading.LightDistance;
+  if (distance < infinity)
+    distance -= minimum(start.epsilon, distance * 0x1p-10f);
+  if (!(start.epsilon < distance))
+    return false;
+  const uint32_t found = traverseShadow(shadowRayFrom(shading, point), direction, start, distance);
+  if (found == RTSL_BAD_RAY)
+    raise(shading, RTSL_EXCEPTION_BAD_RAY);
+  return found != RTSL_MISS; // no light arrives along a bad ray
+}
+
+} // namespace rtsl::device

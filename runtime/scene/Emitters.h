@@ -1,0 +1,29 @@
+//===- Emitters.h - the instances of a scene that shine -------------------===//
+//
+// A program that lights points by surfaces chooses among these by the power that they send out
+// (runtime/device/engines/Emitters.h). The power is estimated: what an estimate misses is found
+// later, or not, by the rays of the picture, whose mean does not depend on the choice.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/program/Program.h"
+
+#include <vector>
+
+namespace rtsl::runtime {
+
+class Emitters {
+public:
+  /// Finds the emitters of a launch that is complete but for them. The program has `emittedPower`.
+  Emitters(const Program &program, const RtslLaunch &complete);
+
+  /// Sets the launch's fields about emitters.
+  void fill(RtslLaunch &launch) const;
+
+private:
+  std::vector<RtslEmitter> emitters;
+  std::vector<float> triangleChances;
+};
+
+} // namespace rtsl::runtime
