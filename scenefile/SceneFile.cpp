@@ -1,9 +1,8 @@
 //===- SceneFile.cpp - from JSON to a description -------------------------===//
 #include "scenefile/SceneFile.h"
 
-#include "scenefile/PathEngine.h"
-
 #include "scenefile/Graph.h"
+#include "scenefile/LibraryEngines.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
 #include "support/AtomicFile.h"
@@ -63,8 +62,8 @@ public:
       if (const JsonValue *render = root.find("render"))
         readRender(*render);
       requireStart();
-      if (usesPathTracer)
-        usePathTracer(scene);
+      if (libraryEngine)
+        useLibraryEngine(scene, *libraryEngine);
     });
     errors.throwIfAny();
   }
@@ -105,8 +104,8 @@ private:
   void requireStart() const {
     if (scene.render.engine == runtime::Engine::Classic)
       require(root, "camera", "a scene");
-    else if (usesPathTracer)
-      require(root, "camera", "a scene for the engine `path`");
+    else if (libraryEngine)
+      require(root, "camera", fmt::format("a scene for the engine `{}`", libraryEngine->string));
     else
       require(root, "rayGeneration", "a scene for the engine `programs`");
   }
@@ -292,12 +291,14 @@ private:
     RenderSettings &render = scene.render;
     if (const JsonValue *engine = value.find("engine")) {
       expect(*engine, Kind::String, "`engine`");
-      if (engine->string != "classic" && engine->string != "path" && engine->string != "programs")
+      const std::vector<std::string> &ofLibrary = libraryEngines();
+      if (std::find(ofLibrary.begin(), ofLibrary.end(), engine->string) != ofLibrary.end())
+        libraryEngine = engine;
+      else if (engine->string != "classic" && engine->string != "programs")
         throw Error(ErrorCode::NotSupported,
-                    fmt::format("there is no engine `{}`, only `classic`, `path` and `programs`",
-                                engine->string),
+                    fmt::format("there is no engine `{}`; there are `classic`, `programs`, `{}`",
+                                engine->string, fmt::join(ofLibrary, "`, `")),
                     engine->place());
-      usesPathTracer = engine->string == "path";
       if (engine->string != "classic")
         render.engine = runtime::Engine::Programs;
     }
@@ -316,7 +317,7 @@ private:
 
   const JsonValue &root;
   SceneDescription &scene;
-  bool usesPathTracer = false;
+  const JsonValue *libraryEngine = nullptr; // the value of `engine`, if it is one of the library's
   ErrorCollector errors;
 };
 

@@ -23,7 +23,7 @@ static bool linkForScene(Compilation &compilation) {
 /// Makes the objects of a scene, with a program that contains only what this needs.
 static runtime::SceneFacts makeObjects(const Compilation &compilation) {
   const mlir::OwningOpRef<mlir::ModuleOp> copy = mlir::ModuleOp(*compilation.ir).clone();
-  keepConstructors(*copy);
+  keepConstructors(*copy, compilation.program->needs & RTSL_NEEDS_EMITTERS);
   auto constructors = std::make_shared<runtime::Program>(*compilation.program);
   compileConstructors(*copy, compilation.options, *constructors);
   // Constructors and bounds may have large local variables.

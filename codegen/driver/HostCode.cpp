@@ -215,6 +215,8 @@ constexpr std::size_t manyClasses = 100;
 void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
                          runtime::Program &program) {
   std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
+  if (program.needs & RTSL_NEEDS_EMITTERS)
+    names.push_back("rtsl_emitted_power");
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));

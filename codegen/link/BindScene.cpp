@@ -20,6 +20,7 @@
 #include "codegen/link/Steps.h"
 #include "llvm/ADT/STLExtras.h"
 #include "llvm/ADT/SetVector.h"
+#include "llvm/ADT/StringSwitch.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,6 +41,16 @@ bool isForBuilding(mlir::func::FuncOp function) {
   const llvm::StringRef name = function.getSymName();
   return ir::attr::constructor.isOn(function) || name == boundsEntry ||
          (ir::attr::exported.isOn(function) && name.ends_with(".initialize"));
+}
+
+/// Does rtsl_emitted_power call it?
+bool isOfEmission(mlir::func::FuncOp function) {
+  return llvm::StringSwitch<bool>(function.getSymName())
+      .Cases({"rtsl_rt_Material_emission", "rtsl_rt_Primitive_generateSample"}, true)
+      .Cases({"rtsl_rt_Primitive_computeNormal", "rtsl_rt_Primitive_computeTextureCoordinates",
+              "rtsl_rt_Primitive_computeDerivatives"},
+             true)
+      .Default(false);
 }
 
 /// Makes an entry point private that is no longer called from outside.
@@ -215,10 +226,10 @@ std::uint32_t graphNeeds(const runtime::SceneFacts &scene, const LinkRequest &re
   return needs;
 }
 
-void keepConstructors(mlir::ModuleOp ir) {
+void keepConstructors(mlir::ModuleOp ir, bool withEmission) {
   for (auto function : ir.getOps<mlir::func::FuncOp>())
     if (ir::attr::exported.isOn(function) && !isForBuilding(function) &&
-        function.getSymName() != "rtsl_features")
+        !(withEmission && isOfEmission(function)) && function.getSymName() != "rtsl_features")
       hide(function);
 }
 

@@ -8,8 +8,8 @@
 namespace rtsl {
 
 /// Keeps only the functions of a linked program that make the objects of a scene: constructors,
-/// member defaults and bounds.
-void keepConstructors(mlir::ModuleOp ir);
+/// member defaults and bounds; with `withEmission` also those that rtsl_emitted_power calls.
+void keepConstructors(mlir::ModuleOp ir, bool withEmission);
 
 /// Records in a linked program which members are the same in all objects of its scene, and removes
 /// the functions that made the objects. The pass `rtsl-bind-members` turns the records into

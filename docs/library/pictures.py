@@ -91,6 +91,10 @@ def scenes():
                  background=[0, 0, 0])
     room["render"].update(engine="path", spp=1024)
     yield "PathTracer", room
+    for name, engine, members in (("NormalsView", "normals", {}), ("DepthView", "depth", {"unit": 8}), ("IdView", "id", {}),
+                                  ("AlbedoView", "albedo", {}), ("OcclusionView", "occlusion", {"reach": 2})):
+        view = {**room, "rayGeneration": {"class": name, **members}}
+        yield name, {**view, "render": {**room["render"], "engine": engine, "spp": 256}}
     for name, members in BACKGROUNDS.items():
         yield name, scene([FLOOR, {"primitive": BALL, "material": {"class": "Silver", "alpha": 0}}],
                           camera={"class": "PerspectiveCamera", "constructor": [[0, 0.3, 5], [0, 0.4, 0], UP], "fieldOfView": 50},

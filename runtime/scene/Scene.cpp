@@ -17,7 +17,13 @@ struct Scene::Implementation {
   Geometry geometry;
   CameraAndLights cameraAndLights;
   std::vector<Warning> warnings;
-  std::optional<Emitters> emitters; // found when a complete launch is first needed
+  std::optional<Emitters> emitters; // found with the first program that can, when all are there
+
+  void findEmitters(const RtslLaunch &launch) {
+    const Program &program = objects.program();
+    if (!emitters && program.emittedPower && program.needs & RTSL_NEEDS_EMITTERS)
+      emitters.emplace(program, launch);
+  }
 
   /// The current launch, complete or not.
   RtslLaunch launch() {
@@ -40,7 +46,6 @@ const Program &Scene::program() const {
 }
 
 void Scene::useProgram(std::shared_ptr<const Program> program) {
-  self->emitters.reset();
   self->objects.useProgram(std::move(program));
   self->geometry.useProgram(self->objects);
 }
@@ -163,6 +168,7 @@ SceneFacts Scene::facts() const {
     if (reached.count(object.reference))
       facts.objects.push_back({object.classInfo->name, self->objects.record(object.reference)});
   const RtslLaunch launch = self->launch();
+  self->findEmitters(launch);
   facts.records = launch.records;
   facts.recordBytes = self->objects.recordBytes();
   facts.hasBuffers = !self->objects.buffers().empty();
@@ -179,11 +185,9 @@ SceneFacts Scene::facts() const {
 RtslLaunch Scene::launch() const {
   self->cameraAndLights.requireCamera(program().engine);
   RtslLaunch launch = self->launch();
-  if (program().emittedPower && program().needs & RTSL_NEEDS_EMITTERS) {
-    if (!self->emitters)
-      self->emitters.emplace(program(), launch);
+  self->findEmitters(launch);
+  if (self->emitters)
     self->emitters->fill(launch);
-  }
   return launch;
 }
 

@@ -2,10 +2,14 @@
 
 import json
 import math
+import os
 import pathlib
+import subprocess
 import unittest
 
-from harness import RTSLC, Case
+from harness import RTSLC, SECONDS, Case
+
+RTSL_RUN = os.environ["RTSL_RUN"]
 
 SHADERS = """
 // An author's material, with the sampling methods alone: a diffuse surface that may shine.
@@ -196,6 +200,46 @@ class ClosedForms(PathCase):
         self.assert_gray(sum(0.25 * 0.5 ** i for i in range(6)), 1e-5, "-Wno-all")
 
 
+class Views(PathCase):
+    def test_what_they_show(self):
+        """Of a ball of radius 2 around the origin, from the origin and from a point above a floor."""
+        own = {"class": "Own", "albedo": 0.25}
+        self.scene([(FLOOR, own)], camera="Down", spp=16, size=(4, 4))
+        for engine, expected in (("normals", [0.5, 1, 0.5]), ("depth", [5, 5, 5]), ("albedo", [0.25] * 3), ("occlusion", [1, 1, 1])):
+            with self.subTest(engine=engine):
+                for one, wanted in zip(self.mean("--set", f"render.engine={engine}"), expected):
+                    self.assertAlmostEqual(one, wanted, delta=1e-3)
+        # Half of the directions of a floor below a half-infinite ceiling are open; with a short reach all are.
+        ceiling = {"class": "Parallelogram", "constructor": [[0, 1, -1e4], [1e4, 0, 0], [0, 0, 2e4]]}
+        self.scene([(FLOOR, own), (ceiling, own)], camera="Under", spp=4096, size=(4, 4))
+        self.assert_gray(0.5, 0.02, "--set", "render.engine=occlusion")
+        self.assert_gray(1.0, 1e-6, "--set", "render.engine=occlusion", "--set",
+                         'rayGeneration={"class": "OcclusionView", "reach": 0.5}')
+
+    def test_ids_differ(self):
+        balls = [({"class": "Sphere", "center": [x, 0, 0], "radius": 0.5}, {"class": "Shines"}) for x in range(-3, 4)]
+        self.scene(balls + [(FLOOR, {"class": "Shines"})], camera="Down", spp=1, size=(4, 4))
+        means = set()
+        for i in range(len(balls)):
+            self.scene(balls[:i + 1], camera="Down", spp=1, size=(4, 4))
+            scene = json.loads((self.folder / "scene.json").read_text())
+            for j, entry in enumerate(scene["objects"]):
+                entry["primitive"]["center"] = [0, 0.1 * (1 if j == i else -20), 0]
+            self.write("scene.json", json.dumps(scene))
+            means.add(tuple(self.mean("--set", "render.engine=id")))
+        self.assertEqual(len(means), len(balls))
+
+    def test_every_path_gives_the_same_bits(self):
+        self.scene([(FLOOR, {"class": "Lambert"}), ({"class": "Sphere", "center": [0, 1, 2], "radius": 1}, {"class": "Gold"})],
+                   camera="Inside", spp=4)
+        for engine in ("normals", "depth", "id", "albedo", "occlusion"):
+            self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "--set", f"render.engine={engine}")
+            for way in (["--trace=recurse"], ["--target=host-megakernel"]):
+                with self.subTest(engine=engine, way=way):
+                    self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", "--set", f"render.engine={engine}", *way)
+                    self.run_rtslc("compare", "a.exr", "b.exr", "--threshold", "0")
+
+
 class Paths(PathCase):
     def test_every_path_gives_the_same_bits(self):
         self.scene([(FLOOR, {"class": "Lambert"}), (BALL, {"class": "Dielectric"}),
@@ -207,6 +251,16 @@ class Paths(PathCase):
             with self.subTest(way=way):
                 self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", "-q", *way)
                 self.run_rtslc("compare", "a.exr", f"{i}.exr", "--threshold", "0")
+
+    def test_a_package_does_the_same(self):
+        """Emitters are found when the package is made."""
+        self.scene([(FLOOR, {"class": "Lambert"}), ({"class": "Sphere", "center": [0, 4, 3], "radius": 1}, {"class": "Emitter", "radiance": 4})],
+                   camera="Under", spp=8)
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
+        self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
+        done = subprocess.run([RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS)
+        self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_members_of_the_engine(self):
         self.scene([(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})], depth=50, spp=1,
@@ -228,7 +282,7 @@ class Paths(PathCase):
     def test_unknown_engines(self):
         self.scene([(BALL, {"class": "Shines"})])
         self.assert_message(self.diagnose("render", "scene.json", "-o", "a.exr", "--set", "render.engine=bdpt"), "E0808",
-                            "there is no engine `bdpt`, only `classic`, `path` and `programs`")
+                            "there is no engine `bdpt`; there are `classic`, `programs`, `path`, `occlusion`")
 
     def test_the_camera_of_an_authors_generate(self):
         """`generate` sees the camera's ray; without a camera it is zero."""

@@ -1,0 +1,71 @@
+#include "scenefile/LibraryEngines.h"
+
+#include <algorithm>
+
+namespace rtsl::scene {
+
+namespace {
+
+/// What this file knows of library/std/engines.
+struct LibraryEngine {
+  const char *name;
+  const char *className;
+  const char *limit; // the member that limits the rays of a path; null: there is none
+};
+constexpr LibraryEngine engines[] = {
+    {"path", "PathTracer", "bounces"},   {"occlusion", "OcclusionView", nullptr},
+    {"normals", "NormalsView", nullptr}, {"depth", "DepthView", nullptr},
+    {"id", "IdView", nullptr},           {"albedo", "AlbedoView", nullptr},
+};
+
+// And of library/std/backgrounds.
+const char *const backgroundClass = "UniformSky";
+const char *const radianceOfBackground = "radiance";
+
+ObjectDescription objectOf(const char *className, const Place &place) {
+  ObjectDescription object;
+  object.className = {className, place};
+  object.place = place;
+  return object;
+}
+
+void import(SceneDescription &scene, const std::string &module, const Place &place) {
+  scene.imports.push_back({{module, place}, ""});
+}
+
+} // namespace
+
+const std::vector<std::string> &libraryEngines() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const LibraryEngine &engine : engines)
+      all.emplace_back(engine.name);
+    return all;
+  }();
+  return names;
+}
+
+void useLibraryEngine(SceneDescription &scene, const JsonValue &engine) {
+  const LibraryEngine &chosen =
+      *std::find_if(std::begin(engines), std::end(engines),
+                    [&](const LibraryEngine &one) { return engine.string == one.name; });
+  const Place place = engine.place();
+  import(scene, std::string("std.engines.") + chosen.className, place);
+  if (!scene.rayGeneration || scene.rayGeneration->className.text != chosen.className)
+    scene.rayGeneration = objectOf(chosen.className, place);
+  auto &members = scene.rayGeneration->members;
+  const auto isLimit = [&](const auto &member) { return member.first.text == chosen.limit; };
+  const JsonValue *depth = scene.root->find("render")->find("depth");
+  if (chosen.limit && depth && std::none_of(members.begin(), members.end(), isLimit))
+    members.push_back({{chosen.limit, depth->place()}, depth});
+
+  if (scene.background || !scene.backgroundColor)
+    return;
+  const Place where = scene.backgroundColor->place();
+  import(scene, std::string("std.backgrounds.") + backgroundClass, where);
+  scene.background = objectOf(backgroundClass, where);
+  scene.background->members.push_back({{radianceOfBackground, where}, scene.backgroundColor});
+  scene.backgroundColor = nullptr;
+}
+
+} // namespace rtsl::scene
