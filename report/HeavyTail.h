@@ -1,7 +1,7 @@
 //===- HeavyTail.h - rare and large samples -------------------------------===//
 //
 // A sample that occurs once in a million and is a million times as bright as the others dominates
-// the error of a picture. If few pixels have such a sample, the spread of independent runs says
+// the error of a picture. If few pixels have such a sample, the spread of independent runs shows
 // little about the error of their mean, and no interval can be given. This is detected from the
 // runs; a sample that none of them has is not detected.
 //

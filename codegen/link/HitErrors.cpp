@@ -2,7 +2,7 @@
 //
 // Where a ray leaves a primitive with its own `intersect`, the runtime needs a bound of the error
 // of t (runtime/device/ray/HitError.h). This step derives it for the primitives with a material
-// that sends rays. If no bound can be derived, a warning asks the author to state one.
+// that sends rays. If no bound can be derived, a warning suggests to state one.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"

@@ -236,7 +236,7 @@ std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
         fmt::format("// needed by line {}: {}", field.neededBy, meaningOf(*machine.method, field));
   }
   return declare(std::move(made),
-                 fmt::format("// What `{}` needs when its rays come back.", machine.name));
+                 fmt::format("// What `{}` keeps across its traces.", machine.name));
 }
 
 /// Does a state write what is in its frame?

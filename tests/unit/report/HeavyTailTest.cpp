@@ -205,7 +205,7 @@ TEST(HeavyTail, AReferenceWithRareHotSamplesClaimsNothing) {
   std::filesystem::remove_all(folder);
 }
 
-// A reference that was given says nothing of its runs, but those of the study do.
+// A given reference has no statistics of its runs, but the runs of the study have.
 TEST(HeavyTail, RunsThatDifferManyTimesHaveNoInterval) {
   Study study;
   for (std::uint32_t run = 0; run < 8; ++run)

@@ -371,7 +371,7 @@ TEST(Jit, DeviceCodeIsLinkedAndHidden) {
   for (float x : {0.5f, 1.f, 2.f, 3e4f})
     EXPECT_EQ(bits(f(&state, x, 1.5f)), bits(device::pow(device::sin(x), 1.5f))) << x;
   EXPECT_EQ(program.jit->lookup("rtsl_sin"), nullptr) << "only exports stay visible";
-  EXPECT_EQ(program.text_.find("rtsl_cos("), std::string::npos) << "what nobody calls is left out";
+  EXPECT_EQ(program.text_.find("rtsl_cos("), std::string::npos) << "unused functions are left out";
 }
 
 } // namespace

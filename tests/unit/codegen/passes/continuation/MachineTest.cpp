@@ -57,7 +57,7 @@ uint32_t traverse(RtslState *state, uint32_t) {
   return RTSL_HIT;
 }
 
-/// The stack of rays, as large as was asked for, and how far it was written.
+/// The stack of rays, of the requested size, and how far it was written.
 struct Stack {
   static constexpr uint8_t untouched = 0xa5;
   uint8_t *memory = nullptr; // AddressSanitizer watches its end
