@@ -1,7 +1,7 @@
 //===- Summary.cpp --------------------------------------------------------===//
 #include "report/Summary.h"
 
-#include "report/Exposure.h"
+#include "report/measures/Exposure.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

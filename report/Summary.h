@@ -1,8 +1,8 @@
 //===- Summary.h - the results of a study ---------------------------------===//
 #pragma once
 
-#include "report/LineFit.h"
 #include "report/Study.h"
+#include "report/measures/LineFit.h"
 
 #include <optional>
 #include <string>

@@ -1,8 +1,8 @@
 //===- CompareCommand.cpp - rtslc compare ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "report/ErrorMetrics.h"
-#include "report/Flip.h"
+#include "report/measures/ErrorMetrics.h"
+#include "report/measures/Flip.h"
 #include "runtime/image/Image.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Output.h"

@@ -1,6 +1,6 @@
 #include "codegen/cpp/states/StateMachines.h"
 
-#include "codegen/cpp/states/StatePrinter.h"
+#include "codegen/cpp/states/statements/StatePrinter.h"
 #include "codegen/ir/Attributes.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"

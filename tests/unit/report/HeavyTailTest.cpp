@@ -1,10 +1,10 @@
 // Whether rare, large samples are found, and whether what is said of the error of the others is
 // true.
-#include "report/HeavyTail.h"
-#include "report/ErrorMetrics.h"
+#include "report/measures/HeavyTail.h"
 #include "report/Page.h"
 #include "report/Reference.h"
 #include "report/Summary.h"
+#include "report/measures/ErrorMetrics.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

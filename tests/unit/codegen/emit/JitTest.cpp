@@ -1,6 +1,6 @@
 // From IR as text to code that runs: what the optimiser and the machine make of it.
 #include "codegen/emit/Jit.h"
-#include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "math/Elementary.h"
 #include "runtime/device/ray/Abi.h"

@@ -2,8 +2,8 @@
 // bit for bit.
 #include "RandomShader.h"
 
-#include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
 #include "runtime/device/ray/Abi.h"
