@@ -1,6 +1,6 @@
 # rtsl_add_shaders(target NAME name SHADERS files... [TRACE split|recurse] [FP strict|fast]): compiles RTSL files to C++ when the target is built, again when one of
 # them or what they import changes, and adds it to the target. The target then has `const RtslShaders *name_shaders()`
-# (declare it with RTSL_DECLARE_SHADERS(name)) and links rtsl::runtime. TRACE says what becomes of methods that trace:
+# (declare it with RTSL_DECLARE_SHADERS(name)) and links rtsl::runtime. TRACE selects how methods that trace are compiled:
 # their states, or calls. FP fast lets the C++ compiler change the last digits for speed (docs/fast.md).
 function(rtsl_add_shaders target)
   cmake_parse_arguments(ARG "" "NAME;TRACE;FP" "SHADERS" ${ARGN})

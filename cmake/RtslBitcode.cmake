@@ -7,9 +7,9 @@ find_program(RTSL_LLVM_LINK NAMES llvm-link-22 llvm-link PATHS /usr/lib/llvm-22/
 set(RTSL_BITCODE_FLAGS -std=c++17 -O2 -ffreestanding -nostdlib -ffp-contract=off -fno-math-errno
     -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wall -Wextra)
 # The features are those of the host's baseline and no others, so that the code generator may inline these functions into
-# shaders. For a GPU the code generator replaces them by those of the processor that is asked for.
+# shaders. For a GPU the code generator replaces them by those of the requested architecture.
 set(RTSL_BITCODE_FLAGS_host -march=x86-64-v3)
-# Where clang finds no CUDA toolkit it takes a PTX that is too old for any GPU of today; the oldest that knows sm_75 is 6.3.
+# Without a CUDA toolkit clang's default PTX version is too old for current GPUs; sm_75 needs at least 6.3.
 set(RTSL_BITCODE_FLAGS_gpu --target=nvptx64-nvidia-cuda -march=sm_75 -Xclang -target-feature -Xclang +ptx63)
 
 function(rtsl_bitcode library symbol target)

@@ -1,7 +1,7 @@
-# How everything is compiled: warnings, the host's baseline and floating point that means what it says.
+# How everything is compiled: warnings, the host's baseline architecture and strict floating point.
 find_program(RTSL_CCACHE ccache)
 if(RTSL_CCACHE)
-  # The sloppiness is what ccache asks for to know precompiled headers.
+  # ccache needs this sloppiness to cache precompiled headers.
   set(CMAKE_C_COMPILER_LAUNCHER "${RTSL_CCACHE}")
   set(CMAKE_CXX_COMPILER_LAUNCHER
       "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${RTSL_CCACHE}")
@@ -12,11 +12,11 @@ set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g1")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
 # Contraction would make the bits of a picture depend on the compiler; x86-64-v3 has the fused operations that
-# correctly rounded functions ask for by name.
+# correctly rounded functions request explicitly.
 add_compile_options(-ffp-contract=off -march=x86-64-v3 -ffunction-sections -fdata-sections)
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # g++ 12 vectorises {float(a), float(b)} in doubles and forgets to round one of them.
+  # g++ 12 vectorises {float(a), float(b)} in doubles and does not round one of them.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-tree-slp-vectorize>)
 elseif(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
   # A precompiled header out of ccache is older than the headers that it was made of; ccache has compared those.

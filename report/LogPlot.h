@@ -1,7 +1,7 @@
 //===- LogPlot.h - curves on two logarithmic axes, as SVG -----------------===//
 #pragma once
 
-#include "report/LineFit.h"
+#include "report/measures/LineFit.h"
 
 #include <string>
 #include <vector>

@@ -21,7 +21,7 @@ struct Measurement {
   double rmse = 0, relMse = 0, bias = 0, flip = 0, flipHdr = 0;
   std::uint64_t nanPixels = 0, infinitePixels = 0;
   std::uint64_t samplesNotFinite = 0; // left out of the means of their pixels
-  std::uint64_t raysTooDeep = 0;      // not sent because of the limit of depth
+  std::uint64_t raysTooDeep = 0;      // not sent because of the depth limit
   std::uint64_t pictureHash = 0;      // equal for the same bits
   double pairVariance = 0; // of this picture and that of the run before: unbiased, mean over pixels
                            // and channels; 0 for run 0

@@ -1,9 +1,9 @@
 //===- Page.cpp - a study as an HTML page ---------------------------------===//
 #include "report/Page.h"
 
-#include "report/ErrorMap.h"
-#include "report/Exposure.h"
 #include "report/LogPlot.h"
+#include "report/measures/ErrorMap.h"
+#include "report/measures/Exposure.h"
 
 #include <fmt/format.h>
 

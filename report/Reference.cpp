@@ -1,8 +1,8 @@
 //===- Reference.cpp ------------------------------------------------------===//
 #include "report/Reference.h"
 
-#include "report/ErrorMetrics.h"
-#include "report/RunningVariance.h"
+#include "report/measures/ErrorMetrics.h"
+#include "report/measures/RunningVariance.h"
 #include "support/AtomicFile.h"
 
 #include <fmt/format.h>

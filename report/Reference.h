@@ -1,8 +1,8 @@
 //===- Reference.h - the reference of a study -----------------------------===//
 #pragma once
 
-#include "report/HeavyTail.h"
 #include "report/Subject.h"
+#include "report/measures/HeavyTail.h"
 
 #include <optional>
 #include <string>

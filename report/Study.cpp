@@ -1,9 +1,9 @@
 //===- Study.cpp ----------------------------------------------------------===//
 #include "report/Study.h"
 
-#include "report/ErrorMetrics.h"
-#include "report/Flip.h"
-#include "report/RunningVariance.h"
+#include "report/measures/ErrorMetrics.h"
+#include "report/measures/Flip.h"
+#include "report/measures/RunningVariance.h"
 
 #include <fmt/format.h>
 

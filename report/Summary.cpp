@@ -1,7 +1,7 @@
 //===- Summary.cpp --------------------------------------------------------===//
 #include "report/Summary.h"
 
-#include "report/Exposure.h"
+#include "report/measures/Exposure.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -97,7 +97,7 @@ void fitLines(SubjectSummary &subject, const Rounds &rounds) {
   subject.noFit =
       isBlackAndWhite
           ? "every picture equals the reference, so there is no error to fit"
-          : "fewer than two numbers of samples have an error that the reference can tell";
+          : "fewer than two numbers of samples have an error that the reference can measure";
 }
 
 Estimate powerOfTen(const Estimate &logarithm) {
@@ -301,7 +301,7 @@ void remark(const SubjectSummary &subject, const Summary &summary, const Referen
                                           subject.samplesNotFinite));
   if (subject.raysTooDeep)
     remarks.add(subject.name,
-                fmt::format("{} rays were deeper than the limit of depth and saw nothing; the "
+                fmt::format("{} rays were deeper than the depth limit and saw nothing; the "
                             "reference has the same limit, so no error shows that",
                             subject.raysTooDeep));
   const std::vector<LevelSummary> &levels = subject.levels;

@@ -1,8 +1,8 @@
 //===- Summary.h - the results of a study ---------------------------------===//
 #pragma once
 
-#include "report/LineFit.h"
 #include "report/Study.h"
+#include "report/measures/LineFit.h"
 
 #include <optional>
 #include <string>
@@ -61,7 +61,7 @@ struct Summary {
   double commonRelMse = 0; // an error that every subject with a line reached; 0: none
   /// Why no interval of an error can be given: rare, large samples. Empty if it can.
   std::string heavyTails;
-  std::vector<std::string> problems; // what a reader must know before relying on the figures
+  std::vector<std::string> problems; // what limits the reliability of the figures
 };
 
 Summary summarise(const std::vector<Subject> &subjects, const Study &study,

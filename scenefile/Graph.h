@@ -14,7 +14,7 @@
 
 namespace rtsl::scene {
 
-/// Reads what the node `value` says of a geometry, but for its transform.
+/// Reads the geometry of the node `value`, except its transform.
 using ReadGeometry = std::function<GeometryDescription(const JsonValue &value)>;
 
 /// Reads `nodes`, and `root` or `roots`, of a scene: appends the geometries that a root leads to,

@@ -2,7 +2,7 @@
 //
 // nlohmann's SAX parser checks the syntax and unescapes strings but does not give the positions of
 // tokens. Its events come in the order of the tokens, so a cursor that steps over one token for
-// each event knows them; it can be simple, because the parser has already checked the token.
+// each event has them; it can be simple, because the parser has already checked the token.
 //
 //===----------------------------------------------------------------------===//
 #include "scenefile/JsonValue.h"

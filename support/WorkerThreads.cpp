@@ -71,7 +71,7 @@ bool start(Worker &worker, std::uint64_t stackBytes) {
   throw Error(
       ErrorCode::OutOfMemory,
       fmt::format("the rays of one sample take {:.1f} MiB of stack, and there is not enough "
-                  "memory: reduce the limit of depth or the local variables of shaders",
+                  "memory: reduce the depth limit or the local variables of shaders",
                   double(stackBytes) / (1 << 20)));
 }
 

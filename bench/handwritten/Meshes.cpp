@@ -2,7 +2,7 @@
 //
 // The twin of the scene that bench/measure/meshes.py writes: diffuse meshes with interpolated
 // normals, a camera ray and two shadow rays a sample. Written as one writes a small renderer on
-// Embree: each mesh is a geometry of Embree's, and a hit is what Embree says.
+// Embree: each mesh is a geometry of Embree's, and hits are Embree's.
 //
 //===----------------------------------------------------------------------===//
 #include "Program.h"

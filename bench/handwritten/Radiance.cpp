@@ -98,7 +98,7 @@ vec3 glass(const Scene &scene, const Picture &picture, const Ray &ray, float dis
            vec3 normal) {
   constexpr float index = 1.5f;
   constexpr float root = (1 - index) / (1 + index), head = root * root;
-  // Logarithms of (0.85, 0.97, 0.9), what is left of white light after one unit of length inside.
+  // Logarithms of (0.85, 0.97, 0.9), the transmittance of one unit of length.
   const vec3 absorption(-0.16251893f, -0.030459207f, -0.105360515f);
 
   float cosine = -glm::dot(ray.direction, normal);
@@ -118,7 +118,7 @@ vec3 glass(const Scene &scene, const Picture &picture, const Ray &ray, float dis
   const float refractedCosine = std::sqrt(squared);
   const vec3 refracted = ratio * ray.direction + (ratio * cosine - refractedCosine) * normal;
 
-  // Schlick's formula wants the larger of the two angles, the one outside.
+  // Schlick's formula takes the larger of the two angles, the one outside.
   const float rest = 1 - (fromInside ? refractedCosine : cosine);
   const float reflectance = head + (1 - head) * (rest * rest) * (rest * rest) * rest;
   const vec3 mirror = trace(scene, picture, ray, 0, point, reflected);

@@ -11,7 +11,7 @@ namespace handwritten {
 vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::uint32_t y,
             std::uint32_t index);
 
-/// What the compiler was told for the code behind `sample`.
+/// The compiler options of the code of `sample`.
 const char *compilerFlags();
 
 } // namespace handwritten

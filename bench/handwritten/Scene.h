@@ -1,6 +1,6 @@
 //===- Scene.h - examples/glass as numbers and an Embree scene ------------===//
 //
-// What scene.json says, written down by hand. Nothing here is general: geometry, materials and
+// scene.json, written by hand in C++. Nothing here is general: geometry, materials and
 // lights are those of this scene.
 //
 //===----------------------------------------------------------------------===//

@@ -35,7 +35,7 @@ class Program:
             report = json.loads(run.output)
             self.rates.append(report["samples"] / report["seconds"]["render"])
         except (ValueError, KeyError, ZeroDivisionError) as error:
-            raise process.Failed(f"{self.name} does not tell its times: {error!r}") from error
+            raise process.Failed(f"{self.name} does not print its times: {error!r}") from error
         self.flags = report.get("flags")
         self.runs.append(run)
 

@@ -1,6 +1,6 @@
 //===- ByHand.h - four shaders of docs/cpp-output, written in C++ by hand -===//
 //
-// The same algorithms on the same inputs, as somebody who knows GLM and the C library writes them.
+// The same algorithms on the same inputs, handwritten with GLM and the C library.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

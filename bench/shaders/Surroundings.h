@@ -1,6 +1,6 @@
 //===- Surroundings.h - what shaders are called with, the same for both sides --------===//
 //
-// A shader asks its surroundings for rays, light and random numbers. Here they answer cheaply and
+// A shader gets rays, light and random numbers from its environment. Here these are cheap and
 // always the same, so that what is timed is the shader. The two sides see them through their own
 // interface: the generated code through the functions of runtime/device/ray/Abi.h, the code by hand
 // through those of this header; both end in the same few lines.

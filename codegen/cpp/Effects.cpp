@@ -292,7 +292,7 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     effects.usesRay = true;
     if (call.function) {
       collectCall(*call.function, call.args, effects);
-    } else { // `lookup` sees the state, and leaves what it finds there
+    } else { // `lookup` reads the state, and does not change it
       effects.random |= texturesDraw;
       effects.writes.insert(place(typed::StateVariable::TextureColor));
       effects.writes.insert(place(typed::StateVariable::FloatTextureValue));

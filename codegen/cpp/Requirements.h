@@ -25,7 +25,7 @@ struct Requirements {
   /// Types of references, by class, and the methods that are called through each.
   std::map<std::string, std::vector<ThroughReference>> references;
   std::set<const Type *> comparedStructs; // that need an operator ==
-  bool throwsFromAnyHit = false;          // an answer of `anyHit` stands where no `return` can
+  bool throwsFromAnyHit = false;          // `anyHit` ends where no `return` can stand
 
   void callThroughReference(const std::string &className, const std::string &method,
                             const typed::Function *function) {

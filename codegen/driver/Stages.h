@@ -20,7 +20,7 @@ struct Compilation;
 
 /// The input of a compilation.
 struct CompileInput {
-  // One of these, as Stage::needs says:
+  // One of these, by Stage::needs:
   std::vector<PreprocessedFile> texts;
   std::vector<const ast::TranslationUnit *> units;
   const typed::Module *module = nullptr; // without errors

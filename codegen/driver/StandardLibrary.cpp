@@ -102,7 +102,7 @@ void explainModules(Diagnostic &diagnostic, const std::string &name, SourceRange
     diagnostic.note(fmt::format("there is no standard library in `{}`", libraryFolder()));
     return;
   }
-  // The longest part of the name that is a module says which ones to list: `std.cameras.Pinhole`.
+  // List those of the longest prefix of the name that is a module: `std.cameras.Pinhole`.
   std::string folder = name;
   while (!folder.empty() && !isFolder(folder))
     folder = folder.find('.') == std::string::npos ? "" : folder.substr(0, folder.rfind('.'));

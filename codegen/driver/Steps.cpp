@@ -2,10 +2,10 @@
 #include "codegen/driver/Steps.h"
 
 #include "codegen/emit/CheckNumbers.h"
-#include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/DoublePrecision.h"
 #include "codegen/emit/FastMath.h"
 #include "codegen/emit/Ptx.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"

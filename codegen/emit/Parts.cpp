@@ -1,7 +1,7 @@
 //===- Parts.cpp - large programs in parts that are compiled in parallel --===//
 #include "codegen/emit/Parts.h"
 
-#include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/RtslDialect.h"
 #include "codegen/ir/Separate.h"

@@ -17,7 +17,7 @@
 #include "codegen/passes/BindMembers.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 
-#include "codegen/link/Steps.h"
+#include "codegen/link/steps/Steps.h"
 #include "llvm/ADT/STLExtras.h"
 #include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/StringSwitch.h"

@@ -37,18 +37,25 @@ bool isListed(const std::vector<RtslInstance> &instances) {
          llvm::all_of(instances, [](const RtslInstance &one) { return one.primitive != 0; });
 }
 
-Finding describe(const std::vector<RtslInstance> &instances) {
-  Finding finding = {Item::Tree, "tree", !isListed(instances), {}, {}};
-  if (!finding.isNeeded)
-    finding.reason =
-        instances.size() == 1
-            ? "one primitive, which every ray tests"
-            : fmt::format("{} primitives, tested one after the other", instances.size());
-  else
-    finding.reason = instances.empty() || instances.size() > mostListed
-                         ? fmt::format("there are more than {} instances", mostListed)
-                         : "some instance is a mesh";
-  return finding;
+std::string reasonForList(std::size_t primitives) {
+  return primitives == 1 ? "one primitive, which every ray tests"
+                         : fmt::format("{} primitives, tested one after the other", primitives);
+}
+
+std::string reasonForTree(std::size_t instances) {
+  if (instances == 0)
+    return "the scene has no instance; its tree is empty";
+  return instances > mostListed ? fmt::format("there are more than {} instances", mostListed)
+                                : "some instance is a mesh";
+}
+
+Finding describe(const runtime::SceneFacts &scene) {
+  const bool needsTree = !isListed(scene.instances);
+  return {Item::Tree,
+          "tree",
+          needsTree,
+          needsTree ? reasonForTree(scene.instanceCount) : reasonForList(scene.instances.size()),
+          {}};
 }
 
 } // namespace
@@ -56,7 +63,7 @@ Finding describe(const std::vector<RtslInstance> &instances) {
 void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request,
                 Findings *findings) {
   if (findings)
-    findings->push_back(describe(scene.instances));
+    findings->push_back(describe(scene));
   if (request.keep.has(Item::Parameters))
     return;
   mlir::Builder builder(ir.getContext());

@@ -3,7 +3,7 @@
 #include "codegen/ir/Attributes.h"
 
 #include "codegen/link/Reflect.h"
-#include "codegen/link/Steps.h"
+#include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/BoundHitError.h"
 
 #include "mlir/IR/Verifier.h"

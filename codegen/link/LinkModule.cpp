@@ -2,7 +2,7 @@
 #include "codegen/link/LinkModule.h"
 
 #include "codegen/ir/Attributes.h"
-#include "codegen/link/Steps.h"
+#include "codegen/link/steps/Steps.h"
 
 namespace rtsl {
 

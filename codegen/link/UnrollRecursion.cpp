@@ -16,7 +16,7 @@
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
-#include "codegen/link/Steps.h"
+#include "codegen/link/steps/Steps.h"
 
 #include "mlir/Analysis/CallGraph.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"

@@ -18,7 +18,7 @@ enum class Step : rtsl::Next { shade = 1, Dielectric_shadeAfterTrace1 };
 // whether the reflected or the refracted ray is followed, so there is one ray a hit.
 struct Dielectric : rtsl::Material {
   float index = 1.5f;
-  Color tint = Color(1.0f); // what is left of white light after one unit of length inside
+  Color tint = Color(1.0f); // the fraction of white light left after one unit of length inside
 
   // The share that is reflected; 1 for total internal reflection. `ratio` is the index on the side
   // of the ray over that on the other.
@@ -32,7 +32,7 @@ struct Dielectric : rtsl::Material {
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
   }
 
-  // What `shade` needs when its rays come back.
+  // What `shade` keeps across its traces.
   struct ShadeFrame {
     Color attenuation; // needed by line 32: `color attenuation = color(1.0)`
   };
@@ -64,7 +64,7 @@ struct Dielectric : rtsl::Material {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// What the runtime asks for
+// Functions that the runtime calls
 //===----------------------------------------------------------------------===//
 
 namespace slots {

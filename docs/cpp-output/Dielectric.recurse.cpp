@@ -15,7 +15,7 @@ enum class Id : std::uint32_t { Dielectric = 1 };
 // whether the reflected or the refracted ray is followed, so there is one ray a hit.
 struct Dielectric : rtsl::Material {
   float index = 1.5f;
-  Color tint = Color(1.0f); // what is left of white light after one unit of length inside
+  Color tint = Color(1.0f); // the fraction of white light left after one unit of length inside
 
   // The share that is reflected; 1 for total internal reflection. `ratio` is the index on the side
   // of the ray over that on the other.
@@ -49,7 +49,7 @@ struct Dielectric : rtsl::Material {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// What the runtime asks for
+// Functions that the runtime calls
 //===----------------------------------------------------------------------===//
 
 namespace slots {

@@ -101,7 +101,7 @@ struct Julia : rtsl::Primitive {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// What the runtime asks for
+// Functions that the runtime calls
 //===----------------------------------------------------------------------===//
 
 namespace slots {

@@ -54,7 +54,7 @@ struct LensCamera : rtsl::Camera {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// What the runtime asks for
+// Functions that the runtime calls
 //===----------------------------------------------------------------------===//
 
 namespace slots {

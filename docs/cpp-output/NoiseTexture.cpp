@@ -70,7 +70,7 @@ struct NoiseTexture : rtsl::Texture {
 } // namespace
 
 //===----------------------------------------------------------------------===//
-// What the runtime asks for
+// Functions that the runtime calls
 //===----------------------------------------------------------------------===//
 
 namespace slots {

@@ -1,4 +1,4 @@
-//===- SourceFileSystem.cpp - the files that clang's preprocessor sees ----===//
+//===- SourceFileSystem.cpp - the files of clang's preprocessor -----------===//
 #include "SourceFileSystem.h"
 
 #include <llvm/ADT/SmallString.h>

@@ -1,4 +1,4 @@
-//===- SourceFileSystem.h - the files that clang's preprocessor sees ------===//
+//===- SourceFileSystem.h - the files of clang's preprocessor -------------===//
 #pragma once
 
 #include "frontend/source/Source.h"

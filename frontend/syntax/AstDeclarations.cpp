@@ -86,7 +86,7 @@ void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
                   text(range(names[0])))
           .note(
               fmt::format("`class {0} : rt_Material;`, or `class {0} {{ ... }};` for a class that "
-                          "others refer to and the engine does not know",
+                          "others refer to and the engine does not use",
                           text(range(names[0]))));
     return;
   }

@@ -43,7 +43,7 @@ inline constexpr std::nullptr_t none = nullptr;
 
 namespace detail {
 
-/// Takes the arguments of a call one by one, as the parameters of its formula want them.
+/// Takes the arguments of a call one by one, converted to the parameters of its formula.
 template <typename Number>
 struct Arguments {
   Call<Number> &call;

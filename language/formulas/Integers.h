@@ -1,7 +1,7 @@
 //===- Integers.h - carries, counting and moving bits ---------------------===//
 //
 // Bits are counted and moved by the parallel methods of "Bit Twiddling Hacks" (Anderson 1997-2005),
-// which LLVM knows and turns into instructions.
+// which LLVM recognizes and turns into instructions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

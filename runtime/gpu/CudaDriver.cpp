@@ -11,7 +11,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// CUDA 10.0: the first that knows PTX 6.3, which sm_75 needs.
+/// CUDA 10.0: the first that supports PTX 6.3, which sm_75 needs.
 constexpr int oldestDriver = 10000;
 
 // Values of the driver API's enumerations (CUDA Driver API reference, chapter "Data types").

@@ -1,7 +1,7 @@
 //===- CudaDriver.h - a CUDA device through the driver alone --------------===//
 //
 // What we need of the CUDA driver API, declared here and looked up in libcuda.so.1 at run time:
-// nothing of CUDA is needed to build, and a program without a driver says so and ends in order.
+// nothing of CUDA is needed to build, and a program without a driver reports that and exits.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -43,7 +43,7 @@ public:
   static constexpr std::size_t mostBytesMeanwhile = 64;
 
   /// Compiles PTX for the device; one module at a time. `maxRegisters` 0: as many as the code
-  /// wants.
+  /// needs.
   void load(const std::string &ptx, unsigned maxRegisters = 0);
 
   struct Kernel {

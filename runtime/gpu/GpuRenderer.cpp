@@ -16,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 /// Four warps: few enough that the last lanes of a block do not hold many others up.
 constexpr unsigned threadsPerBlock = 128;
 
-/// Registers a thread, if nobody says otherwise. More lanes that run at once are worth more than
+/// Registers per thread by default. More lanes that run at once are worth more than
 /// what does not fit into these; docs/gpu.md has the figures.
 constexpr unsigned defaultRegisters = 80;
 

@@ -32,7 +32,7 @@ PictureFormat formatOf(const std::string &path, PictureFormat asked) {
     return PictureFormat::Exr;
   throw Error(
       ErrorCode::UnsupportedFormat,
-      fmt::format("cannot tell the format of `{}`: a picture's name ends in `.png` or `.exr`",
+      fmt::format("cannot determine the format of `{}`: a picture's name ends in `.png` or `.exr`",
                   path),
       Place{path});
 }

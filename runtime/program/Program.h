@@ -91,6 +91,7 @@ struct SceneFacts {
   /// Whether some records have buffers, whose addresses are those of this process.
   bool hasBuffers = false;
   std::vector<RtslInstance> instances; // empty: not known, or more than mostInstances
+  std::size_t instanceCount = 0;       // of the scene, listed or not
   std::uint32_t lightCount = 0;
   std::vector<float> ambient; // one number per component of a color
   std::uint32_t needs = 0;    // RTSL_HAS_*
@@ -155,7 +156,7 @@ struct Program {
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                  float *color) = nullptr;
   MegakernelCode megakernel;
-  /// Bytes of stack that the frames of `sample` take at most, for a limit of depth and
+  /// Bytes of stack that the frames of `sample` take at most, for a depth limit and
   /// RtslLaunch::referenceChain. Empty: not known.
   std::function<std::uint64_t(std::uint32_t maxDepth, std::uint32_t referenceChain)> stackBytes;
   /// The source positions of the numbers that rtsl_check_number checks, by place (NumberCheck.h).

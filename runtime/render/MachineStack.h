@@ -1,7 +1,7 @@
 //===- MachineStack.h - memory for rays in flight -------------------------===//
 //
 // What the machine of split shaders (device/Machine.h) keeps its rays in: a block a thread, as
-// large as the depth limit and the largest frame ask for, so it cannot overflow.
+// large as the depth limit and the largest frame require, so it cannot overflow.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace rtsl::runtime {
 
-/// How often, in this process, a thread asked for a stack and there was no memory; those samples
+/// How often, in this process, there was no memory for the stack of a thread; those samples
 /// are black. The largest request in bytes is in `largest`, if given.
 std::uint64_t failedMachineStacks(std::uint64_t *largest = nullptr);
 

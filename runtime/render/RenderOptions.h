@@ -1,4 +1,4 @@
-//===- RenderOptions.h - what a rendering is asked for, and what it says --===//
+//===- RenderOptions.h - options and results of a rendering ---------------===//
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
@@ -16,7 +16,7 @@ enum class Traversal : std::uint8_t {
   Device, // the one that GPUs run
 };
 
-/// The largest limit of depth.
+/// The largest depth limit.
 constexpr std::uint32_t maxRayDepth = 256;
 constexpr std::uint32_t mostSamplesPerPixel = 0x7fffffff;
 constexpr std::uint32_t mostThreads = 1024;
@@ -54,24 +54,24 @@ inline bool operator<(const SampleId &a, const SampleId &b) {
 
 struct RenderStatistics {
   std::uint64_t samples = 0,
-                pixels = 0;       // those that were asked for, unless the rendering is unfinished
-  bool isUnfinished = false;      // it was stopped: RenderOptions::keepsUnfinished
-  double buildSeconds = 0;        // acceleration structures
-  double renderSeconds = 0;       // samples
-  std::uint64_t badRays = 0;      // not finite or without a direction: they saw color 0
-  std::uint64_t retracedRays = 0; // beyond what Embree can follow: by our own tree
-  std::uint64_t rescaledRays = 0; // directions too long or short for Embree
-  std::uint64_t raysTooDeep = 0;  // deeper than maxDepth: they were not sent
-  std::uint64_t samplesNotFinite = 0;             // left out of the means of their pixels
-  std::uint64_t pixelsWithoutSample = 0;          // black, for none of their samples was finite
-  std::vector<SampleId> notFinite;                // the first samples that are not finite
+                pixels = 0;              // the requested ones, unless the rendering is unfinished
+  bool isUnfinished = false;             // it was stopped: RenderOptions::keepsUnfinished
+  double buildSeconds = 0;               // acceleration structures
+  double renderSeconds = 0;              // samples
+  std::uint64_t badRays = 0;             // not finite or without a direction: they saw color 0
+  std::uint64_t retracedRays = 0;        // beyond what Embree can follow: by our own tree
+  std::uint64_t rescaledRays = 0;        // directions too long or short for Embree
+  std::uint64_t raysTooDeep = 0;         // deeper than maxDepth: they were not sent
+  std::uint64_t samplesNotFinite = 0;    // left out of the means of their pixels
+  std::uint64_t pixelsWithoutSample = 0; // black, for none of their samples was finite
+  std::vector<SampleId> notFinite;       // the first samples that are not finite
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
 };
 
 /// Throws OutOfRange if the size, the samples or the depth make no picture.
 void checkOptions(const RenderOptions &options);
 
-/// Of a rendering: what was asked for, or one a core.
+/// Of a rendering: the requested number, or one a core.
 unsigned threadCount(const RenderOptions &options);
 
 } // namespace rtsl::runtime

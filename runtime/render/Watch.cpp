@@ -46,7 +46,7 @@ void Watch::Poll::run() {
       lock.lock();
       ended.wait_for(lock, pause, [this] { return isOver; });
     }
-  } catch (const Error &) { // a device that fails says so where its program is waited for
+  } catch (const Error &) { // a failure of the device is reported by the wait for its program
   }
 }
 

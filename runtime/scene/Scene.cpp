@@ -172,7 +172,8 @@ SceneFacts Scene::facts() const {
   facts.records = launch.records;
   facts.recordBytes = self->objects.recordBytes();
   facts.hasBuffers = !self->objects.buffers().empty();
-  if (self->geometry.all().size() <= SceneFacts::mostInstances)
+  facts.instanceCount = self->geometry.all().size();
+  if (facts.instanceCount <= SceneFacts::mostInstances)
     facts.instances = self->geometry.all();
   facts.lightCount = self->cameraAndLights.lightCount();
   const float *const ambient = self->cameraAndLights.ambientLight();

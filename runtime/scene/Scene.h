@@ -1,6 +1,6 @@
 //===- Scene.h - objects, meshes, lights and a camera for a program -------===//
 //
-// A scene holds the records of the program's objects, laid out as the program says, and what there
+// A scene holds the records of the program's objects, in the program's layout, and what there
 // is to hit. It checks everything when it is given, so that rendering has nothing left to refuse.
 //
 //===----------------------------------------------------------------------===//

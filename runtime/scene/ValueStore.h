@@ -14,7 +14,7 @@ struct StoreContext {
   std::uint32_t colorComponents;
   /// Memory of the scene's own that stays where it is.
   std::function<std::uint8_t *(std::size_t bytes)> allocate;
-  /// Null if the object may stand where `className` is asked for; otherwise the name of the class
+  /// Null if the object may stand where `className` is expected; otherwise the name of the class
   /// that it has.
   std::function<const std::string *(RtslRef object, const std::string &className)> classMismatch;
 };

@@ -24,7 +24,7 @@ static std::string inMethod(const MethodModel &method) {
   return "`" + method.name + "`";
 }
 
-/// Adds why a variable that the class sees has no value in this method, and which method sets it.
+/// Adds why a variable that the class reads has no value in this method, and which method sets it.
 static void explainNoValue(Diagnostic &diagnostic, typed::StateVariable variable,
                            const RootModel &root, const MethodModel &method) {
   using S = typed::StateVariable;

@@ -13,7 +13,7 @@ using Payload = MethodModel::Payload;
 // The table
 //===----------------------------------------------------------------------===//
 
-// What every method that runs for a ray sees, in any class.
+// What every method that runs for a ray can read, in any class.
 static constexpr StateSet everyRay = {S::LaunchIndex, S::LaunchSize, S::Time, S::Depth,
                                       S::TimeSeed};
 // The transforms and ids of the object that is hit.

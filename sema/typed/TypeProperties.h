@@ -22,7 +22,7 @@ bool contains(const Type *type, TypeKind kind);
 /// 2.
 std::uint32_t nestingDepth(const Type *type);
 
-/// Deeper types are rejected: nobody writes them, and every walk over a type recurses.
+/// Deeper types are rejected: no real program has them, and walks over types recurse.
 constexpr std::uint32_t maxTypeNesting = 64;
 /// A local variable of more bytes than this is rejected ...
 constexpr std::uint64_t maxLocalBytes = 16ull << 20;

@@ -53,7 +53,7 @@ class Case(unittest.TestCase):
         return path
 
     def run_rtslc(self, *arguments, status=FINE, stdin=None, stdout=subprocess.PIPE, unprivileged=False, prepare=None):
-        """Gives (standard output, standard error); fails unless the exit status is the one asked for (None: any)."""
+        """Gives (standard output, standard error); fails unless the exit status is the expected one (None: any)."""
         done = subprocess.run([RTSLC, *map(str, arguments)], cwd=self.folder, input=stdin, stdout=stdout,
                               stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=obey_permissions if unprivileged else prepare)
         error = done.stderr.decode("utf-8", "replace")

@@ -1,4 +1,4 @@
-"""What the command line says of arguments that make no sense, and where it shows what would."""
+"""Messages of the command line for invalid arguments, and their hints."""
 
 import os
 import re

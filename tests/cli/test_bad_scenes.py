@@ -145,7 +145,7 @@ class BadScenes(Case):
             "    hit(t);", "  {\n    a = mat4(t); b = a; c = a;\n    hit(t);\n  }"))
         self.assert_message(self.render(), "E0702", "32")
 
-    def test_reference_that_nobody_sets(self):
+    def test_reference_that_is_not_set(self):
         self.add_material("class Odd : rt_Material;\npublic rt_Texture albedo;\n"
                           "void shade() { rt_SampleColor = albedo.lookup(); }\n")
         self.assert_message(self.render(), "E0815", "albedo", file="scene.json")

@@ -1,4 +1,4 @@
-"""What ends recursion: the scene's limit of depth, chance, the weight of a ray, or the depth that a shader asks for."""
+"""What ends recursion: the scene's depth limit, chance, the weight of a ray, or the depth that a shader requests."""
 
 import json
 import unittest

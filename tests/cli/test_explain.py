@@ -12,8 +12,8 @@ from harness import EXAMPLES, SECONDS, USAGE, Case
 
 SMALL = ("--size", "32x18", "--spp", "2", "-q")
 
-# A scene in which much is left out: a class without objects, a method that nothing runs, results that nobody reads, a scratch member
-# that nobody reads, a material that reads no normal, a ray that nobody sends, no lights, one class everywhere.
+# A scene in which much is left out: a class without objects, a method that nothing runs, results that are not read, a scratch member
+# that is not read, a material that reads no normal, a ray type that is never sent, no lights, one class everywhere.
 SHADERS = """
 class Eye : rt_Camera {
   public vec3 position;

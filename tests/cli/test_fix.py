@@ -28,7 +28,7 @@ void shade() {
 """
 
 
-# A shader in which somebody thinks in CUDA, HLSL, OptiX and C++ at once; each slip has one sure fix.
+# A shader with habits of CUDA, HLSL, OptiX and C++; each mistake has one certain fix.
 HABITS = """using namespace optix;
 class Clay extends rt_Material {
   layout(location = 0) public float3 tint;

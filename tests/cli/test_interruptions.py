@@ -15,7 +15,7 @@ from harness import RTSLC, SECONDS, Case
 RTSL_RUN = os.environ["RTSL_RUN"]
 SIZE = ("--size", "64x64", "--threads", "2", "--format=exr")
 FOREVER = ("--spp", "100000000")
-ENDLESS = (*SIZE, *FOREVER)              # samples that nobody waits for
+ENDLESS = (*SIZE, *FOREVER)              # more samples than any test waits for
 LONG = (*SIZE, "--spp", "20000")         # pixels that are finished one after the other
 
 
@@ -98,7 +98,7 @@ class Interruptions(Case):
             (self.folder / "a.exr").unlink()
 
     def test_a_gpu_is_stopped_too(self):
-        """The stand-in of the driver paints half of the picture, and ends when it is told to stop."""
+        """The stand-in of the driver paints half of the picture, and ends on the signal."""
         self.run_rtslc("pack", "scene.json", "-o", "glass.rtslpkg", "-q")
         fake = {"LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"], "FAKE_CUDA": "endless"}
         with unittest.mock.patch.dict(os.environ, fake):
@@ -112,7 +112,7 @@ class Interruptions(Case):
                         self.assert_partly_black("a.exr")
                         (self.folder / "a.exr").unlink()
 
-    def test_what_was_stopped_by_nobody_says_nothing(self):
+    def test_no_message_without_interruption(self):
         out, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--size", "8x8", "--spp", "1", "--json",
                                     "-Wno-depth-limit")
         self.assertNotIn("stoppedBy", json.loads(out))

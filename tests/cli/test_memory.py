@@ -1,4 +1,4 @@
-"""Memory that runs out is named so, wherever that happens: a command ends well, or with status 1 and a message that says it."""
+"""Running out of memory, wherever it happens: a command succeeds, or fails with status 1 and a message that names the cause."""
 
 import os
 import resource

@@ -1,4 +1,4 @@
-"""Samples that are infinite or not a number, and rays that the limit of depth cuts off: left out, counted and said, the same on
+"""Samples that are infinite or not a number, and rays that the depth limit cuts off: left out, counted and said, the same on
 every path."""
 
 import json

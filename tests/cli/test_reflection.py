@@ -1,4 +1,4 @@
-"""rtslc compile --emit=reflection: it fits its schema, and says what is so."""
+"""rtslc compile --emit=reflection: it fits its schema, and is correct."""
 
 import json
 import unittest

@@ -1,4 +1,4 @@
-"""`rtslc report`: what it writes, that it goes on where it was interrupted, and what it says of references that are no use."""
+"""`rtslc report`: what it writes, that it resumes after an interruption, and its messages for unusable references."""
 
 import csv
 import json

@@ -117,7 +117,7 @@ class Stack(Case):
         self.scene(256, shade=15 * FLOATS)
         _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-all", status=DIAGNOSED, prepare=little_memory)
         self.assertRegex(error, r"E1001\]: the rays of one sample take (38|39)\d\d\.\d MiB of stack, and there is not enough memory: "
-                                "reduce the limit of depth or the local variables of shaders")
+                                "reduce the depth limit or the local variables of shaders")
         self.assertNotIn("a.exr", self.files())
 
 

@@ -1,4 +1,4 @@
-"""State of a ray that nobody has written: no picture depends on what lies there (docs/language.md, state.holds)."""
+"""State of a ray that is never written: no picture depends on its value (docs/language.md, state.holds)."""
 
 import json
 import unittest

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Asks of printed C++ what the tests of the language asked of the JIT, bit for bit.
+"""Runs the language's tests of the JIT on printed C++, and compares bit for bit.
 
     conformance.py RTSLC TEST-LOWER SOURCE-FOLDER LIBRARY-FOLDER [all]
 

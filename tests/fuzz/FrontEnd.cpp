@@ -56,7 +56,7 @@ public:
         diagnostics);
   }
 
-  /// Looks at everything that a user can ask for.
+  /// Checks all outputs that a user can request.
   void print() {
     for (const auto &[file, unit] : units)
       dump(*unit);
@@ -79,7 +79,7 @@ public:
     for (const FileId file : filesToFix(diagnostics)) {
       FixedText fixed = applyFixes(diagnostics, file);
       require(fixed.applied > 0, "a file with fixes has one that can be applied");
-      require(file <= files.size(), "a fix changes a file that somebody wrote");
+      require(file <= files.size(), "a fix changes one of the input files");
       files[file - 1].text = std::move(fixed.text);
       applied += fixed.applied;
     }

@@ -52,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     scene::renderOptions(scene.render);
   } catch (const Error &error) {
     require(error.code != ErrorCode::Internal, "an error is the author's");
-    require(error.what()[0] != '\0', "an error says something");
+    require(error.what()[0] != '\0', "an error has a message");
     if (error.place)
       checkPlace(*error.place, text);
     for (const RelatedPlace &related : error.relatedPlaces)

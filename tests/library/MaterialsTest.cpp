@@ -102,7 +102,7 @@ void testMaterial(const std::string &name, const Material &material, Limits limi
     double difference = 0;
     for (std::size_t i = 0; i < drawn.size(); ++i)
       difference += 0.5 * std::abs(drawn[i] - expected[i]);
-    // What the density has and nobody draws: directions below the horizon that are absorbed.
+    // In the density but never sampled: directions below the horizon, which are absorbed.
     difference = std::max(0.0, difference - 0.5 * std::abs(integral + deltas + absorbed - 1));
     largestAlbedo = std::max(largestAlbedo, energy);
     worstHistogram = std::max(worstHistogram, difference);

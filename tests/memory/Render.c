@@ -1,5 +1,5 @@
 // Renders the scene of a package with a program that MemorySanitizer watches (tests/memory/run). All that the program reads was
-// read from the file or written by itself: what nobody has written, malloc has poisoned. Exit status: 0, or that of the sanitizer.
+// read from the file or written by itself: uninitialized memory is poisoned by malloc. Exit status: 0, or that of the sanitizer.
 #include "runtime/device/ray/Abi.h"
 
 #include <sanitizer/msan_interface.h>

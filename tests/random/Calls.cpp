@@ -107,7 +107,7 @@ NodePtr Generator::userCall(const Type *result, unsigned depth) {
   return call(callee, function.signature, overloads, index, depth - 1);
 }
 
-/// A function of another object, or what a texture says.
+/// A function of another object, or a texture lookup.
 NodePtr Generator::methodCall(const Type *result, unsigned depth) {
   if (context.constantOnly)
     return nullptr;

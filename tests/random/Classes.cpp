@@ -299,7 +299,7 @@ void Generator::addPayloadMethod(ClassPlan &plan, Node &members, const std::stri
                                  const Type *payload, std::vector<Variable> state, Context rules) {
   const std::string parameter = fresh("p");
   const bool asks = name == "anyHit";
-  // if it does not, the order in which hits are asked for does not show
+  // if it does not, the order in which hits are queried is not visible
   const bool writes = !asks || chance(60);
   state.push_back({parameter, payload, writes});
   std::string result = writes ? parameter + ".h = h; " : "";
@@ -536,7 +536,7 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
   return plan;
 }
 
-/// What who samples a surface asks of its material.
+/// What sampling a surface queries of its material.
 void Generator::addBsdf(ClassPlan &plan, Node &members) {
   if (!likely(40))
     return;

@@ -11,7 +11,7 @@ NodePtr Generator::expression(const Type *type, unsigned depth) {
   return atom(type);
 }
 
-/// What becomes `type` where a value of it is asked for.
+/// An expression that converts to `type`.
 NodePtr Generator::converted(const Type *type, unsigned depth, const Type **made) {
   const Type *actual = type;
   const Type *scalar = type->scalar();

@@ -60,7 +60,7 @@ public:
 
   bool isValid() const { return !diagnostics.hasErrors(); }
 
-  /// What the world says with these items kept.
+  /// The world's results with these items kept.
   Words run(ItemSet kept, bool isSplit) {
     LinkRequest keeping = request;
     CompileOptions options;
@@ -97,7 +97,7 @@ private:
   LinkRequest request;
 };
 
-/// Whether keeping something changes what a program says.
+/// Whether keeping something changes a program's results.
 bool differs(Subject &subject, std::uint32_t seed) {
   const bool isSplit = seed % 2 != 0;
   const Item single = allItems[seed % std::size(allItems)];

@@ -78,8 +78,7 @@ int main(int argc, char **argv) {
                  "compare the first path with these: " +
                      fmt::format("{}", fmt::join(pathNames(), ", ")))
       ->delimiter(',');
-  app.add_option("--also", options.paths.also,
-                 "and with these, beside those that are taken if nobody asks")
+  app.add_option("--also", options.paths.also, "and with these, in addition to the defaults")
       ->delimiter(',');
   app.add_option("--compiler", options.paths.cpp.compiler,
                  "what makes programs of C++, with its options; empty: they are only printed")

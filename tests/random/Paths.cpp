@@ -29,7 +29,7 @@ using Compile = std::function<std::shared_ptr<const runtime::Program>(
 struct Path {
   const char *name;
   bool checked;    // indices out of range are defined
-  bool forTracing; // says nothing new of programs that do not trace
+  bool forTracing; // redundant for programs that do not trace
   Compile compile;
   bool isAsked = false;   // only by name, for it takes long
   bool renders = false;   // whole pictures, and no single samples
@@ -228,7 +228,7 @@ void Comparison::fail(const Numbers &which, Failure failure, const std::string &
     }
 }
 
-/// Nothing that a program does depends on what nobody has written: the first path has one pattern
+/// No result depends on uninitialized memory: the first path has one pattern
 /// there, the others have another one, or what happens to be there.
 std::uint32_t Comparison::undefinedOn(const Path &path) const {
   if (&path == &allPaths().front())

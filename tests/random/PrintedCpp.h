@@ -23,7 +23,7 @@ std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &modu
                                                        const CppOptions &cpp,
                                                        Diagnostics &diagnostics);
 
-/// What a compiler says of C++ that it does not take.
+/// The errors of a compiler for invalid C++.
 struct CompilerRefuses {
   std::string message;
 };

@@ -1,4 +1,4 @@
-//===- ShrinkTest.cpp - programs, and what is left of them ----------------===//
+//===- ShrinkTest.cpp - shrinking of failing programs --------------------===//
 #include "Shrink.h"
 
 #include "frontend/syntax/Parser.h"

@@ -159,7 +159,7 @@ NodePtr Generator::loop(unsigned depth) {
   const std::size_t variables = scope.size();
   ++context.loops;
   context.canContinue = true;
-  context.weight *= trips + 1; // the condition is asked once more
+  context.weight *= trips + 1; // the condition is tested once more
   if (form != 0) {
     pending.push_back(makeNode(Role::Statement, "int " + name + " = 0;"));
     scope.push_back({name, types.intType, false});

@@ -17,7 +17,7 @@ using rtsl::runtime::MemberInfo;
 using rtsl::runtime::ValueType;
 
 //===----------------------------------------------------------------------===//
-// What compiled programs ask of the host
+// What compiled programs need from the host
 //===----------------------------------------------------------------------===//
 
 /// All that was printed, as one number.
@@ -80,7 +80,7 @@ static constexpr std::uint64_t guardBytes = 64;
 static std::uint8_t *stackMemory = nullptr;
 static std::uint64_t stackBytes = 0;
 
-/// As large as was asked for; what follows is watched.
+/// Of the requested size; the memory after it is checked.
 extern "C" void *rtsl_machine_stack(std::uint64_t bytes) {
   std::free(stackMemory);
   bytes = (bytes + 15) / 16 * 16;
@@ -376,7 +376,8 @@ runtime::SceneFacts World::facts() const {
   facts.records = launch.records;
   facts.recordBytes = records.size() * sizeof(std::uint32_t);
   facts.hasBuffers = !buffers.empty();
-  if (instances.size() <= runtime::SceneFacts::mostInstances)
+  facts.instanceCount = instances.size();
+  if (facts.instanceCount <= runtime::SceneFacts::mostInstances)
     facts.instances = instances;
   facts.lightCount = launch.lightCount;
   facts.referenceChain = static_cast<std::uint32_t>(objects.size()); // no longer

@@ -5,7 +5,7 @@
 
 namespace rtsl::tool {
 
-/// From now on the first SIGINT or SIGTERM sets the flag that comes back, for renderings to stop
+/// From now on the first SIGINT or SIGTERM sets the returned flag, for renderings to stop
 /// at; the second ends the process at once.
 const std::atomic<bool> *catchInterruptions();
 

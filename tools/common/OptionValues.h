@@ -55,7 +55,7 @@ CLI::Option *addChoice(CLI::App &command, const std::string &option, Target &tar
 CLI::Option *addChoice(CLI::App &command, const std::string &option, std::string &target,
                        const std::vector<std::string> &words, const std::string &help);
 
-/// A whole number from `low` to `high`. Throws what says so.
+/// A whole number from `low` to `high`. Throws if it is not.
 std::uint64_t parseWhole(const std::string &option, const std::string &text, std::uint64_t low,
                          std::uint64_t high);
 /// " (LOW to HIGH)"

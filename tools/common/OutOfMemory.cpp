@@ -17,7 +17,7 @@ namespace {
 
 const char *name = "";
 
-/// Ends a process that an exception which nobody can catch would abort.
+/// Ends a process that an uncaught exception would abort.
 [[noreturn]] void endOutOfMemory() {
   if (const std::exception_ptr current = std::current_exception())
     try {

@@ -10,13 +10,13 @@
 
 namespace rtsl::tool {
 
-/// Whether an exception says that memory, or threads, ran out.
+/// Does an exception mean that memory, or threads, ran out?
 bool isOutOfMemory(const std::exception &error);
 
-/// Says so on standard error.
+/// Reports that on standard error.
 void sayOutOfMemory(const char *program);
 
-/// From now on the process says so and ends with status 1 where memory runs out and no exception
+/// From now on the process reports it and ends with status 1 where memory runs out and no exception
 /// can be caught.
 void nameOutOfMemory(const char *program);
 

@@ -9,7 +9,7 @@ namespace rtsl::tool {
 /// is said, whatever a command prints.
 void printOut(std::string_view text);
 
-/// Whether all that was printed by other means, such as the help texts, has been written; says so
+/// Whether all that was printed by other means, such as the help texts, was written; reports it
 /// if it was not.
 bool finishOutput(const char *program);
 

@@ -49,8 +49,8 @@ void checkPictureName(const std::string &output, runtime::PictureFormat format) 
   if (format == runtime::PictureFormat::ByName && output != "-" && ending != "png" &&
       ending != "exr")
     throw CLI::ValidationError(
-        "--output", "a picture's name ends in .png or .exr, unless --format says what `" + output +
-                        "` is to be");
+        "--output", "a picture's name ends in .png or .exr, unless --format selects that of `" +
+                        output + "` is to be");
 }
 
 } // namespace rtsl::tool

@@ -20,7 +20,7 @@ void addSizeOption(CLI::App &command, std::optional<PictureSize> &size);
 
 /// Adds -o IMAGE, which must be given, and --format.
 void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFormat &format);
-/// Throws where neither the name nor --format says what the picture is written as. When all options
+/// Throws where neither the name nor --format determines the format of the picture. When all options
 /// are read.
 void checkPictureName(const std::string &output, runtime::PictureFormat format);
 

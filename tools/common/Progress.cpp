@@ -1,4 +1,4 @@
-//===- Progress.cpp - a line on the terminal that says how far we are -----===//
+//===- Progress.cpp - a progress line on the terminal -------------------===//
 #include "Progress.h"
 
 #include <fmt/format.h>

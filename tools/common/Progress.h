@@ -1,4 +1,4 @@
-//===- Progress.h - a line on the terminal that says how far we are -------===//
+//===- Progress.h - a progress line on the terminal ---------------------===//
 #pragma once
 
 #include <chrono>

@@ -4,7 +4,7 @@
 // passes in the order of the command line, verifies after each and prints IR.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/errors/BoundHitError.h"
 #include "codegen/passes/restructure/Restructure.h"

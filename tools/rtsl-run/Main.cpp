@@ -126,7 +126,7 @@ void report(const Options &options, const runtime::Package &package,
                statistics.badRays);
 }
 
-/// The picture to compare with, before time is spent on another one; nothing if that is not asked
+/// The picture to compare with, before time is spent on another one; nothing if not requested
 /// for.
 std::optional<runtime::Image> readReference(const Options &options, const runtime::Package &package,
                                             const runtime::RenderOptions &render) {
@@ -143,7 +143,7 @@ std::optional<runtime::Image> readReference(const Options &options, const runtim
   return reference;
 }
 
-/// Whether two pictures have the same bits; says so.
+/// Whether two pictures have the same bits; prints the result.
 bool compare(const runtime::Image &image, const runtime::Image &reference, const Options &options) {
   std::size_t different = 0;
   const std::size_t channels = image.channels, count = image.pixels.size() / channels;

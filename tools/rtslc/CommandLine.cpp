@@ -40,7 +40,7 @@ std::string parseColor(const std::string &text, CompileOptions &options) {
   return {};
 }
 
-/// What -Whelp says: the table of warnings, a line each.
+/// The output of -Whelp: the table of warnings, a line each.
 std::string warningList() {
   std::string text;
   for (const CodeInfo &row : codeTable)
@@ -189,7 +189,7 @@ int runCommand(CLI::App &app, Action &action, int argc, char **argv) {
   if (argc > 1 && argv[1][0] != '-' && !hasCommand(app, argv[1]))
     return refuseCommand(app, argv[1]);
   std::vector<std::string> arguments = withLongDashes(argc, argv);
-  std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
+  std::reverse(arguments.begin(), arguments.end()); // the order of CLI11
   try {
     app.parse(std::move(arguments));
     return action();

@@ -50,7 +50,7 @@ void addKeepOption(CLI::App &command, CommonOptions &options);
 /// Adds --color, --fp, --unchecked, --trace, --gpu-arch and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);
 
-/// A command's name and what `rtslc --help` says of it.
+/// A command's name and its description in `rtslc --help`.
 struct Summary {
   const char *command;
   const char *text;
@@ -60,8 +60,8 @@ constexpr Summary reportSummary = {"report",
                                    "measure error against run time, in each configuration"};
 constexpr Summary packSummary = {"pack",
                                  "write a scene with its compiled code to one file, for rtsl-run"};
-constexpr Summary compareSummary = {"compare",
-                                    "say how far two pictures are apart (exit status 1: too far)"};
+constexpr Summary compareSummary = {
+    "compare", "measure the difference of two pictures (exit status 1: too large)"};
 
 /// What a command does once the arguments are read; gives the exit status.
 using Action = std::function<int()>;
@@ -86,7 +86,7 @@ void addReportCommand(CLI::App &app, Action &action);
 void addPackCommand(CLI::App &app, Action &action);
 void addCompareCommand(CLI::App &app, Action &action);
 
-/// Does `first`, reads the arguments and does what they ask for. Gives the exit status, whatever is
+/// Does `first`, reads the arguments and executes them. Gives the exit status, whatever is
 /// thrown.
 int run(
     CLI::App &app, Action &action, int argc, char **argv,

@@ -1,8 +1,8 @@
 //===- CompareCommand.cpp - rtslc compare ---------------------------------===//
 #include "CommandLine.h"
 #include "Messages.h"
-#include "report/ErrorMetrics.h"
-#include "report/Flip.h"
+#include "report/measures/ErrorMetrics.h"
+#include "report/measures/Flip.h"
 #include "runtime/image/Image.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Output.h"
@@ -73,7 +73,7 @@ Comparison comparePictures(const runtime::Image &reference, const runtime::Image
     comparison.flip = report::flip(a, b).mean();
     comparison.flipHdr = report::flipHdr(a, b, comparison.exposures).mean();
   }
-  // A threshold of 0 asks for the same bits; a difference that is not a number is never small
+  // A threshold of 0 requires the same bits; a difference that is not a number is never small
   // enough.
   comparison.isEqualEnough = options.threshold == 0
                                  ? comparison.error.pixelsThatDiffer == 0

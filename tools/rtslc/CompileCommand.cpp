@@ -27,7 +27,7 @@ struct CompileCommandOptions {
   std::optional<TraceMode> trace; // if it was given
 };
 
-/// The text of the asked stage of a whole scene; nothing if there were errors.
+/// The text of the requested stage of a whole scene; nothing if there were errors.
 std::optional<std::string> translateScene(const CompileCommandOptions &options,
                                           SceneBuilder buildScene, Messages &messages,
                                           std::vector<std::string> &filesRead) {
@@ -56,7 +56,7 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options,
   return text;
 }
 
-/// The text of the asked stage of RTSL files; nothing if there were errors.
+/// The text of the requested stage of RTSL files; nothing if there were errors.
 std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages,
                                      std::vector<std::string> &filesRead) {
   CompileInput input;

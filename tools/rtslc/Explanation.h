@@ -33,7 +33,7 @@ private:
   struct Entries {
     Item item;
     std::vector<const Finding *> leftOut, needed;
-    bool isKept = false; // somebody asked for it
+    bool isKept = false; // with --keep
     Saved saved;
   };
   std::string table() const;

@@ -2,7 +2,7 @@
 //
 // Rendering needs Embree, assimp and the image libraries. Loading these takes longer than `rtslc
 // check` may take as a whole, so the commands that use them are in `rtslc-render`, beside `rtslc`,
-// which becomes that program when one is asked for.
+// which becomes that program for one of them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

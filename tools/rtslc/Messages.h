@@ -7,7 +7,7 @@
 
 namespace rtsl::tool {
 
-/// The sources and messages of one run. Prints the messages once, when asked or when it goes.
+/// The sources and messages of one run. Prints the messages once, on request or on destruction.
 class Messages {
 public:
   explicit Messages(const CommonOptions &options);

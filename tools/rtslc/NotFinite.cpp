@@ -11,7 +11,7 @@ namespace rtsl::tool {
 
 namespace {
 
-/// A sample as the program with checks sees it.
+/// A sample of the program with checks.
 SampleNotFinite explain(const runtime::SampleId &sample, const RtslLaunch &launch,
                         const runtime::Program &program) {
   SampleNotFinite result{sample, std::vector<float>(RTSL_MAX_COLOR), std::nullopt};

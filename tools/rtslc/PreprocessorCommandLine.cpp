@@ -1,4 +1,4 @@
-//===- PreprocessorCommandLine.cpp - -I, -D, -U, -MD and what they ask for -===//
+//===- PreprocessorCommandLine.cpp - -I, -D, -U, -MD and what they do ------===//
 #include "PreprocessorCommandLine.h"
 
 #include "support/AtomicFile.h"
@@ -10,7 +10,7 @@ namespace rtsl::tool {
 
 namespace {
 
-/// What -D or -U says. Throws CLI::ValidationError if it is no macro.
+/// The macro of -D or -U. Throws CLI::ValidationError if it is invalid.
 MacroOption parseMacro(const char *option, const std::string &text, bool isUndefined) {
   MacroOption macro;
   macro.isUndefined = isUndefined;

@@ -1,4 +1,4 @@
-//===- PreprocessorCommandLine.h - -I, -D, -U, -MD and what they ask for --===//
+//===- PreprocessorCommandLine.h - -I, -D, -U, -MD and what they do -------===//
 #pragma once
 
 #include "frontend/preprocessor/Preprocessor.h"
@@ -22,7 +22,7 @@ void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options);
 /// Adds -MD, -MF and -MT.
 void addDependencyOptions(CLI::App &command, DependencyOptions &options);
 
-/// Spells the options of two letters behind one dash (`-MD`) as the command line library wants them
+/// Spells the options of two letters behind one dash (`-MD`) as the command line library expects them
 /// (`--MD`).
 std::vector<std::string> withLongDashes(int argc, char **argv);
 
@@ -36,7 +36,7 @@ void checkOutputs(const std::string &output, const DependencyOptions &dependenci
                   const std::vector<std::string> &sources,
                   const std::vector<std::string> &filesRead = {});
 
-/// Writes the dependency file if it is asked for: what `output` (empty or "-": no file) was made
+/// Writes the dependency file if requested: what `output` (empty or "-": no file) was made
 /// of. `sources` are the files of the command line, `files` all that were read. Throws Error with
 /// FileUnwritable.
 void writeDependencies(const DependencyOptions &options, const std::string &output,

@@ -75,7 +75,7 @@ namespace {
 void refuseUnknownClasses(const scene::SceneDescription &description, const typed::Module &module,
                           const std::vector<std::string> &libraryModules, Messages &messages) {
   std::vector<std::string> names;
-  for (const std::string &name : libraryModules) // classes that nobody mentions were not read
+  for (const std::string &name : libraryModules) // files of unused classes are not read
     names.push_back(lastPart(name));
   for (const auto &one : module.classes)
     names.push_back(one->name);

@@ -13,7 +13,7 @@ namespace rtsl::tool {
 /// Whether a file is a scene, and no shaders.
 bool isScene(const std::string &file);
 
-/// Reads a scene file; "-" is standard input. Throws what says what to do if it is given RTSL;
+/// Reads a scene file; "-" is standard input. Throws with a hint if it is given RTSL;
 /// `command` is for that.
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
@@ -23,7 +23,7 @@ scene::SceneDescription readScene(const std::string &file,
 void addSetOption(CLI::App &command, std::vector<std::string> &overrides);
 
 /// Reads and checks the files that the scene imports; null if there were errors. They find what
-/// they include in the scene's folder too. `filesRead`, if asked for, gets the scene and all shader
+/// they include in the scene's folder too. `filesRead`, unless null, gets the scene and all shader
 /// files.
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
                                            const CommonOptions &options, Messages &messages,

@@ -60,7 +60,7 @@ public:
     return loader.files();
   }
 
-  /// Checks everything together, down to what splitting at `trace` would save if that is asked for
+  /// Checks everything together, down to what splitting at `trace` would save if requested
   /// (-Wlive-state).
   std::unique_ptr<typed::Module> check(const CompileOptions &options) {
     std::unique_ptr<typed::Module> module = rtsl::check(

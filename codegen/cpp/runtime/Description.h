@@ -1,4 +1,4 @@
-//===- Description.h - what the runtime is told of a program --------------===//
+//===- Description.h - how a program is described to the runtime ------------===//
 //
 //   static RtslShaders describe() {
 //     rtsl::Program<3> program;

@@ -63,7 +63,7 @@ Declarations slots(Context &context, const StateEntries &entries,
   Declarations all = {
       declare(OnlyComment{},
               "//===----------------------------------------------------------------------===//\n"
-              "// What the runtime asks for\n"
+              "// Functions that the runtime calls\n"
               "//===----------------------------------------------------------------------===//")};
   appendApart(all, declare(std::move(made)));
   return all;

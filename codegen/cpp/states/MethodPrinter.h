@@ -2,7 +2,7 @@
 #pragma once
 
 #include "codegen/cpp/functions/FunctionPrinter.h"
-#include "codegen/cpp/states/ValueTypes.h"
+#include "codegen/cpp/states/values/ValueTypes.h"
 
 namespace rtsl::cpp {
 

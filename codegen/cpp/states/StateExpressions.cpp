@@ -1,6 +1,6 @@
 #include "codegen/cpp/states/StateExpressions.h"
 
-#include "codegen/cpp/states/StatePrinter.h"
+#include "codegen/cpp/states/statements/StatePrinter.h"
 #include "sema/typed/Casting.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"

@@ -1,6 +1,6 @@
 #include "codegen/cpp/states/StateLvalues.h"
 
-#include "codegen/cpp/states/StatePrinter.h"
+#include "codegen/cpp/states/statements/StatePrinter.h"
 
 namespace rtsl::cpp {
 

@@ -1,6 +1,6 @@
 #include "codegen/cpp/states/StateMachines.h"
 
-#include "codegen/cpp/states/StatePrinter.h"
+#include "codegen/cpp/states/statements/StatePrinter.h"
 #include "codegen/ir/Attributes.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
@@ -236,7 +236,7 @@ std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
         fmt::format("// needed by line {}: {}", field.neededBy, meaningOf(*machine.method, field));
   }
   return declare(std::move(made),
-                 fmt::format("// What `{}` needs when its rays come back.", machine.name));
+                 fmt::format("// What `{}` keeps across its traces.", machine.name));
 }
 
 /// Does a state write what is in its frame?

@@ -1,6 +1,6 @@
 //===- Print.h - the text of the C++ tree ---------------------------------===//
 //
-// The only place that knows how C++ is spelled. The text is clang-format's to lay out
+// The only place with the syntax of C++. The text is clang-format's to lay out
 // (codegen/cpp/Format.h), so white space matters only where a comment or a directive ends a line.
 //
 //===----------------------------------------------------------------------===//

@@ -27,8 +27,8 @@ struct Arm {
   Statements body;
 };
 
-/// What the maker of a statement knows of the variable that it declares or assigns. It is not
-/// printed; clean-ups use it (codegen/cpp/cleanup).
+/// Facts about the variable that a statement declares or assigns, from its builder. They are not
+/// printed; clean-ups use them (codegen/cpp/cleanup).
 struct WrittenVariable {
   const void *identity = nullptr; // null: there is none, or it is not known
   std::string type;

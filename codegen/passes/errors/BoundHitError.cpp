@@ -50,7 +50,7 @@ static Num stateOf(Emitter &emitter, llvm::StringRef name) {
 
 /// Floats are compared without roundings, so that the branches are the correct ones and not those
 /// that roundings have led `intersect` to. Errors of elementary functions may leave it open which
-/// branch is correct; then `otherwise` tells whether to take the opposite one. True if that can be.
+/// branch is correct; then `otherwise`: is it the opposite one? True if that can be.
 static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningError &errors,
                              Value otherwise) {
   bool mayBeInDoubt = false;

@@ -2,7 +2,7 @@
 //
 // A ray keeps its level while the rays that it has sent are active, unless it gave the level to a
 // tail trace. Which kinds of rays a kind may send is known when a program is complete, so the most
-// levels that any sample can use is the longest path through that graph within the limit of depth.
+// levels that any sample can use is the longest path through that graph within the depth limit.
 // It is exact: if shaders can send these rays at all, that many levels are in use.
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -61,7 +61,7 @@ def events(answered):
 
 
 def chains(length, depth, branches=True):
-    """Objects that ask each other, in a chain of this length (Chains.rtsl)."""
+    """Objects that call each other, in a chain of this length (Chains.rtsl)."""
     textures = {"t0": {"class": "Filter"}, "s0": {"class": "Scale"}}
     for i in range(1, length + 1):
         textures[f"t{i}"] = {"class": "Tint", "inner": f"t{i - 1}", "others": [f"t{max(i - 2, 0)}" if branches else "t0", "t0"],

@@ -33,7 +33,7 @@ static CompileOptions fast(CompileOptions compile) {
 
 constexpr std::uint32_t asBytes = RTSL_FEATURE_UNDEFINED_BYTES, asNan = RTSL_FEATURE_UNDEFINED_NAN;
 
-/// What nobody has written is a pattern.
+/// Uninitialized memory holds a pattern.
 static CompileOptions undefined(CompileOptions compile, std::uint32_t pattern) {
   compile.undefined = pattern;
   return compile;

@@ -16,12 +16,12 @@ struct Configuration {
   std::string name;
   CompileOptions compile;
   runtime::Traversal traversal = runtime::Traversal::Embree;
-  bool bindsScene = false; // the code knows the scene's objects
+  bool bindsScene = false; // the scene's objects are constants
 };
 
 /// The strict ones: all compute the same.
 const std::vector<Configuration> &configurations();
-/// What is left of the language with --fp=fast, and with --fp=double.
+/// The parts of the language that hold with --fp=fast, and with --fp=double.
 const std::vector<Configuration> &fastConfigurations();
 const std::vector<Configuration> &doubleConfigurations();
 

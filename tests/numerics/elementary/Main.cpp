@@ -49,7 +49,7 @@ json asJson(const Report &report) {
 }
 
 void print(const Report &report) {
-  fmt::print("{:<12} {:>10} tested, {} wrong, worst error {:.8f} ulp, 2^{:.2f}, MPFR asked {} "
+  fmt::print("{:<12} {:>10} tested, {} wrong, worst error {:.8f} ulp, 2^{:.2f}, MPFR called {} "
              "times, {:.1f} s\n",
              report.function, report.tested, report.mismatches, report.worstError,
              std::log2(report.worstRelativeError), report.askedMpfr, report.seconds);

@@ -30,7 +30,7 @@ public:
   /// results that are normal floats.
   double distanceToMidpoint(const Unary &function, float x);
 
-  /// How often MPFR was asked.
+  /// How often MPFR was called.
   std::uint64_t timesAsked() const { return asked; }
 
 private:

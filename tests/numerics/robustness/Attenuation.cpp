@@ -23,7 +23,7 @@ struct Layer {
 };
 using Stack = std::array<Layer, layerCount>;
 
-/// What the shader says of a stack.
+/// The shader's result for a stack.
 struct Transmittances {
   float first, product, atOnce;
 };

@@ -1,4 +1,4 @@
-//===- Boxes.cpp - slabs, and trees over boxes that help nobody ------------===//
+//===- Boxes.cpp - slabs, and trees over useless boxes ------------===//
 #include "BoxCases.h"
 #include "Row.h"
 #include "Timing.h"

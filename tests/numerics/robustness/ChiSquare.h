@@ -1,4 +1,4 @@
-//===- ChiSquare.h - does a sampler draw what its density says? -----------===//
+//===- ChiSquare.h - does a sampler match its density? --------------------===//
 #pragma once
 
 #include <cmath>

@@ -57,7 +57,7 @@ CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std:
   options.floatingPoint = floatingPointOf(path);
   Compiled compiled;
   if (!diagnostics.hasErrors()) {
-    // On a GPU too this one makes the objects, and says how much memory a ray takes.
+    // On a GPU too this one makes the objects, and computes the memory that a ray takes.
     options.target =
         path == Path::Megakernel || path == Path::Gpu ? Target::HostMegakernel : Target::Host;
     compiled.program = compileProgram(*module, request, options, diagnostics);

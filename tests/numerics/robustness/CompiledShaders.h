@@ -1,4 +1,4 @@
-//===- CompiledShaders.h - RTSL classes, asked by camera rays -------------===//
+//===- CompiledShaders.h - RTSL classes, called through camera rays -------===//
 #pragma once
 
 #include "Eye.h"

@@ -65,7 +65,7 @@ private:
   decltype(runtime::Program::sample) sample = nullptr;
 };
 
-/// What megakernels want to begin at: a line of the cache.
+/// The alignment of megakernels: a cache line.
 struct alignas(64) Line {
   std::uint8_t bytes[64];
 };

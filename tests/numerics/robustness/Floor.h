@@ -1,4 +1,4 @@
-//===- Floor.h - a material alone, asked by rays --------------------------===//
+//===- Floor.h - one material, evaluated through rays ---------------------===//
 //
 // The examples' materials scatter inside of `shade`, so each is asked by rays: a floor of the
 // material under surroundings whose color says where light came from.

@@ -17,7 +17,7 @@ namespace {
 using device::Vec3;
 
 /// The triangle is one of eight, so that there is a tree with its box in it. The others have no
-/// area and are met by nobody.
+/// area and are never hit.
 runtime::Mesh amongPoints(Random &random, const Triangle &triangle) {
   const float around = 4 * triangle.largestCoordinate();
   std::vector<Triangle> triangles;
@@ -41,7 +41,7 @@ Outcome runKind(Path path, const TriangleKind &kind, std::uint64_t cases, std::u
   return worst.outcome();
 }
 
-/// Where a material is told that all these hits are.
+/// The hit points that the material reads.
 Outcome runHitPoints(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed), others(seed + 1);
   Worst worst;

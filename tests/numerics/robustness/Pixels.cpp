@@ -41,7 +41,7 @@ const Picture &picture(Path path) {
   return only;
 }
 
-/// A million samples a pixel, each 1e-4 or 1e8 as rand() says, against the exact mean.
+/// A million samples a pixel, each 1e-4 or 1e8, chosen by rand(), against the exact mean.
 Outcome runBrightAndDark(Path path, std::uint64_t cases, std::uint32_t seed) {
   Worst worst;
   const auto pixels = std::uint32_t(cases / samples);

@@ -1,6 +1,6 @@
 //===- PrimitiveBoxes.cpp - boxes of primitives, by the whole renderer ----===//
 //
-// A tree of eight boxes. One of them says that it was entered.
+// A tree of eight boxes. One of them records that it was entered.
 //
 //===----------------------------------------------------------------------===//
 #include "BoxCases.h"

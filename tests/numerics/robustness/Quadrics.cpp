@@ -197,7 +197,7 @@ std::vector<Row> quadricRows(Path path) {
           off, 200'000, runPoints),
       row("quadrics.silhouettes",
           "the same for ellipsoids with axes of 1/3 to 3: how near to the silhouette a ray passes "
-          "that is told the wrong answer",
+          "that is classified wrongly",
           "between hit and miss, rounding units of the distance", 200'000, runSilhouettes),
       row("quadrics.tangents",
           "the same for axes of 1/10 to 10 and rays that pass within about 1e-6 of the silhouette",

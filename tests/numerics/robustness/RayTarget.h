@@ -13,7 +13,7 @@
 
 namespace rtsl::numerics {
 
-/// Coordinates of everything are smaller: the tree knows no other bounds.
+/// All coordinates are smaller: the bounds of the tree.
 constexpr float targetRoom = 3e7f;
 
 /// A primitive that a row places anew for each ray, or a mesh.

@@ -71,7 +71,7 @@ std::vector<Row> attenuationRows(Path path);
 /// What a program adds to the command line.
 void addOptions(CLI::App &app);
 
-/// Those that the program has. The runtime's own code is strict whatever is asked for.
+/// Those of the program. The runtime's own code is always strict.
 std::vector<Row> allRows(Path path);
 
 } // namespace rtsl::numerics

@@ -111,7 +111,7 @@ Outcome runGlassSnell(Path path, std::uint64_t cases, std::uint32_t seed) {
   return worst.outcome();
 }
 
-/// What is left of white light that came through colored glass: the tint to the power of the way.
+/// The transmittance of colored glass: the tint to the power of the path's length.
 Outcome runGlassTint(Path path, std::uint64_t cases, std::uint32_t seed) {
   Random random(seed);
   Worst worst;

@@ -139,7 +139,7 @@ std::vector<Row> sphereRows(Path path) {
   return {
       row("spheres.far",
           "radius 1e-6 to 1e6 at distances up to 1e7: how near to the silhouette a ray passes that "
-          "is told the wrong answer",
+          "is classified wrongly",
           near, 200'000, runFar),
       row("spheres.grazing", "the same for rays that pass at r (1 + 1e-7) and r (1 - 1e-7)", near,
           200'000, runGrazing),

@@ -51,7 +51,7 @@ const std::vector<TriangleKind> &triangleKinds();
 /// A triangle without area (collinear or duplicate vertices), and a ray towards it.
 TriangleCase degenerateTriangle(Random &random, std::uint64_t number);
 
-/// What was asked: a ray does not meet what lies behind its origin.
+/// The query: a ray does not hit what lies behind its origin.
 enum class Asked : std::uint8_t { Line, Ray };
 
 /// Judges where it was said to meet the triangle, at `t` or not at all: how far the point at t lies

@@ -1,4 +1,4 @@
-#include "report/ErrorMetrics.h"
+#include "report/measures/ErrorMetrics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "report/Exposure.h"
+#include "report/measures/Exposure.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // FLIP against the figures of its authors' program on two pairs of pictures, and its properties.
-#include "report/Flip.h"
+#include "report/measures/Flip.h"
 
 #include <gtest/gtest.h>
 

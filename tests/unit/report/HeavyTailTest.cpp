@@ -1,10 +1,10 @@
 // Whether rare, large samples are found, and whether what is said of the error of the others is
 // true.
-#include "report/HeavyTail.h"
-#include "report/ErrorMetrics.h"
+#include "report/measures/HeavyTail.h"
 #include "report/Page.h"
 #include "report/Reference.h"
 #include "report/Summary.h"
+#include "report/measures/ErrorMetrics.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -205,7 +205,7 @@ TEST(HeavyTail, AReferenceWithRareHotSamplesClaimsNothing) {
   std::filesystem::remove_all(folder);
 }
 
-// A reference that was given says nothing of its runs, but those of the study do.
+// A given reference has no statistics of its runs, but the runs of the study have.
 TEST(HeavyTail, RunsThatDifferManyTimesHaveNoInterval) {
   Study study;
   for (std::uint32_t run = 0; run < 8; ++run)

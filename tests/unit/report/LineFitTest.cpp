@@ -1,4 +1,4 @@
-#include "report/LineFit.h"
+#include "report/measures/LineFit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Studies of subjects that are no renderers: their errors, times and faults are known.
 #include "report/Study.h"
 #include "report/Page.h"
-#include "report/RunningVariance.h"
 #include "report/Summary.h"
+#include "report/measures/RunningVariance.h"
 
 #include "support/AtomicFile.h"
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t rayType = 3;
 
-/// What `anyHit` was asked, as (t, instance, primitive, u).
+/// The queries of `anyHit`, as (t, instance, primitive, u).
 using Asked = std::vector<std::tuple<float, std::uint32_t, std::uint32_t, float>>;
 Asked asked;
 unsigned refusedOf16 = 0;
@@ -99,7 +99,7 @@ RtslState ray(const RtslLaunch &launch, Vec3 o, Vec3 d, float distance) {
   return state;
 }
 
-/// All hits of a ray, by trying everything, in order; then what is asked until somebody accepts.
+/// All hits of a ray, by brute force, in order; then those queried until one is accepted.
 std::uint32_t expected(RtslState state, float distance, Asked &inOrder, RtslState &accepted) {
   const RtslLaunch &launch = *state.launch;
   auto triangleRay = rtsl::device::makeTriangleRay(rtsl::device::load(state.RayOrigin),
@@ -205,7 +205,7 @@ TEST(AnyHit, AskedAsFoundTheNearestThatIsNotRefusedCounts) {
       for (const auto &one : asked)
         EXPECT_TRUE(once.insert({std::get<1>(one), std::get<2>(one)}).second) << "asked twice";
 
-      // Where nobody terminates, what is found is the nearest that counts.
+      // If no hit terminates the ray, the result is the nearest accepted hit.
       bool terminates = false;
       RtslState nearest = start;
       asked.clear();

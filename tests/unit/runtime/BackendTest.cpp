@@ -1,5 +1,5 @@
 // What every backend does alike, shown by the host's megakernel with a program of this file, and
-// that a renderer may be asked again.
+// that a renderer can be used again.
 #include "FakeProgram.h"
 
 #include "runtime/render/HostMegakernel.h"

@@ -1,4 +1,4 @@
-#include "report/ErrorMetrics.h"
+#include "report/measures/ErrorMetrics.h"
 #include "runtime/geometry/AssimpFile.h"
 #include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/ObjFile.h"

@@ -1,6 +1,6 @@
 #include "FakeProgram.h"
 
-#include "report/ErrorMetrics.h"
+#include "report/measures/ErrorMetrics.h"
 #include "runtime/device/engines/Megakernel.h"
 #include "runtime/render/Renderer.h"
 

@@ -37,7 +37,7 @@ struct Counts {
 };
 
 /// Hits the object from all sides, leaves it in all directions, and counts rays that meet it again
-/// where they must not. `away` says which directions leave it for good.
+/// where they must not. `away`: do all rays in the direction leave it?
 template <typename Leaves>
 Counts leaveSurface(const Scene &scene, Vec3 centre, float size, float scaleOfDirections,
                     Leaves leaves) {

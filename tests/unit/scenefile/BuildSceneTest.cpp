@@ -262,7 +262,7 @@ TEST(BuildScene, AMeshThatStandsTwiceIsHeldOnce) {
 }
 
 TEST(BuildScene, TellsAllThatIsWrongInOneRun) {
-  // What refers to an object that was refused says nothing of its own.
+  // References to a rejected object cause no further errors.
   EXPECT_EQ(
       buildError(
           "\"materials\": {\"bad\": {\"class\": \"Lambert\",\n\"albeda\": 1, \"colour\": 2},\n"

@@ -50,7 +50,7 @@ struct Case {
 };
 std::vector<Case> splitCases(const std::string &fileText);
 
-/// Letters and digits alone, as GoogleTest wants its names.
+/// Letters and digits only, as names of GoogleTest must be.
 std::string testName(const std::string &title);
 std::string readFile(const std::string &path);
 void writeFile(const std::string &path, const std::string &text);

@@ -34,7 +34,7 @@ void expectFix(const std::string &before, const std::string &after) {
   EXPECT_EQ(render(*checkText(after)), "");
 }
 
-/// Everything that the first message says beside its text.
+/// Everything in the first message except its text.
 std::string hints(const std::string &text) {
   const std::unique_ptr<Checked> checked = checkText(text);
   std::string result;

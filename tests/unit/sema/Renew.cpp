@@ -1,4 +1,4 @@
-//===- Renew.cpp - write what the checker says into the language's tests --===//
+//===- Renew.cpp - write the checker's messages to the language's tests ---===//
 //
 // Rewrites the expected messages in tests/language/*/errors.rtsl, and the typed trees in
 // accepted.typed beside accepted.rtsl. What changed is then read as a difference in version

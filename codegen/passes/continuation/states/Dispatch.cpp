@@ -1,6 +1,6 @@
 //===- Dispatch.cpp - from states to a state machine ----------------------===//
 //
-// Makes the frame a parameter and numbers the states, and adds what
+// Makes the frame a parameter (PassFrame.h), numbers the states, and adds the functions that
 // runtime/device/engines/Machine.h calls:
 //
 //   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, returns the next transition
@@ -15,13 +15,13 @@
 #include "codegen/ir/Separate.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/KeptState.h"
+#include "codegen/passes/continuation/states/PassFrame.h"
 #include "codegen/passes/continuation/states/RayGraph.h"
 #include "codegen/passes/continuation/states/Steps.h"
 #include "runtime/device/ray/Abi.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
-#include "llvm/ADT/StringMap.h"
 
 #include <algorithm>
 #include <map>
@@ -50,17 +50,6 @@ public:
 
 private:
   void dropUncalled();
-  mlir::LogicalResult passFrame(FuncOp state);
-  mlir::Value address(mlir::Location location, mlir::Value frame, std::uint32_t offset,
-                      mlir::Type type);
-  void expand(ir::FrameLoadOp load, mlir::Value frame);
-  void expand(ir::FrameStoreOp store, mlir::Value frame);
-  mlir::LogicalResult expand(ir::EnterOp call, mlir::Value frame, std::uint32_t frameSize);
-  void expand(ir::CallReturnedOp returned, mlir::Value frame, std::uint32_t frameSize);
-  void expand(ir::LeaveOp leave, mlir::Value frame);
-  void keep(mlir::Value value, mlir::Value frame, std::uint32_t offset);
-  mlir::Value loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset,
-                       mlir::Type type);
   mlir::LogicalResult number(ir::NextOp next);
   FuncOp makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type> inputs);
   FuncOp makeConstant(llvm::StringRef name, std::int32_t value);
@@ -75,171 +64,10 @@ private:
   mlir::ModuleOp module;
   mlir::OpBuilder builder;
   std::vector<FuncOp> states;
-  llvm::StringMap<std::int32_t> numbers;
+  StateNumbers numbers;
   std::vector<std::uint32_t> areas; // of frames, by the longest chain of references
   bool hasCalls = false;
 };
-
-mlir::Value Dispatcher::address(mlir::Location location, mlir::Value frame, std::uint32_t offset,
-                                mlir::Type type) {
-  return ir::FrameSlotOp::create(builder, location, ir::PtrType::get(type), frame, offset);
-}
-
-/// A bool is bit `bit` of its word.
-void Dispatcher::expand(ir::FrameLoadOp load, mlir::Value frame) {
-  builder.setInsertionPoint(load);
-  mlir::Location location = load.getLoc();
-  mlir::Type type = load.getResult().getType();
-  bool isBit = load.getBit().has_value();
-  mlir::Value slot =
-      address(location, frame, load.getOffset(), isBit ? builder.getI32Type() : type);
-  mlir::Value value = ir::LoadOp::create(builder, location, slot);
-  if (isBit) {
-    mlir::Value mask = constant(location, static_cast<std::int32_t>(1u << *load.getBit()));
-    mlir::Value masked = arith::AndIOp::create(builder, location, value, mask);
-    value = arith::CmpIOp::create(builder, location, arith::CmpIPredicate::ne, masked,
-                                  constant(location, 0));
-  }
-  load.getResult().replaceAllUsesWith(value);
-  load.erase();
-}
-
-void Dispatcher::expand(ir::FrameStoreOp store, mlir::Value frame) {
-  builder.setInsertionPoint(store);
-  mlir::Location location = store.getLoc();
-  mlir::Value value = store.getValue();
-  bool isBit = store.getBit().has_value();
-  mlir::Value slot =
-      address(location, frame, store.getOffset(), isBit ? builder.getI32Type() : value.getType());
-  if (isBit) {
-    std::int32_t mask = static_cast<std::int32_t>(1u << *store.getBit());
-    mlir::Value word = ir::LoadOp::create(builder, location, slot);
-    mlir::Value set = arith::OrIOp::create(builder, location, word, constant(location, mask));
-    mlir::Value cleared = arith::AndIOp::create(builder, location, word, constant(location, ~mask));
-    value = arith::SelectOp::create(builder, location, value, set, cleared);
-  }
-  ir::StoreOp::create(builder, location, value, slot);
-  store.erase();
-}
-
-//===----------------------------------------------------------------------===//
-// Calls with a frame of their own
-//===----------------------------------------------------------------------===//
-
-void Dispatcher::keep(mlir::Value value, mlir::Value frame, std::uint32_t offset) {
-  mlir::Location location = value.getLoc();
-  if (llvm::isa<ir::PtrType>(value.getType()))
-    ir::KeepAddressOp::create(builder, location, value,
-                              address(location, frame, offset, builder.getI32Type()));
-  else
-    ir::StoreOp::create(builder, location, value,
-                        address(location, frame, offset, value.getType()));
-}
-
-mlir::Value Dispatcher::loadFrom(mlir::Location location, mlir::Value frame, std::uint32_t offset,
-                                 mlir::Type type) {
-  if (llvm::isa<ir::PtrType>(type))
-    return ir::KeptAddressOp::create(builder, location, type,
-                                     address(location, frame, offset, builder.getI32Type()));
-  return ir::LoadOp::create(builder, location, address(location, frame, offset, type));
-}
-
-/// The callee's frame begins at the end of this one.
-mlir::LogicalResult Dispatcher::expand(ir::EnterOp call, mlir::Value frame,
-                                       std::uint32_t frameSize) {
-  builder.setInsertionPoint(call);
-  mlir::Location location = call.getLoc();
-  const std::int32_t resume = numbers.lookup(call.getResume().value_or(""));
-  if (resume == 0)
-    return call.emitOpError() << "resumes in `" << call.getResume().value_or("")
-                              << "`, which is no state";
-  auto state = call->getParentOfType<FuncOp>();
-  mlir::Value own = objectOf(state);
-  if (!own)
-    own =
-        ir::NullRefOp::create(builder, location, ir::RefType::get(builder.getContext(), "object"));
-  keep(constant(location, resume), frame, frameSize + RTSL_CALL_RESUME);
-  keep(own, frame, frameSize + RTSL_CALL_OBJECT);
-  keep(constant(location, static_cast<std::int32_t>(frameSize)), frame,
-       frameSize + RTSL_CALL_BELOW);
-  mlir::OperandRange arguments = call.getOperands();
-  mlir::Value object = own;
-  if (arguments.size() > call.getOffsets().size()) {
-    object = arguments.front();
-    arguments = arguments.drop_front();
-  }
-  for (auto [value, offset] : llvm::zip(arguments, call.getOffsets()))
-    keep(value, frame, frameSize + static_cast<std::uint32_t>(offset));
-  ir::MoveFrameOp::create(builder, location,
-                          constant(location, static_cast<std::int32_t>(frameSize)), object);
-  call.erase();
-  return mlir::success();
-}
-
-void Dispatcher::expand(ir::CallReturnedOp returned, mlir::Value frame, std::uint32_t frameSize) {
-  builder.setInsertionPoint(returned);
-  for (auto [result, offset] : llvm::zip(returned.getResults(), returned.getOffsets()))
-    result.replaceAllUsesWith(loadFrom(returned.getLoc(), frame,
-                                       frameSize + static_cast<std::uint32_t>(offset),
-                                       result.getType()));
-  returned.erase();
-}
-
-void Dispatcher::expand(ir::LeaveOp leave, mlir::Value frame) {
-  builder.setInsertionPoint(leave);
-  mlir::Location location = leave.getLoc();
-  mlir::Value below = loadFrom(location, frame, RTSL_CALL_BELOW, builder.getI32Type());
-  mlir::Value down = arith::SubIOp::create(builder, location, constant(location, 0), below);
-  mlir::Value object =
-      loadFrom(location, frame, RTSL_CALL_OBJECT, ir::RefType::get(builder.getContext(), "object"));
-  ir::MoveFrameOp::create(builder, location, down, object);
-  leave.erase();
-}
-
-mlir::LogicalResult Dispatcher::passFrame(FuncOp state) {
-  mlir::Type frameType = ir::PtrType::get(builder.getI32Type());
-  (void)state.insertArgument(state.getNumArguments(), frameType, {}, state.getLoc());
-  mlir::Value frame = state.getArgument(state.getNumArguments() - 1);
-  std::uint32_t frameSize = 0; // as its callees use it: addresses take eight bytes
-  if (auto size = ir::attr::frameSize.of(state))
-    frameSize = (static_cast<std::uint32_t>(size.getInt()) + 7) / 8 * 8;
-  bool isFine = true;
-  state.walk([&](mlir::Operation *op) {
-    if (auto call = llvm::dyn_cast<ir::EnterOp>(op)) {
-      hasCalls = true;
-      isFine &= mlir::succeeded(expand(call, frame, frameSize));
-    } else if (auto returned = llvm::dyn_cast<ir::CallReturnedOp>(op)) {
-      expand(returned, frame, frameSize);
-    } else if (auto leave = llvm::dyn_cast<ir::LeaveOp>(op)) {
-      expand(leave, frame);
-    } else if (auto argument = llvm::dyn_cast<ir::CallArgumentOp>(op)) {
-      builder.setInsertionPoint(argument);
-      argument.replaceAllUsesWith(
-          loadFrom(argument.getLoc(), frame, argument.getOffset(), argument.getType()));
-      argument.erase();
-    } else if (auto result = llvm::dyn_cast<ir::CallResultOp>(op)) {
-      builder.setInsertionPoint(result);
-      keep(result.getValue(), frame, result.getOffset());
-      result.erase();
-    } else if (auto load = llvm::dyn_cast<ir::FrameLoadOp>(op)) {
-      expand(load, frame);
-    } else if (auto store = llvm::dyn_cast<ir::FrameStoreOp>(op)) {
-      expand(store, frame);
-    } else if (auto object = llvm::dyn_cast<ir::FrameObjectOp>(op)) {
-      builder.setInsertionPoint(object);
-      mlir::Type type = llvm::cast<ir::PtrType>(object.getType()).getPointee();
-      object.replaceAllUsesWith(address(object.getLoc(), frame, object.getOffset(), type));
-      object.erase();
-    } else if (llvm::isa<ir::TraceReturnedOp>(op)) {
-      op->erase();
-    } else if (auto end = llvm::dyn_cast<ir::EndOp>(op)) {
-      builder.setInsertionPoint(end);
-      mlir::func::ReturnOp::create(builder, end.getLoc(), end.getNext());
-      end.erase();
-    }
-  });
-  return mlir::success(isFine);
-}
 
 mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
   std::int32_t value = next.getTransition() == ir::Transition::Last ? RTSL_NEXT_LAST : 0;
@@ -253,7 +81,9 @@ mlir::LogicalResult Dispatcher::number(ir::NextOp next) {
   builder.setInsertionPoint(next);
   if (next.getTransition() == ir::Transition::Return) {
     mlir::Value frame = next->getParentOfType<FuncOp>().getArguments().back();
-    mlir::Value resume = loadFrom(next.getLoc(), frame, RTSL_CALL_RESUME, builder.getI32Type());
+    mlir::Value slot = ir::FrameSlotOp::create(
+        builder, next.getLoc(), ir::PtrType::get(builder.getI32Type()), frame, RTSL_CALL_RESUME);
+    mlir::Value resume = ir::LoadOp::create(builder, next.getLoc(), slot);
     next.replaceAllUsesWith(
         arith::SubIOp::create(builder, next.getLoc(), constant(next.getLoc(), 0), resume)
             .getResult());
@@ -411,7 +241,8 @@ mlir::LogicalResult Dispatcher::run() {
   }
   areas = frameAreas(module);
   for (FuncOp state : states) {
-    if (mlir::failed(passFrame(state)))
+    state.walk([&](ir::EnterOp) { hasCalls = true; });
+    if (mlir::failed(passFrame(state, numbers)))
       return mlir::failure();
     llvm::SmallVector<ir::NextOp> nexts;
     state.walk([&](ir::NextOp next) { nexts.push_back(next); });
@@ -423,21 +254,21 @@ mlir::LogicalResult Dispatcher::run() {
   makeRunState();
   makeFrameSize();
   makeConstant("rtsl_calls", hasCalls);
-  const auto tellOfScene = [&](FuncOp function) { ir::attr::factOfScene.set(function); };
+  const auto markAsFact = [&](FuncOp function) { ir::attr::factOfScene.set(function); };
   for (const auto &[name, number] : entries)
-    tellOfScene(makeConstant(name, number));
+    markAsFact(makeConstant(name, number));
   llvm::SmallVector<std::uint32_t> sent, sentLast;
   for (const RayGraph::Kind &kind : rays.kinds) {
     sent.push_back(kind.sent);
     sentLast.push_back(kind.sentLast);
   }
-  tellOfScene(makeConstant("rtsl_ray_kinds", static_cast<std::int32_t>(rays.kinds.size())));
-  tellOfScene(makeTable("rtsl_rays_sent", sent));
-  tellOfScene(makeTable("rtsl_rays_sent_last", sentLast));
+  markAsFact(makeConstant("rtsl_ray_kinds", static_cast<std::int32_t>(rays.kinds.size())));
+  markAsFact(makeTable("rtsl_rays_sent", sent));
+  markAsFact(makeTable("rtsl_rays_sent_last", sentLast));
   const auto low = static_cast<std::uint32_t>(kept.fields),
              high = static_cast<std::uint32_t>(kept.fields >> 32);
-  tellOfScene(makeTable("rtsl_rays_kept", {low, high, kept.attributes, payloadsOf(rays)}));
-  tellOfScene(makeConstant("rtsl_rays_wait_once", rays.waitsOnce));
+  markAsFact(makeTable("rtsl_rays_kept", {low, high, kept.attributes, payloadsOf(rays)}));
+  markAsFact(makeConstant("rtsl_rays_wait_once", rays.waitsOnce));
   return mlir::success();
 }
 

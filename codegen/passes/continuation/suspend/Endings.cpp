@@ -40,7 +40,7 @@ llvm::SmallPtrSet<mlir::Block *, 16> blocksThatMayEnd(FuncOp function) {
   return mayEnd;
 }
 
-/// Adds the sources of a value that authors know by name.
+/// Adds the sources of a value that have a name in the source text.
 void addSources(mlir::Value value, llvm::SetVector<mlir::Value> &seen,
                 std::vector<std::string> &sources) {
   if (!seen.insert(value))

@@ -1,7 +1,7 @@
 // Constants fold as the operation computes them.
 // RUN: rtsl-opt %s --canonicalize | FileCheck %s
 
-// Correctly rounded, whatever the machine's libm says: sin(2) = 0x3F68C7B7, exp(1) = 0x402DF854.
+// Correctly rounded, whatever the machine's libm computes: sin(2) = 0x3F68C7B7, exp(1) = 0x402DF854.
 // CHECK-LABEL: func.func @elementary
 // CHECK-DAG: %[[SIN:.*]] = arith.constant 0.909297406 : f32
 // CHECK-DAG: %[[EXP:.*]] = arith.constant dense<2.71828175> : vector<3xf32>

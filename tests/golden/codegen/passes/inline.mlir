@@ -1,4 +1,4 @@
-// Small functions are inlined and, if nobody else can call them, gone; what says otherwise stays.
+// Small functions are inlined, and removed if private; functions marked `rtsl.noinline` stay.
 // RUN: rtsl-opt %s --rtsl-inline | FileCheck %s
 
 // CHECK-LABEL: func.func @caller(

@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-propagate-constants | FileCheck %s
 
-// An index that is 0 the first time that its value is asked for stays variable.
+// An index that is 0 when it is first evaluated stays variable.
 // CHECK-LABEL: func.func @variableIndex
 // CHECK: vector.extract %{{.*}}[%[[I:.*]]] : i1 from vector<2xi1>
 // CHECK: vector.insert %{{.*}}, %{{.*}} [%[[I]]] : i1 into vector<2xi1>

@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-simplify | FileCheck %s
 
-// A loop that nobody enters is gone before anything folds in it.
+// A loop that is never entered is removed before its body is folded.
 // CHECK-LABEL: func.func @deadLoop
 // CHECK-NEXT:   return %arg0
 func.func @deadLoop(%n: i32) -> i32 {

@@ -1,4 +1,4 @@
-// Both regions meet behind the choice; a region that jumps does not come back.
+// Both regions join after the `if`; a region that ends in a jump does not.
 // RUN: rtsl-opt %s --rtsl-to-cf | FileCheck %s
 
 // CHECK-LABEL: func.func @choose(

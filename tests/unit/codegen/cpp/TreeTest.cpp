@@ -1,4 +1,4 @@
-// The tree that is printed as C++: who needs parentheses, braces and line ends, and what it says.
+// The tree that is printed as C++: where it needs parentheses, braces and line breaks, and its text.
 #include "codegen/cpp/tree/Print.h"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ TEST(TreeExpressions, AreEqualByWhatTheySay) {
   EXPECT_FALSE(same(assign(a, b), assign(Operator::Add, a, b)));
   EXPECT_FALSE(same(a, Code()));
   EXPECT_TRUE(same(Code(), Code()));
-  EXPECT_FALSE(same(lambda({}), lambda({}))); // who knows what they do
+  EXPECT_FALSE(same(lambda({}), lambda({}))); // their effects are unknown
 }
 
 TEST(TreeExpressions, KnowWhatTheyMention) {

@@ -1,6 +1,6 @@
 // From IR as text to code that runs: what the optimiser and the machine make of it.
 #include "codegen/emit/Jit.h"
-#include "codegen/emit/ConvertToLlvm.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "math/Elementary.h"
 #include "runtime/device/ray/Abi.h"
@@ -371,7 +371,7 @@ TEST(Jit, DeviceCodeIsLinkedAndHidden) {
   for (float x : {0.5f, 1.f, 2.f, 3e4f})
     EXPECT_EQ(bits(f(&state, x, 1.5f)), bits(device::pow(device::sin(x), 1.5f))) << x;
   EXPECT_EQ(program.jit->lookup("rtsl_sin"), nullptr) << "only exports stay visible";
-  EXPECT_EQ(program.text_.find("rtsl_cos("), std::string::npos) << "what nobody calls is left out";
+  EXPECT_EQ(program.text_.find("rtsl_cos("), std::string::npos) << "unused functions are left out";
 }
 
 } // namespace

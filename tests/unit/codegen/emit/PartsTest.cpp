@@ -1,7 +1,7 @@
 // Large programs in parts: what goes where, and that parts linked together compute the same.
 #include "codegen/emit/Parts.h"
-#include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "runtime/device/ray/Abi.h"
 

@@ -1,4 +1,4 @@
-// Is what `rtslc explain` says true? For each thing that it calls needed the examples are compiled
+// Is the output of `rtslc explain` true? For each thing that it calls needed the examples are compiled
 // without it, and the PTX must be another; what it calls left out can be taken away again, and the
 // PTX must stay.
 #include "codegen/driver/Stages.h"

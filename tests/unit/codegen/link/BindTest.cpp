@@ -1,4 +1,4 @@
-//===- BindTest.cpp - linked programs that know their scene's objects -----===//
+//===- BindTest.cpp - programs linked for the objects of a scene ----------===//
 #include "Linked.h"
 #include "codegen/ir/Attributes.h"
 
@@ -35,7 +35,7 @@ struct Records {
   runtime::SceneFacts facts;
 
   void add(const std::string &className, std::vector<float> values) {
-    values.insert(values.begin(), 0.0f); // the class id, which nobody asks for
+    values.insert(values.begin(), 0.0f); // the class id, which is not read
     words.push_back(std::move(values));
     facts.objects.push_back(
         {className, reinterpret_cast<const std::uint8_t *>(words.back().data())});

@@ -78,7 +78,7 @@ TEST(Link, NeedsAreWhatIsRead) {
 TEST(Link, AClassNeedsWhatItReadsItself) {
   Linked linked(textures, {{"Stripes", "Matte", "Shiny"}, {}});
   ASSERT_TRUE(linked.succeeded);
-  EXPECT_EQ(linked.classInfo("Matte").needs, 0u); // a scene knows what its `albedo` refers to
+  EXPECT_EQ(linked.classInfo("Matte").needs, 0u); // the scene determines the class of `albedo`
   EXPECT_EQ(linked.classInfo("Stripes").needs, RTSL_NEEDS_TEXTURE_COORDINATES);
   // Its rays begin at hits.
   EXPECT_EQ(linked.classInfo("Shiny").needs, RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS);

@@ -77,7 +77,7 @@ class Lit : rt_Material {
 )");
   const std::uint32_t ofRays = RTSL_NEEDS_NORMALS | RTSL_NEEDS_HIT_ERRORS;
   EXPECT_EQ(linked.needsOf("Stripes"), RTSL_NEEDS_TEXTURE_COORDINATES);
-  EXPECT_EQ(linked.needsOf("Matte"), 0u); // the scene knows which textures it has
+  EXPECT_EQ(linked.needsOf("Matte"), 0u); // the scene determines the textures
   EXPECT_EQ(linked.needsOf("Mirror"), ofRays);
   EXPECT_EQ(linked.needsOf("Lit"), ofRays | RTSL_NEEDS_TIME);
   EXPECT_EQ(linked.facts->needs, RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_TIME | ofRays);
@@ -149,7 +149,7 @@ class Wide : rt_Primitive {
 };
 )";
 
-TEST(LinkModule, WhatNobodyReadsGivesWay) {
+TEST(LinkModule, UnreadOutputsAreRemoved) {
   const LinkedModule linked(std::string(wide) + R"(
 class Reads : rt_Material {
   scratch mat4 a, b;

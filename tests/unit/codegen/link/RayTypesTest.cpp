@@ -103,7 +103,7 @@ TEST(RayTypes, SameConstantsAndTheEndShowNoOrder) {
             ask | first);
 }
 
-TEST(RayTypes, NobodyAnswersIsAWarning) {
+TEST(RayTypes, ARayTypeWithoutProgramsIsAWarning) {
   Linked linked(R"(
 struct Lost { float x; };
 class Eye : rt_RayGeneration {

@@ -181,7 +181,7 @@ TEST(PackingBuiltins, HalvesRoundToEven) {
                            : std::ldexp(static_cast<float>(fraction), -24);
     ASSERT_EQ(x[0], exact) << half;
     if (half % 7 != 0 && half > 0x20 && half < 0x7bf0)
-      continue; // packing is slower to ask
+      continue; // packing is slower to test
     ASSERT_EQ(pack(exact), half);
     float step = std::ldexp(1.0F, std::max(static_cast<int>(exponent), 1) - 25);
     float middle = exact + step / 2;

@@ -1,9 +1,9 @@
 //===- Shader.cpp - RTSL text that runs in a test -------------------------===//
 #include "tests/unit/codegen/lower/Shader.h"
 
-#include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"

@@ -155,7 +155,7 @@ TEST(Calls, StructsArraysAndMatrices) {
   EXPECT_EQ(run.x[6], 2.5F);
 }
 
-TEST(Calls, AggregatesAreCopiedOnlyWhereSomebodyWrites) {
+TEST(Calls, AggregatesAreCopiedOnlyIfModified) {
   Lowered lowered(
       "float read(float v[8]) { return v[3]; } float write(float v[8]) { v[3] = 1.0; return v[3]; "
       "}\n"

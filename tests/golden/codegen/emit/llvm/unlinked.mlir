@@ -1,4 +1,4 @@
-// What linking was to supply is asked for.
+// What linking should have supplied is reported.
 // RUN: rtsl-opt %s --rtsl-to-llvm -split-input-file -verify-diagnostics
 
 func.func @f() {

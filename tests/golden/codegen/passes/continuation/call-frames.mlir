@@ -25,7 +25,7 @@ func.func @rtsl_rt_Material_shade(%self: !rtsl.ref<"Mirror">) attributes {rtsl.e
   return
 }
 
-// The direction is read where it is needed, on both sides of what is waited for: nobody saves it. The color of the ray is
+// The direction is read where it is needed, on both sides of the trace: it is not saved. The color of the ray is
 // saved across the call, in the 12 bytes behind what was handed over, rounded up to 8.
 // SPLIT-LABEL: func.func private @follow.state0(%arg0: !rtsl.ref<"Tint">)
 // SPLIT:         %[[D:.*]] = rtsl.call_argument "argument0"[16] : vector<3xf32>

@@ -52,7 +52,7 @@ func.func private @f.state1(%o: !rtsl.ref<"F">) -> i32 attributes {rtsl.state = 
 // CHECK-LABEL: func.func @rtsl_rt_Miss_miss_first
 // CHECK-NEXT:    arith.constant 0 : i32
 
-// What traces, is in no state and is called by nobody, as --keep has it, is gone.
+// Functions that trace, belong to no state and have no callers, as with --keep, are removed.
 // CHECK-NOT: @uncalled
 func.func @uncalled(%d: vector<3xf32>) -> vector<3xf32> {
   %c = rtsl.trace %d, %d : vector<3xf32>

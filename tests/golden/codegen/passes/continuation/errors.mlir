@@ -9,7 +9,7 @@ func.func @f(%o: vector<3xf32>) -> vector<3xf32> {
 
 // -----
 
-// The address of an argument of the caller's is known to nobody behind the trace.
+// After the trace, the address of a caller's argument is unknown.
 func.func @f(%o: vector<3xf32>, %p: !rtsl.ptr<f32>) {
   // expected-error @below {{the address `argument` is used after a trace and cannot be recomputed there}}
   %c = rtsl.trace %o, %o : vector<3xf32>

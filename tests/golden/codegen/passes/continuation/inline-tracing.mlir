@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-inline-tracing --split-input-file | FileCheck %s
 
-// A helper that traces becomes part of its callers, and is gone if nobody else calls it.
+// A helper that traces is inlined into its callers, and removed if it has no other callers.
 // CHECK-LABEL: func.func @caller
 // CHECK-NEXT:   cf.br ^bb1(%arg0 : vector<3xf32>)
 // CHECK-NEXT: ^bb1(%[[D:.*]]: vector<3xf32>):

@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-insert-suspends | FileCheck %s
 
-// A block ends at each trace; the color that comes back is the first thing of the next.
+// A block ends at each trace; the next one begins with the color that the ray returns.
 // CHECK-LABEL: func.func @twice
 // CHECK-NEXT:   rtsl.suspend %arg0, %arg1, ^bb1
 // CHECK-NEXT: ^bb1:  // pred: ^bb0

@@ -85,7 +85,7 @@ func.func @passes(%self: !rtsl.ref<"M">) {
   return
 }
 
-// Not all of it comes back: it needs a copy.
+// Only part of it is returned: it needs a copy.
 // CHECK-LABEL: func.func @keeps
 // CHECK:         rtsl.var "payload"
 // CHECK:         rtsl.suspend

@@ -32,7 +32,7 @@ func.func @bools(%o: vector<3xf32>, %p: i1 loc("p"), %q: i1 loc("q")) -> (i1, i1
   return %p, %q : i1, i1
 }
 
-// A variable that lives in the frame shares its words with nobody.
+// A variable in the frame shares its words with no other.
 // CHECK-LABEL: func.func @object
 // CHECK-SAME:    rtsl.frame_size = 24 : i32
 // CHECK:        rtsl.frame_object "table"[8]

@@ -75,7 +75,7 @@ func.func @shared(%self: !rtsl.ref<"M">, %o: vector<3xf32>) -> (f32, f32) {
 
 // -----
 
-// A ray's own state is there when it comes back, unless its shader wrote it in between.
+// A ray's own state is unchanged after the trace, unless its shader wrote it in between.
 // CHECK-LABEL: func.func @state
 // CHECK:        rtsl.suspend %{{.*}}, %{{.*}}, ^bb1
 // CHECK-NEXT: ^bb1:

@@ -241,7 +241,7 @@ func.func @irreducible(%v: i1) {
 
 // -----
 
-// A break out of two loops at once: a flag that is asked behind the inner one.
+// A break out of two loops at once: a flag that is tested after the inner one.
 // CHECK-LABEL: @far(
 // CHECK: rtsl.loop do {
 // CHECK:   rtsl.loop cond {

@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-trim-payloads --split-input-file | FileCheck %s
 
-// `unread` is written here and there and read by nobody; `own` is of no use to the ray's programs, so it is a value here;
+// `unread` is written but never read; `own` is of no use to the ray's programs, so it is a value here;
 // `handed` is only copied into the payload of the next ray; `light` is passed.
 // CHECK-LABEL: func.func @sends
 // CHECK-SAME:    %[[SELF:.*]]: !rtsl.ref<"M">, %[[O:[^:]*]]: vector<3xf32>, %[[X:[^:]*]]: f32

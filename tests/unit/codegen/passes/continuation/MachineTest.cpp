@@ -2,8 +2,8 @@
 // bit for bit.
 #include "RandomShader.h"
 
-#include "codegen/emit/ConvertToLlvm.h"
 #include "codegen/emit/Jit.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
 #include "runtime/device/ray/Abi.h"
@@ -57,7 +57,7 @@ uint32_t traverse(RtslState *state, uint32_t) {
   return RTSL_HIT;
 }
 
-/// The stack of rays, as large as was asked for, and how far it was written.
+/// The stack of rays, of the requested size, and how far it was written.
 struct Stack {
   static constexpr uint8_t untouched = 0xa5;
   uint8_t *memory = nullptr; // AddressSanitizer watches its end

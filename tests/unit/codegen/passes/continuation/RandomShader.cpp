@@ -89,7 +89,7 @@ void Generator::tracePayload() {
        " carries " + variable + mask + time + " {ray_type = 1 : i32, how = 0 : i32} : !rtsl.ptr<" +
        payload + ">");
   store(load(payloadField(variable, 0), "f32"), "%f" + std::to_string(below(3)), "f32");
-  if (below(4)) // sometimes nobody reads a field
+  if (below(4)) // sometimes a field is never read
     store(load(payloadField(variable, 1), vec3), "%v" + std::to_string(below(3)), vec3);
   if (below(2))
     store(load(payloadField(variable, 2), "i1"), "%b" + std::to_string(below(3)), "i1");

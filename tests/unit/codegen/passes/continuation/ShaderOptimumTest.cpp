@@ -1,5 +1,5 @@
 // What is saved over the traces of small shaders against the optimum. The checker makes a shader
-// out of its own description, so it knows nothing of liveness, dominance or flows: it tries every
+// out of its own description, so it does not depend on liveness, dominance or flows: it tries every
 // set of saved values at every trace, over all traces together.
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/common/Names.h"
@@ -28,7 +28,7 @@ struct Node {
   std::vector<unsigned> operands; // earlier nodes
   std::int64_t save, recompute;
   unsigned segment = 0; // how many traces stand before it
-  // behind traces with this number and later ones nobody can have it again
+  // after traces with this number or a later one it cannot be rematerialised
   unsigned lostAfter = ~0u;
 };
 

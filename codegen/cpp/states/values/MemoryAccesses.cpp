@@ -1,0 +1,119 @@
+#include "codegen/cpp/states/values/MemoryAccesses.h"
+
+#include "codegen/ir/Attributes.h"
+#include "codegen/ir/BaseAddress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::cpp {
+
+void MemoryAccesses::add(const MemoryAccesses &other) {
+  reads.insert(other.reads.begin(), other.reads.end());
+  writes.insert(other.writes.begin(), other.writes.end());
+  readsAny |= other.readsAny;
+  writesAny |= other.writesAny;
+}
+
+bool conflict(const MemoryAccesses &a, const MemoryAccesses &b) {
+  auto common = [](const std::set<MemoryLocation> &x, const std::set<MemoryLocation> &y) {
+    return std::any_of(x.begin(), x.end(),
+                       [&](const MemoryLocation &location) { return y.count(location) != 0; });
+  };
+  // Unknown methods reach the ray's state and draw random numbers; variables and the frame are this
+  // function's own.
+  auto isOpen = [](const std::set<MemoryLocation> &locations) {
+    return std::any_of(locations.begin(), locations.end(), [](const MemoryLocation &location) {
+      return location.kind == MemoryLocation::Kind::State ||
+             location.kind == MemoryLocation::Kind::Random;
+    });
+  };
+  auto writesMeet = [&](const MemoryAccesses &x, const MemoryAccesses &y) {
+    return common(x.writes, y.reads) || common(x.writes, y.writes) ||
+           (x.writesAny && (y.readsAny || y.writesAny || isOpen(y.reads) || isOpen(y.writes))) ||
+           (x.readsAny && isOpen(y.writes));
+  };
+  return writesMeet(a, b) || writesMeet(b, a);
+}
+
+MemoryLocation locationOf(mlir::Value address) {
+  using Kind = MemoryLocation::Kind;
+  mlir::Operation *op = ir::baseOperation(address);
+  if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
+    return {Kind::Object, object.getName().str()};
+  if (auto argument = llvm::dyn_cast_or_null<ir::CallArgumentOp>(op))
+    return {Kind::Argument, std::to_string(argument.getOffset())};
+  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
+    return {Kind::State, state.getName().str()};
+  if (llvm::isa_and_nonnull<ir::VarOp>(op))
+    return {Kind::Variable, fmt::format("{}", static_cast<const void *>(op))};
+  return {Kind::Payload, {}};
+}
+
+bool changes(ir::EvaluateOp op, std::size_t operand) {
+  auto changed = ir::attr::changes.of(op);
+  return changed && llvm::is_contained(changed.asArrayRef(), static_cast<std::int32_t>(operand));
+}
+
+MemoryAccesses accessesOf(mlir::Operation *op) {
+  MemoryAccesses accesses;
+  op->walk([&](mlir::Operation *inner) {
+    if (auto load = llvm::dyn_cast<ir::LoadOp>(inner))
+      accesses.reads.insert(locationOf(load.getAddress()));
+    else if (auto store = llvm::dyn_cast<ir::StoreOp>(inner))
+      accesses.writes.insert(locationOf(store.getAddress()));
+    else if (auto frameLoad = llvm::dyn_cast<ir::FrameLoadOp>(inner))
+      accesses.reads.insert({MemoryLocation::Kind::Frame, frameLoad.getName().str()});
+    else if (auto frameStore = llvm::dyn_cast<ir::FrameStoreOp>(inner))
+      accesses.writes.insert({MemoryLocation::Kind::Frame, frameStore.getName().str()});
+    else if (llvm::isa<ir::RandOp>(inner))
+      accesses.writes.insert({MemoryLocation::Kind::Random, {}});
+    else if (auto clear = llvm::dyn_cast<ir::ClearOp>(inner))
+      accesses.writes.insert(locationOf(clear.getAddress()));
+    else if (auto copy = llvm::dyn_cast<ir::CopyOp>(inner)) {
+      accesses.reads.insert(locationOf(copy.getSource()));
+      accesses.writes.insert(locationOf(copy.getTarget()));
+    } else if (auto call = llvm::dyn_cast<ir::EvaluateOp>(inner)) {
+      for (auto [index, operand] : llvm::enumerate(call.getOperands()))
+        if (llvm::isa<ir::PtrType>(operand.getType())) {
+          accesses.reads.insert(locationOf(operand));
+          if (changes(call, index))
+            accesses.writes.insert(locationOf(operand));
+        }
+      if (!ir::attr::plain.isOn(call)) {
+        accesses.readsAny = true;
+        accesses.writes.insert({MemoryLocation::Kind::Random, {}});
+        accesses.writesAny |= !call.getWrites();
+      }
+      if (call.getWrites())
+        for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
+          accesses.writes.insert({MemoryLocation::Kind::State, name.getValue().str()});
+    } else if (llvm::isa<ir::IlluminateOp>(inner)) {
+      accesses.readsAny = accesses.writesAny = true;
+    }
+  });
+  return accesses;
+}
+
+bool writesTo(mlir::Operation *op, mlir::Value address) {
+  if (auto store = llvm::dyn_cast<ir::StoreOp>(op))
+    return store.getAddress() == address;
+  if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
+    return clear.getAddress() == address;
+  if (auto copy = llvm::dyn_cast<ir::CopyOp>(op))
+    return copy.getTarget() == address;
+  if (auto spawn = llvm::dyn_cast<ir::SpawnPayloadOp>(op))
+    return spawn.getPayload() == address;
+  if (auto call = llvm::dyn_cast<ir::EnterOp>(op))
+    return llvm::is_contained(call.getOperands(), address);
+  if (auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op))
+    for (auto [index, operand] : llvm::enumerate(evaluation.getOperands()))
+      if (operand == address && changes(evaluation, index))
+        return true;
+  return llvm::isa<ir::FieldOp, ir::ElementOp>(op) &&
+         llvm::any_of(op->getUsers(),
+                      [&](mlir::Operation *user) { return writesTo(user, op->getResult(0)); });
+}
+
+} // namespace rtsl::cpp

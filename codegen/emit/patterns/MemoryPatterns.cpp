@@ -1,0 +1,377 @@
+//===- MemoryPatterns.cpp - memory and references to LLVM -----------------===//
+#include "codegen/emit/SceneTables.h"
+#include "codegen/emit/patterns/Patterns.h"
+#include "codegen/ir/Attributes.h"
+#include "codegen/ir/ClassTable.h"
+#include "codegen/ir/Layout.h"
+#include "codegen/ir/RtslOps.h"
+#include "runtime/device/ray/Abi.h"
+
+#include "mlir/Conversion/LLVMCommon/Pattern.h"
+#include "mlir/Interfaces/FunctionInterfaces.h"
+
+namespace rtsl::codegen {
+
+namespace LLVM = mlir::LLVM;
+using mlir::ConversionPatternRewriter;
+using mlir::ConvertOpToLLVMPattern;
+using mlir::Location;
+using mlir::LogicalResult;
+using mlir::Value;
+
+namespace {
+
+mlir::Type pointee(Value address) {
+  return llvm::cast<ir::PtrType>(address.getType()).getPointee();
+}
+
+bool isBool(mlir::Type type) {
+  return mlir::getElementTypeOrSelf(type).isInteger(1);
+}
+
+/// The type of a value in memory: bools are i32.
+mlir::Type memoryType(const mlir::TypeConverter &converter, mlir::Type type) {
+  return isBool(type) ? ir::intLike(type) : converter.convertType(type);
+}
+
+/// Whether the memory at `address` does not change while the program runs: it is part of a
+/// constant, a member or a buffer, and the code does not belong to a constructor.
+bool isInvariant(Value address) {
+  while (mlir::Operation *op = address.getDefiningOp()) {
+    if (llvm::isa<ir::TableOp>(op))
+      return true;
+    if (llvm::isa<ir::MemberOp>(op)) {
+      auto function = op->getParentOfType<mlir::FunctionOpInterface>();
+      return function && !ir::attr::writesMembers.isOn(function);
+    }
+    if (!llvm::isa<ir::FieldOp, ir::ElementOp, ir::BufferElementOp>(op))
+      return false;
+    address = op->getOperand(0);
+  }
+  return false;
+}
+
+/// `base[index]` for an index in range and elements of `size` bytes.
+Value indexedAddress(mlir::OpBuilder &builder, Location location, Value base, Value index,
+                     uint32_t size) {
+  mlir::Type element = LLVM::LLVMArrayType::get(builder.getI8Type(), size);
+  return LLVM::GEPOp::create(builder, location, base.getType(), element, base,
+                             llvm::ArrayRef<LLVM::GEPArg>{index}, LLVM::GEPNoWrapFlags::inbounds);
+}
+
+Value widen(mlir::OpBuilder &builder, Location location, Value index) {
+  return LLVM::ZExtOp::create(builder, location, builder.getI64Type(), index);
+}
+
+void fillWithZeros(mlir::OpBuilder &builder, Location location, Value address, uint32_t size) {
+  Value zero = LLVM::ConstantOp::create(builder, location, builder.getI8IntegerAttr(0));
+  Value length = LLVM::ConstantOp::create(builder, location, builder.getI64IntegerAttr(size));
+  LLVM::MemsetOp::create(builder, location, address, zero, length, /*isVolatile=*/false);
+}
+
+//===----------------------------------------------------------------------===//
+// Variables, loads, stores
+//===----------------------------------------------------------------------===//
+
+/// A variable that was not promoted is a stack slot, and is zero each time that control reaches it.
+struct ConvertVar : ConvertOpToLLVMPattern<ir::VarOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::VarOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    uint32_t size = ir::sizeInBytes(pointee(op.getResult()));
+    Value slot = stackSlot(rewriter, op.getLoc(), size);
+    fillWithZeros(rewriter, op.getLoc(), slot, size);
+    rewriter.replaceOp(op, slot);
+    return mlir::success();
+  }
+};
+
+struct ConvertClear : ConvertOpToLLVMPattern<ir::ClearOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::ClearOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    fillWithZeros(rewriter, op.getLoc(), adaptor.getAddress(),
+                  ir::sizeInBytes(pointee(op.getAddress())));
+    rewriter.eraseOp(op);
+    return mlir::success();
+  }
+};
+
+struct ConvertLoad : ConvertOpToLLVMPattern<ir::LoadOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::LoadOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    mlir::Type type = memoryType(*getTypeConverter(), op.getType());
+    Value value =
+        loadFrom(rewriter, op.getLoc(), type, adaptor.getAddress(), isInvariant(op.getAddress()));
+    if (isBool(op.getType()))
+      value = LLVM::ICmpOp::create(rewriter, op.getLoc(), LLVM::ICmpPredicate::ne, value,
+                                   constantLike(rewriter, op.getLoc(), type, 0));
+    rewriter.replaceOp(op, value);
+    return mlir::success();
+  }
+};
+
+struct ConvertStore : ConvertOpToLLVMPattern<ir::StoreOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::StoreOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    Value value = adaptor.getValue();
+    if (isBool(value.getType()))
+      value = LLVM::ZExtOp::create(rewriter, op.getLoc(), ir::intLike(value.getType()), value);
+    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, value, adaptor.getAddress(),
+                                               ir::memoryAlignment);
+    return mlir::success();
+  }
+};
+
+struct ConvertCopy : ConvertOpToLLVMPattern<ir::CopyOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::CopyOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    uint32_t size = ir::sizeInBytes(pointee(op.getSource()));
+    Value length =
+        LLVM::ConstantOp::create(rewriter, op.getLoc(), rewriter.getI64IntegerAttr(size));
+    rewriter.replaceOpWithNewOp<LLVM::MemcpyOp>(op, adaptor.getTarget(), adaptor.getSource(),
+                                                length, /*isVolatile=*/false);
+    return mlir::success();
+  }
+};
+
+//===----------------------------------------------------------------------===//
+// Addresses
+//===----------------------------------------------------------------------===//
+
+struct ConvertField : ConvertOpToLLVMPattern<ir::FieldOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::FieldOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    auto type = llvm::cast<ir::StructType>(pointee(op.getBase()));
+    uint32_t offset = ir::fieldOffset(type, *type.fieldIndex(op.getField()));
+    rewriter.replaceOp(op, offsetAddress(rewriter, op.getLoc(), adaptor.getBase(), offset));
+    return mlir::success();
+  }
+};
+
+struct ConvertElement : ConvertOpToLLVMPattern<ir::ElementOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::ElementOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    uint32_t size = ir::sizeInBytes(pointee(op.getResult()));
+    Value index = widen(rewriter, op.getLoc(), adaptor.getIndex());
+    rewriter.replaceOp(op, indexedAddress(rewriter, op.getLoc(), adaptor.getBase(), index, size));
+    return mlir::success();
+  }
+};
+
+/// The address of the scene's records.
+Value recordsAddress(mlir::OpBuilder &builder, Location location) {
+  if (Value records = sceneRecords(builder, location))
+    return records;
+  Value field = launchAddress(builder, location, offsetof(RtslLaunch, records));
+  return LLVM::LoadOp::create(builder, location, field.getType(), field, alignof(void *), false,
+                              false, /*isInvariant=*/true);
+}
+
+struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::MemberOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    const int64_t offset = ir::attr::offset.of(op).getInt();
+    Location location = op.getLoc();
+    Value records = recordsAddress(rewriter, location);
+    Value record = indexedAddress(rewriter, location, records,
+                                  widen(rewriter, location, adaptor.getObject()), 1);
+    rewriter.replaceOp(op,
+                       offsetAddress(rewriter, location, record, static_cast<uint32_t>(offset)));
+    return mlir::success();
+  }
+};
+
+/// Bytes from the start of RtslState to a state variable.
+uint32_t stateOffset(llvm::StringRef name) {
+#define RTSL_STATE_VARIABLE(variable, type)                                                        \
+  if (name == #variable)                                                                           \
+    return offsetof(RtslState, variable);
+#include "language/StateVariables.def"
+  if (name == "hitError")
+    return offsetof(RtslState, hitError);
+  llvm_unreachable("the verifier checks the names");
+}
+
+struct ConvertTable : ConvertOpToLLVMPattern<ir::TableOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::TableOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    auto symbol = ir::attr::symbol.of(op);
+    rewriter.replaceOpWithNewOp<LLVM::AddressOfOp>(op, LLVM::LLVMPointerType::get(op.getContext()),
+                                                   symbol.getValue());
+    return mlir::success();
+  }
+};
+
+struct ConvertState : ConvertOpToLLVMPattern<ir::StateOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::StateOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOp(
+        op, offsetAddress(rewriter, op.getLoc(), rayState(rewriter), stateOffset(op.getName())));
+    return mlir::success();
+  }
+};
+
+struct ConvertKeepAddress : ConvertOpToLLVMPattern<ir::KeepAddressOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::KeepAddressOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, adaptor.getValue(), adaptor.getSlot(),
+                                               alignof(void *));
+    return mlir::success();
+  }
+};
+
+struct ConvertKeptAddress : ConvertOpToLLVMPattern<ir::KeptAddressOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::KeptAddressOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    mlir::Type pointer = LLVM::LLVMPointerType::get(op.getContext());
+    rewriter.replaceOpWithNewOp<LLVM::LoadOp>(op, pointer, adaptor.getSlot(), alignof(void *));
+    return mlir::success();
+  }
+};
+
+struct ConvertFrameSlot : ConvertOpToLLVMPattern<ir::FrameSlotOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::FrameSlotOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOp(op,
+                       offsetAddress(rewriter, op.getLoc(), adaptor.getFrame(), op.getOffset()));
+    return mlir::success();
+  }
+};
+
+struct ConvertAttribute : ConvertOpToLLVMPattern<ir::AttributeOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::AttributeOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    uint32_t offset = offsetof(RtslState, attributes) + *op.getOffset() * sizeof(uint32_t);
+    rewriter.replaceOp(op, offsetAddress(rewriter, op.getLoc(), rayState(rewriter), offset));
+    return mlir::success();
+  }
+};
+
+//===----------------------------------------------------------------------===//
+// Buffers
+//===----------------------------------------------------------------------===//
+
+Value bufferSize(mlir::OpBuilder &builder, Location location, Value buffer, unsigned dimension,
+                 bool invariant) {
+  Value address = offsetAddress(builder, location, buffer,
+                                offsetof(RtslBuffer, size) + dimension * sizeof(uint32_t));
+  return loadFrom(builder, location, builder.getI32Type(), address, invariant);
+}
+
+struct ConvertBufferElement : ConvertOpToLLVMPattern<ir::BufferElementOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::BufferElementOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    Location location = op.getLoc();
+    bool invariant = isInvariant(op.getBuffer());
+    Value buffer = adaptor.getBuffer();
+
+    // The two halves of the address are adjacent, so one load reads both.
+    static_assert(offsetof(RtslBuffer, addressHigh) == offsetof(RtslBuffer, addressLow) + 4);
+    Value base = loadFrom(
+        rewriter, location, buffer.getType(),
+        offsetAddress(rewriter, location, buffer, offsetof(RtslBuffer, addressLow)), invariant);
+
+    // The first index is the slowest: ((i * size[1]) + j) * size[2] + k.
+    Value index = widen(rewriter, location, adaptor.getIndices().front());
+    for (auto [dimension, next] : llvm::enumerate(adaptor.getIndices().drop_front())) {
+      Value size = bufferSize(rewriter, location, buffer, dimension + 1, invariant);
+      index = LLVM::MulOp::create(rewriter, location, index, widen(rewriter, location, size));
+      index = LLVM::AddOp::create(rewriter, location, index, widen(rewriter, location, next));
+    }
+    rewriter.replaceOp(op, indexedAddress(rewriter, location, base, index,
+                                          ir::sizeInBytes(pointee(op.getResult()))));
+    return mlir::success();
+  }
+};
+
+struct ConvertBufferLength : ConvertOpToLLVMPattern<ir::BufferLengthOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::BufferLengthOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOp(op, bufferSize(rewriter, op.getLoc(), adaptor.getBuffer(), op.getDim(),
+                                      isInvariant(op.getBuffer())));
+    return mlir::success();
+  }
+};
+
+//===----------------------------------------------------------------------===//
+// References
+//===----------------------------------------------------------------------===//
+
+struct ConvertNullRef : ConvertOpToLLVMPattern<ir::NullRefOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::NullRefOp op, OpAdaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOp(op, constantLike(rewriter, op.getLoc(), rewriter.getI32Type(), 0));
+    return mlir::success();
+  }
+};
+
+struct ConvertCastRef : ConvertOpToLLVMPattern<ir::CastRefOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::CastRefOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOp(op, adaptor.getObject());
+    return mlir::success();
+  }
+};
+
+struct ConvertEqualRef : ConvertOpToLLVMPattern<ir::EqualRefOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::EqualRefOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    rewriter.replaceOpWithNewOp<LLVM::ICmpOp>(op, LLVM::ICmpPredicate::eq, adaptor.getLhs(),
+                                              adaptor.getRhs());
+    return mlir::success();
+  }
+};
+
+/// The first word of the record. The null reference has a record of its own, where it is 0: no
+/// branch is needed.
+struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::ClassIdOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    Location location = op.getLoc();
+    mlir::Type i32 = rewriter.getI32Type();
+    Value records = recordsAddress(rewriter, location);
+    // Not `inbounds`: if the reference is null there may be no records at all.
+    Value record = LLVM::GEPOp::create(
+        rewriter, location, records.getType(), rewriter.getI8Type(), records,
+        llvm::ArrayRef<LLVM::GEPArg>{widen(rewriter, location, adaptor.getObject())});
+    Value none = LLVM::AddressOfOp::create(rewriter, location, records.getType(), nullRecord);
+    Value isNull =
+        LLVM::ICmpOp::create(rewriter, location, LLVM::ICmpPredicate::eq, adaptor.getObject(),
+                             constantLike(rewriter, location, i32, 0));
+    Value address = LLVM::SelectOp::create(rewriter, location, isNull, none, record);
+    rewriter.replaceOp(op, loadFrom(rewriter, location, i32, address, /*isInvariant=*/true));
+    return mlir::success();
+  }
+};
+
+} // namespace
+
+void addMemoryPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
+  patterns
+      .add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
+           ConvertElement, ConvertMember, ConvertTable, ConvertState, ConvertFrameSlot,
+           ConvertKeepAddress, ConvertKeptAddress, ConvertAttribute, ConvertBufferElement,
+           ConvertBufferLength, ConvertNullRef, ConvertCastRef, ConvertEqualRef, ConvertClassId>(
+          converter);
+}
+
+} // namespace rtsl::codegen

@@ -1,0 +1,271 @@
+//===- DropUnreached.cpp - erase methods that are never run ---------------===//
+//
+// A method runs if another one calls it, if some method sends a ray that runs it, if the engine
+// calls it, or if the output that it computes of a hit is read. From the methods that every sample
+// runs, this follows all of these; the rest is erased. Later steps (types of rays, attributes,
+// outputs required) consider only the methods that remain.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
+#include "codegen/link/steps/Steps.h"
+#include "codegen/passes/errors/DeriveHitErrors.h"
+
+#include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/StringSet.h"
+
+#include <algorithm>
+#include <set>
+
+namespace rtsl::linking {
+
+namespace {
+
+using mlir::func::FuncOp;
+
+/// The reason why a method runs.
+struct Cause {
+  std::string reason;
+  ir::SourcePlace place;
+};
+
+class Reach {
+public:
+  explicit Reach(const LinkContext &context) : context(context) {}
+
+  /// All functions that are reached, with the first cause found: first those reached by rendering,
+  /// then those that run only while the scene is built.
+  const llvm::MapVector<mlir::Operation *, Cause> &run() {
+    addRoots();
+    follow();
+    rendering = reached.size();
+    addBuildingRoots();
+    follow();
+    return reached;
+  }
+
+  bool isReachedByRendering(FuncOp function) const {
+    const auto found = reached.find(function);
+    return found != reached.end() && std::size_t(found - reached.begin()) < rendering;
+  }
+
+private:
+  void follow() {
+    for (; next < reached.size(); ++next)
+      look(llvm::cast<FuncOp>((reached.begin() + std::ptrdiff_t(next))->first));
+  }
+
+  void add(FuncOp function, Cause cause) {
+    if (function)
+      reached.insert({function, std::move(cause)});
+  }
+
+  /// Adds the methods of this name of classes derived from `root`.
+  void addMethods(llvm::StringRef root, const std::string &method, const Cause &cause) {
+    if (!added.insert((root + " " + method).str()).second)
+      return; // a function keeps its first cause
+    for (const LinkedClass &linked : context.classes)
+      if (linked.isUsed && linked.info->root == root)
+        add(findMethod(context, linked, method), cause);
+  }
+
+  void addBuildingRoots() {
+    for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
+      if (ir::attr::constructor.isOn(function))
+        add(function, {"makes the object", {}});
+    addMethods("rt_Primitive", "computeBounds", {"computes the bounds of the object", {}});
+  }
+
+  void addRoots() {
+    for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
+      if (ir::attr::hitError.isOn(function)) // only those that are needed have been derived
+        add(function, {"bounds the error of a hit", {}});
+    if (context.request.engine == runtime::Engine::Classic) {
+      addMethods("rt_Camera", "generateRay", {"begins every sample", {}});
+      addClassicRays({"for the camera's rays", {}});
+    } else {
+      addMethods("rt_RayGeneration", "generate", {"begins every sample", {}});
+    }
+    addMethods("rt_Primitive", "intersect", {"finds hits", {}});
+    if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
+      addMethods("rt_Exception", "exception", {"for samples that raise an exception", {}});
+    if (context.request.isSampled) {
+#define RTSL_SAMPLING_SLOT(base, method) addMethods(#base, #method, {"called by the host", {}});
+#include "language/SamplingSlots.def"
+    }
+  }
+
+  void addClassicRays(const Cause &cause) {
+    addMethods("rt_Material", "shade", cause);
+    addMethods("rt_Miss", "miss", cause);
+  }
+
+  void look(FuncOp function) {
+    const std::string name = shownName(function);
+    const Reader reader = readerOf(context.symbols, function);
+    function.walk([&](mlir::Operation *op) {
+      const auto by = [&](const char *does) {
+        return Cause{does + (" `" + name) + "`", ir::placeOf(op->getLoc())};
+      };
+      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
+        // a dispatch function has the cause of its callers
+        const bool isDispatch = function.getSymName().starts_with(dispatchPrefix);
+        add(context.function(call.getCallee()),
+            isDispatch ? reached.lookup(function) : by("called by"));
+      } else if (auto slot = llvm::dyn_cast<ir::CallMethodOp>(op)) { // not resolved yet
+        const llvm::StringRef base =
+            llvm::cast<ir::RefType>(slot.getObject().getType()).getClassName();
+        if (!slots.insert((base + "." + slot.getMethod()).str()).second)
+          return;
+        for (const LinkedClass &linked : context.classes)
+          if (linked.isUsed && derivesFrom(*linked.info, base))
+            add(findMethod(context, linked, slot.getMethod().str()), by("called by"));
+      } else if (llvm::isa<ir::TraceOp>(op)) {
+        addClassicRays(by("for rays of"));
+      } else if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op)) {
+        const auto payload = llvm::cast<ir::PtrType>(trace.getPayload().getType()).getPointee();
+        const std::string type = llvm::cast<ir::StructType>(payload).getName().str();
+        addMethods("rt_Material", "closestHit." + type, by("for rays of"));
+        addMethods("rt_Material", "anyHit." + type, by("for rays of"));
+        addMethods("rt_Miss", "miss." + type, by("for rays of"));
+      } else if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && !light.getIndex()) {
+        addMethods("rt_Primitive", "generateSample", by("for `illuminate` in"));
+        addMethods("rt_Primitive", "samplePDF", by("for `illuminate` in"));
+        addMethods("rt_Material", "emission", by("for `illuminate` in"));
+      } else if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op)) {
+        const bool isOne = llvm::isa<ir::IlluminateOp>(op);
+        addMethods("rt_Light", "illumination",
+                   by(isOne ? "for `illuminate` in" : "for `illuminance` in"));
+      }
+      if (const std::uint32_t needs = needsOf(reader, op))
+        addComputations(needs, by(llvm::isa<ir::StateOp>(op) ? "read by" : "for rays of"));
+    });
+  }
+
+  void addComputations(std::uint32_t needs, const Cause &cause) {
+    if (needs & RTSL_NEEDS_NORMALS)
+      addMethods("rt_Primitive", "computeNormal", cause);
+    if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
+      addMethods("rt_Primitive", "computeTextureCoordinates", cause);
+    if (needs & RTSL_NEEDS_DERIVATIVES)
+      addMethods("rt_Primitive", "computeDerivatives", cause);
+    if (needs & RTSL_NEEDS_CAMERA_RAY && context.request.engine != runtime::Engine::Classic)
+      addMethods("rt_Camera", "generateRay", cause);
+  }
+
+  const LinkContext &context;
+  llvm::MapVector<mlir::Operation *, Cause> reached;
+  std::size_t next = 0, rendering = 0;
+  std::set<std::string> slots; // unresolved slots that have been followed
+  llvm::StringSet<> added;     // roots and methods
+};
+
+/// "closestHit.Radiance" is started for a ray; "lookup" is not.
+bool isStartedByRays(llvm::StringRef method) {
+  const llvm::StringRef name = method.split('.').first;
+  return name == "shade" || name == "miss" || name == "closestHit" || name == "anyHit";
+}
+
+Item itemOf(llvm::StringRef method) {
+  return isStartedByRays(method) ? Item::States : Item::Methods;
+}
+
+/// The methods that are kept although nothing reaches them, and what they call.
+llvm::SmallPtrSet<mlir::Operation *, 16>
+functionsOfKept(const LinkContext &context,
+                const llvm::MapVector<mlir::Operation *, Cause> &reached) {
+  llvm::SmallVector<FuncOp> pending;
+  for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
+    if (const auto method = ir::attr::methodName.of(function);
+        method && !reached.contains(function) &&
+        context.request.keep.has(itemOf(method.getValue())))
+      pending.push_back(function);
+  llvm::SmallPtrSet<mlir::Operation *, 16> all(pending.begin(), pending.end());
+  while (!pending.empty())
+    pending.pop_back_val().walk([&](mlir::func::CallOp call) {
+      if (FuncOp callee = context.function(call.getCallee()); callee && all.insert(callee).second)
+        pending.push_back(callee);
+    });
+  return all;
+}
+
+bool traces(FuncOp function) {
+  return function
+      .walk([](mlir::Operation *op) {
+        const bool isTrace =
+            llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
+        return isTrace ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
+      })
+      .wasInterrupted();
+}
+
+} // namespace
+
+std::string shownName(FuncOp function) {
+  auto [owner, method] = function.getSymName().split('.');
+  if (const auto name = ir::attr::methodName.of(function)) {
+    const auto [plain, payload] = name.getValue().split('.');
+    return owner.str() + "." + plain.str() + (payload.empty() ? "" : "(" + payload.str() + ")");
+  }
+  return function.getSymName().str();
+}
+
+bool usesLights(const LinkContext &context) {
+  Reach reach(context);
+  reach.run();
+  return llvm::any_of(mlir::ModuleOp(context.ir).getOps<FuncOp>(), [&](FuncOp function) {
+    const auto isLit = [](mlir::Operation *op) {
+      auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
+      return llvm::isa<ir::IlluminanceOp>(op) || (light && light.getIndex())
+                 ? mlir::WalkResult::interrupt()
+                 : mlir::WalkResult::advance();
+    };
+    return reach.isReachedByRendering(function) && function.walk(isLit).wasInterrupted();
+  });
+}
+
+void dropUnreached(LinkContext &context) {
+  Reach reach(context);
+  const llvm::MapVector<mlir::Operation *, Cause> reached = reach.run();
+  for (auto &[name, finding] : context.dispatches)
+    if (FuncOp function = context.function(name); function && reach.isReachedByRendering(function))
+      context.findings.push_back(finding);
+  const llvm::SmallPtrSet<mlir::Operation *, 16> calledByKept = functionsOfKept(context, reached);
+  for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
+    const auto method = ir::attr::methodName.of(function);
+    const auto found = reached.find(function);
+    if (method) {
+      Finding finding;
+      finding.item = itemOf(method.getValue());
+      finding.subject = shownName(function);
+      finding.isNeeded = reach.isReachedByRendering(function);
+      if (finding.isNeeded) {
+        finding.reason = found->second.reason;
+        finding.place = found->second.place;
+      } else if (found != reached.end()) {
+        finding.reason = "runs only while the scene is built";
+        ir::attr::whileBuilding.set(function);
+      } else {
+        finding.reason = finding.item == Item::States ? "no ray of this scene starts it"
+                                                      : "nothing in this scene runs it";
+      }
+      if (!finding.place.isKnown())
+        finding.place = ir::placeOf(function.getLoc());
+      if (finding.isNeeded && context.isWithout(finding.item, finding.subject))
+        makeEmpty(function);
+      const Item item = finding.item;
+      context.findings.push_back(std::move(finding));
+      if (found == reached.end() && context.request.keep.has(item)) {
+        // A function that no entry point reaches must be one itself, unless it traces: such
+        // functions are only started by rays.
+        if (item == Item::Methods && !traces(function))
+          ir::attr::kept.set(function);
+        continue;
+      }
+    }
+    const bool mayBeCalledByKept = !context.request.keep.isEmpty() && !method;
+    if (found == reached.end() && !mayBeCalledByKept && !calledByKept.contains(function))
+      context.symbols.erase(function);
+  }
+}
+
+} // namespace rtsl::linking

@@ -1,0 +1,327 @@
+//===- RayTypes.cpp - payload types and the methods for them --------------===//
+//
+// The type of a payload is the type of its ray. The types that a scene traces get numbers, which a
+// ray carries, and for each it is determined how to search for hits:
+//
+// - no material has `closestHit` for the type: any hit will do, and the first one ends the search;
+// - some material has `anyHit`: hits may be refused. The order in which the methods run must not be
+//   visible. It is not if they do not write the payload, draw no random numbers, and do not end the
+//   search before the nearest hit where that is needed. Nor is it if each of them either refuses,
+//   or writes the same constants and ends the search, and no `closestHit` follows. In all other
+//   cases they run in the order of hits.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
+#include "codegen/link/steps/Steps.h"
+
+#include "runtime/device/ray/Abi.h"
+#include "sema/typed/Analysis.h"
+
+#include "mlir/IR/Matchers.h"
+#include "llvm/ADT/SetVector.h"
+
+#include <algorithm>
+
+namespace rtsl::linking {
+
+namespace {
+
+using mlir::func::FuncOp;
+
+/// The methods of this name that the classes of the program define for a payload.
+std::vector<FuncOp> methodsFor(const LinkContext &context, const RayType &type,
+                               const std::string &method) {
+  std::vector<FuncOp> programs;
+  for (const LinkedClass &linked : context.classes)
+    if (FuncOp program =
+            linked.isUsed ? findMethod(context, linked, method + "." + type.name()) : FuncOp())
+      programs.push_back(program);
+  return programs;
+}
+
+/// Functions and all their direct and indirect callees.
+std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, const LinkContext &context) {
+  llvm::SetVector<mlir::Operation *> reached;
+  for (FuncOp root : roots)
+    reached.insert(root);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    reached[i]->walk([&](mlir::func::CallOp call) {
+      if (auto callee = context.function(call.getCallee()))
+        reached.insert(callee);
+    });
+  std::vector<FuncOp> functions;
+  for (mlir::Operation *function : reached)
+    functions.push_back(llvm::cast<FuncOp>(function));
+  return functions;
+}
+
+//===----------------------------------------------------------------------===//
+// Visibility of the order of hits
+//===----------------------------------------------------------------------===//
+
+/// The effects of the `anyHit` methods for one type of ray.
+struct AnyHitEffects {
+  bool writes = false, reads = false; // the payload
+  bool draws = false;                 // random numbers, or has unknown effects
+  bool terminates = false;
+};
+
+void addUses(mlir::Value address, AnyHitEffects &effects) {
+  for (mlir::Operation *user : address.getUsers()) {
+    if (llvm::isa<ir::FieldOp, ir::ElementOp>(user))
+      addUses(user->getResult(0), effects);
+    else if (llvm::isa<ir::LoadOp>(user))
+      effects.reads = true;
+    else if (auto copy = llvm::dyn_cast<ir::CopyOp>(user); copy && copy.getTarget() != address)
+      effects.reads = true;
+    else
+      effects.writes = true;
+  }
+}
+
+AnyHitEffects effectsOf(const std::vector<FuncOp> &functions) {
+  AnyHitEffects effects;
+  for (FuncOp function : functions) {
+    effects.draws |= function.isExternal();
+    function.walk([&](mlir::Operation *op) {
+      if (auto payload = llvm::dyn_cast<ir::PayloadOp>(op))
+        addUses(payload, effects);
+      else if (auto answer = llvm::dyn_cast<ir::AnswerHitOp>(op))
+        effects.terminates |= answer.getAnswer() == ir::HitAnswer::Terminate;
+      else if (llvm::isa<ir::RandOp, ir::PrintOp, ir::CallMethodOp>(op))
+        effects.draws = true;
+    });
+  }
+  return effects;
+}
+
+/// "field.element..." of an address in the payload with constant indices; empty otherwise.
+std::string pathInPayload(mlir::Value address) {
+  if (auto field = address.getDefiningOp<ir::FieldOp>()) {
+    if (field.getBase().getDefiningOp<ir::PayloadOp>())
+      return field.getField().str();
+    const std::string base = pathInPayload(field.getBase());
+    return base.empty() ? base : base + "." + field.getField().str();
+  }
+  if (auto element = address.getDefiningOp<ir::ElementOp>(); element && element.constantIndex()) {
+    const std::string base = pathInPayload(element.getBase());
+    return base.empty() ? base : base + "." + std::to_string(*element.constantIndex());
+  }
+  return {};
+}
+
+using ConstantStores = std::map<std::string, mlir::Attribute>;
+
+/// Whether each path through the method ends in a refusal without stores, or ends the search after
+/// these stores of constants (all of them before the answer, in its block). The first method fills
+/// in `stores`.
+bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
+  bool isAlike = true;
+  anyHit.walk([&](ir::ReturnOp end) {
+    auto answer = llvm::dyn_cast_or_null<ir::AnswerHitOp>(end->getPrevNode());
+    isAlike &= static_cast<bool>(answer);
+  });
+  anyHit.walk([&](ir::StoreOp store) {
+    if (pathInPayload(store.getAddress()).empty())
+      return;
+    auto end = llvm::dyn_cast<ir::ReturnOp>(store->getBlock()->back());
+    auto answer =
+        end ? llvm::dyn_cast_or_null<ir::AnswerHitOp>(end->getPrevNode()) : ir::AnswerHitOp();
+    isAlike &= answer && answer.getAnswer() == ir::HitAnswer::Terminate;
+  });
+  anyHit.walk([&](ir::AnswerHitOp answer) {
+    if (answer.getAnswer() != ir::HitAnswer::Terminate)
+      return;
+    ConstantStores here;
+    for (ir::StoreOp store : answer->getBlock()->getOps<ir::StoreOp>()) {
+      const std::string path = pathInPayload(store.getAddress());
+      mlir::Attribute value;
+      if (path.empty())
+        continue;
+      isAlike &= mlir::matchPattern(store.getValue(), mlir::m_Constant(&value));
+      here[path] = value;
+    }
+    if (!stores)
+      stores = here;
+    isAlike &= here == *stores;
+  });
+  return isAlike;
+}
+
+/// Whether all writes of the payload are such stores, and every material has an `anyHit`.
+bool writesHideOrder(const LinkContext &context, const std::vector<FuncOp> &anyHits) {
+  const auto materials =
+      std::count_if(context.classes.begin(), context.classes.end(), [](const LinkedClass &linked) {
+        return linked.isUsed && linked.info->root == "rt_Material";
+      });
+  if (static_cast<std::size_t>(materials) != anyHits.size())
+    return false; // some material accepts without writing
+  std::optional<ConstantStores> stores;
+  for (FuncOp anyHit : anyHits) {
+    bool isSimple = true; // only stores of whole parts write
+    anyHit.walk([&](mlir::Operation *op) {
+      if (llvm::isa<ir::CopyOp, ir::ClearOp, mlir::func::CallOp>(op))
+        for (mlir::Value operand : op->getOperands())
+          isSimple &= !operand.getDefiningOp<ir::PayloadOp>() && pathInPayload(operand).empty();
+      if (auto element = llvm::dyn_cast<ir::ElementOp>(op))
+        isSimple &= element.constantIndex().has_value() || pathInPayload(element.getBase()).empty();
+    });
+    if (!isSimple || !endsAlike(anyHit, stores))
+      return false;
+  }
+  return true;
+}
+
+bool isOrderVisible(const LinkContext &context, const std::vector<FuncOp> &anyHits,
+                    bool hasClosestHit) {
+  const AnyHitEffects effects = effectsOf(reachedFrom(anyHits, context));
+  if (effects.draws || (effects.terminates && hasClosestHit))
+    return true;
+  if (!effects.writes)
+    return false;
+  return hasClosestHit || effects.reads || !writesHideOrder(context, anyHits);
+}
+
+//===----------------------------------------------------------------------===//
+// Numbers of types
+//===----------------------------------------------------------------------===//
+
+/// How rtsl_traverse must search for hits of rays of this type.
+std::uint32_t searchFor(LinkContext &context, const RayType &type) {
+  const bool hasClosestHit = !methodsFor(context, type, "closestHit").empty();
+  const std::vector<FuncOp> anyHits = methodsFor(context, type, "anyHit");
+  if (context.hasScene && !hasClosestHit && anyHits.empty() &&
+      methodsFor(context, type, "miss").empty())
+    if (const typed::Struct *payload = structOf(context, type))
+      context.diagnostics.report(Code::rayTypeUnanswered, payload->range, payload->name);
+  std::uint32_t how = hasClosestHit ? 0 : RTSL_FIRST_HIT;
+  if (!anyHits.empty())
+    how |= RTSL_ASK_ANY_HIT | (isOrderVisible(context, anyHits, hasClosestHit) ? RTSL_IN_ORDER : 0);
+  return how;
+}
+
+/// @rtsl_rt_Material_closestHit_payload(%object): runs the method for the ray's type, of the
+/// object's class.
+void makePayloadSlot(LinkContext &context, const std::string &base, const std::string &method) {
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
+  const mlir::Location location = builder.getUnknownLoc();
+  const mlir::Type object = ir::RefType::get(builder.getContext(), base);
+  auto create = [&](const std::string &name) {
+    builder.setInsertionPointToEnd(context.ir.getBody());
+    auto function = FuncOp::create(builder, location, name, builder.getFunctionType({object}, {}));
+    context.symbols.insert(function);
+    return function;
+  };
+  std::vector<const LinkedClass *> classes;
+  for (const LinkedClass &linked : context.classes)
+    if (linked.isUsed && linked.info->root == base)
+      classes.push_back(&linked);
+
+  std::vector<FuncOp> targets;
+  llvm::SmallVector<llvm::SmallVector<std::int32_t>> numbers;
+  for (const RayType &type : context.rayTypes) {
+    if (methodsFor(context, type, method).empty())
+      continue;
+    FuncOp target = create("dispatch." + base + "." + method + "." + type.name());
+    target.setPrivate();
+    buildDispatch(context, target, classes, method + "." + type.name());
+    targets.push_back(target);
+    numbers.push_back({static_cast<std::int32_t>(type.number)});
+  }
+
+  FuncOp slot = create("rtsl_" + base + "_" + method + "_payload");
+  mlir::Block *entry = slot.addEntryBlock();
+  builder.setInsertionPointToEnd(entry);
+  auto call = [&](mlir::OpBuilder &at, FuncOp target) {
+    mlir::func::CallOp::create(at, location, target, mlir::ValueRange(entry->getArguments()));
+    ir::ReturnOp::create(at, location, mlir::ValueRange());
+  };
+  if (targets.size() == 1 && context.rayTypes.size() == 1) {
+    call(builder, targets.front());
+  } else {
+    if (!targets.empty()) {
+      const mlir::Value number = ir::RayTypeOp::create(builder, location, builder.getI32Type());
+      auto choice = ir::SwitchOp::create(builder, location, number, numbers, std::nullopt);
+      for (auto [target, arm] : llvm::zip(targets, choice.getArms())) {
+        mlir::OpBuilder inArm = mlir::OpBuilder::atBlockEnd(&arm.front());
+        call(inArm, target);
+      }
+    }
+    ir::ReturnOp::create(builder, location, mlir::ValueRange());
+  }
+  ir::attr::exported.set(slot);
+}
+
+} // namespace
+
+/// The ray type of this payload; assigns the next number if it has none.
+static RayType &rayTypeOf(mlir::Type payload, std::vector<RayType> &types) {
+  const auto structure = llvm::cast<ir::StructType>(payload);
+  const auto known = std::find_if(types.begin(), types.end(),
+                                  [&](const RayType &type) { return type.payload == structure; });
+  if (known != types.end())
+    return *known;
+  return types.emplace_back(RayType{structure, static_cast<std::uint32_t>(types.size()) + 1, 0});
+}
+
+const typed::Struct *structOf(const LinkContext &context, const RayType &type) {
+  for (const auto &candidate : context.module.structs)
+    if (candidate->name == type.name())
+      return candidate.get();
+  return nullptr;
+}
+
+std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
+  std::vector<RayType> types;
+  auto number = [&](auto ray) {
+    const auto payload = llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee();
+    ray.setRayType(rayTypeOf(payload, types).number);
+    ray.setHow(RTSL_ASK_ANY_HIT | RTSL_IN_ORDER); // correct for any scene
+  };
+  ir.walk([&](mlir::Operation *op) {
+    if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op))
+      number(trace);
+    else if (auto spawn = llvm::dyn_cast<ir::SpawnPayloadOp>(op))
+      number(spawn);
+  });
+  return types;
+}
+
+/// Adds the types that have methods but are not traced. Only their names are used.
+static void addAnsweredTypes(LinkContext &context) {
+  for (const auto &definition : context.module.classes)
+    for (const auto &method : definition->functions) {
+      if (!typed::takesPayload(*method))
+        continue;
+      const std::string &name = method->parameters.front()->type->structure->name;
+      if (std::none_of(context.rayTypes.begin(), context.rayTypes.end(),
+                       [&](const RayType &type) { return type.name() == name; }))
+        rayTypeOf(ir::StructType::get(context.ir.getContext(), name, {}, {}), context.rayTypes);
+    }
+}
+
+void resolveRayTypes(LinkContext &context) {
+  context.rayTypes = numberRayTypes(context.ir);
+  if (!context.hasScene)
+    addAnsweredTypes(context);
+  for (RayType &type : context.rayTypes)
+    type.search = searchFor(context, type);
+  context.ir.walk([&](ir::TracePayloadOp trace) {
+    trace.setHow(context.rayTypes[*trace.getRayType() - 1].search);
+  });
+}
+
+void makePayloadSlots(LinkContext &context) {
+#define RTSL_PAYLOAD_SLOT(base, method) makePayloadSlot(context, #base, #method);
+#include "language/PayloadSlots.def"
+}
+
+std::uint32_t anyHitTypes(const LinkContext &context, const LinkedClass &material) {
+  std::uint32_t types = 0;
+  for (const RayType &type : context.rayTypes)
+    if (findMethod(context, material, "anyHit." + type.name()))
+      types |= rtslRayTypeBit(type.number);
+  return types;
+}
+
+} // namespace rtsl::linking

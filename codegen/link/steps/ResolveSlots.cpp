@@ -1,0 +1,159 @@
+//===- ResolveSlots.cpp - dispatch of methods by class --------------------===//
+//
+//   %c = rtsl.call_method "weight" on %t(%x) : !rtsl.ref<"rt_Texture">, (f32) -> f32
+// becomes a call of
+//   func.func private @dispatch.rt_Texture.weight(%object, %x) -> f32
+// which switches over the classes derived from rt_Texture that the scene uses; with one class it is
+// a direct call.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Separate.h"
+#include "codegen/link/steps/Steps.h"
+#include "sema/typed/Analysis.h"
+
+namespace rtsl::linking {
+
+namespace {
+
+/// Calls the method of one class and returns its results.
+void buildCall(mlir::OpBuilder &builder, const LinkedClass &linked, mlir::func::FuncOp target,
+               mlir::func::FuncOp function) {
+  const mlir::Location location = function.getLoc();
+  mlir::Block &entry = function.getBody().front();
+  llvm::SmallVector<mlir::Value> arguments(entry.getArguments().begin(),
+                                           entry.getArguments().end());
+  const auto exact = ir::RefType::get(builder.getContext(), linked.info->name);
+  if (arguments.front().getType() != exact)
+    arguments.front() = ir::CastRefOp::create(builder, location, exact, arguments.front());
+  auto call = mlir::func::CallOp::create(builder, location, target, arguments);
+  ir::ReturnOp::create(builder, location, call.getResults());
+}
+
+void buildZeroReturn(mlir::OpBuilder &builder, mlir::func::FuncOp function) {
+  llvm::SmallVector<mlir::Value> zeros;
+  for (mlir::Type type : function.getResultTypes())
+    zeros.push_back(ir::createZero(builder, function.getLoc(), type));
+  ir::ReturnOp::create(builder, function.getLoc(), zeros);
+}
+
+} // namespace
+
+bool derivesFrom(const typed::Class &info, llvm::StringRef base) {
+  if (info.root == base)
+    return true;
+  for (const typed::Class *at = &info; at; at = at->base)
+    if (at->name == base)
+      return true;
+  return false;
+}
+
+Finding describeDispatch(const std::string &subject,
+                         const std::vector<const LinkedClass *> &classes,
+                         const ir::SourcePlace &place, bool mayBeNone) {
+  std::string names;
+  for (const LinkedClass *linked : classes)
+    names += (names.empty() ? "`" : ", `") + linked->info->name + "`";
+  const bool isNeeded = classes.size() > 1 || mayBeNone;
+  return {Item::Dispatch, subject, isNeeded,
+          classes.size() > 1 ? "one of " + names
+          : mayBeNone        ? names + ", or no object"
+                             : "always " + names + ", called directly",
+          place};
+}
+
+mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked,
+                              const std::string &method) {
+  return context.function(linked.info->name + "." + method);
+}
+
+void makeEmpty(mlir::func::FuncOp function) {
+  function.getBody().dropAllReferences();
+  function.getBody().getBlocks().clear();
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(function.addEntryBlock());
+  buildZeroReturn(builder, function);
+}
+
+void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
+                   const std::vector<const LinkedClass *> &classes, const std::string &method,
+                   bool mayBeNone) {
+  const llvm::StringRef base =
+      llvm::cast<ir::RefType>(function.getArgumentTypes().front()).getClassName();
+  if ((classes.size() > 1 || mayBeNone) &&
+      context.isWithout(Item::Dispatch, (base + "." + method).str()))
+    return buildDispatch(context, function, {classes.front()}, method, false);
+  std::vector<std::pair<const LinkedClass *, mlir::func::FuncOp>> targets;
+  for (const LinkedClass *linked : classes)
+    if (mlir::func::FuncOp target = findMethod(context, *linked, method))
+      targets.push_back({linked, target});
+
+  mlir::Block *entry = function.addEntryBlock();
+  mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(entry);
+  const bool oneForAll = targets.size() == 1 && classes.size() == 1;
+  if (oneForAll && !mayBeNone && !context.request.keep.has(Item::Dispatch)) {
+    buildCall(builder, *targets.front().first, targets.front().second, function);
+    return;
+  }
+  ir::keepSeparateIfMany(llvm::to_vector(llvm::make_second_range(targets)));
+  if (!targets.empty()) {
+    const mlir::Value id = ir::ClassIdOp::create(builder, function.getLoc(), entry->getArgument(0));
+    llvm::SmallVector<llvm::SmallVector<std::int32_t>> values;
+    for (const auto &target : targets)
+      values.push_back({static_cast<std::int32_t>(target.first->id)});
+    auto choice = ir::SwitchOp::create(builder, function.getLoc(), id, values, std::nullopt);
+    for (auto [target, arm] : llvm::zip(targets, choice.getArms())) {
+      mlir::OpBuilder inArm = mlir::OpBuilder::atBlockEnd(&arm.front());
+      buildCall(inArm, *target.first, target.second, function);
+    }
+  }
+  buildZeroReturn(builder, function);
+}
+
+void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
+                  llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define) {
+  llvm::SmallVector<ir::CallMethodOp> calls;
+  ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
+
+  for (ir::CallMethodOp call : calls) {
+    const SlotCall slot = {mlir::cast<ir::RefType>(call.getObject().getType()).getClassName().str(),
+                           call.getMethod().str()};
+    const std::string name = dispatchPrefix.str() + slot.base + "." + slot.method;
+    llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
+    llvm::append_range(arguments, call.getArguments());
+    auto function = symbols.lookup<mlir::func::FuncOp>(name);
+    if (!function) {
+      mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(ir.getBody());
+      function = mlir::func::FuncOp::create(
+          builder, call.getLoc(), name,
+          builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
+      symbols.insert(function);
+      define(slot, function);
+    }
+    mlir::OpBuilder builder(call);
+    auto direct = mlir::func::CallOp::create(builder, call.getLoc(), function, arguments);
+    call.replaceAllUsesWith(direct.getResults());
+    call.erase();
+  }
+}
+
+void resolveSlots(LinkContext &context) {
+  // then the function does nothing and returns zero
+  const bool mayBeNone = typed::mayReferToNothing(context.module);
+  replaceSlots(context.ir, context.symbols, [&](const SlotCall &slot, mlir::func::FuncOp function) {
+    std::vector<const LinkedClass *> classes;
+    for (const LinkedClass &linked : context.classes) {
+      if (!derivesFrom(*linked.info, slot.base))
+        continue;
+      if (linked.isUsed)
+        classes.push_back(&linked);
+      if (context.hasScene && linked.hasObjects && !findMethod(context, linked, slot.method))
+        context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method,
+                                   linked.info->name);
+    }
+    if (!classes.empty())
+      context.dispatches[function.getSymName().str()] = describeDispatch(
+          slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()), mayBeNone);
+    buildDispatch(context, function, classes, slot.method, mayBeNone);
+  });
+}
+
+} // namespace rtsl::linking
