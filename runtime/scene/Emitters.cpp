@@ -1,6 +1,5 @@
 #include "runtime/scene/Emitters.h"
 
-#include "runtime/device/engines/Emitters.h"
 #include "runtime/program/ProgramHost.h"
 
 #include <algorithm>
@@ -41,10 +40,23 @@ public:
 
   /// The area of a triangle in world space.
   double areaOf(const RtslInstance &instance, std::uint32_t triangle) const {
-    const device::Vec3 twice =
-        device::doubleArea(device::verticesInWorld(launch, instance, triangle));
-    return 0.5 * std::sqrt(double(twice.x) * twice.x + double(twice.y) * twice.y +
-                           double(twice.z) * twice.z);
+    const RtslMesh &mesh = launch.meshes[instance.mesh];
+    const float *m = launch.transforms[instance.transform].linear;
+    const std::uint32_t *index = mesh.indices + 3 * std::size_t(triangle);
+    const auto edge = [&](int to, int row) {
+      double sum = 0;
+      for (int i = 0; i < 3; ++i)
+        sum += double(m[3 * i + row]) * (double(mesh.positions[3 * std::size_t(index[to]) + i]) -
+                                         double(mesh.positions[3 * std::size_t(index[0]) + i]));
+      return sum;
+    };
+    double square = 0;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      const double component = edge(1, j) * edge(2, k) - edge(1, k) * edge(2, j);
+      square += component * component;
+    }
+    return 0.5 * std::sqrt(square);
   }
 
 private:
