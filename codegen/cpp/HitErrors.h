@@ -15,7 +15,7 @@
 
 namespace rtsl::cpp {
 
-/// The functions `Class.rt_boundHitError` of a module, brought back to level 1.
+/// The functions `Class.rt_boundHitError` of a module, converted to level 1.
 struct HitErrorFunctions {
   mlir::ModuleOp ir;
 };

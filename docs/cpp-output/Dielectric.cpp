@@ -11,7 +11,7 @@ namespace {
 
 enum class Id : std::uint32_t { Dielectric = 1 };
 
-// Where a method goes on: `shade` begins, the others run when a ray is back.
+// The states: methods begin at `shade`, the others run after a ray.
 enum class Step : rtsl::Next { shade = 1, Dielectric_shadeAfterTrace1 };
 
 // Glass with the exact reflectance (Fresnel's equations for unpolarised light). Chance decides
@@ -54,7 +54,7 @@ struct Dielectric : rtsl::Material {
     return rtsl::traceThen(rt, Step::Dielectric_shadeAfterTrace1, rt.HitPoint, next);
   }
 
-  // When the ray of line 32 is back.
+  // After the ray of line 32.
   rtsl::Next shadeAfterTrace1(State &rt, const ShadeFrame &frame) const {
     rt.SampleColor = frame.attenuation * rtsl::traced(rt);
     return rtsl::done;

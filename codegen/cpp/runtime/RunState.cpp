@@ -61,11 +61,9 @@ Declarations RunState::stepNumbers() const {
   begin.pop_back();
   return {
       declare(std::move(made),
-              fmt::format("// Where a method goes on: {}{}{} begin{}, the others run when a ray "
-                          "is back{}.",
+              fmt::format("// The states: methods begin at {}{}{}, the others run after a ray{}.",
                           fmt::join(begin, ", "), begin.empty() ? "" : " and ", last,
-                          begin.empty() ? "s" : "",
-                          context.split.calledMethods.empty() ? "" : " or a call over"))};
+                          context.split.calledMethods.empty() ? "" : " or a call"))};
 }
 
 /// The method of a class with which the machine begins, for rays that carry this payload; null: it

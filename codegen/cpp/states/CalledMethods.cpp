@@ -33,10 +33,10 @@ Declarations callStructures(Context &context, const std::string &className) {
     if (!called.returned.empty())
       made.members.push_back(declare(Variable{
           {}, context.types.of(called.function->returnType), {called.returned, list("", {})}}));
-    appendApart(all,
-                declare(std::move(made),
-                        fmt::format("// What `{}` is given{}.", context.names.of(called.function),
-                                    called.returned.empty() ? "" : ", and what it returns")));
+    appendApart(
+        all, declare(std::move(made), fmt::format("// The arguments{} of `{}`.",
+                                                  called.returned.empty() ? "" : " and the result",
+                                                  context.names.of(called.function))));
   }
   return all;
 }

@@ -15,7 +15,7 @@ struct FrameField {
   const Type *type = nullptr; // null: it is not known
   unsigned neededBy = 0;      // the first line that reads it
   unsigned madeIn = 0;        // the line of what is saved
-  bool isTraced = false;      // a color that a ray brought back
+  bool isTraced = false;      // the color of a ray
   bool isReturned = false;    // what a call returned
   bool isObject = false;      // a variable that lies in the frame all the time
 };

@@ -18,7 +18,7 @@ struct MethodCall {
   Code on(const Code &object) const { return callMember(object, method, arguments); }
 };
 
-/// A state that runs when a ray is back.
+/// A state that runs after a ray.
 struct Step {
   std::string name; // its number in C++
   const typed::Class *definition = nullptr;

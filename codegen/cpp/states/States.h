@@ -1,7 +1,7 @@
 //===- States.h - methods that trace, as their states ---------------------===//
 //
 // The one part of C++ that is printed from the IR: the states of a method that was split at its
-// traces, brought back to structured control flow (codegen/passes/restructure). Their expressions
+// traces, converted to structured control flow (codegen/passes/restructure). Their expressions
 // are still the author's (codegen/lower/SourceTable.h).
 //
 //===----------------------------------------------------------------------===//

@@ -322,7 +322,7 @@ TEST_F(Messages, ClipRangesOfAMegabyte) {
   EXPECT_LT(shown().size(), 2000u);
 }
 
-TEST_F(Messages, AreColouredIfAsked) {
+TEST_F(Messages, AreColouredOnRequest) {
   diagnostics.report(Code::unknownCharacter, at("b"), "b").label(at("c"), "x");
   EXPECT_EQ(renderText(diagnostics, true),
             "\033[1ma.rtsl:1:10: \033[0m\033[1;31merror[E0103]\033[0m\033[1m: unknown character "

@@ -160,7 +160,7 @@ TEST(Preprocessor, ShowsAWordOverTwoLines) {
                             "\n");
 }
 
-TEST(Preprocessor, SaysOnceWhatAMacroMakesTwice) {
+TEST(Preprocessor, ReportsOnceWhatAMacroExpandsTwice) {
   const Preprocessed source("#define TWICE(x) float a = x; float b = x;\nTWICE(1.0 2.0)\n");
   EXPECT_EQ(source.codes(), "E0111");
 }
@@ -392,7 +392,7 @@ TEST(Preprocessor, ReadsLongLinesAndLongTexts) {
 }
 
 // Every position of the expanded text has an origin, and verbatim pieces say what stands there.
-TEST(Preprocessor, KnowsWhereEveryByteIsFrom) {
+TEST(Preprocessor, MapsEveryByteToItsSource) {
   const Preprocessed source("#include \"a.rtsl\"\n#define F(x, y) x##y + #x y\nfloat g = F(one, "
                             "two(F(3, 4)));\\\n int h;\n#if 0\n#else\n"
                             "int k = __LINE__;\n#endif\n",

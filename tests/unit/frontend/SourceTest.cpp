@@ -57,7 +57,7 @@ TEST(Source, RangesAreClampedToTheText) {
   EXPECT_EQ(sources.text({file, 50, 60}), "");
 }
 
-TEST(Source, AMissingFileSaysWhy) {
+TEST(Source, AMissingFileHasAReason) {
   SourceManager sources;
   std::string whyNot;
   EXPECT_FALSE(sources.addFile("/nonexistent/a.rtsl", whyNot));

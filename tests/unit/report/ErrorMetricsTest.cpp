@@ -19,7 +19,7 @@ Image pixels(std::vector<float> values) {
 
 } // namespace
 
-TEST(ErrorMetrics, AreWhatTheirDefinitionsSay) {
+TEST(ErrorMetrics, MatchTheirDefinitions) {
   const ErrorMetrics metrics =
       report::measureError(pixels({1, 2, 3, 0, 0, 0}), pixels({1, 2, 4, 0, 0.5, 0}));
   EXPECT_DOUBLE_EQ(metrics.rmse, std::sqrt((1 + 0.25) / 6));
@@ -46,7 +46,7 @@ TEST(ErrorMetrics, StayExactForHugeAndTinyValues) {
   EXPECT_NEAR(metrics.rmse / (1e30 / std::sqrt(3.0)), 1, 1e-6);
 }
 
-TEST(ErrorMetrics, SayThatNothingCouldBeCompared) {
+TEST(ErrorMetrics, ReportThatNothingCouldBeCompared) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const ErrorMetrics metrics = report::measureError(pixels({nan, 1, 1}), pixels({1, 1, 1}));
   EXPECT_EQ(metrics.pixels, 0u);

@@ -128,7 +128,7 @@ TEST(HeavyTail, LightTailsHaveTheErrorThatIsClaimed) {
 }
 
 // Grubbs' table has 2.274 for 8 values and 1 % on one side; its squares by 7 of sums.
-TEST(HeavyTail, KnowsWhatANormalDistributionDoes) {
+TEST(HeavyTail, MatchesANormalDistribution) {
   EXPECT_EQ(normalMaximumShare(2), 1);
   EXPECT_GT(normalMaximumShare(8), 2.274 * 2.274 / 7);
   EXPECT_LT(normalMaximumShare(8), 7.0 / 8);

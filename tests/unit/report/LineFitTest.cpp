@@ -110,7 +110,7 @@ TEST(LineFit, FindsABend) {
   EXPECT_EQ(bends([](double x) { return -x; }).lackOfFit <= 1, true);
 }
 
-TEST(LineFit, SaysNothingOfTooFewPoints) {
+TEST(LineFit, HasNoResultForTooFewPoints) {
   EXPECT_EQ(fitLine({}).points, 0u);
   EXPECT_EQ(fitLine({{0}, {{1, 2}}, {{1, 2}}}).points, 0u) << "one level";
   EXPECT_EQ(fitLine({{0, 1}, {{1}, {2}}, {{1}, {2}}}).points, 0u) << "one round";

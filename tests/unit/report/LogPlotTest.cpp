@@ -93,7 +93,7 @@ TEST(LogPlot, EveryAxisHasTicksWithTexts) {
   }
 }
 
-TEST(LogPlot, SaysThatThereIsNothing) {
+TEST(LogPlot, ReportsThatThereAreNoPoints) {
   EXPECT_NE(drawLogPlot({}).find("no error above 0 was measured"), std::string::npos);
 }
 

@@ -233,7 +233,7 @@ TEST_F(Studies, ReadTimesOffTheMeasuredPoints) {
               1e-3 * secondsPerSample);
 }
 
-TEST_F(Studies, SayThatThereIsNoVariance) {
+TEST_F(Studies, ReportThatThereIsNoVariance) {
   const Summary summary = study({noisy("constant", 0)});
   EXPECT_EQ(summary.subjects[0].relMseOverSeconds.points, 0u);
   EXPECT_NE(problems(summary).find("zero variance"), std::string::npos);
@@ -298,7 +298,7 @@ TEST_F(Studies, MeasureTimesWithoutAUsableReference) {
   EXPECT_NE(readReference(path, width + 1, height, 3).problem.find("25x16"), std::string::npos);
 }
 
-TEST_F(Studies, SayThatTheReferenceIsBlack) {
+TEST_F(Studies, ReportThatTheReferenceIsBlack) {
   reference.image = Image(width, height, 3);
   EXPECT_NE(problems(study({noisy("strict", 0.2)})).find("the reference is black"),
             std::string::npos);
@@ -313,7 +313,7 @@ TEST_F(Studies, LeaveOutWhatTheReferenceCannotTell) {
   EXPECT_NE(problems(summary).find("larger `--budget`"), std::string::npos);
 }
 
-TEST_F(Studies, SayOnceWhatIsTrueOfAll) {
+TEST_F(Studies, ReportOnceWhatIsTrueOfAll) {
   const Summary both = study({noisy("first", 0), noisy("second", 0)});
   EXPECT_NE(problems(both).find("all configurations: all runs gave the same picture"),
             std::string::npos)

@@ -140,7 +140,7 @@ std::uint32_t expected(RtslState state, float distance, Asked &inOrder, RtslStat
 
 } // namespace
 
-TEST(AnyHit, IsAskedInOrderAndOnceAndTheFirstThatAcceptsCounts) {
+TEST(AnyHit, IsQueriedOnceInOrderUntilAHitIsAccepted) {
   std::size_t longest = 0;
   unsigned hits = 0, misses = 0;
   for (bool allAsk : {false, true}) {
@@ -183,7 +183,7 @@ TEST(AnyHit, IsAskedInOrderAndOnceAndTheFirstThatAcceptsCounts) {
   EXPECT_GT(misses, 500u);
 }
 
-TEST(AnyHit, AskedAsFoundTheNearestThatIsNotRefusedCounts) {
+TEST(AnyHit, InAnyOrderTheNearestAcceptedHitCounts) {
   Scene scene = layers(5, false);
   HostScene host(scene, true, 1);
   std::mt19937 random(6);

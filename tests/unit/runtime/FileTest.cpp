@@ -94,7 +94,7 @@ TEST_F(AtomicFile, FollowsLinks) {
   EXPECT_TRUE(fs::is_symlink(path("link.txt")));
 }
 
-TEST_F(AtomicFile, SaysWhyItCannotWrite) {
+TEST_F(AtomicFile, ReportsWhyItCannotWrite) {
   EXPECT_EQ(errorOf([&] { writeFileAtomically(path("no/such/a.png"), "x"); }),
             "fileUnwritable: cannot write `" + path("no/such/a.png") +
                 "`: No such file or directory");

@@ -108,7 +108,7 @@ TEST(Package, EveryOtherLengthIsFound) {
   EXPECT_NE(refusal(whole + '\0'), "");
 }
 
-TEST(Package, RefusalsSayWhy) {
+TEST(Package, RejectionsHaveReasons) {
   const std::string whole = serialize(smallPackage());
   EXPECT_EQ(refusal("an ordinary text that has nothing to do with it"),
             "`x.rtslpkg` is not a package of rtslc");

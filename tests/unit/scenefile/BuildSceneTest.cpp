@@ -37,7 +37,7 @@ std::string everything(const std::string &members) {
 
 } // namespace
 
-TEST(BuildScene, PutsValuesWhereTheProgramWantsThem) {
+TEST(BuildScene, PutsValuesAtTheProgramsOffsets) {
   Scene scene =
       build("\"materials\": {\"red\": {\"class\": \"Lambert\", \"albedo\": [1, 0.5, 0.25]}, "
             "\"dull\": {\"class\": \"Lambert\"}},"

@@ -20,7 +20,7 @@ std::string where(const JsonValue &value) {
 
 } // namespace
 
-TEST(JsonValue, EveryValueKnowsItsPlace) {
+TEST(JsonValue, EveryValueHasItsPosition) {
   JsonValue root = parseJson(
       "{\n  \"name\": \"a\\\"b\",\n\t\"list\": [1, -2.5e3,\r\n    true,null , {\"x\":{}}]\n}",
       "s.json");
@@ -99,7 +99,7 @@ TEST(Override, ReplacesAddsAndAppends) {
   EXPECT_TRUE(root.find("textures")->find("checks")->find("on")->boolean);
 }
 
-TEST(Override, SaysWhatIsWrong) {
+TEST(Override, ReportsWhatIsWrong) {
   auto error = [](const std::string &text) {
     JsonValue root = parseJson(
         "{\"textures\": {\"checks\": {\"scale\": 4}}, \"objects\": [{\"mesh\": \"a.ply\"}]}",

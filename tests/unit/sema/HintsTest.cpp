@@ -215,7 +215,7 @@ TEST(Hints, ExpectedMethodsAreShown) {
   EXPECT_EQ(hints("class L : rt_Light { void shade() { } };"), "an rt_Light has `illumination`\n");
 }
 
-TEST(Hints, StateSaysWhoSeesIt) {
+TEST(Hints, StateListsTheClassesThatReadIt) {
   EXPECT_EQ(hints("class C : rt_Camera; void generateRay() { rt_RayOrigin = "
                   "vec3(luminance(rt_LightColor)); }"),
             "`rt_LightColor` belongs to rt_Material and rt_Light\n");

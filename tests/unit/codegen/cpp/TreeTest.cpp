@@ -45,7 +45,7 @@ TEST(TreeExpressions, HaveTheParenthesesThatTheirOperatorsNeed) {
   EXPECT_EQ(text(member(unary(UnaryOperator::Dereference, a), "x")), "(*a).x");
 }
 
-TEST(TreeExpressions, HaveParenthesesWhereReadersWantThem) {
+TEST(TreeExpressions, HaveParenthesesWhereTheyHelpReaders) {
   EXPECT_EQ(text(either(both(a, b), c)), "(a && b) || c");
   EXPECT_EQ(text(both(both(a, b), c)), "a && b && c");
   EXPECT_EQ(text(both(a, both(b, c))), "a && (b && c)");
@@ -73,7 +73,7 @@ TEST(TreeExpressions, KeepTheAuthorsParenthesesOnce) {
   EXPECT_EQ(text(parentheses(parentheses(sum(a, b)))), "(a + b)");
 }
 
-TEST(TreeExpressions, AreEqualByWhatTheySay) {
+TEST(TreeExpressions, AreComparedByStructure) {
   EXPECT_TRUE(same(sum(a, b), parentheses(sum(name("a"), parentheses(name("b"))))));
   EXPECT_FALSE(same(sum(a, b), sum(b, a)));
   EXPECT_FALSE(same(sum(a, b), binary(Operator::Subtract, a, b)));
@@ -83,7 +83,7 @@ TEST(TreeExpressions, AreEqualByWhatTheySay) {
   EXPECT_FALSE(same(lambda({}), lambda({}))); // their effects are unknown
 }
 
-TEST(TreeExpressions, KnowWhatTheyMention) {
+TEST(TreeExpressions, ListTheNamesThatTheyMention) {
   const Code code = call("f", {member(a, "x"), lambda({returning(b)})});
   EXPECT_TRUE(mentions(code, "a"));
   EXPECT_TRUE(mentions(code, "b"));
@@ -93,7 +93,7 @@ TEST(TreeExpressions, KnowWhatTheyMention) {
   EXPECT_FALSE(contains(code, member(a, "y")));
 }
 
-TEST(TreeExpressions, KnowZerosAndOpposites) {
+TEST(TreeExpressions, DetectZerosAndOpposites) {
   for (const Code &zero : {integer(0), literal("0.0f", true), boolean(false), list("", {}),
                            construct("glm::vec3", {literal("0.0f", true)})})
     EXPECT_TRUE(isZero(zero)) << print(zero);
@@ -169,7 +169,7 @@ TEST(TreeStatements, PrintLoopsAndSwitches) {
             "switch (a) {\ncase 1:\ncase -2: {\nbreak;\n}\ndefault:\nreturn b;\n}\n");
 }
 
-TEST(TreeStatements, SayWhatTheyAssign) {
+TEST(TreeStatements, ListWhatTheyAssign) {
   EXPECT_EQ(assignedName(statement(assign(a, b))), "a");
   EXPECT_EQ(assignedName(statement(assign(member(a, "x"), b))), "");
   EXPECT_EQ(assignedName(statement(a)), "");

@@ -142,7 +142,7 @@ TEST(Jit, ArithmeticIsStrict) {
   EXPECT_NE(std::fma(a, a, -(1.f + 0x1p-11f)), 0.f);
 }
 
-TEST(Jit, RecordsHoldMembersAsTheLayoutSays) {
+TEST(Jit, RecordsHoldMembersAtTheOffsetsOfTheLayout) {
   Program program(R"(
     rtsl.class @A root "rt_Primitive" {
       rtsl.member_decl @flip : i1 access "public"

@@ -174,7 +174,7 @@ class Mesh : rt_Primitive {
   EXPECT_EQ(lowered.count("Mesh.intersect", "rtsl.if"), 2u) << "a buffer may be empty";
 }
 
-TEST(Classes, OnlyThoseAskedFor) {
+TEST(Classes, OnlyThoseRequested) {
   Options options;
   options.classes = {"A"};
   Lowered lowered(R"(

@@ -50,7 +50,7 @@ TEST(ColorBasis, ProjectsBackToWhatItWasMadeOf) {
 }
 
 /// docs/language.md, `color.bands`, once more.
-TEST(ColorBasis, IsWhatTheLanguageSays) {
+TEST(ColorBasis, MatchesTheLanguageDefinition) {
   const auto step = [](double a, double b, double x) {
     const double t = std::min(std::max((x - a) / (b - a), 0.0), 1.0);
     return 3 * t * t - 2 * t * t * t;

@@ -122,7 +122,7 @@ TEST(MinimumCut, AmongEqualsItRecomputesLeast) {
   EXPECT_TRUE(choice.saved[1]);
 }
 
-TEST(MinimumCut, SaysWhenNothingHelps) {
+TEST(MinimumCut, FailsIfThereIsNoFiniteCut) {
   std::vector<ValueNode> values(1);
   values[0].needed = true;
   EXPECT_FALSE(chooseSaved(values).feasible);
