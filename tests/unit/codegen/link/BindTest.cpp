@@ -177,7 +177,7 @@ TEST(Bind, WhatIsKeptIsNotInTheTables) {
 TEST(Bind, WhatMakesObjectsAndWhatRendersArePartedFromEachOther) {
   Linked linked(lenses, {{"Lens", "Ball"}, {}});
   const mlir::OwningOpRef<mlir::ModuleOp> constructors = linked.ir->clone();
-  keepConstructors(*constructors);
+  keepConstructors(*constructors, /*withEmission=*/false);
   Records records;
   records.add("Lens", {1.25f, 0, 0, 1, 0});
   bindScene(*linked.ir, records.facts);
