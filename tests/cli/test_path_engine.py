@@ -200,6 +200,45 @@ class ClosedForms(PathCase):
         self.assert_gray(sum(0.25 * 0.5 ** i for i in range(6)), 1e-5, "-Wno-all")
 
 
+class BadInput(PathCase):
+    def test_lamps_without_area(self):
+        """They light nothing, and spoil nothing."""
+        lamp = {"class": "Emitter", "radiance": 5, "isTwoSided": True}
+        flat = {"class": "Parallelogram", "constructor": [[-1, 3, -1], [2, 0, 0], [4, 0, 0]]}
+        self.write("flat.obj", "v 0 3 0\nv 1 3 0\nv 2 3 0\nf 1 2 3\n")
+        self.scene([(FLOOR, {"class": "Own"}), (flat, lamp), ({"class": "Disk", "constructor": [[0, 3, 0], [0, 1, 0], 0, 0]}, lamp),
+                    ({"class": "Sphere", "center": [0, 3, 0], "radius": 0}, lamp)], camera="Under", background=1.0,
+                   nodes={"sliver": {"mesh": "flat.obj", "material": lamp}}, root="sliver", spp=16)
+        out, _ = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--json")
+        self.assertEqual(json.loads(out)["samplesNotFinite"], 0)
+        self.assert_gray(0.5, 0.01)
+
+    def test_lamps_that_are_too_bright(self):
+        """Infinite power chooses no lamp; the samples that meet it are left out, and counted."""
+        self.scene([(FLOOR, {"class": "Own"}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": "Own", "glow": 3e38})],
+                   camera="Under", background=1.0, spp=64)
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-all")
+        for component in self.mean("-Wno-all"):
+            self.assertTrue(math.isfinite(component))
+
+    def test_a_bsdf_that_is_no_number(self):
+        """The samples are left out, with a warning that names the line."""
+        text = SHADERS + """
+class Broken : Own {
+  public float zero = 0.0;
+  void BSDF() {
+    rt_BSDFValue = color(zero / zero);
+  }
+};
+"""
+        self.write("shaders.rtsl", text)
+        line = 1 + text.split("\n").index("    rt_BSDFValue = color(zero / zero);")
+        self.scene([(FLOOR, {"class": "Broken"})], camera="Under", lights=[{"class": "PointLight", "position": [0, 3, 0]}], spp=1, size=(4, 4))
+        out, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--json")
+        self.assertEqual(json.loads(out)["samplesNotFinite"], 16)
+        self.assertIn(f"shaders.rtsl:{line}:", error)
+
+
 class Views(PathCase):
     def test_what_they_show(self):
         """Of a ball of radius 2 around the origin, from the origin and from a point above a floor."""
