@@ -39,7 +39,8 @@ class Memory(Case):
         small = ("--size", "16x16", "--spp", "1", "--threads", "1")
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *small)
-        limits = [*range(64, 400, 24), 450, 500, 600, 800, 1200] # with less the loader itself may crash
+        # With less, the loader or the start of a library may crash.
+        limits = [*range(88, 400, 24), 450, 500, 600, 800, 1200]
         rows = [(RTSLC, "check", "Glass.rtsl"), (RTSLC, "compile", "Glass.rtsl", "--emit=llvm"), (RTSLC, "check", "scene.json"),
                 (RTSLC, "render", "scene.json", "-o", "b.exr", "-q", *small), (RTSLC, "compare", "a.exr", "a.exr"),
                 (RTSL_RUN, "x.rtslpkg", "-o", "b.exr", "-q", "--target=host", *small)]

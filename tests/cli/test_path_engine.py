@@ -179,7 +179,7 @@ class ClosedForms(PathCase):
         self.scene(objects, spp=128)
         both = self.mean()
         source = (pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl").read_text()
-        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace("share(path.density, rt_PDF)", "1.0")
+        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace("pathShare(path.density, rt_PDF)", "1.0")
         self.assertEqual(len(plain.split("if (false)")), 2)
         self.write("PathTracer.rtsl", plain)
         self.scene(objects, spp=4096, rayGeneration={"class": "PathTracer", "bounces": 64})
@@ -193,6 +193,22 @@ class ClosedForms(PathCase):
         lights = [{"class": "PointLight", "position": [0, 1 + i, 0], "intensity": (1 + i) ** 2} for i in range(10)]
         self.scene([(FLOOR, {"class": "Own", "albedo": 1})], camera="Down", lights=lights, depth=1, spp=256)
         self.assert_gray(10.0, 0.01)
+
+    def test_other_normals_as_in_the_classic_engine(self):
+        """What lights send from a surface whose normal a texture leans, and through a cutout."""
+        lights = [{"class": "PointLight", "position": [2, 3, 1], "intensity": 9}, {"class": "DistantLight", "direction": [-1, 1, 0.5]}]
+        clay = {"class": "Lambert", "reflectance": 0.5}
+        for material in ({"class": "NormalMap", "material": clay, "slopeU": {"class": "Solid", "value": 0.6}, "slopeV": {"class": "Solid", "value": -0.3}},
+                         {"class": "BumpMap", "material": clay, "height": {"class": "Noise", "scale": 0.7}, "scale": 0.3},
+                         {"class": "OrenNayar", "reflectance": 0.5, "sigma": 0.5}, {"class": "Ward"}):
+            with self.subTest(material=material):
+                self.scene([(FLOOR, material)], camera="Under", depth=1, lights=lights, spp=64)
+                scene = json.loads((self.folder / "scene.json").read_text())
+                scene["import"].append("std.textures")
+                self.write("scene.json", json.dumps(scene))
+                path, classic = self.mean(), self.mean("--set", "render.engine=classic")
+                for one, other in zip(path, classic):
+                    self.assertAlmostEqual(one, other, delta=2e-4 * other)
 
     def test_only_shade(self):
         """Its color counts, and its own rays are answered by `shade`."""

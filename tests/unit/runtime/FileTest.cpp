@@ -174,7 +174,7 @@ TEST_F(Pictures, GreyAndSpectralColors) {
 
 TEST_F(Pictures, BadFiles) {
   EXPECT_EQ(errorOf([&] { checkWritable(path("a.jpg")); }),
-            "unsupportedFormat: cannot tell the format of `" + path("a.jpg") +
+            "unsupportedFormat: cannot determine the format of `" + path("a.jpg") +
                 "`: a picture's name ends in `.png` or `.exr`");
   EXPECT_EQ(errorOf([&] { checkWritable(path("png")); }).substr(0, 17), "unsupportedFormat");
   EXPECT_EQ(errorOf([&] { readImage(put("junk.png", "junk")); }).substr(0, 8), "badImage");

@@ -100,9 +100,9 @@ TEST(SceneFile, WrongTypesAndRanges) {
             "dir/s.json:2:19+3: wrongType: `spp` must be an integer, not 1.5");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"size\": [4]}")),
             "dir/s.json:2:20+1: wrongType: `size` takes 2 numbers, not 1");
-  EXPECT_EQ(parseError(withCamera("\"render\": {\"engine\": \"path\"}")),
-            "dir/s.json:2:23+4: notSupported: there is no engine `path`, only `classic` "
-            "and `programs`");
+  EXPECT_EQ(parseError(withCamera("\"render\": {\"engine\": \"bdpt\"}")),
+            "dir/s.json:2:23+4: notSupported: there is no engine `bdpt`; there are `classic`, "
+            "`programs`, `path`, `occlusion`, `normals`, `depth`, `id`, `albedo`");
   EXPECT_EQ(parseError(withCamera("\"ambient\": \"red\"")),
             "dir/s.json:2:13+3: wrongType: `ambient` is a color, not a string");
   EXPECT_EQ(

@@ -59,7 +59,11 @@ public:
     input.module = module.get();
     input.scene = &changed;
     input.makeObjects = makeObjects();
-    return emit(stage("ptx"), input, compile, unheard);
+    try {
+      return emit(stage("ptx"), input, compile, unheard);
+    } catch (const Error &) { // without the item, the objects of the scene cannot be made
+      return std::nullopt;
+    }
   }
 
   LinkRequest request;
@@ -101,6 +105,14 @@ std::vector<std::string> examples() {
   return files;
 }
 
+/// A method that others call, which the engine of a library may do for nothing: a lamp's BSDF is
+/// called, and is zero.
+bool isCalledByLibrary(const Finding &finding) {
+  return finding.item == Item::Methods &&
+         finding.place.file.find("/library/std/") != std::string::npos &&
+         finding.reason.find("called by") == 0;
+}
+
 class Truth : public testing::TestWithParam<std::string> {};
 
 } // namespace
@@ -111,7 +123,7 @@ TEST_P(Truth, WhatIsNeededChangesTheProgramAndWhatIsLeftOutDoesNot) {
   ASSERT_TRUE(whole);
   std::vector<Finding> needed, leftOut;
   for (const Finding &finding : scene.findings())
-    if (!isExempt(finding))
+    if (!isExempt(finding) && !(finding.isNeeded && isCalledByLibrary(finding)))
       (finding.isNeeded ? needed : leftOut).push_back(finding);
   EXPECT_GE(needed.size(), 5u);
   EXPECT_GE(leftOut.size(), 5u);
