@@ -132,6 +132,25 @@ class ClosedForms(PathCase):
                 self.scene([(FLOOR, material)], camera="Down", background=1.0)
                 self.assert_gray(1.0, 0.002)
 
+    def test_materials_that_lose_nothing(self):
+        """A ball of them cannot be told from a sky of 1; those of metal and lacquer lose some light, and gain none."""
+        white = {"class": "Lambert", "reflectance": 1}
+        mirror = {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0}
+        lossless = [{"class": "Dielectric"}, {"class": "ThinGlass"}, {"class": "Cutout", "material": white, "opacity": 0.4},
+                    {"class": "Cutout", "material": mirror, "opacity": 0.7}, {"class": "MixMaterial", "first": white, "second": mirror},
+                    {"class": "MixMaterial", "first": {"class": "Dielectric"}, "second": white, "amount": 0.3},
+                    {"class": "TwoSided", "front": white, "back": mirror}]
+        lossy = [{"class": "Gold", "alpha": 0.3}, {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0.5}, {"class": "Plastic", "reflectance": 1},
+                 {"class": "Velvet"}, {"class": "Ward"}, {"class": "Principled", "baseColor": 1}, {"class": "OrenNayar", "reflectance": 1}]
+        for material in lossless + lossy:
+            with self.subTest(material=material):
+                self.scene([({"class": "Sphere", "center": [0.1, 0.2, 5.3], "radius": 2}, material)], background=1.0, depth=200, spp=64)
+                if material in lossless:
+                    self.assert_gray(1.0, 0.005)
+                else:
+                    for component in self.mean():
+                        self.assertTrue(0.6 < component < 1.01, component)
+
     def test_a_point_light(self):
         """Irradiance intensity * pi / h^2 on a floor below it, by the convention of LightColor."""
         self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Down",
