@@ -346,6 +346,16 @@ class Paths(PathCase):
         self.scene([(BALL, {"class": "Shines"})], spp=1, rayGeneration={"class": "Other"})
         self.assert_gray(0.75, 1e-6, "--set", 'import=["std.primitives", "shaders.rtsl", "other.rtsl"]')
 
+    def test_options_of_the_command_line(self):
+        """`--engine` and `--depth` do what the scene's keys do."""
+        self.scene([(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})], depth=9, spp=4)
+        for bounces in (0, 1):
+            self.assert_gray(sum(0.5 ** i for i in range(bounces + 1)), 1e-5, "--depth", bounces)
+        _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "--depth", "1")
+        self.assertEqual(error, "")
+        self.assert_gray(0.5, 0.02, "--engine", "albedo", "--spp", "256")
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "b.exr", "--engine", "fast"), "E0808", "there is no engine `fast`")
+
     def test_a_camera_is_needed(self):
         self.scene([(BALL, {"class": "Shines"})])
         scene = json.loads((self.folder / "scene.json").read_text())

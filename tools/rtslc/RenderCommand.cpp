@@ -36,6 +36,7 @@ struct RenderCommandOptions {
   std::string scene;
   std::string output;
   std::vector<std::string> overrides;
+  std::string engine; // empty: the scene's
   std::optional<std::uint32_t> samples, depth, seed;
   std::uint32_t threads = 0;
   std::optional<PictureSize> size;
@@ -47,6 +48,16 @@ struct RenderCommandOptions {
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
 };
+
+/// What the command line changes in the scene: `--set`, and options that decide what is compiled.
+std::vector<std::string> overridesOf(const RenderCommandOptions &options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.engine.empty())
+    overrides.push_back("render.engine=" + options.engine);
+  if (options.depth)
+    overrides.push_back(fmt::format("render.depth={}", *options.depth));
+  return overrides;
+}
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -236,7 +247,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   runtime::checkWritable(options.output, options.format);
   checkOutputs(options.output, options.common.dependencies, {options.scene});
   const scene::SceneDescription description =
-      readScene(options.scene, options.overrides, messages, "render");
+      readScene(options.scene, overridesOf(options), messages, "render");
 
   const std::unique_ptr<RenderTarget> target =
       makeRenderTarget(options.target, options.hasGpuArchitecture);
@@ -346,6 +357,10 @@ void addRenderCommand(CLI::App &app, Action &action) {
            "threads; default: all cores");
   addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
            "limit of nested `trace` calls; 0: camera rays only");
+  command
+      ->add_option("--engine", options->engine,
+                   "classic, path, programs; or a view: normals, depth, id, albedo, occlusion")
+      ->type_name("NAME");
   addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");
   addSetOption(*command, options->overrides);
   addChoice(*command, "--traversal", options->traversal,
@@ -371,7 +386,8 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer(
-      "example:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080");
+      "examples:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080\n"
+      "  rtslc render examples/cornell/room.json -o normals.png --engine normals");
   command->callback([options, command, &action] {
     for (const auto &[name, isGiven] :
          {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
