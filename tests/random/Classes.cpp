@@ -286,6 +286,10 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   }
   plan.methods.insert(method);
   statements(*body, some(statementCount), nesting());
+  if (model.abilities.has(Ability::CallSampling))
+    for (const char *own : {"sampleBSDF", "BSDF", "evaluatePDF", "emission"})
+      if (plan.methods.count(own) && chance(40))
+        body->children.push_back(makeNode(Role::Statement, own + std::string("();")));
   hashAll(*body, first);
   for (const Variable &variable : state)
     if (variable.writable)
@@ -507,6 +511,8 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
     addFunction(*plan, *members, chance(60), chance(60) ? traces / 2 : 0);
   if (!base && !payloads.empty() && likely(60))
     addFunction(*plan, *members, chance(60), 0, /*answers=*/true);
+  if (!base || chance(40)) // what `shade` and `closestHit` may call
+    addBsdf(*plan, *members);
   if (!base || chance(60)) {
     std::vector<Variable> attributesOfHit = plan->scratch;
     for (Variable &attribute : attributesOfHit)
@@ -528,8 +534,6 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
         addPayloadMethod(*plan, *members, "anyHit", payload, attributesOfHit, rules);
     }
   }
-  if (!base || chance(40))
-    addBsdf(*plan, *members);
   program.materials.push_back(plan->name);
   if (plan->scratch.empty())
     program.meshMaterials.push_back(plan->name);
