@@ -48,14 +48,21 @@ std::vector<std::string> entries(const runtime::Program &program, const CompileO
 #include "language/Slots.def"
 #define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
 #include "language/SamplingSlots.def"
-  if (program.needs & RTSL_NEEDS_EMITTERS)
-    names.push_back("rtsl_emitted_power");
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
     names.push_back(intersectSymbol(info.name));
   }
   return names;
+}
+
+constexpr const char *emittedPowerSymbol = "rtsl_emitted_power";
+
+/// Adds the function that looks for surfaces that shine. The program that makes the objects of a
+/// scene has it; one that is bound to the scene renders, and does not look again.
+void addEmittedPower(const runtime::Program &program, std::vector<std::string> &names) {
+  if (program.needs & RTSL_NEEDS_EMITTERS)
+    names.push_back(emittedPowerSymbol);
 }
 
 template <typename Function>
@@ -85,8 +92,7 @@ void fillEntries(runtime::Program &program, const codegen::Jit &jit,
 #define RTSL_SAMPLING_SLOT(base, method)                                                           \
   find(jit, "rtsl_" #base "_" #method, program.slots.base##_##method);
 #include "language/SamplingSlots.def"
-  if (program.needs & RTSL_NEEDS_EMITTERS)
-    find(jit, "rtsl_emitted_power", program.emittedPower);
+  find(jit, emittedPowerSymbol, program.emittedPower);
   for (runtime::ClassInfo &info : program.classes) {
     find(jit, initializeSymbol(info.name), info.initialize);
     find(jit, constructSymbol(info.name), info.construct);
@@ -215,8 +221,7 @@ constexpr std::size_t manyClasses = 100;
 void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
                          runtime::Program &program) {
   std::vector<std::string> names = {"rtsl_rt_Primitive_computeBounds"};
-  if (program.needs & RTSL_NEEDS_EMITTERS)
-    names.push_back("rtsl_emitted_power");
+  addEmittedPower(program, names);
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
@@ -253,10 +258,13 @@ static void compileLinked(Compilation &compilation) {
     symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
     symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
   }
+  std::vector<std::string> exports = entries(program, options);
+  if (!compilation.isBound())
+    addEmittedPower(program, exports);
   const std::vector<std::string_view> whole = {runtime::deviceBitcode()};
   PartCompiler compiler(*compilation.ir, options,
-                        isMegakernel ? megakernelCode(/*forGpu=*/false) : whole,
-                        entries(program, options), program);
+                        isMegakernel ? megakernelCode(/*forGpu=*/false) : whole, std::move(exports),
+                        program);
   load(compiler.run(), std::move(symbols), options, program);
 }
 

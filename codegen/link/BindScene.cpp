@@ -181,9 +181,7 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
   Finding loops = {Item::Lights, "illuminance", false, "no shader uses lights", {}};
   Finding ambient = {Item::Lights, "ambient light", false, "no shader reads it", {}};
   ir.walk([&](mlir::Operation *op) {
-    auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
-    if ((llvm::isa<ir::IlluminanceOp>(op) || (light && light.getIndex())) &&
-        !loops.place.isKnown()) {
+    if (linking::isLitByLights(op) && !loops.place.isKnown()) {
       loops.isNeeded = scene.lightCount != 0;
       loops.reason = scene.lightCount == 0
                          ? "the scene has no lights: the loop is removed"

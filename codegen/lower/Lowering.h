@@ -32,9 +32,9 @@ using Parts = llvm::SmallVector<Value, 4>;
 
 /// One function to be lowered. A method is lowered once for each class whose objects run it, so
 /// that its calls on the same object are known. `inIntersect`: for a call from `intersect`, where
-/// scratch members are variables. `isHidden`: a definition that code of the
-/// object calls, `Base::function()` or `shade()`; it is an ordinary function even if the engine calls
-/// one of the same name.
+/// scratch members are variables. `isHidden`: a definition that code of the object calls,
+/// `Base::function()` or `shade()`; it is an ordinary function even if the engine calls one of the
+/// same name.
 struct FunctionKey {
   const typed::Function *function = nullptr;
   const typed::Class *concrete = nullptr;

@@ -2,9 +2,7 @@
 
 #include "runtime/program/ProgramHost.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <utility>
 
@@ -15,68 +13,30 @@ namespace {
 /// Points at which an instance is looked at.
 constexpr std::uint32_t points = 64;
 
+/// What instances of a scene send out, as far as it is seen; 0: nothing.
 class Finder {
 public:
-  Finder(const Program &program, const RtslLaunch &launch) : program(program), launch(launch) {}
+  Finder(const Objects &objects, const RtslLaunch &launch) : objects(objects), launch(launch) {}
 
-  /// The power of an instance; 0: it does not shine, as far as it was seen.
-  double powerOf(std::uint32_t number) {
+  /// The power of a primitive, or the mean radiance of a mesh.
+  double emissionOf(std::uint32_t number) {
     const RtslInstance &instance = launch.instances[number];
-    const ClassInfo *material = classOf(instance.material);
-    if (!material || !has(*material, "emission"))
+    if (!has(instance.material, "emission"))
       return 0;
-    if (instance.primitive != 0) {
-      const ClassInfo *primitive = classOf(instance.primitive);
-      if (!primitive || !has(*primitive, "generateSample") || !has(*primitive, "samplePDF"))
-        return 0;
-      return mean(number, 0);
-    }
+    if (instance.primitive != 0)
+      return has(instance.primitive, "generateSample") && has(instance.primitive, "samplePDF")
+                 ? mean(number, 0)
+                 : 0;
     // All instances of a mesh with one material shine alike.
     const auto [known, isNew] = radiances.try_emplace({instance.mesh, instance.material}, 0.0);
     if (isNew)
       known->second = mean(number, launch.meshes[instance.mesh].triangleCount);
-    return known->second > 0 ? known->second * areaOf(instance) : 0;
-  }
-
-  /// The area of a triangle in world space.
-  double areaOf(const RtslInstance &instance, std::uint32_t triangle) const {
-    const RtslMesh &mesh = launch.meshes[instance.mesh];
-    const float *m = launch.transforms[instance.transform].linear;
-    const std::uint32_t *index = mesh.indices + 3 * std::size_t(triangle);
-    const auto edge = [&](int to, int row) {
-      double sum = 0;
-      for (int i = 0; i < 3; ++i)
-        sum += double(m[3 * i + row]) * (double(mesh.positions[3 * std::size_t(index[to]) + i]) -
-                                         double(mesh.positions[3 * std::size_t(index[0]) + i]));
-      return sum;
-    };
-    double square = 0;
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      const double component = edge(1, j) * edge(2, k) - edge(1, k) * edge(2, j);
-      square += component * component;
-    }
-    return 0.5 * std::sqrt(square);
+    return known->second;
   }
 
 private:
-  const ClassInfo *classOf(RtslRef object) const {
-    std::uint32_t id;
-    std::memcpy(&id, launch.records + object, sizeof id);
-    for (const ClassInfo &info : program.classes)
-      if (info.id == id)
-        return &info;
-    return nullptr;
-  }
-  static bool has(const ClassInfo &info, const char *method) {
-    return std::find(info.methods.begin(), info.methods.end(), method) != info.methods.end();
-  }
-
-  double areaOf(const RtslInstance &instance) const {
-    double area = 0;
-    for (std::uint32_t i = 0; i < launch.meshes[instance.mesh].triangleCount; ++i)
-      area += areaOf(instance, i);
-    return area;
+  bool has(RtslRef object, const char *method) const {
+    return hasMethod(*objects.at(object).classInfo, method);
   }
 
   /// The mean over points, of a mesh over points of triangles spread over its list.
@@ -87,50 +47,83 @@ private:
           triangles ? static_cast<std::uint32_t>(
                           (std::uint64_t(sample / 2) * 0x9e3779b97f4a7c15u >> 16) % triangles)
                     : 0u;
-      const float one = program.emittedPower(&launch, number, triangle, sample);
+      const float one = objects.program().emittedPower(&launch, number, triangle, sample);
       if (one > 0 && std::isfinite(one))
         sum += double(one);
     }
     return sum / points;
   }
 
-  const Program &program;
+  const Objects &objects;
   const RtslLaunch &launch;
   std::map<std::pair<std::uint32_t, RtslRef>, double> radiances; // of meshes with a material
 };
 
+/// The area of a triangle in world space.
+double areaOf(const RtslLaunch &launch, const RtslInstance &instance, std::uint32_t triangle) {
+  const RtslMesh &mesh = launch.meshes[instance.mesh];
+  const float *m = launch.transforms[instance.transform].linear;
+  const std::uint32_t *index = mesh.indices + 3 * std::size_t(triangle);
+  const auto edge = [&](int to, int row) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i)
+      sum += double(m[3 * i + row]) * (double(mesh.positions[3 * std::size_t(index[to]) + i]) -
+                                       double(mesh.positions[3 * std::size_t(index[0]) + i]));
+    return sum;
+  };
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double component = edge(1, j) * edge(2, k) - edge(1, k) * edge(2, j);
+    square += component * component;
+  }
+  return 0.5 * std::sqrt(square);
+}
+
+/// For each triangle of an instance of a mesh, the area of it and those before it.
+std::vector<double> areasOf(const RtslLaunch &launch, const RtslInstance &instance) {
+  std::vector<double> areas(launch.meshes[instance.mesh].triangleCount);
+  double area = 0;
+  for (std::uint32_t i = 0; i < areas.size(); ++i)
+    areas[i] = area += areaOf(launch, instance, i);
+  return areas;
+}
+
+/// Adds the chances to choose one of several, or one before it: ascending sums over the last one,
+/// which gets 1.
+void addChances(const std::vector<double> &sums, std::vector<float> &chances) {
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    chances.push_back(i + 1 == sums.size() ? 1.0f : static_cast<float>(sums[i] / sums.back()));
+}
+
 } // namespace
 
-Emitters::Emitters(const Program &program, const RtslLaunch &complete) {
-  const ProgramHost host{program.slots};
+Emitters::Emitters(const Objects &objects, const RtslLaunch &complete) {
+  const ProgramHost host{objects.program().slots};
   RtslLaunch launch = complete;
   launch.host = &host;
-  Finder finder(program, launch);
-  std::vector<double> powers;
+  Finder finder(objects, launch);
+  std::vector<double> powers; // of each emitter and those before it
   double total = 0;
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
-    if (const double power = finder.powerOf(i); power > 0 && std::isfinite(total + power)) {
-      emitters.push_back({i, 0, 0});
-      powers.push_back(power);
-      total += power;
-    }
-  double sum = 0;
-  for (std::size_t i = 0; i < emitters.size(); ++i) {
-    sum += powers[i];
-    emitters[i].chances = i + 1 == emitters.size() ? 1.0f : static_cast<float>(sum / total);
-    const RtslInstance &instance = launch.instances[emitters[i].instance];
-    if (instance.primitive != 0)
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
+    double power = finder.emissionOf(i);
+    if (!(power > 0))
       continue;
-    emitters[i].firstTriangle = static_cast<std::uint32_t>(triangleChances.size());
-    const std::uint32_t count = launch.meshes[instance.mesh].triangleCount;
-    std::vector<double> areas(count);
-    double area = 0;
-    for (std::uint32_t triangle = 0; triangle < count; ++triangle)
-      areas[triangle] = area += finder.areaOf(instance, triangle);
-    for (std::uint32_t triangle = 0; triangle < count; ++triangle)
-      triangleChances.push_back(triangle + 1 == count ? 1.0f
-                                                      : static_cast<float>(areas[triangle] / area));
+    std::vector<double> areas; // of a mesh
+    if (const RtslInstance &instance = launch.instances[i]; instance.primitive == 0) {
+      areas = areasOf(launch, instance);
+      power *= areas.back();
+    }
+    if (!(power > 0 && std::isfinite(total + power)))
+      continue;
+    emitters.push_back({i, static_cast<std::uint32_t>(triangleChances.size()), 0});
+    addChances(areas, triangleChances);
+    powers.push_back(total += power);
   }
+  std::vector<float> chances;
+  addChances(powers, chances);
+  for (std::size_t i = 0; i < emitters.size(); ++i)
+    emitters[i].chances = chances[i];
 }
 
 void Emitters::fill(RtslLaunch &launch) const {

@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/program/Program.h"
+#include "runtime/scene/Objects.h"
 
 #include <vector>
 
@@ -15,8 +15,9 @@ namespace rtsl::runtime {
 
 class Emitters {
 public:
-  /// Finds the emitters of a launch that is complete but for them. The program has `emittedPower`.
-  Emitters(const Program &program, const RtslLaunch &complete);
+  /// Finds the emitters of a launch that is complete but for them. The objects' program has
+  /// `emittedPower`.
+  Emitters(const Objects &objects, const RtslLaunch &complete);
 
   /// Sets the launch's fields about emitters.
   void fill(RtslLaunch &launch) const;

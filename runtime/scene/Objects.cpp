@@ -21,10 +21,6 @@ namespace {
 constexpr std::uint32_t firstRecord = 16;
 constexpr std::uint32_t recordAlignment = 16;
 
-bool hasMethod(const ClassInfo &info, const std::string &method) {
-  return std::find(info.methods.begin(), info.methods.end(), method) != info.methods.end();
-}
-
 /// Throws UnknownClass.
 const ClassInfo &findClass(const Program &program, const std::string &className,
                            const std::optional<Place> &place) {
@@ -40,6 +36,10 @@ const ClassInfo &findClass(const Program &program, const std::string &className,
 }
 
 } // namespace
+
+bool hasMethod(const ClassInfo &info, const std::string &method) {
+  return std::find(info.methods.begin(), info.methods.end(), method) != info.methods.end();
+}
 
 std::vector<std::string> ifClassic(const Program &program, const char *method) {
   return program.engine == Engine::Classic ? std::vector<std::string>{method}

@@ -84,6 +84,9 @@ private:
   std::uint32_t longestChain = 0;
 };
 
+/// Does the class define or inherit a method of this name?
+bool hasMethod(const ClassInfo &info, const std::string &method);
+
 /// The method if the program uses the classic engine, which calls it; otherwise nothing.
 std::vector<std::string> ifClassic(const Program &program, const char *method);
 

@@ -22,7 +22,7 @@ struct Scene::Implementation {
   void findEmitters(const RtslLaunch &launch) {
     const Program &program = objects.program();
     if (!emitters && program.emittedPower && program.needs & RTSL_NEEDS_EMITTERS)
-      emitters.emplace(program, launch);
+      emitters.emplace(objects, launch);
   }
 
   /// The current launch, complete or not.

@@ -50,25 +50,27 @@ std::vector<const typed::Function *> Program::findMethods(const ClassScope *scop
 // Bases
 //===----------------------------------------------------------------------===//
 
+/// A default class and those that it derives from, which are default classes too. Bases may still
+/// form a cycle: then it ends after as many classes as there are.
+std::vector<const ClassScope *> Program::defaultChain(const ClassScope &scope) const {
+  std::vector<const ClassScope *> chain = {&scope};
+  while (chain.size() != classes.size()) {
+    const auto base = classes.find(chain.back()->declaration->base.text);
+    if (base == classes.end() || !base->second->declaration->defaultRange.isValid())
+      break;
+    chain.push_back(base->second.get());
+  }
+  return chain;
+}
+
 /// Finds the default classes of each rt_ class, in source order.
 void Program::findDefaults() {
-  const auto isDefault = [](const ClassScope &scope) {
-    return scope.declaration->defaultRange.isValid();
-  };
   for (const std::string &name : classOrder) {
     ClassScope &scope = *classes[name];
-    if (!isDefault(scope))
-      continue;
-    // A default class may derive from another one.
-    const ClassScope *first = &scope;
-    for (std::size_t bases = 0; bases != classes.size(); ++bases) {
-      const auto base = classes.find(first->declaration->base.text);
-      if (base == classes.end() || !isDefault(*base->second))
-        break;
-      first = base->second.get();
-    }
     const SourceRange written = scope.declaration->defaultRange;
-    const RootModel *root = rootModel(first->declaration->base.text);
+    if (!written.isValid())
+      continue;
+    const RootModel *root = rootModel(defaultChain(scope).back()->declaration->base.text);
     if (!root) {
       diagnostics
           .report(Code::badDefaultClass, written, name,
@@ -96,21 +98,15 @@ ClassScope *Program::defaultOf(const ClassScope &scope) const {
                     one.parameters.size() == required.parameters.size();
            });
   };
-  // Of a default class and those that it derives from.
-  const auto areAllDefined = [&](const ClassScope *candidate) {
-    for (std::size_t bases = 0; candidate && bases != classes.size(); ++bases) {
-      const std::vector<ast::FunctionDecl> &methods = candidate->declaration->functions;
-      if (!std::all_of(methods.begin(), methods.end(), isDefined))
-        return false;
-      const auto base = classes.find(candidate->declaration->base.text);
-      candidate = base == classes.end() ? nullptr : base->second.get();
-    }
-    return true;
+  const auto fits = [&](const ClassScope *candidate) {
+    const std::vector<const ClassScope *> chain = defaultChain(*candidate);
+    return std::all_of(chain.begin(), chain.end(), [&](const ClassScope *one) {
+      const std::vector<ast::FunctionDecl> &methods = one->declaration->functions;
+      return std::all_of(methods.begin(), methods.end(), isDefined);
+    });
   };
-  for (ClassScope *candidate : candidates->second)
-    if (areAllDefined(candidate))
-      return candidate;
-  return nullptr;
+  const auto found = std::find_if(candidates->second.begin(), candidates->second.end(), fits);
+  return found == candidates->second.end() ? nullptr : *found;
 }
 
 void Program::linkBase(ClassScope &scope) {

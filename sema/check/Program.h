@@ -155,6 +155,7 @@ private:
   void resolveFields(StructEntry &entry);
   void checkConstant(GlobalConstant &entry);
   // Classes.cpp
+  std::vector<const ClassScope *> defaultChain(const ClassScope &scope) const;
   void findDefaults();
   ClassScope *defaultOf(const ClassScope &scope) const;
   void linkBase(ClassScope &scope);

@@ -4,21 +4,11 @@
 #include "codegen/cpp/runtime/Payloads.h"
 #include "codegen/cpp/runtime/RunState.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
+#include "language/SlotTable.h"
+
+#include <algorithm>
 
 namespace rtsl::cpp {
-
-namespace {
-struct Slot {
-  const char *base;
-  const char *method;
-};
-constexpr Slot allSlots[] = {
-#define RTSL_SLOT(base, method) {#base, #method},
-#include "language/Slots.def"
-#define RTSL_SAMPLING_SLOT(base, method) {#base, #method},
-#include "language/SamplingSlots.def"
-};
-} // namespace
 
 /// Calls the method of a slot on the object, if the class has it.
 static Statements callSlotMethod(Context &context,
@@ -45,19 +35,21 @@ Declarations slots(Context &context, const StateEntries &entries,
                    const std::set<const typed::Class *> &withHitErrors,
                    std::vector<FilledSlot> &filled) {
   Namespace made = {"slots", {}};
-  for (const Slot &slot : allSlots) {
+  const auto add = [&](const Slot &slot) {
     if (isRunBySteps(entries, slot.method))
-      continue;
+      return;
     const Statements body =
         dispatch(context.names, classesBelow(context.module, slot.base),
                  [&](const typed::Class &definition) {
                    return callSlotMethod(context, withHitErrors, definition, slot.method);
                  });
     if (body.empty())
-      continue;
+      return;
     appendApart(made.members, declare(slotFunction(slot.method, withState(context.options, body))));
     filled.push_back({slot.base, slot.method});
-  }
+  };
+  std::for_each(std::begin(methodSlots), std::end(methodSlots), add);
+  std::for_each(std::begin(samplingSlots), std::end(samplingSlots), add);
   appendApart(made.members, payloadSlots(context, entries));
   appendApart(made.members, RunState(context, entries).function());
   Declarations all = {

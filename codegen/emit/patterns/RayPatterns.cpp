@@ -58,25 +58,19 @@ struct ConvertRand : ConvertOpToLLVMPattern<ir::RandOp> {
   }
 };
 
-struct ConvertAmbient : ConvertOpToLLVMPattern<ir::AmbientOp> {
-  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
-  LogicalResult matchAndRewrite(ir::AmbientOp op, OpAdaptor,
+/// A fact of the launch at this offset.
+template <typename Op, std::size_t offset>
+struct ConvertLaunchFact : ConvertOpToLLVMPattern<Op> {
+  using ConvertOpToLLVMPattern<Op>::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(Op op, typename Op::Adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    Value address = launchAddress(rewriter, op.getLoc(), offsetof(RtslLaunch, ambient));
+    Value address = launchAddress(rewriter, op.getLoc(), offset);
     rewriter.replaceOp(op, loadFrom(rewriter, op.getLoc(), op.getType(), address, true));
     return mlir::success();
   }
 };
-
-struct ConvertLightCount : ConvertOpToLLVMPattern<ir::LightCountOp> {
-  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
-  LogicalResult matchAndRewrite(ir::LightCountOp op, OpAdaptor,
-                                ConversionPatternRewriter &rewriter) const override {
-    Value address = launchAddress(rewriter, op.getLoc(), offsetof(RtslLaunch, lightCount));
-    rewriter.replaceOp(op, loadFrom(rewriter, op.getLoc(), op.getType(), address, true));
-    return mlir::success();
-  }
-};
+using ConvertAmbient = ConvertLaunchFact<ir::AmbientOp, offsetof(RtslLaunch, ambient)>;
+using ConvertLightCount = ConvertLaunchFact<ir::LightCountOp, offsetof(RtslLaunch, lightCount)>;
 
 struct ConvertIlluminate : ConvertOpToLLVMPattern<ir::IlluminateOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;

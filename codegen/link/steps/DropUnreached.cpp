@@ -9,6 +9,7 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
+#include "language/SlotTable.h"
 
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/StringSet.h"
@@ -89,8 +90,8 @@ private:
     if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
       addMethods("rt_Exception", "exception", {"for samples that raise an exception", {}});
     if (context.request.isSampled) {
-#define RTSL_SAMPLING_SLOT(base, method) addMethods(#base, #method, {"called by the host", {}});
-#include "language/SamplingSlots.def"
+      for (const Slot &slot : samplingSlots)
+        addMethods(slot.base, slot.method, {"called by the host", {}});
     }
   }
 
@@ -128,9 +129,8 @@ private:
         addMethods("rt_Material", "anyHit." + type, by("for rays of"));
         addMethods("rt_Miss", "miss." + type, by("for rays of"));
       } else if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && !light.getIndex()) {
-        addMethods("rt_Primitive", "generateSample", by("for `illuminate` in"));
-        addMethods("rt_Primitive", "samplePDF", by("for `illuminate` in"));
-        addMethods("rt_Material", "emission", by("for `illuminate` in"));
+        for (const Slot &slot : surfaceSlots)
+          addMethods(slot.base, slot.method, by("for `illuminate` in"));
       } else if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op)) {
         const bool isOne = llvm::isa<ir::IlluminateOp>(op);
         addMethods("rt_Light", "illumination",
@@ -209,15 +209,17 @@ std::string shownName(FuncOp function) {
   return function.getSymName().str();
 }
 
+bool isLitByLights(mlir::Operation *op) {
+  auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
+  return llvm::isa<ir::IlluminanceOp>(op) || (light && light.getIndex());
+}
+
 bool usesLights(const LinkContext &context) {
   Reach reach(context);
   reach.run();
   return llvm::any_of(mlir::ModuleOp(context.ir).getOps<FuncOp>(), [&](FuncOp function) {
     const auto isLit = [](mlir::Operation *op) {
-      auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
-      return llvm::isa<ir::IlluminanceOp>(op) || (light && light.getIndex())
-                 ? mlir::WalkResult::interrupt()
-                 : mlir::WalkResult::advance();
+      return isLitByLights(op) ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
     };
     return reach.isReachedByRendering(function) && function.walk(isLit).wasInterrupted();
   });
@@ -229,7 +231,7 @@ void dropUnreached(LinkContext &context) {
   for (auto &[name, finding] : context.dispatches)
     if (FuncOp function = context.function(name); function && reach.isReachedByRendering(function))
       context.findings.push_back(finding);
-  const llvm::SmallPtrSet<mlir::Operation *, 16> calledByKept = functionsOfKept(context, reached);
+  const llvm::SmallPtrSet<mlir::Operation *, 16> ofKept = functionsOfKept(context, reached);
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
     const auto method = ir::attr::methodName.of(function);
     const auto found = reached.find(function);
@@ -262,8 +264,7 @@ void dropUnreached(LinkContext &context) {
         continue;
       }
     }
-    const bool mayBeCalledByKept = !context.request.keep.isEmpty() && !method;
-    if (found == reached.end() && !mayBeCalledByKept && !calledByKept.contains(function))
+    if (found == reached.end() && !ofKept.contains(function))
       context.symbols.erase(function);
   }
 }

@@ -132,7 +132,7 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
       trace && trace.getHow().value_or(0) & RTSL_ASK_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);
   if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && !light.getIndex())
-    return RTSL_NEEDS_EMITTERS | RTSL_NEEDS_NORMALS | ofRaysFromHits;
+    return RTSL_NEEDS_EMITTERS | RTSL_NEEDS_SAMPLING | ofRaysFromHits;
   const bool sendsRay =
       llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
   return sendsRay && mayStartAtHits(reader) ? ofRaysFromHits : 0;

@@ -11,29 +11,11 @@
 #include "codegen/link/Reflect.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
+#include "language/SlotTable.h"
 
 namespace rtsl::linking {
 
 namespace {
-
-struct Slot {
-  const char *base;
-  const char *method;
-};
-constexpr Slot slots[] = {
-#define RTSL_SLOT(base, method) {#base, #method},
-#include "language/Slots.def"
-};
-constexpr Slot samplingSlots[] = {
-#define RTSL_SAMPLING_SLOT(base, method) {#base, #method},
-#include "language/SamplingSlots.def"
-};
-
-/// Does the runtime call it to choose a point on a surface that shines?
-bool isOfSurfaces(const Slot &slot) {
-  const std::string_view method = slot.method;
-  return method == "generateSample" || method == "samplePDF" || method == "emission";
-}
 
 void exportFunction(mlir::func::FuncOp function) {
   ir::attr::exported.set(function);
@@ -120,11 +102,13 @@ void makeEntries(LinkContext &context) {
     if (ir::attr::kept.isOn(function))
       exportFunction(function);
   }
-  for (const Slot &slot : slots)
+  for (const Slot &slot : methodSlots)
     makeSlot(context, slot);
-  const bool samplesSurfaces = findNeeds(context) & RTSL_NEEDS_EMITTERS;
-  for (const Slot &slot : samplingSlots)
-    if (context.request.isSampled || (samplesSurfaces && isOfSurfaces(slot)))
+  if (context.request.isSampled)
+    for (const Slot &slot : samplingSlots)
+      makeSlot(context, slot);
+  else if (findNeeds(context) & RTSL_NEEDS_EMITTERS)
+    for (const Slot &slot : surfaceSlots)
       makeSlot(context, slot);
   makePayloadSlots(context);
   makeFeatures(context);

@@ -69,6 +69,9 @@ void dropUnusedClasses(LinkContext &context);
 /// UsedObjects.cpp: finds the objects of the scene that something refers to: LinkedClass::isUsed.
 void findUsedObjects(LinkContext &context);
 
+/// Whether an operation lights a point with lights of the scene, and not with a surface that shines.
+bool isLitByLights(mlir::Operation *op);
+
 /// Whether a method that rendering runs loops over lights. Runs before slots are resolved.
 bool usesLights(const LinkContext &context);
 

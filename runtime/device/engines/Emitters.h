@@ -122,16 +122,11 @@ inline float emitterDensity(const RtslState &hit) {
   } else {
     RtslState state;
     beginState(state, hit.launch);
-    state.events = hit.events;
-    for (int i = 0; i < 2; ++i) {
-      state.LaunchIndex[i] = hit.LaunchIndex[i];
-      state.LaunchSize[i] = hit.LaunchSize[i];
-      state.randomKey[i] = hit.randomKey[i];
-    }
-    state.randomKey[0] ^= 0x85ebca6bu;
+    takeFromSample(state, hit);
+    state.randomKey[0] = hit.randomKey[0] ^ 0x85ebca6bu;
+    state.randomKey[1] = hit.randomKey[1];
     state.dimension = 0;
     state.Time = hit.Time;
-    state.TimeSeed = hit.TimeSeed;
     state.Depth = hit.Depth;
     clearForSample(state);
     store(state.HitPoint, load(hit.HitPoint));
@@ -224,7 +219,6 @@ inline void lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice choice, Emi
   describeHit(state);
   light->distance = state.HitDistance;
   light->density = emitterDensity(state);
-  setColor(state.EmissionColor, rtsl_color_components(&launch), 0);
   if (light->density > 0)
     rtsl_rt_Material_emission(&state, instance.material);
   copyColor(light->radiance, state.EmissionColor, rtsl_color_components(&launch));
@@ -300,15 +294,14 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t tr
   }
   // Seen from either side in turn.
   const Vec3 toEye = normal * (sample & 1 ? -1.0f : 1.0f);
-  setDefaults(state, rtsl_color_components(&launch));
+  const uint32_t components = rtsl_color_components(&launch);
+  setDefaults(state, components);
   setRay(state, point + toEye, toEye * -1.0f, {0, 0, RTSL_NO_HIT}, 1);
   state.instance = number;
   state.primitive = triangle;
   for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
     state.attributes[i] = 0; // nothing was intersected
   describeHit(state);
-  const uint32_t components = rtsl_color_components(&launch);
-  setColor(state.EmissionColor, components, 0);
   rtsl_rt_Material_emission(&state, instance.material);
   float sum = 0;
   for (uint32_t i = 0; i < components; ++i)
