@@ -193,6 +193,8 @@ class Explain(Case):
                 if entry["needed"] or entry["subject"].split(".")[-1] in needed or "built" in entry["reason"] or "place" not in entry:
                     continue
                 path = self.folder / entry["place"]["file"]
+                if self.folder not in path.parents:  # a file of the library, which all programs share
+                    continue
                 lines = path.read_text().split("\n")
                 start = sum(len(line) + 1 for line in lines[:entry["place"]["line"] - 1])
                 text = "\n".join(lines)
